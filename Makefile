@@ -28,7 +28,7 @@ proof: .venv/installed
 lint: .venv/installed
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
-	$(BIN)/mypy
+	$(BIN)/python tests/check_types.py
 
 benchmark: .venv/installed
 	$(BIN)/python -m benchmarks

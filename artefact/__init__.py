@@ -18,7 +18,7 @@ into `layout`, a hindrance for the probe into `reach`, for its place on the tabl
 criterion into `worth`.
 """
 
-from artefact.body import (
+from matstd.artefact.body import (
     DatumSphere,
     FreeformPatch,
     Limits,
@@ -30,12 +30,12 @@ from artefact.body import (
     read_standard,
     write_standard,
 )
-from artefact.brief import Project, read_project
-from artefact.compare import IdentifiabilityReport, Rival, identifiability_report
-from artefact.layout import Blank, Fittings, Site, standard_from_sites
-from artefact.place import Placement, PlacementOptions, design_standard
-from artefact.reach import ProbeReach, Requests
-from artefact.worth import Criterion
+from matstd.artefact.brief import Project, read_project
+from matstd.artefact.compare import IdentifiabilityReport, Rival, identifiability_report
+from matstd.artefact.layout import Blank, Fittings, Site, standard_from_sites
+from matstd.artefact.place import Placement, PlacementOptions, design_standard
+from matstd.artefact.reach import ProbeReach, Requests
+from matstd.artefact.worth import Criterion
 
 PARTS = ("brief", "body", "layout", "reach", "seat", "worth", "certify", "compare", "place")
 """From bottom to top: each imports only from those before it."""

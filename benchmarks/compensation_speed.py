@@ -12,13 +12,13 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.field import MachineErrors, State, correction, datum_of, workspace
-from compensation.part_programs import Frame, read_part_program
-from compensation.programs import compensated
-from compensation.service import PointCorrection
-from compensation.tables import header_of
-from twin import ordinary_model, read_machine
-from twin.units import NM
+from matstd.compensation.field import MachineErrors, State, correction, datum_of, workspace
+from matstd.compensation.part_programs import Frame, read_part_program
+from matstd.compensation.programs import compensated
+from matstd.compensation.service import PointCorrection
+from matstd.compensation.tables import header_of
+from matstd.twin import ordinary_model, read_machine
+from matstd.twin.units import NM
 
 MACHINE = Path(__file__).parents[1] / "examples" / "hsm600u-machine.toml"
 POINTS, SINGLE, REPEATED = 100_000, 2_000, 10

@@ -19,13 +19,13 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
-from artefact.body import read_standard
+from matstd.artefact.body import read_standard
 from matstd.cli import main as matstd
-from probe_paths.control import read_program
-from probe_paths.emit import Program, make_programs
-from probe_paths.language import read_dialect
-from probe_paths.linuxcnc import shortened
-from twin.files import read_machine
+from matstd.probe_paths.control import read_program
+from matstd.probe_paths.emit import Program, make_programs
+from matstd.probe_paths.language import read_dialect
+from matstd.probe_paths.linuxcnc import shortened
+from matstd.twin.files import read_machine
 
 
 def programs_of(design: Path) -> list[Program]:

@@ -23,12 +23,12 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
 
 from simulator_case import simulate_case  # noqa: E402  (found through the path above)
 
-from diagnosis.faults import Fault, description_faults, faults_of_refused  # noqa: E402
-from diagnosis.fit import fit_run  # noqa: E402
-from twin.errors import BadFile  # noqa: E402
-from twin.files import read_run  # noqa: E402
-from twin.library import ordinary_model  # noqa: E402
-from twin.record import Run  # noqa: E402
+from matstd.diagnosis.faults import Fault, description_faults, faults_of_refused  # noqa: E402
+from matstd.diagnosis.fit import fit_run  # noqa: E402
+from matstd.twin.errors import BadFile  # noqa: E402
+from matstd.twin.files import read_run  # noqa: E402
+from matstd.twin.library import ordinary_model  # noqa: E402
+from matstd.twin.record import Run  # noqa: E402
 
 Edit = Callable[[str, str], tuple[str, str]]
 """Texts of run file and machine file -> the same with a mistake."""

@@ -20,10 +20,10 @@ from typing import Any
 
 import numpy as np
 
-import diagnosis.answer.run_diagnosis as diagnosing
-from diagnosis.answer import Diagnosis, Step, Verdict
-from twin.files import read_run
-from twin.units import UM
+import matstd.diagnosis.answer.run_diagnosis as diagnosing
+from matstd.diagnosis.answer import Diagnosis, Step, Verdict
+from matstd.twin.files import read_run
+from matstd.twin.units import UM
 
 HALF_WIDTH = 1.96
 """Standard uncertainties to either side of an estimate that make its 95 % interval."""

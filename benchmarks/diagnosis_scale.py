@@ -38,9 +38,9 @@ def write(folder: Path, touches: int) -> None:
 
 def measure(path: Path) -> None:
     """Diagnose a run and say what it took."""
-    from diagnosis.answer import diagnose
-    from twin.files import read_run
-    from twin.library import ordinary_model
+    from matstd.diagnosis.answer import diagnose
+    from matstd.twin.files import read_run
+    from matstd.twin.library import ordinary_model
 
     run = read_run(path)
     X = ordinary_model(run.touches.chain).columns(run.touches)

@@ -26,14 +26,14 @@ from planted_collisions import (
     tip_on_table,
 )
 
-from artefact.body import Standard, read_standard
-from artefact.reach import Requests
-from probe_paths.control import ReadProgram, interpret, read_program
-from probe_paths.emit import make_programs
-from probe_paths.linuxcnc import shortened
-from probe_paths.plan import Heading, PlanOptions, Probe, TouchPlan, plan_touches
-from twin.files import read_machine
-from twin.frames import Array
+from matstd.artefact.body import Standard, read_standard
+from matstd.artefact.reach import Requests
+from matstd.probe_paths.control import ReadProgram, interpret, read_program
+from matstd.probe_paths.emit import make_programs
+from matstd.probe_paths.linuxcnc import shortened
+from matstd.probe_paths.plan import Heading, PlanOptions, Probe, TouchPlan, plan_touches
+from matstd.twin.files import read_machine
+from matstd.twin.frames import Array
 
 PITCH = 0.5  # mm between points of a surface
 FINER = 0.15  # mm: the same where the first look leaves less than is wanted

@@ -25,7 +25,7 @@ from border_cases import border_readers  # noqa: E402  (found through the path a
 from foreign_cases import foreign_readers  # noqa: E402
 from reader_cases import Reader, damage, golden, readers  # noqa: E402
 
-from twin.errors import DesignError  # noqa: E402
+from matstd.twin.errors import DesignError  # noqa: E402
 
 SLOW = 5.0
 """Longest processor time that any small file may take to be read or refused, s."""

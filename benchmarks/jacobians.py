@@ -1,7 +1,7 @@
 """How fast are the Jacobians of all error parameters?   python benchmarks/jacobians.py
 
-Prints poses per second of `sensitivity.first_order.by_parameter` for the 71 parameters of the HSM
-600U and for
+Prints poses per second of `matstd.sensitivity.first_order.by_parameter` for the 71 parameters of
+the HSM 600U and for
 the 60 of the same machine without its spindle axis, beside two measures of the same run: central
 differences of the exact product, and filling an array of that size with a number.
 """
@@ -13,9 +13,14 @@ from pathlib import Path
 
 import numpy as np
 
-from sensitivity.first_order import Workspace, jacobian, jacobian_by_parameter, latin_hypercube
-from twin.files import read_machine
-from twin.machine import Chain, Contribution, Family, exact_tip
+from matstd.sensitivity.first_order import (
+    Workspace,
+    jacobian,
+    jacobian_by_parameter,
+    latin_hypercube,
+)
+from matstd.twin.files import read_machine
+from matstd.twin.machine import Chain, Contribution, Family, exact_tip
 
 MACHINE = Path(__file__).parent.parent / "examples" / "hsm600u-machine.toml"
 LENGTH = 160.0

@@ -34,8 +34,8 @@ def drawn(rng: np.random.Generator, label: str, hard: bool):
 
 def usual(name: str, chain) -> float:
     """Size of an effect that the library expects, in the unit in which amplitudes are told."""
-    from diagnosis.fit import file_unit
-    from twin.library import parse_effect
+    from matstd.diagnosis.fit import file_unit
+    from matstd.twin.library import parse_effect
 
     first = parse_effect(name, chain).parameters[0]
     return float(first.sd / file_unit(first.unit)[1])
@@ -56,7 +56,7 @@ def simulated(number: int, times: float):
 
 def one(job: tuple[int, float]):
     """What was hidden, what was found, whether that is right, true size, found size, seconds."""
-    from diagnosis.answer import Verdict, diagnose
+    from matstd.diagnosis.answer import Verdict, diagnose
 
     run, hidden = simulated(*job)
     start = time.process_time()

@@ -18,19 +18,19 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.body import read_standard
-from probe_paths.campaign import VirtualMachine, ball_centres, simulate_search
-from probe_paths.control import Move, interpret, read_log, read_program
-from probe_paths.emit import make_search
-from probe_paths.locate import SPREADS, find_standard, plan_search
-from probe_paths.plan import ToolClearance
-from sensitivity.population import Population, drawn_errors
-from twin.errors import NotReachable
-from twin.files import read_machine
-from twin.frames import fixed_xyz, inverse, pose
-from twin.model import contribution
-from twin.record import Setup
-from twin.units import DEG, MINUTE, UM
+from matstd.artefact.body import read_standard
+from matstd.probe_paths.campaign import VirtualMachine, ball_centres, simulate_search
+from matstd.probe_paths.control import Move, interpret, read_log, read_program
+from matstd.probe_paths.emit import make_search
+from matstd.probe_paths.locate import SPREADS, find_standard, plan_search
+from matstd.probe_paths.plan import ToolClearance
+from matstd.sensitivity.population import Population, drawn_errors
+from matstd.twin.errors import NotReachable
+from matstd.twin.files import read_machine
+from matstd.twin.frames import fixed_xyz, inverse, pose
+from matstd.twin.model import contribution
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG, MINUTE, UM
 
 NOISE = 10.0 * UM
 GOOD_MM, GOOD_DEG = 0.3, 0.1

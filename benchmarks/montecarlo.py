@@ -13,13 +13,13 @@ from pathlib import Path
 
 import numpy as np
 
-from sensitivity.first_order import Workspace, latin_hypercube, rms
-from sensitivity.montecarlo import BINS, count_lengths, volumetric
-from sensitivity.population import Distributions, Population, coefficients, drawn_in_chunks
-from twin.compute import one_blas_thread
-from twin.files import read_machine
-from twin.record import at_poses
-from twin.units import UM
+from matstd.sensitivity.first_order import Workspace, latin_hypercube, rms
+from matstd.sensitivity.montecarlo import BINS, count_lengths, volumetric
+from matstd.sensitivity.population import Distributions, Population, coefficients, drawn_in_chunks
+from matstd.twin.compute import one_blas_thread
+from matstd.twin.files import read_machine
+from matstd.twin.record import at_poses
+from matstd.twin.units import UM
 
 MACHINE = Path(__file__).parent.parent / "examples" / "hsm600u-machine.toml"
 LENGTH = 160.0

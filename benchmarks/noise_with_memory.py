@@ -50,7 +50,7 @@ def simulated(seed: int, hidden: bool):
 
 def one(job: tuple[int, bool]):
     """Seed, correlation, what was found of it, verdict, names, whether right, seconds."""
-    from diagnosis.answer import Verdict, diagnose
+    from matstd.diagnosis.answer import Verdict, diagnose
 
     run, correlation, alike = simulated(*job)
     start = time.perf_counter()

@@ -13,19 +13,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from artefact.layout import Blank
-from artefact.reach import ProbeReach
-from artefact.worth import criterion_for, random_touches
-from information.selection import heaviest, relaxed, rounded
-from probe_paths.plan import Probe
-from sensitivity.first_order import Workspace
-from sensitivity.population import Population
-from twin.effects import HigherOrder, LocationError
-from twin.files import read_machine
-from twin.machine import Chain, Family, Ranges
-from twin.model import Effect, Model
-from twin.record import Setup
-from twin.units import UM
+from matstd.artefact.layout import Blank
+from matstd.artefact.reach import ProbeReach
+from matstd.artefact.worth import criterion_for, random_touches
+from matstd.information.selection import heaviest, relaxed, rounded
+from matstd.probe_paths.plan import Probe
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.population import Population
+from matstd.twin.effects import HigherOrder, LocationError
+from matstd.twin.files import read_machine
+from matstd.twin.machine import Chain, Family, Ranges
+from matstd.twin.model import Effect, Model
+from matstd.twin.record import Setup
+from matstd.twin.units import UM
 
 CANDIDATES, TOUCHES = 20_000, 300
 DEGREE, HARMONICS = 4, 2

@@ -23,14 +23,14 @@ import numpy as np
 import trimesh
 from scipy.spatial.transform import Rotation
 
-from artefact.body import Standard
-from artefact.reach import Solid, Workshop, round_table
-from probe_paths.campaign import check_moves
-from probe_paths.control import Move, ProbeStep, ReadProgram, interpret
-from probe_paths.emit import make_programs
-from probe_paths.plan import SMALLEST_GAP, PlanOptions, Probe, plan_touches
-from twin.errors import BadFile
-from twin.frames import Array
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import Solid, Workshop, round_table
+from matstd.probe_paths.campaign import check_moves
+from matstd.probe_paths.control import Move, ProbeStep, ReadProgram, interpret
+from matstd.probe_paths.emit import make_programs
+from matstd.probe_paths.plan import SMALLEST_GAP, PlanOptions, Probe, plan_touches
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
 
 GOLDEN = Path(__file__).parents[1] / "tests" / "golden" / "make_programs.py"
 PROBE = Probe(stack=((40.0, 1.5), (60.0, 8.0), (160.0, 31.0)), nose_radius=50.0)

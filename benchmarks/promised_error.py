@@ -75,9 +75,9 @@ def three_runs(number: int):
 
 def one(number: int):
     """Names; stated error, error of the same programme, of other poses, expected there; µm."""
-    from diagnosis.answer import compare, diagnose
-    from diagnosis.fit import Prior
-    from twin.units import UM
+    from matstd.diagnosis.answer import compare, diagnose
+    from matstd.diagnosis.fit import Prior
+    from matstd.twin.units import UM
 
     (first, again, other), names = three_runs(number)
     fit = diagnose(first).fit

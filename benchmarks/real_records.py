@@ -48,9 +48,9 @@ def frame_table(path: Path) -> dict[str, np.ndarray]:
 
 def frame_run(path: Path, whole: bool = False):
     """The record as a run of a machine with one axis, read along +z."""
-    from twin.machine import Axis, make_chain
-    from twin.record import Run, Setup, Touches
-    from twin.units import UM
+    from matstd.twin.machine import Axis, make_chain
+    from matstd.twin.record import Run, Setup, Touches
+    from matstd.twin.units import UM
 
     table = frame_table(path)
     n = len(table["time"])
@@ -74,7 +74,7 @@ def frame_run(path: Path, whole: bool = False):
 
 def plain(fit) -> float:
     """Root mean square error of every held-out row, µm."""
-    from twin.units import UM
+    from matstd.twin.units import UM
 
     rows = fit.run.split == "test"
     return float(np.sqrt(np.mean(fit.residual[rows] ** 2))) / UM
@@ -82,8 +82,8 @@ def plain(fit) -> float:
 
 def told(name: str, run):
     """Diagnose a record and say what came out."""
-    from diagnosis.answer import diagnose
-    from report.words import sizes
+    from matstd.diagnosis.answer import diagnose
+    from matstd.report.words import sizes
 
     start = time.perf_counter()
     result = diagnose(run)
@@ -98,9 +98,9 @@ def told(name: str, run):
 
 def transfer(source, path: Path) -> tuple[float, float]:
     """Error of a record predicted by a model of another, and what that model promised, µm."""
-    from diagnosis.answer import compare
-    from diagnosis.fit import Prior
-    from twin.units import UM
+    from matstd.diagnosis.answer import compare
+    from matstd.diagnosis.fit import Prior
+    from matstd.twin.units import UM
 
     fit = source.fit
     count = len(fit.model.parameters)

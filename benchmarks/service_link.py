@@ -21,9 +21,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 import numpy as np
 
-from compensation.field import MachineErrors, datum_of
-from compensation.service import NAMESPACE, PointCorrection
-from twin.files import read_errors, read_machine
+from matstd.compensation.field import MachineErrors, datum_of
+from matstd.compensation.service import NAMESPACE, PointCorrection
+from matstd.twin.files import read_errors, read_machine
 
 MACHINE = """format = "machine/1"
 name = "bench"

@@ -20,13 +20,13 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.brief import read_project
-from artefact.compare import Power, Rival
-from artefact.place import design_standard
-from artefact.worth import TouchOptions
+from matstd.artefact.brief import read_project
+from matstd.artefact.compare import Power, Rival
+from matstd.artefact.place import design_standard
+from matstd.artefact.worth import TouchOptions
+from matstd.sensitivity.first_order import Workspace
 from matstd.stages.from_project import blank, placement_options, probe_reach
-from sensitivity.first_order import Workspace
-from twin.units import UM
+from matstd.twin.units import UM
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 MACHINES = (

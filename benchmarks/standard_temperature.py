@@ -40,9 +40,9 @@ def scales(seed: int, machine: str, case: str) -> dict[str, tuple[float, float, 
     from simulator_experiment import random_experiment
     from simulator_warmth import probed_warm, true_scales
 
-    from diagnosis.fit import fit_run
-    from diagnosis.geometry import Quantity, geometry_rows
-    from twin.library import ordinary_model
+    from matstd.diagnosis.fit import fit_run
+    from matstd.diagnosis.geometry import Quantity, geometry_rows
+    from matstd.twin.library import ordinary_model
 
     rng = np.random.default_rng(seed)
     e = random_experiment(rng, machine, POSES)

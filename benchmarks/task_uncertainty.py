@@ -21,22 +21,22 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.body import Standard, read_standard
-from artefact.brief import Project, Task, read_project
-from artefact.certify import like_task, misplaced, on_faces
-from artefact.worth import Calibration
-from diagnosis.fit import Prior, fit_run
-from diagnosis.task import Visits, task_uncertainty
+from matstd.artefact.body import Standard, read_standard
+from matstd.artefact.brief import Project, Task, read_project
+from matstd.artefact.certify import like_task, misplaced, on_faces
+from matstd.artefact.worth import Calibration
+from matstd.diagnosis.fit import Prior, fit_run
+from matstd.diagnosis.task import Visits, task_uncertainty
+from matstd.probe_paths.campaign import check_moves, visits
+from matstd.probe_paths.control import ReadProgram, read_program
+from matstd.sensitivity.population import drawn_errors
 from matstd.stages.budgets import CLAMPED, PLAIN, places_of
 from matstd.stages.design import _twin
-from probe_paths.campaign import check_moves, visits
-from probe_paths.control import ReadProgram, read_program
-from sensitivity.population import drawn_errors
-from twin.effects import setup_errors
-from twin.frames import Array, pose, rotation
-from twin.machine import inverse_linear
-from twin.model import Effect, Model, columns
-from twin.record import Run, Touches
+from matstd.twin.effects import setup_errors
+from matstd.twin.frames import Array, pose, rotation
+from matstd.twin.machine import inverse_linear
+from matstd.twin.model import Effect, Model, columns
+from matstd.twin.record import Run, Touches
 
 RESULTS = 400  # on workpieces, a machine
 LEARNT = "with the identified model"

@@ -9,8 +9,8 @@ import time
 
 import numpy as np
 
-from diagnosis.drift import DriftRecord, offered
-from twin.units import UM
+from matstd.diagnosis.drift import DriftRecord, offered
+from matstd.twin.units import UM
 
 ROWS, SENSORS, STEP = 1440, 20, 60.0
 

@@ -9,7 +9,7 @@ import time
 import numpy as np
 from jacobians import best_of, matrix_rate
 
-from sensitivity.shares import total_effects
+from matstd.sensitivity.shares import total_effects
 
 
 def processor_time(work, repeats=5):

@@ -17,13 +17,13 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.body import read_standard
-from probe_paths.control import Clock, read_program, step_times
-from probe_paths.linuxcnc import shortened
-from probe_paths.plan import short_order
-from twin.files import read_machine
-from twin.frames import Array
-from twin.units import MINUTE
+from matstd.artefact.body import read_standard
+from matstd.probe_paths.control import Clock, read_program, step_times
+from matstd.probe_paths.linuxcnc import shortened
+from matstd.probe_paths.plan import short_order
+from matstd.twin.files import read_machine
+from matstd.twin.frames import Array
+from matstd.twin.units import MINUTE
 
 EXACT = 13  # touches behind the anchor; 2^13 subsets
 

@@ -19,10 +19,10 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from sensitivity.first_order import Workspace, jacobian_by_parameter, latin_hypercube
-from twin.files import read_machine
-from twin.machine import Chain, Contribution, Family, exact_tip
-from twin.units import DEG
+from matstd.sensitivity.first_order import Workspace, jacobian_by_parameter, latin_hypercube
+from matstd.twin.files import read_machine
+from matstd.twin.machine import Chain, Contribution, Family, exact_tip
+from matstd.twin.units import DEG
 
 MACHINE = Path(__file__).parents[1] / "examples" / "hsm600u-machine.toml"
 ERRORS = """format = "errors/1"

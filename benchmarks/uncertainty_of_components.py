@@ -18,7 +18,7 @@ import itertools
 import numpy as np
 from scipy.stats import norm
 
-from diagnosis.task import Visits, task_uncertainty
+from matstd.diagnosis.task import Visits, task_uncertainty
 
 SIZES = (0.0, 0.3, 1.0, 3.0, 10.0)  # of the machine's error, µm, all parts together
 PARTS = {

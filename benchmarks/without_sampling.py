@@ -10,9 +10,9 @@ import time
 import numpy as np
 from jacobians import LENGTH, MACHINE, best_of, matrix_rate
 
-from sensitivity.first_order import Workspace, covariance, latin_hypercube, normal_length
-from sensitivity.population import Population
-from twin.files import read_machine
+from matstd.sensitivity.first_order import Workspace, covariance, latin_hypercube, normal_length
+from matstd.sensitivity.population import Population
+from matstd.twin.files import read_machine
 
 
 def main(poses: int) -> None:

@@ -15,7 +15,7 @@ controls hold, `programs` part programs, `service` corrects while the machine mo
 gives that to a control.
 """
 
-from compensation.field import (
+from matstd.compensation.field import (
     Datum,
     MachineErrors,
     Result,
@@ -25,9 +25,9 @@ from compensation.field import (
     result_of,
     workspace,
 )
-from compensation.part_programs import Frame, read_part_program
-from compensation.programs import Compensated, compensated
-from compensation.tables import FORMATS, Played, play_tables, write_tables
+from matstd.compensation.part_programs import Frame, read_part_program
+from matstd.compensation.programs import Compensated, compensated
+from matstd.compensation.tables import FORMATS, Played, play_tables, write_tables
 
 PARTS = ("field", "tables", "part_programs", "programs", "service", "linuxcnc")
 """From bottom to top: each imports only from those before it."""

@@ -18,12 +18,21 @@ calibrated features for a user's measuring task. `files` reads and writes models
 `drift` has laws of thermal drift from logs.
 
 Where to add things: a test for structure is a module of `residual` and a `Shape`; something a user
-should know about a run is a record in `remarks`, its sentence in `report.words`; a
+should know about a run is a record in `remarks`, its sentence in `matstd.report.words`; a
 new effect needs nothing here.
 """
 
-from diagnosis.answer import Comparison, Diagnosis, Proof, Step, Verdict, compare, diagnose, prove
-from diagnosis.files import (
+from matstd.diagnosis.answer import (
+    Comparison,
+    Diagnosis,
+    Proof,
+    Step,
+    Verdict,
+    compare,
+    diagnose,
+    prove,
+)
+from matstd.diagnosis.files import (
     SavedModel,
     read_model,
     write_comparison,
@@ -31,8 +40,8 @@ from diagnosis.files import (
     write_model,
     write_residuals,
 )
-from diagnosis.fit import Estimable, Fit, Prior, estimable, fit_run
-from diagnosis.residual import Region, Structure
+from matstd.diagnosis.fit import Estimable, Fit, Prior, estimable, fit_run
+from matstd.diagnosis.residual import Region, Structure
 
 PARTS = (
     "regression",

@@ -12,11 +12,11 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.files import read_machine
-from twin.library import ordinary_model
-from twin.machine import Contribution, Family, exact_tip, tip
-from twin.record import at_poses
-from twin.units import DEG, UM
+from matstd.twin.files import read_machine
+from matstd.twin.library import ordinary_model
+from matstd.twin.machine import Contribution, Family, exact_tip, tip
+from matstd.twin.record import at_poses
+from matstd.twin.units import DEG, UM
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLES = ROOT / "examples"
@@ -56,7 +56,7 @@ def columns() -> dict[str, str]:
             out.append((both[0] - both[1]) / (2.0 * step))
         return np.stack(out, axis=1)
 
-    from sensitivity.first_order import jacobian
+    from matstd.sensitivity.first_order import jacobian
 
     closed = jacobian(chain, q, LENGTH)
     off = np.abs(closed - differences()).max() / np.abs(closed).max()
@@ -103,13 +103,13 @@ def foot_points() -> dict[str, str]:
     from ex06_step import standard
     from ex08_virtual_probing import probed
 
-    from diagnosis.regression import solve
-    from probe_paths.campaign import foot_points as foot
-    from sensitivity.population import Population
-    from twin.effects import setup_errors
-    from twin.frames import pose
-    from twin.model import columns as columns_of
-    from twin.record import Setup, Touches
+    from matstd.diagnosis.regression import solve
+    from matstd.probe_paths.campaign import foot_points as foot
+    from matstd.sensitivity.population import Population
+    from matstd.twin.effects import setup_errors
+    from matstd.twin.frames import pose
+    from matstd.twin.model import columns as columns_of
+    from matstd.twin.record import Setup, Touches
 
     chain, made, rng = read_machine(MACHINE), standard(), np.random.default_rng(0)
     beside = pose(t=np.array([0.4, 0.3, 0.0]))
@@ -138,18 +138,18 @@ def step_file() -> dict[str, str]:
     """Our AP242 writer against build123d's export_step, on the standard of example 6."""
     from ex06_step import standard
 
-    from cad_out.verify import export_standard
+    from matstd.cad_out.verify import export_standard
 
     made = standard()
     with tempfile.TemporaryDirectory() as folder:
         ours = export_standard(made, folder, chord=0.05)
         code = (
             "import sys; from build123d import export_step\n"
-            "from artefact.body import read_standard\n"
-            "from cad_out.build import as_part\n"
+            "from matstd.artefact.body import read_standard\n"
+            "from matstd.cad_out.build import as_part\n"
             "export_step(as_part(read_standard(sys.argv[1]))[0], sys.argv[2])\n"
         )
-        from artefact.body import write_standard
+        from matstd.artefact.body import write_standard
 
         source, theirs = Path(folder) / "standard.toml", Path(folder) / "theirs.step"
         write_standard(source, made)
@@ -192,8 +192,8 @@ def clearance() -> dict[str, str]:
     """Room for the probe at touches, from distances to convex bodies."""
     from ex06_step import standard
 
-    from artefact.reach import clearance
-    from probe_paths.plan import Probe
+    from matstd.artefact.reach import clearance
+    from matstd.probe_paths.plan import Probe
 
     made = standard()
     rng = np.random.default_rng(0)

@@ -14,15 +14,15 @@ import pdoc
 ROOT = Path(__file__).parents[1]
 INDEX, PAGES = ROOT / "docs" / "api.md", ROOT / "out" / "api"
 ROOMS = (
-    "twin",
-    "sensitivity",
-    "information",
-    "artefact",
-    "diagnosis",
-    "cad_out",
-    "probe_paths",
-    "compensation",
-    "report",
+    "matstd.twin",
+    "matstd.sensitivity",
+    "matstd.information",
+    "matstd.artefact",
+    "matstd.diagnosis",
+    "matstd.cad_out",
+    "matstd.probe_paths",
+    "matstd.compensation",
+    "matstd.report",
 )
 """From bottom to top."""
 

@@ -8,12 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.effects import component
-from twin.files import read_machine
-from twin.machine import exact_tip, tip
-from twin.model import Model, contribution
-from twin.record import at_poses
-from twin.units import UM, URAD
+from matstd.twin.effects import component
+from matstd.twin.files import read_machine
+from matstd.twin.machine import exact_tip, tip
+from matstd.twin.model import Model, contribution
+from matstd.twin.record import at_poses
+from matstd.twin.units import UM, URAD
 
 HERE = Path(__file__).parent
 LENGTH = 160.0  # mm, gauge point to ball centre

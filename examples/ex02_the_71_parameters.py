@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from sensitivity.first_order import sensitivity
-from twin.files import read_machine
-from twin.machine import LETTERS, Family, Ranges
-from twin.units import DEG, UM
+from matstd.sensitivity.first_order import sensitivity
+from matstd.twin.files import read_machine
+from matstd.twin.machine import LETTERS, Family, Ranges
+from matstd.twin.units import DEG, UM
 
 HERE = Path(__file__).parent
 LENGTH = 160.0  # mm

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from sensitivity.first_order import Workspace, sensitivity
-from sensitivity.study import along_path, paper_trajectory
-from twin.effects import component
-from twin.files import read_machine
-from twin.units import DEG, UM
+from matstd.sensitivity.first_order import Workspace, sensitivity
+from matstd.sensitivity.study import along_path, paper_trajectory
+from matstd.twin.effects import component
+from matstd.twin.files import read_machine
+from matstd.twin.units import DEG, UM
 
 HERE = Path(__file__).parent
 LIMITS = {"X": (-400.0, 400.0), "B": (-90 * DEG, 20 * DEG), "C": (-180 * DEG, 180 * DEG)}

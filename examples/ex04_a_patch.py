@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.body import OVERHANG, graph_patch
-from twin.frames import fixed_xyz, pose
-from twin.units import DEG
+from matstd.artefact.body import OVERHANG, graph_patch
+from matstd.twin.frames import fixed_xyz, pose
+from matstd.twin.units import DEG
 
 HERE = Path(__file__).parent
 R1, R2 = 60.0, 90.0  # mm, concave along u, convex along v

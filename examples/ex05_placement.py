@@ -8,14 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact import Blank, PlacementOptions, ProbeReach, design_standard
-from artefact.worth import TouchOptions
-from probe_paths.plan import Probe
-from sensitivity.first_order import Workspace
-from twin.files import read_machine
-from twin.frames import apply
-from twin.record import Setup
-from twin.units import DEG, UM
+from matstd.artefact import Blank, PlacementOptions, ProbeReach, design_standard
+from matstd.artefact.worth import TouchOptions
+from matstd.probe_paths.plan import Probe
+from matstd.sensitivity.first_order import Workspace
+from matstd.twin.files import read_machine
+from matstd.twin.frames import apply
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG, UM
 
 HERE = Path(__file__).parent
 OPTIONS = PlacementOptions(patches=8, sites=80, choice=TouchOptions(touches=160, poses=12))

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.body import OVERHANG, Limits, check
-from artefact.layout import Site, standard_from_sites
-from cad_out.verify import export_standard
-from twin.units import DEG, UM
+from matstd.artefact.body import OVERHANG, Limits, check
+from matstd.artefact.layout import Site, standard_from_sites
+from matstd.cad_out.verify import export_standard
+from matstd.twin.units import DEG, UM
 
 HERE = Path(__file__).parent
 
@@ -45,7 +45,7 @@ def main(folder):
 if __name__ == "__main__":
     from PIL import Image
 
-    from report.scenes import draw_standard
+    from matstd.report.scenes import draw_standard
 
     with tempfile.TemporaryDirectory() as scratch:
         for name, value in main(scratch).items():

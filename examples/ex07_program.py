@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 from ex06_step import standard
 
-from artefact.reach import joined
-from probe_paths.control import interpret
-from probe_paths.emit import make_programs
-from probe_paths.plan import Probe, plan_touches, requests_at
-from twin.files import read_machine
-from twin.record import Setup
-from twin.units import DEG
+from matstd.artefact.reach import joined
+from matstd.probe_paths.control import interpret
+from matstd.probe_paths.emit import make_programs
+from matstd.probe_paths.plan import Probe, plan_touches, requests_at
+from matstd.twin.files import read_machine
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG
 
 HERE = Path(__file__).parent
 UV = np.array([[0.0, 0.0], [12.0, 12.0], [-12.0, 12.0], [-12.0, -12.0], [12.0, -12.0]])  # mm

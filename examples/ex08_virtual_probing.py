@@ -11,18 +11,18 @@ from pathlib import Path
 import numpy as np
 from ex06_step import standard
 
-from artefact.reach import joined
-from diagnosis.answer import probed_volume, prove
-from diagnosis.fit import fit_run
-from probe_paths.campaign import VirtualMachine, simulate
-from probe_paths.emit import make_programs
-from probe_paths.plan import PlanOptions, Probe, plan_touches, requests_at
-from report.plots import write_proof_picture
-from sensitivity.population import Population, drawn_errors
-from twin.files import read_machine
-from twin.model import contribution
-from twin.record import Setup
-from twin.units import DEG, UM
+from matstd.artefact.reach import joined
+from matstd.diagnosis.answer import probed_volume, prove
+from matstd.diagnosis.fit import fit_run
+from matstd.probe_paths.campaign import VirtualMachine, simulate
+from matstd.probe_paths.emit import make_programs
+from matstd.probe_paths.plan import PlanOptions, Probe, plan_touches, requests_at
+from matstd.report.plots import write_proof_picture
+from matstd.sensitivity.population import Population, drawn_errors
+from matstd.twin.files import read_machine
+from matstd.twin.model import contribution
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG, UM
 
 MACHINE, NOISE = Path(__file__).with_name("hsm600u-machine.toml"), 1.0 * UM
 FACE = np.array([[0, 0], [14, 14], [-14, 14], [-14, -14], [14, -14]])  # mm

@@ -7,12 +7,12 @@ the residuals are not noise, names the effect with its size, and the error falls
 import numpy as np
 from ex08_virtual_probing import MACHINE, probed
 
-from diagnosis.answer import diagnose
-from report.words import verdict_sentence
-from sensitivity.population import Population, drawn_errors
-from twin.files import read_machine
-from twin.library import parse_effect
-from twin.units import UM, URAD
+from matstd.diagnosis.answer import diagnose
+from matstd.report.words import verdict_sentence
+from matstd.sensitivity.population import Population, drawn_errors
+from matstd.twin.files import read_machine
+from matstd.twin.library import parse_effect
+from matstd.twin.units import UM, URAD
 
 BACKLASH = 80 * URAD
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from ex08_virtual_probing import MACHINE, probed
 
-from diagnosis.answer import diagnose
-from report.words import verdict_sentence
-from sensitivity.population import Population, drawn_errors
-from twin.files import read_machine
-from twin.library import register
-from twin.model import Kind, Parameter, Term, Where
-from twin.units import UM
+from matstd.diagnosis.answer import diagnose
+from matstd.report.words import verdict_sentence
+from matstd.sensitivity.population import Population, drawn_errors
+from matstd.twin.files import read_machine
+from matstd.twin.library import register
+from matstd.twin.model import Kind, Parameter, Term, Where
+from matstd.twin.units import UM
 
 
 @dataclass(frozen=True)

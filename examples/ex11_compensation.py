@@ -7,7 +7,7 @@ import tempfile
 from importlib.resources import files
 from pathlib import Path
 
-from compensation import (
+from matstd.compensation import (
     FORMATS,
     Frame,
     MachineErrors,
@@ -19,8 +19,8 @@ from compensation import (
     workspace,
     write_tables,
 )
-from compensation.tables import header_of
-from twin import read_errors, read_machine
+from matstd.compensation.tables import header_of
+from matstd.twin import read_errors, read_machine
 
 MACHINES = Path(str(files("matstd").joinpath("machines")))
 PLATE = "G0 X0 Y0 Z5\nG1 Z0 F800\nG1 X300\nG1 Y200\nG1 X0\nG1 Y0\nG0 Z5\n"
@@ -49,7 +49,7 @@ def main():
 
 
 if __name__ == "__main__":
-    from report.compensation import draw_program, program_lines, result_sentence
+    from matstd.report.compensation import draw_program, program_lines, result_sentence
 
     results = main()
     plate = results.pop("plate")

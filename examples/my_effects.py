@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.model import Inner, Kind, Parameter, Term, Where
-from twin.units import UM
+from matstd.twin.model import Inner, Kind, Parameter, Term, Where
+from matstd.twin.units import UM
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,11 @@ a column a parameter in units of what is expected of it.
     selection = Selection(criterion, criterion.rows(W))
     fill(selection, 480)
 
-Results are numbers, enumerations and names; `report.words` puts them into sentences. A criterion is
-a class in `criteria.measures`, a way to choose a module of `selection`.
+Results are numbers, enumerations and names; `matstd.report.words` puts them into sentences. A
+criterion is a class in `criteria.measures`, a way to choose a module of `selection`.
 """
 
-from information.criteria import (
+from matstd.information.criteria import (
     DesignCriterion,
     Posterior,
     five_criteria,
@@ -25,7 +25,7 @@ from information.criteria import (
     whitened,
     with_potential,
 )
-from information.identifiability import (
+from matstd.information.identifiability import (
     Freedom,
     Identifiability,
     combinations,
@@ -33,7 +33,15 @@ from information.identifiability import (
     supported_degrees,
     ties,
 )
-from information.selection import Certificate, Quota, Selection, exchange, fill, relaxed, rounded
+from matstd.information.selection import (
+    Certificate,
+    Quota,
+    Selection,
+    exchange,
+    fill,
+    relaxed,
+    rounded,
+)
 
 PARTS = ("identifiability", "criteria", "selection")
 """From bottom to top: each imports only from those before it."""

@@ -55,7 +55,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     parser = _parser(arguments)
     args = parser.parse_args(arguments)
-    from twin.errors import DesignError
+    from matstd.twin.errors import DesignError
 
     try:
         _check_output(args)
@@ -84,7 +84,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _check_output(args: argparse.Namespace) -> None:
     """Refuse an output that is read, or a folder of results in which a file lies that is read."""
-    from twin.files import refuse_own_input
+    from matstd.twin.files import refuse_own_input
 
     output = getattr(args, "output", None)
     if output is None:
@@ -96,7 +96,7 @@ def _check_output(args: argparse.Namespace) -> None:
 
 def _users_fault(error: BaseException) -> Exception | None:
     """A failure inside effects that the user wrote, as one line; None if it is our own."""
-    from twin.library import users_fault, users_files, users_lines
+    from matstd.twin.library import users_fault, users_files, users_lines
 
     for path in users_files().values():
         if users_lines(error, path):
@@ -130,7 +130,7 @@ class _Version(argparse.Action):
     """Prints the versions that a result depends on."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from twin.versions import versions
+        from matstd.twin.versions import versions
 
         for name, version in versions().items():
             print(f"{name} {version}")

@@ -4,12 +4,12 @@ import os
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-from twin.words import in_own_unit
+from matstd.twin.words import in_own_unit
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from twin.machine import Chain
+    from matstd.twin.machine import Chain
 
 WIDE = 120
 """Letters of a line where neither a terminal nor COLUMNS says how wide it is."""

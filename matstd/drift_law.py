@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 
-from twin.library import Kind
-from twin.machine import Chain
-from twin.model import Effect
+from matstd.twin.library import Kind
+from matstd.twin.machine import Chain
+from matstd.twin.model import Effect
 
 
 def _make(chain: Chain, arguments: Sequence[str]) -> Effect:
     """From the file of the law and what its columns move."""
-    from diagnosis.drift import drift_law_of
+    from matstd.diagnosis.drift import drift_law_of
 
     return drift_law_of(chain, arguments)
 

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from diagnosis.fit import Fit
+    from matstd.diagnosis.fit import Fit
 
 FOUND = "machine_found.toml"
 """Machine file of a serial arm with the lines of all joints as found."""
@@ -12,10 +12,10 @@ FOUND = "machine_found.toml"
 
 def write_found_arm(folder: Path, fit: "Fit", title: str) -> str:
     """Write it, and say what it is good for; nothing, and "", where the machine is no arm."""
-    from diagnosis.geometry import found_arm
-    from report.words import microns
-    from twin.files import write_whole
-    from twin.foreign import machine_text
+    from matstd.diagnosis.geometry import found_arm
+    from matstd.report.words import microns
+    from matstd.twin.files import write_whole
+    from matstd.twin.foreign import machine_text
 
     arm = found_arm(fit)
     if arm is None:

@@ -6,16 +6,16 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.choice import candidate_effects
-from diagnosis.faults import faults_of_refused
-from diagnosis.files import SavedModel, check_machine, read_model
-from diagnosis.fit import MIN_TOUCHES
+from matstd.diagnosis.choice import candidate_effects
+from matstd.diagnosis.faults import faults_of_refused
+from matstd.diagnosis.files import SavedModel, check_machine, read_model
+from matstd.diagnosis.fit import MIN_TOUCHES
 from matstd.options import load_effects
-from report.geometry import copy_lines, fault_sentences
-from report.words import remark_sentence
-from twin.errors import BadFile, DesignError, NotEnoughData
-from twin.files import read_run
-from twin.library import (
+from matstd.report.geometry import copy_lines, fault_sentences
+from matstd.report.words import remark_sentence
+from matstd.twin.errors import BadFile, DesignError, NotEnoughData
+from matstd.twin.files import read_run
+from matstd.twin.library import (
     is_visible,
     kinds,
     parse_effect,
@@ -23,8 +23,8 @@ from twin.library import (
     try_kind,
     users_files,
 )
-from twin.model import Effect
-from twin.record import Run, joined
+from matstd.twin.model import Effect
+from matstd.twin.record import Run, joined
 
 
 def read_inputs(

@@ -8,14 +8,14 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from twin.errors import BadValue, DesignError
+from matstd.twin.errors import BadValue, DesignError
 
 if TYPE_CHECKING:
-    from artefact.body import Standard
-    from report.pages import Printer
-    from twin.machine import Chain
-    from twin.model import Model
-    from twin.record import Run, StatedBody
+    from matstd.artefact.body import Standard
+    from matstd.report.pages import Printer
+    from matstd.twin.machine import Chain
+    from matstd.twin.model import Model
+    from matstd.twin.record import Run, StatedBody
 
 SETUP, GEOMETRY = "setup", "geometry"
 """Words of `--start`."""
@@ -73,7 +73,7 @@ def add_body(parser: argparse.ArgumentParser, meaning: str) -> None:
 
 def body_stated(args: argparse.Namespace, standard: Standard) -> StatedBody:
     """What the file of a standard and the options of `add_body` state; raises DesignError."""
-    from twin.record import StatedBody
+    from matstd.twin.record import StatedBody
 
     made_of = standard.material
     try:
@@ -86,9 +86,9 @@ def body_stated(args: argparse.Namespace, standard: Standard) -> StatedBody:
 
 def with_size(run: Run, stated: StatedBody) -> tuple[Run, list[str]]:
     """The run with what is stated of its standard, and what that says of every scale."""
-    from diagnosis.remarks import body_sizes
-    from report.words import remark_sentence
-    from twin.record import with_body
+    from matstd.diagnosis.remarks import body_sizes
+    from matstd.report.words import remark_sentence
+    from matstd.twin.record import with_body
 
     run = with_body(run, stated)
     return run, [remark_sentence(size) for size in body_sizes(run.touches)]
@@ -97,7 +97,7 @@ def with_size(run: Run, stated: StatedBody) -> tuple[Run, list[str]]:
 def load_effects(files: Iterable[str]) -> None:
     """Effects of other rooms, of installed packages and of the user's files."""
     from matstd.drift_law import DRIFT_LAW
-    from twin.library import load_installed_effects, load_user_effects, register
+    from matstd.twin.library import load_installed_effects, load_user_effects, register
 
     register(DRIFT_LAW)
     load_installed_effects()
@@ -143,7 +143,7 @@ def asked_printer(args: argparse.Namespace) -> Printer | None:
     """
     if not args.pdf:
         return None
-    from report.pages import printer
+    from matstd.report.pages import printer
 
     return printer()
 
@@ -151,7 +151,7 @@ def asked_printer(args: argparse.Namespace) -> Printer | None:
 def print_report(folder: Path, printed_by: Printer | None, name: str = "report") -> None:
     """Print the page of a folder, if anything shall."""
     if printed_by is not None:
-        from report.pages import write_pdf
+        from matstd.report.pages import write_pdf
 
         write_pdf(folder / f"{name}.html", folder / f"{name}.pdf", printed_by)
 
@@ -206,7 +206,7 @@ def model_file(args: argparse.Namespace) -> str | None:
 
 def first_model(args: argparse.Namespace, chain: Chain) -> Model:
     """The starting model where no model file is named."""
-    from twin.library import ordinary_model
-    from twin.model import Model
+    from matstd.twin.library import ordinary_model
+    from matstd.twin.model import Model
 
     return Model(chain, ()) if args.start == SETUP else ordinary_model(chain)

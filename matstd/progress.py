@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TextIO
 
 from matstd.stop import raise_if_asked
-from twin.compute import Progress, blocks
+from matstd.twin.compute import Progress, blocks
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -106,9 +106,9 @@ def leave() -> NoReturn:
     """
     _LAST_WORDS.acquire()  # never given back: of two threads that leave, one speaks
     # no import, which could wait for the one that was interrupted
-    for folder in _begun("twin.files.folder", "WORKING"):
+    for folder in _begun("matstd.twin.files.folder", "WORKING"):
         shutil.rmtree(folder, ignore_errors=True)
-    for file in _begun("twin.files.whole", "UNFINISHED"):
+    for file in _begun("matstd.twin.files.whole", "UNFINISHED"):
         file.unlink(missing_ok=True)
     command = next((f" {word}" for word in sys.argv[1:] if not word.startswith("-")), "")
     cursor = "\x1b[?25h" if sys.stderr.isatty() else ""  # bars of progress hide it

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from sensitivity.montecarlo import Workers
+    from matstd.sensitivity.montecarlo import Workers
 
 
 def add_scheduler(parser: argparse.ArgumentParser) -> None:
@@ -31,7 +31,7 @@ def connected(address: str | None) -> Iterator[Workers]:
     if address is None:
         yield None
         return
-    from sensitivity.montecarlo import cluster
+    from matstd.sensitivity.montecarlo import cluster
 
     with cluster(address) as client:
         yield client

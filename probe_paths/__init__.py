@@ -14,11 +14,25 @@ goes into `language`, another rule for what a program may do into `control`, ano
 program into `emit`.
 """
 
-from probe_paths.campaign import Campaign, VirtualMachine, evaluate, orders, probing_time, simulate
-from probe_paths.control import Clock, LogPart, ReadProgram, interpret, read_log, read_program
-from probe_paths.emit import Feeds, ProgramSet, make_programs
-from probe_paths.language import Dialect
-from probe_paths.plan import PlanOptions, Probe, TouchPlan, plan_touches, requests_at
+from matstd.probe_paths.campaign import (
+    Campaign,
+    VirtualMachine,
+    evaluate,
+    orders,
+    probing_time,
+    simulate,
+)
+from matstd.probe_paths.control import (
+    Clock,
+    LogPart,
+    ReadProgram,
+    interpret,
+    read_log,
+    read_program,
+)
+from matstd.probe_paths.emit import Feeds, ProgramSet, make_programs
+from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.plan import PlanOptions, Probe, TouchPlan, plan_touches, requests_at
 
 PARTS = ("plan", "language", "control", "emit", "stations", "campaign", "linuxcnc", "locate")
 """From bottom to top: each imports only from those before it."""

@@ -24,8 +24,8 @@ A new picture is a function that takes a result and a path (`maps`, `plots` or `
 called by the page that shows it; a new sentence is a function in `words`.
 """
 
-from report.maps import draw_maps, draw_path
-from report.pages import (
+from matstd.report.maps import draw_maps, draw_path
+from matstd.report.pages import (
     Design,
     Proven,
     write_compare_page,
@@ -33,7 +33,7 @@ from report.pages import (
     write_diagnosis_page,
     write_study_page,
 )
-from report.plots import (
+from matstd.report.plots import (
     draw_fall,
     draw_on_standard,
     draw_over_variables,
@@ -41,8 +41,8 @@ from report.plots import (
     write_proof_picture,
     write_touches_picture,
 )
-from report.scenes import Scene, draw_standard, draw_volumes
-from report.words import comparison_sentence, study_words, verdict_sentence
+from matstd.report.scenes import Scene, draw_standard, draw_volumes
+from matstd.report.words import comparison_sentence, study_words, verdict_sentence
 
 PARTS = (
     "style",

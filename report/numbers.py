@@ -2,7 +2,7 @@
 
 import math
 
-from twin.units import DAY, HOUR, MINUTE, UM, URAD
+from matstd.twin.units import DAY, HOUR, MINUTE, UM, URAD
 
 _SPANS = ((DAY, "days", 2.0), (HOUR, "h", 1.5), (MINUTE, "min", 1.5))
 """Units of time, the longest first, each with the number of it from which it is used."""

@@ -15,7 +15,7 @@ dependence of errors goes into `population`, a figure of random machines into `m
 way to name parts of a workspace into `shares`.
 """
 
-from sensitivity.first_order import (
+from matstd.sensitivity.first_order import (
     Workspace,
     jacobian,
     latin_hypercube,
@@ -24,10 +24,10 @@ from sensitivity.first_order import (
     sensitivity,
     variance_shares,
 )
-from sensitivity.montecarlo import Volumetric, volumetric
-from sensitivity.population import Distributions, Population, drawn_errors
-from sensitivity.shares import norm_shares, regions
-from sensitivity.study import Study, along_path, paper_trajectory, run_study
+from matstd.sensitivity.montecarlo import Volumetric, volumetric
+from matstd.sensitivity.population import Distributions, Population, drawn_errors
+from matstd.sensitivity.shares import norm_shares, regions
+from matstd.sensitivity.study import Study, along_path, paper_trajectory, run_study
 
 PARTS = ("population", "first_order", "montecarlo", "shares", "study")
 """From bottom to top: each imports only from those before it."""

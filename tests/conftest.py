@@ -116,7 +116,7 @@ def unrendered(rendered_alone: Callable[..., None]) -> None:
 @contextmanager
 def _library_kept() -> Iterator[None]:
     """Kinds that are registered meanwhile are forgotten: the next may have another machine."""
-    from twin.library import catalogue
+    from matstd.twin.library import catalogue
 
     kinds, files = dict(catalogue._REGISTER), dict(catalogue._FILES)
     yield

@@ -8,9 +8,9 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from diagnosis.answer.verdict import Verdict
-from twin.library import catalogue as library
-from twin.units import UM
+from matstd.diagnosis.answer.verdict import Verdict
+from matstd.twin.library import catalogue as library
+from matstd.twin.units import UM
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = sorted((ROOT / "examples").glob("ex[0-9][0-9]_*.py"))
@@ -186,7 +186,7 @@ def test_10_an_effect_of_ones_own_turns_unexplained_into_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     # what the example adds to the library must not be seen by other tests
-    monkeypatch.setattr("twin.library.catalogue._REGISTER", dict(library._REGISTER))
+    monkeypatch.setattr("matstd.twin.library.catalogue._REGISTER", dict(library._REGISTER))
     result = load(10).main()
     before, after = result["before"], result["after"]
     assert before.verdict is Verdict.UNEXPLAINED

@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis.answer.run_diagnosis import diagnose
 from matstd.cli import main
-from twin.files.run_file import read_run
-from twin.files.run_writer import write_run
-from twin.units import NM, UM
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.twin.files.run_file import read_run
+from matstd.twin.files.run_writer import write_run
+from matstd.twin.units import NM, UM
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 THERMAL, HIDDEN = EXAMPLES / "fl_thermal", EXAMPLES / "hidden_effect"

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from twin.files.run_file import read_run
-from twin.units import NM
+from matstd.twin.files.run_file import read_run
+from matstd.twin.units import NM
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
 CRASH, WRONG, OLD = (EXAMPLES / n for n in ("crash", "wrong_description", "machine_1995"))

@@ -12,26 +12,26 @@ import pytest
 from formats import examples, tables, write_examples
 from pydantic_core import PydanticUndefined
 
-from artefact.body.standard_file import read_standard
-from artefact.brief.project_file import read_project
-from artefact.brief.task_file import read_task
-from diagnosis.drift.beams import beam_estimate, read_beams
-from diagnosis.drift.record import DriftRecord
-from diagnosis.files.diagnosis_file import comparison_table, diagnosis_table
-from diagnosis.files.model_file import read_model
-from probe_paths.control.log import read_log
-from twin.errors import BadFile
-from twin.files import run_columns, run_file
-from twin.files.error_file import read_errors
-from twin.files.machine_file import read_machine
-from twin.files.pose_file import read_poses
-from twin.files.run_file import read_run
-from twin.files.sensor_file import read_sensors
-from twin.files.toml import Table
-from twin.foreign.mapping_file import MappingTable
-from twin.machine.ranges import DEFAULT_RANGES
-from twin.record.several_runs import joined
-from twin.units import UM, URAD
+from matstd.artefact.body.standard_file import read_standard
+from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.brief.task_file import read_task
+from matstd.diagnosis.drift.beams import beam_estimate, read_beams
+from matstd.diagnosis.drift.record import DriftRecord
+from matstd.diagnosis.files.diagnosis_file import comparison_table, diagnosis_table
+from matstd.diagnosis.files.model_file import read_model
+from matstd.probe_paths.control.log import read_log
+from matstd.twin.errors import BadFile
+from matstd.twin.files import run_columns, run_file
+from matstd.twin.files.error_file import read_errors
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.files.pose_file import read_poses
+from matstd.twin.files.run_file import read_run
+from matstd.twin.files.sensor_file import read_sensors
+from matstd.twin.files.toml import Table
+from matstd.twin.foreign.mapping_file import MappingTable
+from matstd.twin.machine.ranges import DEFAULT_RANGES
+from matstd.twin.record.several_runs import joined
+from matstd.twin.units import UM, URAD
 
 ROOT = Path(__file__).parents[1]
 UNSTATED = {PydanticUndefined: "needed", None: "none", float("inf"): "none"}
@@ -126,7 +126,7 @@ def every_table():
         for file in (ROOT / room).rglob("*.py"):
             if "(Table)" in file.read_text(encoding="utf-8"):
                 name = file.relative_to(ROOT).with_suffix("").as_posix().replace("/", ".")
-                importlib.import_module(name)
+                importlib.import_module(name if room == "matstd" else f"matstd.{name}")
     todo, out = [Table], {}
     while todo:
         for model in todo.pop().__subclasses__():
@@ -263,8 +263,8 @@ def warm_up():
 
 
 def test_a_comparison_has_described_keys_alone(warm_up):
-    from diagnosis.answer.comparison import compare
-    from twin.library.ordinary import ordinary_model
+    from matstd.diagnosis.answer.comparison import compare
+    from matstd.twin.library.ordinary import ordinary_model
 
     found = compare(warm_up, ordinary_model(warm_up.touches.chain))
     words = ["words"] * len(found.structure)
@@ -272,8 +272,8 @@ def test_a_comparison_has_described_keys_alone(warm_up):
 
 
 def test_a_diagnosis_has_described_keys_alone(warm_up):
-    from diagnosis.answer.run_diagnosis import diagnose
-    from twin.library.catalogue import proposals
+    from matstd.diagnosis.answer.run_diagnosis import diagnose
+    from matstd.twin.library.catalogue import proposals
 
     half = warm_up.touches.pose % 2 == 0
     kinds = ("thermal-lag", "thermal-static", "backlash")

@@ -8,6 +8,7 @@ import sys
 import tomllib
 from functools import cache
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -79,7 +80,20 @@ EXCUSED = {
 
 FILES = [f for room in ALLOWED for f in sorted((ROOT / room).rglob("*.py"))]
 IN_ROOM = {room: [f for f in FILES if f.is_relative_to(ROOT / room)] for room in ALLOWED}
-PARTS = {room: importlib.import_module(room).PARTS for room in ALLOWED if room not in {"matstd"}}
+
+
+def in_house(name: str) -> str:
+    """The name of a module in this checkout: `matstd.twin.machine` stands in `twin.machine`."""
+    inner = name.removeprefix("matstd.")
+    return inner if inner.split(".")[0] in ALLOWED else name
+
+
+def load(name: str) -> ModuleType:
+    """The module with this name in the checkout, under the name that is installed."""
+    return importlib.import_module(name if name.startswith("matstd") else f"matstd.{name}")
+
+
+PARTS = {room: load(room).PARTS for room in ALLOWED if room != "matstd"}
 
 
 @cache
@@ -98,9 +112,9 @@ def imports(tree: ast.AST) -> list[tuple[str, int]]:
     found = []
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
-            found += [(alias.name, node.lineno) for alias in node.names]
+            found += [(in_house(alias.name), node.lineno) for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            found.append((node.module, node.lineno))
+            found.append((in_house(node.module), node.lineno))
     return found
 
 
@@ -118,6 +132,20 @@ def is_package(name: str) -> bool:
 def part_of(name: str) -> str:
     """`twin.machine.chain` -> `twin.machine`; what lies beside the parts is its own."""
     return ".".join(name.split(".")[:2])
+
+
+def test_rooms_have_one_name() -> None:
+    """`import twin` would find a user's own twin.py, or run a module a second time."""
+    files = subprocess.run(
+        ["git", "ls-files", "*.py"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.split()
+    for file in files:
+        for node in ast.walk(ast.parse((ROOT / file).read_text(encoding="utf-8"))):
+            names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
+            if isinstance(node, ast.ImportFrom) and node.module and not node.level:
+                names.append(node.module)
+            for name in names:
+                assert name.split(".")[0] not in BELOW | {"report": set()}, f"{file}: {name}"
 
 
 @pytest.mark.parametrize("room", ALLOWED)
@@ -155,12 +183,12 @@ def test_parts_are_entered_by_their_faces(room: str) -> None:
         for node in ast.walk(tree_of(file)):
             if not isinstance(node, ast.ImportFrom) or not node.module or node.level:
                 continue
-            name = node.module
+            name = in_house(node.module)
             if name.split(".")[0] not in PARTS or part_of(name) == mine or name in VOCABULARY:
                 continue
             where = f"{file}:{node.lineno}"
             assert is_package(name), f"{where}: {name} is not a face"
-            listed = set(importlib.import_module(name).__all__)
+            listed = set(load(name).__all__)
             for alias in node.names:
                 assert alias.name in listed or (
                     (ROOT / name.replace(".", "/") / f"{alias.name}.py").exists()
@@ -178,7 +206,7 @@ FACES = sorted(
 
 @pytest.mark.parametrize("name", FACES)
 def test_faces_are_short_and_true(name: str) -> None:
-    face = importlib.import_module(name)
+    face = load(name)
     assert ast.get_docstring(ast.parse(Path(str(face.__file__)).read_text(encoding="utf-8")))
     assert len(face.__all__) in FACE, len(face.__all__)
     assert len(set(face.__all__)) == len(face.__all__)
@@ -193,14 +221,15 @@ def test_parts_are_complete(room: str) -> None:
     assert set(PARTS[room]) == folders
     packages = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     listed = packages["tool"]["setuptools"]["packages"]
-    assert {room, *(f"{room}.{part}" for part in folders)} <= set(listed)
+    assert {f"matstd.{room}", *(f"matstd.{room}.{part}" for part in folders)} <= set(listed)
+    assert packages["tool"]["setuptools"]["package-dir"][f"matstd.{room}"] == room
 
 
 @pytest.mark.parametrize("name", FACES)
 def test_no_module_bears_the_name_of_what_its_face_exports(name: str) -> None:
     """`from part import word` would give the module or the function, as imports happened to run."""
     modules = {f.stem for f in (ROOT / name.replace(".", "/")).glob("*.py")}
-    assert not modules & set(importlib.import_module(name).__all__)
+    assert not modules & set(load(name).__all__)
 
 
 def text_of(node: ast.AST) -> str:
@@ -242,10 +271,12 @@ def test_prose_lives_in_the_report(room: str) -> None:
 def test_examples_and_benchmarks_enter_by_faces(folder: str) -> None:
     for file in sorted((ROOT / folder).rglob("*.py")):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] in PARTS:
-                name = str(node.module)
+            if not isinstance(node, ast.ImportFrom):
+                continue
+            name = in_house(node.module or "")
+            if name.split(".")[0] in PARTS:
                 assert name in VOCABULARY or is_package(name), f"{file}:{node.lineno}: {name}"
-                listed = set(getattr(importlib.import_module(name), "__all__", ()))
+                listed = set(getattr(load(name), "__all__", ()))
                 for alias in node.names:
                     assert name in VOCABULARY or alias.name in listed, f"{file}: {alias.name}"
 
@@ -265,7 +296,7 @@ def test_heavy_libraries_are_imported_where_they_are_used(room: str) -> None:
             is_light = name.split(".")[0] not in HEAVY
             assert is_light or (is_kernel and name.startswith("OCP")), f"{file}:{line}: at the top"
         for node in () if is_kernel else tree.body:
-            module = f"{getattr(node, 'module', '')}".replace(".", "/") + ".py"
+            module = in_house(f"{getattr(node, 'module', '')}").replace(".", "/") + ".py"
             assert module not in KERNEL, f"{file}:{node.lineno}: loads the CAD kernel"
         for name, line in imports(tree):
             top = name.split(".")[0]

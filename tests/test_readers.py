@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from reader_cases import NUMBERS, damage, golden, machine_said, poses_said, readers, run_said
 
-from twin.errors import DesignError
+from matstd.twin.errors import DesignError
 
 EACH = 60
 """Inputs of a reader: a few seconds in all."""

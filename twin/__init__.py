@@ -19,8 +19,8 @@ Beside the parts stand the words that every room speaks: `units`, `frames`, `err
 `compute`, `versions`.
 """
 
-from twin.files import read_errors, read_machine, read_poses, read_run, write_run
-from twin.library import (
+from matstd.twin.files import read_errors, read_machine, read_poses, read_run, write_run
+from matstd.twin.library import (
     kinds,
     load_user_effects,
     ordinary_model,
@@ -28,9 +28,9 @@ from twin.library import (
     proposals,
     register,
 )
-from twin.machine import Chain, Symbol, make_chain, tip
-from twin.model import Effect, Inner, Kind, Model, Parameter, Term, Where
-from twin.record import Run, Touches, at_poses
+from matstd.twin.machine import Chain, Symbol, make_chain, tip
+from matstd.twin.model import Effect, Inner, Kind, Model, Parameter, Term, Where
+from matstd.twin.record import Run, Touches, at_poses
 
 PARTS = (
     "machine",

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from twin.errors import MissingLibrary
+from matstd.twin.errors import MissingLibrary
 
-_MADE_BY = "report.pages.notebook"
+_MADE_BY = "matstd.report.pages.notebook"
 
 
 class Shown:
@@ -55,7 +55,7 @@ class Tabular(Shown, ABC):
         for row in zip(*table.values(), strict=True):
             writer.writerow([self.cell(value) for value in row])
         if path is not None:
-            import_module("twin.files").write_whole(path, out.getvalue())
+            import_module("matstd.twin.files").write_whole(path, out.getvalue())
         return out.getvalue()
 
     def cell(self, value: Any) -> str:

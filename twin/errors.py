@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from twin.words import did_you_mean
+from matstd.twin.words import did_you_mean
 
 
 class DesignError(Exception):

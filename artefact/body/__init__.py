@@ -5,21 +5,21 @@ for points, normals and curvatures, whose bodies answer for distances, and whose
 numbers. A new kind of face implements `Surface`; a new limit is one more yield in `limits`.
 """
 
-from artefact.body.datum import DatumSphere, MountingHole, outline_distance
-from artefact.body.first_contact import contact
-from artefact.body.freeform import OVERHANG, ErrorShare, FreeformPatch, graph_patch
-from artefact.body.known import Known, KnownFeature, Verdict
-from artefact.body.limits import (
+from matstd.artefact.body.datum import DatumSphere, MountingHole, outline_distance
+from matstd.artefact.body.first_contact import contact
+from matstd.artefact.body.freeform import OVERHANG, ErrorShare, FreeformPatch, graph_patch
+from matstd.artefact.body.known import Known, KnownFeature, Verdict
+from matstd.artefact.body.limits import (
     Limits,
     check,
     constraints,
     max_slope,
     min_concave_radius,
 )
-from artefact.body.patch import Meeting
-from artefact.body.solids import BLEND, Plate
-from artefact.body.standard import Base, Core, Material, Standard
-from artefact.body.standard_file import read_standard, write_standard
+from matstd.artefact.body.patch import Meeting
+from matstd.artefact.body.solids import BLEND, Plate
+from matstd.artefact.body.standard import Base, Core, Material, Standard
+from matstd.artefact.body.standard_file import read_standard, write_standard
 
 __all__ = [
     "BLEND",

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body.datum import DatumSphere
-from artefact.body.freeform import FreeformPatch
-from artefact.body.patch import Mask, Meeting, rows, sphere_entry
-from artefact.body.solids import entry
-from artefact.body.standard import Standard
-from twin.frames import Array, apply, turn, unit
-from twin.units import NM
+from matstd.artefact.body.datum import DatumSphere
+from matstd.artefact.body.freeform import FreeformPatch
+from matstd.artefact.body.patch import Mask, Meeting, rows, sphere_entry
+from matstd.artefact.body.solids import entry
+from matstd.artefact.body.standard import Standard
+from matstd.twin.frames import Array, apply, turn, unit
+from matstd.twin.units import NM
 
 _EDGE_PITCH = 0.5  # mm, of the samples of a trimmed edge
 _PIECE = 16  # samples of an edge that are looked at as one

@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from artefact.body.newton import ball_contact, foot_parameters, graph_normal
-from artefact.body.patch import Hit, Mask, read_only, rows, sphere_entry
-from artefact.body.spline import Jet, check_knots, clamped_knots, greville, height, jet
-from twin.errors import ShapeMismatch
-from twin.frames import Array, apply, inverse, turn, unit
+from matstd.artefact.body.newton import ball_contact, foot_parameters, graph_normal
+from matstd.artefact.body.patch import Hit, Mask, read_only, rows, sphere_entry
+from matstd.artefact.body.spline import Jet, check_knots, clamped_knots, greville, height, jet
+from matstd.twin.errors import ShapeMismatch
+from matstd.twin.frames import Array, apply, inverse, turn, unit
 
 OVERHANG = 6.0
 """How far the spline reaches beyond the trimmed rectangle on every side, mm: room for the trim."""

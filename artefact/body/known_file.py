@@ -4,9 +4,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
-from artefact.body.known import Known, KnownFeature, Verdict
-from twin.files import Table
-from twin.units import UM, URAD
+from matstd.artefact.body.known import Known, KnownFeature, Verdict
+from matstd.twin.files import Table
+from matstd.twin.units import UM, URAD
 
 
 class _KnownFeature(Table):

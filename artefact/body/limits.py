@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body.datum import DatumSphere, outline_distance
-from artefact.body.freeform import FreeformPatch
-from artefact.body.patch import rows
-from artefact.body.solids import Body
-from artefact.body.standard import Base, Standard
-from twin.errors import NotBuildable
-from twin.frames import Array, apply
-from twin.units import DEG
+from matstd.artefact.body.datum import DatumSphere, outline_distance
+from matstd.artefact.body.freeform import FreeformPatch
+from matstd.artefact.body.patch import rows
+from matstd.artefact.body.solids import Body
+from matstd.artefact.body.standard import Base, Standard
+from matstd.twin.errors import NotBuildable
+from matstd.twin.frames import Array, apply
+from matstd.twin.units import DEG
 
 BURIED = 2.0
 """How deep the end of a column must lie inside base or core, mm."""

@@ -6,8 +6,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from twin.errors import ShapeMismatch
-from twin.frames import Array
+from matstd.twin.errors import ShapeMismatch
+from matstd.twin.frames import Array
 
 Mask = NDArray[np.bool_]
 

@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.frames import Array, inverse, turn
-from twin.machine import Chain, table_to_tool
-from twin.record import Labels
+from matstd.twin.frames import Array, inverse, turn
+from matstd.twin.machine import Chain, table_to_tool
+from matstd.twin.record import Labels
 
 DIRECTIONS = {
     f"{sign}{axis}": (1.0 if sign == "+" else -1.0) * np.eye(3)[i]

@@ -5,9 +5,9 @@ from typing import Protocol
 
 import numpy as np
 
-from artefact.body.datum import outline_distance
-from artefact.body.freeform import FreeformPatch
-from twin.frames import Array, apply
+from matstd.artefact.body.datum import outline_distance
+from matstd.artefact.body.freeform import FreeformPatch
+from matstd.twin.frames import Array, apply
 
 BLEND = 3.0
 """Radius of the inner edge round the foot of a pillar or a post, mm."""

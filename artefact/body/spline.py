@@ -4,8 +4,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from twin.errors import ShapeMismatch
-from twin.frames import Array
+from matstd.twin.errors import ShapeMismatch
+from matstd.twin.frames import Array
 
 
 def clamped_knots(low: float, high: float, count: int, degree: int) -> Array:

@@ -8,18 +8,18 @@ from functools import cached_property
 
 import numpy as np
 
-from artefact.body.datum import DatumPlane, DatumSphere, MountingHole, outline_distance
-from artefact.body.freeform import FreeformPatch
-from artefact.body.known import Known
-from artefact.body.patch import Mask, Surface
-from artefact.body.sag import Sag
-from artefact.body.solids import BLEND, Ball, Body, Column, Cone, Plate, column
-from twin.elastic import material as usual
-from twin.errors import ShapeMismatch
-from twin.frames import Array
-from twin.machine import Chain
-from twin.record import Labels
-from twin.units import T_REF
+from matstd.artefact.body.datum import DatumPlane, DatumSphere, MountingHole, outline_distance
+from matstd.artefact.body.freeform import FreeformPatch
+from matstd.artefact.body.known import Known
+from matstd.artefact.body.patch import Mask, Surface
+from matstd.artefact.body.sag import Sag
+from matstd.artefact.body.solids import BLEND, Ball, Body, Column, Cone, Plate, column
+from matstd.twin.elastic import material as usual
+from matstd.twin.errors import ShapeMismatch
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.record import Labels
+from matstd.twin.units import T_REF
 
 DATUM_PLANE = "DATUM_A"
 

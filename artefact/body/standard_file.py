@@ -7,15 +7,15 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Field
 
-from artefact.body.datum import DatumSphere, MountingHole
-from artefact.body.freeform import ErrorShare, FreeformPatch
-from artefact.body.known import Known
-from artefact.body.known_file import KnownTable, known_table
-from artefact.body.sag import DIRECTIONS, Sag
-from artefact.body.standard import Base, Core, Material, Standard
-from twin.errors import BadFile, ShapeMismatch
-from twin.files import Table, check_format, checked, parse_toml, read_text, write_whole
-from twin.units import UM
+from matstd.artefact.body.datum import DatumSphere, MountingHole
+from matstd.artefact.body.freeform import ErrorShare, FreeformPatch
+from matstd.artefact.body.known import Known
+from matstd.artefact.body.known_file import KnownTable, known_table
+from matstd.artefact.body.sag import DIRECTIONS, Sag
+from matstd.artefact.body.standard import Base, Core, Material, Standard
+from matstd.twin.errors import BadFile, ShapeMismatch
+from matstd.twin.files import Table, check_format, checked, parse_toml, read_text, write_whole
+from matstd.twin.units import UM
 
 FORMAT = "standard/1"
 

@@ -5,16 +5,16 @@ units. A new key is a
 field of one of the tables, and a check beside it if it can contradict another.
 """
 
-from artefact.brief.project_file import Project, read_project
-from artefact.brief.standard_tables import (
+from matstd.artefact.brief.project_file import Project, read_project
+from matstd.artefact.brief.standard_tables import (
     BASE_THICKNESS,
     CORNER_RADIUS,
     FEWEST_PATCHES,
     FINISHING,
     StandardTable,
 )
-from artefact.brief.task_file import Task, read_task
-from artefact.brief.workshop_tables import BodyTable, ProbeTable, probe_models
+from matstd.artefact.brief.task_file import Task, read_task
+from matstd.artefact.brief.workshop_tables import BodyTable, ProbeTable, probe_models
 
 __all__ = [
     "BASE_THICKNESS",

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from sensitivity.population import (
+from matstd.sensitivity.population import (
     CLASSES,
     Dependence,
     Distributions,
@@ -16,10 +16,10 @@ from sensitivity.population import (
     Population,
     grouped,
 )
-from twin.errors import BadFile, BadValue, DesignError, UnknownSymbol
-from twin.files import Pair, Table
-from twin.machine import DEFAULT_RANGES, Chain, Ranges, ShapeName
-from twin.units import UM, URAD
+from matstd.twin.errors import BadFile, BadValue, DesignError, UnknownSymbol
+from matstd.twin.files import Pair, Table
+from matstd.twin.machine import DEFAULT_RANGES, Chain, Ranges, ShapeName
+from matstd.twin.units import UM, URAD
 
 
 class MixTable(Table):

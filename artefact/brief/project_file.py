@@ -8,8 +8,8 @@ from typing import Any
 
 from pydantic import Field
 
-from artefact.brief.errors_table import ErrorsTable, Expected, expected_errors
-from artefact.brief.standard_tables import (
+from matstd.artefact.brief.errors_table import ErrorsTable, Expected, expected_errors
+from matstd.artefact.brief.standard_tables import (
     BlankTable,
     LimitsTable,
     MaterialTable,
@@ -18,8 +18,8 @@ from artefact.brief.standard_tables import (
     check_material,
     check_standard,
 )
-from artefact.brief.task_file import Task, read_task
-from artefact.brief.workshop_tables import (
+from matstd.artefact.brief.task_file import Task, read_task
+from matstd.artefact.brief.workshop_tables import (
     FurtherProbeTable,
     ProbeTable,
     WorkshopTable,
@@ -28,10 +28,10 @@ from artefact.brief.workshop_tables import (
     checked_probes,
     table_radius,
 )
-from sensitivity.montecarlo import MACHINES_A_BATCH
-from sensitivity.population import Population
-from twin.errors import BadFile, UnknownAxis
-from twin.files import (
+from matstd.sensitivity.montecarlo import MACHINES_A_BATCH
+from matstd.sensitivity.population import Population
+from matstd.twin.errors import BadFile, UnknownAxis
+from matstd.twin.files import (
     SetupTable,
     Table,
     check_format,
@@ -40,9 +40,9 @@ from twin.files import (
     read_machine,
     read_text,
 )
-from twin.machine import Chain
-from twin.record import Setup
-from twin.units import DEG, UM
+from matstd.twin.machine import Chain
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG, UM
 
 FARTHEST = 1e6
 """A reading beyond this (mm, degrees) is a slip; larger whole numbers are no floating ones."""

@@ -8,9 +8,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from twin.errors import BadFile
-from twin.files import Pair, Table
-from twin.units import KG_M3
+from matstd.twin.errors import BadFile
+from matstd.twin.files import Pair, Table
+from matstd.twin.units import KG_M3
 
 BASE_THICKNESS = 30.0
 """Of the plate that every standard stands on, mm."""

@@ -7,9 +7,9 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from twin.errors import BadFile
-from twin.files import Table, check_format, checked, parse_toml, read_text
-from twin.units import DEG, UM
+from matstd.twin.errors import BadFile
+from matstd.twin.files import Table, check_format, checked, parse_toml, read_text
+from matstd.twin.units import DEG, UM
 
 Range = Annotated[list[float], Field(min_length=2, max_length=2)]
 

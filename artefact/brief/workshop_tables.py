@@ -14,8 +14,8 @@ from typing import Literal, TypeVar
 
 from pydantic import Field
 
-from twin.errors import BadFile
-from twin.files import Pair, Table, Vector
+from matstd.twin.errors import BadFile
+from matstd.twin.files import Pair, Table, Vector
 
 Cylinders = tuple[tuple[float, float], ...]
 """(end, diameter) from the ball centre upwards, mm."""
@@ -125,7 +125,7 @@ class WorkshopTable(Table):
 @cache
 def probe_models() -> dict[str, ModelTable]:
     """The library of common probes, by name."""
-    text = files("artefact.brief").joinpath("probes.toml").read_text(encoding="utf-8")
+    text = files("matstd.artefact.brief").joinpath("probes.toml").read_text(encoding="utf-8")
     return {name: ModelTable.model_validate(keys) for name, keys in tomllib.loads(text).items()}
 
 

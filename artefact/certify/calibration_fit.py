@@ -21,13 +21,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import FreeformPatch, Known, KnownFeature, Standard, Verdict
-from artefact.certify.cmm_points_file import SIDES, CmmPoints
-from artefact.certify.face_correction import corrected_face
-from twin.errors import BadFile, NotEnoughData
-from twin.frames import Array, apply
-from twin.record import rigid_motion
-from twin.units import UM
+from matstd.artefact.body import FreeformPatch, Known, KnownFeature, Standard, Verdict
+from matstd.artefact.certify.cmm_points_file import SIDES, CmmPoints
+from matstd.artefact.certify.face_correction import corrected_face
+from matstd.twin.errors import BadFile, NotEnoughData
+from matstd.twin.frames import Array, apply
+from matstd.twin.record import rigid_motion
+from matstd.twin.units import UM
 
 MIN_BALL, MIN_FACE = 6, 20
 """Fewest points on a ball (four determine it) and on a face (six move it, the rest bend it)."""

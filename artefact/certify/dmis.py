@@ -13,11 +13,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.certify.cmm_points_file import STAMP
-from twin.errors import NotEnoughData
-from twin.frames import Array
-from twin.units import DEG
+from matstd.artefact.body import Standard
+from matstd.artefact.certify.cmm_points_file import STAMP
+from matstd.twin.errors import NotEnoughData
+from matstd.twin.frames import Array
+from matstd.twin.units import DEG
 
 PITCH = 5.0
 """Between points on a face, mm: half the shortest wave that its control heights can follow."""

@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.body import FreeformPatch
-from twin.frames import Array
+from matstd.artefact.body import FreeformPatch
+from matstd.twin.frames import Array
 
 _WEIGHTS = np.logspace(-8.0, 4.0, 49)  # of the bending, over the range from none to a plane
 _ROUNDS = 3  # foot points move by slope times correction: micrometres, settled after two

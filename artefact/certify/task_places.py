@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import Standard
-from artefact.brief import Task
-from twin.errors import BadFile, DesignError
-from twin.frames import Array
-from twin.record import Touches
-from twin.units import DEG, UM
+from matstd.artefact.body import Standard
+from matstd.artefact.brief import Task
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.frames import Array
+from matstd.twin.record import Touches
+from matstd.twin.units import DEG, UM
 
 Mask = NDArray[np.bool_]
 

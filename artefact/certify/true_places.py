@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.worth import Calibration
-from twin.frames import pose, rotation
+from matstd.artefact.body import Standard
+from matstd.artefact.worth import Calibration
+from matstd.twin.frames import pose, rotation
 
 
 def misplaced(standard: Standard, known: Calibration, rng: np.random.Generator) -> Standard:

@@ -15,9 +15,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.body import Standard, Verdict
-from artefact.certify.calibration_fit import Calibrated
-from twin.frames import Array, skew
+from matstd.artefact.body import Standard, Verdict
+from matstd.artefact.certify.calibration_fit import Calibrated
+from matstd.twin.frames import Array, skew
 
 _COMMON = 0.1  # of a common offset, by which radii or faces may differ from it
 _CORNERS = np.array([[x, y] for x in (-1.0, 1.0) for y in (-1.0, 1.0)])

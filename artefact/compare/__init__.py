@@ -4,21 +4,21 @@ In: a criterion and the touches of a design. Out: the figures of every `Rival`, 
 can and cannot know (`IdentifiabilityReport`), with what would resolve it.
 """
 
-from artefact.compare.alternatives import Alternative
-from artefact.compare.comparison import (
+from matstd.artefact.compare.alternatives import Alternative
+from matstd.artefact.compare.comparison import (
     Rival,
     compare,
     evaluated,
     prior_rms,
     random_lots,
 )
-from artefact.compare.identifiability import (
+from matstd.artefact.compare.identifiability import (
     Alone,
     IdentifiabilityReport,
     identifiability_report,
 )
-from artefact.compare.power import ERROR, RISK, WANTED, Power, proof_power, task_normals
-from artefact.compare.regions import WorstRegions, worst_regions
+from matstd.artefact.compare.power import ERROR, RISK, WANTED, Power, proof_power, task_normals
+from matstd.artefact.compare.regions import WorstRegions, worst_regions
 
 __all__ = [
     "ERROR",

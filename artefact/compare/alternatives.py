@@ -10,16 +10,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.reach import ProbeReach, Requests
-from artefact.worth import Criterion
-from information.criteria import Posterior, mean_prediction, whitened
-from information.identifiability import rank_analysis
-from information.selection import Quota, Selection, fill
-from twin.errors import DesignError
-from twin.frames import Array, fixed_xyz, pose
-from twin.machine import Family
-from twin.record import IntArray, Setup
-from twin.units import DEG
+from matstd.artefact.reach import ProbeReach, Requests
+from matstd.artefact.worth import Criterion
+from matstd.information.criteria import Posterior, mean_prediction, whitened
+from matstd.information.identifiability import rank_analysis
+from matstd.information.selection import Quota, Selection, fill
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array, fixed_xyz, pose
+from matstd.twin.machine import Family
+from matstd.twin.record import IntArray, Setup
+from matstd.twin.units import DEG
 
 STYLUS = 60.0
 """By which a second stylus is longer, mm."""

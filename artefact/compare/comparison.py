@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.layout import Blank, rivals, with_spheres
-from artefact.reach import Requests, joined, spread_poses
-from artefact.worth import (
+from matstd.artefact.body import Standard
+from matstd.artefact.layout import Blank, rivals, with_spheres
+from matstd.artefact.reach import Requests, joined, spread_poses
+from matstd.artefact.worth import (
     BallPlaces,
     Criterion,
     Surfaces,
@@ -21,10 +21,10 @@ from artefact.worth import (
     some_touches,
     touches_to_choose_from,
 )
-from information.criteria import DesignCriterion, Posterior, prior_sd_of_tip
-from information.selection import Selection, exchange, fill
-from twin.errors import NotReachable
-from twin.frames import Array
+from matstd.information.criteria import DesignCriterion, Posterior, prior_sd_of_tip
+from matstd.information.selection import Selection, exchange, fill
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array
 
 _TRIED = 3000  # touches that the ideal scatter may choose from
 _DRAWS = 5  # of random touches, averaged

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.compare.alternatives import (
+from matstd.artefact.compare.alternatives import (
     Alternative,
     alternatives,
     joined_rows,
@@ -13,10 +13,10 @@ from artefact.compare.alternatives import (
     setup_parameters,
     touches_reached_in,
 )
-from artefact.reach import Requests
-from artefact.worth import Criterion
-from information.criteria import Posterior
-from information.identifiability import (
+from matstd.artefact.reach import Requests
+from matstd.artefact.worth import Criterion
+from matstd.information.criteria import Posterior
+from matstd.information.identifiability import (
     Degree,
     EstimableCombination,
     FreedomFamily,
@@ -26,10 +26,10 @@ from information.identifiability import (
     in_families,
     supported_degrees,
 )
-from twin.display import Shown
-from twin.frames import Array
-from twin.machine import Chain
-from twin.model import Model
+from matstd.twin.display import Shown
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.model import Model
 
 
 @dataclass(frozen=True)

@@ -22,11 +22,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.reach import Requests
-from artefact.worth import Criterion
-from twin.frames import Array, turn
-from twin.model import Effect, Model, columns
-from twin.units import UM
+from matstd.artefact.reach import Requests
+from matstd.artefact.worth import Criterion
+from matstd.twin.frames import Array, turn
+from matstd.twin.model import Effect, Model, columns
+from matstd.twin.units import UM
 
 ERROR = 2.0 * UM
 """By which a model is wrong, rms, mm."""

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.reach import Requests
-from artefact.worth import Criterion
-from information.criteria import Posterior, prior_sd_of_tip
-from twin.frames import Array
-from twin.record import at_poses
+from matstd.artefact.reach import Requests
+from matstd.artefact.worth import Criterion
+from matstd.information.criteria import Posterior, prior_sd_of_tip
+from matstd.twin.frames import Array
+from matstd.twin.record import at_poses
 
 _SHARE = 0.05  # of the poses: as many as are the worst of one machine
 _SEEN = 0.1  # of the expected error: where no more is left, the faces see the region

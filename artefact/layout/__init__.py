@@ -5,11 +5,11 @@ beside each other, standards put together from `Site`s by hand, and rivals. A fu
 more entry in `rivals`.
 """
 
-from artefact.layout.post import post_stiffness
-from artefact.layout.rival_artefacts import rivals, with_spheres
-from artefact.layout.side_by_side import Pairs, beside_balls, most_side_by_side
-from artefact.layout.sites import Blank, Fittings, Site, standard_from_sites
-from artefact.layout.upright import (
+from matstd.artefact.layout.post import post_stiffness
+from matstd.artefact.layout.rival_artefacts import rivals, with_spheres
+from matstd.artefact.layout.side_by_side import Pairs, beside_balls, most_side_by_side
+from matstd.artefact.layout.sites import Blank, Fittings, Site, standard_from_sites
+from matstd.artefact.layout.upright import (
     SOFT,
     WALL_GAP,
     balls_fit,

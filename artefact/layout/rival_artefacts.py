@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from artefact.body import DatumSphere, FreeformPatch, Standard, graph_patch
-from artefact.layout.shapes import smooth_heights
-from artefact.layout.sites import Blank
-from artefact.layout.upright import ball_on_post
-from sensitivity.first_order import Box
-from twin.frames import Array, pose, rotation
-from twin.units import DEG
+from matstd.artefact.body import DatumSphere, FreeformPatch, Standard, graph_patch
+from matstd.artefact.layout.shapes import smooth_heights
+from matstd.artefact.layout.sites import Blank
+from matstd.artefact.layout.upright import ball_on_post
+from matstd.sensitivity.first_order import Box
+from matstd.twin.frames import Array, pose, rotation
+from matstd.twin.units import DEG
 
 _PROUD = 2.0  # mm by which the sides of the block stand out beyond its top
 _TALLEST = 40.0  # mm that the one face may rise above its plane

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from artefact.body import Limits, graph_patch
-from twin.frames import Array
-from twin.units import DEG
+from matstd.artefact.body import Limits, graph_patch
+from matstd.twin.frames import Array
+from matstd.twin.units import DEG
 
 CONTROL = 8
 """Control heights of a patch each way: enough for one wave, too few for ripples."""

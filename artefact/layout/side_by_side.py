@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import DatumSphere, FreeformPatch
-from artefact.layout.sites import Blank
-from artefact.layout.upright import balls_fit, faces_beside, faces_fit, holes_on
+from matstd.artefact.body import DatumSphere, FreeformPatch
+from matstd.artefact.layout.sites import Blank
+from matstd.artefact.layout.upright import balls_fit, faces_beside, faces_fit, holes_on
 
 Pairs = NDArray[np.bool_]
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from artefact.body import (
+from matstd.artefact.body import (
     Base,
     Core,
     DatumSphere,
@@ -17,9 +17,9 @@ from artefact.body import (
     Standard,
     graph_patch,
 )
-from artefact.layout.spread import rim, spread
-from twin.errors import NotBuildable
-from twin.frames import Array, apply, pose, rotation
+from matstd.artefact.layout.spread import rim, spread
+from matstd.twin.errors import NotBuildable
+from matstd.twin.frames import Array, apply, pose, rotation
 
 _ROOTED = 5.0  # mm a column runs on below mid-base, where it is cut off: no two faces coincide
 _PASSES = 15.0  # mm from the axis within which a column ends in the core
@@ -128,7 +128,7 @@ def standard_from_sites(
     Columns run back along their patch's own direction until they are rooted in the base or reach
     the axis of the standard, where a core as large as their ends receives them. Spheres and
     holes take the places along the rim that are free and as far from each other as possible.
-    The result is not checked against the limits: call `artefact.body.limits.check`.
+    The result is not checked against the limits: call `matstd.artefact.body.limits.check`.
 
     Args:
         name: Type of the standard.

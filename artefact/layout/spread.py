@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from artefact.body import Base
-from twin.frames import Array
+from matstd.artefact.body import Base
+from matstd.twin.frames import Array
 
 _AZIMUTHS = 90  # places tried along the rim
 _ALL = 4e6  # choices that are all compared

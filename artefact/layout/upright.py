@@ -11,7 +11,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import (
+from matstd.artefact.body import (
     BLEND,
     DatumSphere,
     FreeformPatch,
@@ -20,12 +20,12 @@ from artefact.body import (
     graph_patch,
     outline_distance,
 )
-from artefact.layout.post import post_foot
-from artefact.layout.shapes import smooth_heights, steepest_slope
-from artefact.layout.sites import Blank
-from twin.errors import NotBuildable
-from twin.frames import Array, pose
-from twin.units import UM
+from matstd.artefact.layout.post import post_foot
+from matstd.artefact.layout.shapes import smooth_heights, steepest_slope
+from matstd.artefact.layout.sites import Blank
+from matstd.twin.errors import NotBuildable
+from matstd.twin.frames import Array, pose
+from matstd.twin.units import UM
 
 Pairs = NDArray[np.bool_]
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import DatumSphere, FreeformPatch, MountingHole, Standard, constraints
-from artefact.layout import (
+from matstd.artefact.body import DatumSphere, FreeformPatch, MountingHole, Standard, constraints
+from matstd.artefact.layout import (
     Blank,
     faces_beside,
     faces_fit,
@@ -21,7 +21,7 @@ from artefact.layout import (
     least_gap,
     most_side_by_side,
 )
-from artefact.place.room import (
+from matstd.artefact.place.room import (
     FEWEST_BALLS,
     Room,
     check_room,
@@ -29,12 +29,18 @@ from artefact.place.room import (
     room_among,
     share_of_mass,
 )
-from artefact.place.touched import in_the_way, is_from_side, seen_beside, touches_on, untouched
-from artefact.reach import Requests, spread_poses
-from artefact.worth import BallPlaces, Criterion
-from information.selection import best_groups
-from twin.errors import NotBuildable, NotReachable
-from twin.frames import Array
+from matstd.artefact.place.touched import (
+    in_the_way,
+    is_from_side,
+    seen_beside,
+    touches_on,
+    untouched,
+)
+from matstd.artefact.reach import Requests, spread_poses
+from matstd.artefact.worth import BallPlaces, Criterion
+from matstd.information.selection import best_groups
+from matstd.twin.errors import NotBuildable, NotReachable
+from matstd.twin.frames import Array
 
 Which = NDArray[np.bool_]
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from twin.frames import Array
-from twin.record import IntArray
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
 
 _SWEEPS = 4  # looks at every place for a better one; two or three move any
 _WORTH = 1e-9  # relative gain below which a place is not exchanged

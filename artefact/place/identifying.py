@@ -10,14 +10,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.body import DatumSphere, Standard
-from artefact.compare import Rival
-from artefact.layout import with_spheres
-from artefact.place.body_choice import BodyChoice
-from artefact.place.options import PlacementOptions
-from artefact.place.proving import touches_on_faces
-from artefact.reach import Mask, ProbeReach, Requests
-from artefact.worth import (
+from matstd.artefact.body import DatumSphere, Standard
+from matstd.artefact.compare import Rival
+from matstd.artefact.layout import with_spheres
+from matstd.artefact.place.body_choice import BodyChoice
+from matstd.artefact.place.options import PlacementOptions
+from matstd.artefact.place.proving import touches_on_faces
+from matstd.artefact.reach import Mask, ProbeReach, Requests
+from matstd.artefact.worth import (
     BallPlaces,
     Criterion,
     TouchOptions,
@@ -26,9 +26,9 @@ from artefact.worth import (
     mended_touches,
     touches_to_choose_from,
 )
-from information.selection import Certificate
-from twin.errors import NotBuildable, NotReachable
-from twin.frames import Array
+from matstd.information.selection import Certificate
+from matstd.twin.errors import NotBuildable, NotReachable
+from matstd.twin.frames import Array
 
 _BASES = 3  # sets of balls, at most
 _AGAIN, _LITTLE = 5, 1.01  # further draws of faces while they cost more than half a percent in µm

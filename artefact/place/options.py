@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from artefact.worth import CriterionOptions, TouchOptions
-from twin.units import UM
+from matstd.artefact.worth import CriterionOptions, TouchOptions
+from matstd.twin.units import UM
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,8 @@
 Balls on posts identify: nothing tells more of a machine than a precision ball whose centre is known
 to a few tenths of a micrometre, so all identifying touches are made on them. Freeform faces prove:
 they have slopes, curvatures and table poses of real work, they are touched beside the balls and
-held back from the identification, and a model that is wrong shows on them (`artefact.compare`).
+held back from the identification, and a model that is wrong shows on them
+(`matstd.artefact.compare`).
 
 Candidate faces and balls stand all over the blank; every touch that could be made on them at some
 table poses is a row ``n^T J`` times the shape functions of the expected errors. Balls, then faces
@@ -15,8 +16,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.compare import (
+from matstd.artefact.body import Standard
+from matstd.artefact.compare import (
     Power,
     Rival,
     compare,
@@ -26,20 +27,20 @@ from artefact.compare import (
     random_lots,
     task_normals,
 )
-from artefact.layout import Blank
-from artefact.place.body_choice import body_choice
-from artefact.place.identifying import (
+from matstd.artefact.layout import Blank
+from matstd.artefact.place.body_choice import body_choice
+from matstd.artefact.place.identifying import (
     Identifying,
     ball_bases,
     identifying,
     rearranged,
     with_proof,
 )
-from artefact.place.options import PlacementOptions
-from artefact.place.proving import proving_touches, telling_touches
-from artefact.place.room import check_blank
-from artefact.reach import ProbeReach, Requests, joined
-from artefact.worth import (
+from matstd.artefact.place.options import PlacementOptions
+from matstd.artefact.place.proving import proving_touches, telling_touches
+from matstd.artefact.place.room import check_blank
+from matstd.artefact.reach import ProbeReach, Requests, joined
+from matstd.artefact.worth import (
     Criterion,
     Visibility,
     ball_places,
@@ -49,11 +50,11 @@ from artefact.worth import (
     visibility,
     with_error_shares,
 )
-from information.selection import Certificate
-from sensitivity.first_order import Workspace
-from sensitivity.population import Population
-from twin.compute import Progress, silent
-from twin.frames import Array
+from matstd.information.selection import Certificate
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.population import Population
+from matstd.twin.compute import Progress, silent
+from matstd.twin.frames import Array
 
 __all__ = ["Placement", "PlacementOptions", "design_standard"]
 

@@ -8,14 +8,14 @@ pose each is made is chosen by what it tells.
 
 import numpy as np
 
-from artefact.body import FreeformPatch, Standard
-from artefact.place.covering import covering, even_shares
-from artefact.reach import ProbeReach, Requests, joined
-from artefact.worth import Criterion, each_at
-from information.selection import Selection, fill
-from twin.errors import NotReachable
-from twin.frames import Array
-from twin.record import IntArray
+from matstd.artefact.body import FreeformPatch, Standard
+from matstd.artefact.place.covering import covering, even_shares
+from matstd.artefact.reach import ProbeReach, Requests, joined
+from matstd.artefact.worth import Criterion, each_at
+from matstd.information.selection import Selection, fill
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
 
 _PLACES = 1.8  # on a face for each touch that is wanted on it
 _EDGE = 3.0  # mm a touch stays away from the trimmed edge, at least

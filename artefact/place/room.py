@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.body import Base, DatumSphere, FreeformPatch, MountingHole, Standard
-from artefact.layout import (
+from matstd.artefact.body import Base, DatumSphere, FreeformPatch, MountingHole, Standard
+from matstd.artefact.layout import (
     Blank,
     Pairs,
     balls_on_posts,
@@ -22,10 +22,10 @@ from artefact.layout import (
     least_mass,
     with_spheres,
 )
-from artefact.place.touched import is_from_side, seen_beside, untouched
-from artefact.reach import ProbeReach, reach_of, spread_poses
-from twin.errors import NotBuildable
-from twin.frames import Array
+from matstd.artefact.place.touched import is_from_side, seen_beside, untouched
+from matstd.artefact.reach import ProbeReach, reach_of, spread_poses
+from matstd.twin.errors import NotBuildable
+from matstd.twin.frames import Array
 
 FEWEST_BALLS = 3
 """A set-up has six unknowns, and a ball alone hides every turn about it."""

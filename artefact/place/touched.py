@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import DatumSphere, FreeformPatch, Standard
-from artefact.layout import Blank, with_spheres
-from artefact.reach import ProbeReach, Requests, joined
-from artefact.worth import each_at, face_grid
-from twin.frames import Array, inverse, turn
-from twin.machine import table_to_tool
+from matstd.artefact.body import DatumSphere, FreeformPatch, Standard
+from matstd.artefact.layout import Blank, with_spheres
+from matstd.artefact.reach import ProbeReach, Requests, joined
+from matstd.artefact.worth import each_at, face_grid
+from matstd.twin.frames import Array, inverse, turn
+from matstd.twin.machine import table_to_tool
 
 Which = NDArray[np.bool_]
 

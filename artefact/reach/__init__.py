@@ -6,12 +6,12 @@ twin's effects understand them. A new hindrance is one more look in `ProbeReach`
 standard is a `Solid` of the `Workshop`.
 """
 
-from artefact.reach.datum_ball import DatumBall
-from artefact.reach.face_of_table import hangs, standing_remarks, table_face
-from artefact.reach.mesh_cover import closed_mesh, covering_solids
-from artefact.reach.probe_clearance import ProbeShape, clearance
-from artefact.reach.touchable import Mask, ProbeReach, Requests, joined
-from artefact.reach.within_reach import (
+from matstd.artefact.reach.datum_ball import DatumBall
+from matstd.artefact.reach.face_of_table import hangs, standing_remarks, table_face
+from matstd.artefact.reach.mesh_cover import closed_mesh, covering_solids
+from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
+from matstd.artefact.reach.touchable import Mask, ProbeReach, Requests, joined
+from matstd.artefact.reach.within_reach import (
     ANGLE,
     Limit,
     PlacesInReach,
@@ -20,7 +20,7 @@ from artefact.reach.within_reach import (
     spread_poses,
     turned,
 )
-from artefact.reach.workshop import (
+from matstd.artefact.reach.workshop import (
     TABLE,
     Solid,
     Workshop,

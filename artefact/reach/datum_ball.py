@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.body import DatumSphere, Standard
-from artefact.reach.face_of_table import table_face
-from twin.errors import DesignError
-from twin.frames import Array, apply, inverse
+from matstd.artefact.body import DatumSphere, Standard
+from matstd.artefact.reach.face_of_table import table_face
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array, apply, inverse
 
 DATUM = "DATUM"
 """Name of the feature."""

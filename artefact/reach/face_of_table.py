@@ -6,8 +6,8 @@ machine's table, on which a standard stands upright, looks along Y and not along
 
 import numpy as np
 
-from twin.frames import Array, pose
-from twin.machine import Chain, table_to_tool
+from matstd.twin.frames import Array, pose
+from matstd.twin.machine import Chain, table_to_tool
 
 _ALONG = 0.7  # cosine above which two directions count as one axis: half a right angle
 _UPRIGHT = ("[0, 90, 0]", "[-90, 0, 0]", "[0, 0, 0]")  # takes z to x, y, z of the table

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.reach.workshop import Solid
-from twin.errors import BadFile
-from twin.frames import Array, apply
+from matstd.artefact.reach.workshop import Solid
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array, apply
 
 MOST_BOXES = 24
 """Of one mesh: two lines of a program's head each."""

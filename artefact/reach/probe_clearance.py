@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import Standard
-from twin.errors import ShapeMismatch
-from twin.frames import Array, unit
+from matstd.artefact.body import Standard
+from matstd.twin.errors import ShapeMismatch
+from matstd.twin.frames import Array, unit
 
 _GROWTH = 1.15  # ratio of neighbouring stations along the tool axis
 _THIN = 4.0  # mm: up to this radius a cylinder is a row of balls on its axis, beyond it is wrapped

@@ -9,13 +9,13 @@ from dataclasses import dataclass, field, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import Meeting, Standard, contact
-from artefact.reach.probe_clearance import Clearance, ProbeShape
-from artefact.reach.workshop import Workshop, clearance_in_workshop, still_frames
-from twin.frames import Array, apply, inverse, turn
-from twin.machine import Chain, inverse_linear, linear_directions, table_to_tool
-from twin.record import IntArray, Labels, Setup, Touches, linear_approach
-from twin.units import DEG
+from matstd.artefact.body import Meeting, Standard, contact
+from matstd.artefact.reach.probe_clearance import Clearance, ProbeShape
+from matstd.artefact.reach.workshop import Workshop, clearance_in_workshop, still_frames
+from matstd.twin.frames import Array, apply, inverse, turn
+from matstd.twin.machine import Chain, inverse_linear, linear_directions, table_to_tool
+from matstd.twin.record import IntArray, Labels, Setup, Touches, linear_approach
+from matstd.twin.units import DEG
 
 Mask = NDArray[np.bool_]
 

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.layout import Blank
-from artefact.reach.touchable import ROUNDING, Mask, ProbeReach
-from twin.frames import Array, fixed_xyz
-from twin.record import IntArray
-from twin.units import DEG
+from matstd.artefact.layout import Blank
+from matstd.artefact.reach.touchable import ROUNDING, Mask, ProbeReach
+from matstd.twin.frames import Array, fixed_xyz
+from matstd.twin.record import IntArray
+from matstd.twin.units import DEG
 
 ANGLE = "angle"
 """Name of the limit that is no travel: between a surface's normal and the tool axis."""

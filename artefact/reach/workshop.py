@@ -1,7 +1,7 @@
 """What stands on the table and around it beside the standard: table, clamps, fixtures, covers.
 
 Every body is an upright prism over a rectangle or a disc, which a program can state in two lines.
-Anything else is covered by such bodies (`artefact.reach.mesh_cover`).
+Anything else is covered by such bodies (`matstd.artefact.reach.mesh_cover`).
 """
 
 from collections.abc import Iterable, Mapping
@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from artefact.body import Plate, Standard
-from artefact.reach.datum_ball import DATUM, DatumBall
-from artefact.reach.face_of_table import table_face
-from artefact.reach.probe_clearance import Clearance, ProbeShape, clearance
-from twin.errors import DesignError
-from twin.frames import Array, apply, inverse, pose, rotation, turn
-from twin.machine import Chain, table_to_tool
+from matstd.artefact.body import Plate, Standard
+from matstd.artefact.reach.datum_ball import DATUM, DatumBall
+from matstd.artefact.reach.face_of_table import table_face
+from matstd.artefact.reach.probe_clearance import Clearance, ProbeShape, clearance
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array, apply, inverse, pose, rotation, turn
+from matstd.twin.machine import Chain, table_to_tool
 
 TABLE = "the table"
 

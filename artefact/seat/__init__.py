@@ -3,7 +3,7 @@
 In: base, table and bodies in the frame of the table's face. Out: distances in mm.
 """
 
-from artefact.seat.seating import (
+from matstd.artefact.seat.seating import (
     TOUCHING,
     base_corners,
     common_part,

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import Base, outline_distance
-from artefact.reach import Solid, table_face
-from twin.frames import Array, apply, inverse
+from matstd.artefact.body import Base, outline_distance
+from matstd.artefact.reach import Solid, table_face
+from matstd.twin.frames import Array, apply, inverse
 
 TOUCHING = 0.1
 """Depth up to which bodies count as touching, mm: a clamp lies on what it holds."""

@@ -6,11 +6,11 @@ effects that touches could show, and the errors that each patch is for. A new cr
 in `CRITERIA` and in `criterion_for`.
 """
 
-from artefact.worth.attribution import with_error_shares
-from artefact.worth.ball_choice import BallPlaces, ball_places
-from artefact.worth.calibration import Calibration
-from artefact.worth.effect_visibility import Visibility, visibility
-from artefact.worth.touch_choice import (
+from matstd.artefact.worth.attribution import with_error_shares
+from matstd.artefact.worth.ball_choice import BallPlaces, ball_places
+from matstd.artefact.worth.calibration import Calibration
+from matstd.artefact.worth.effect_visibility import Visibility, visibility
+from matstd.artefact.worth.touch_choice import (
     Surfaces,
     TouchOptions,
     chosen_poses,
@@ -24,14 +24,14 @@ from artefact.worth.touch_choice import (
     table_poses,
     touches_to_choose_from,
 )
-from artefact.worth.touch_criterion import (
+from matstd.artefact.worth.touch_criterion import (
     CRITERIA,
     Criterion,
     CriterionOptions,
     criterion_for,
     random_touches,
 )
-from artefact.worth.touch_curves import TouchCurve, touch_curve
+from matstd.artefact.worth.touch_curves import TouchCurve, touch_curve
 
 __all__ = [
     "CRITERIA",

@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import ErrorShare, Standard
-from artefact.reach import Requests
-from artefact.worth.touch_criterion import Criterion
-from information.criteria import whitened
-from twin.effects import ComponentError, LocationError
-from twin.errors import NotBuildable
-from twin.frames import Array
-from twin.machine import Family, parse_symbol
-from twin.model import Effect, Model
+from matstd.artefact.body import ErrorShare, Standard
+from matstd.artefact.reach import Requests
+from matstd.artefact.worth.touch_criterion import Criterion
+from matstd.information.criteria import whitened
+from matstd.twin.effects import ComponentError, LocationError
+from matstd.twin.errors import NotBuildable
+from matstd.twin.frames import Array
+from matstd.twin.machine import Family, parse_symbol
+from matstd.twin.model import Effect, Model
 
 NAMED = 4
 """Errors named for a patch."""

@@ -10,15 +10,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import DatumSphere
-from artefact.layout import Blank, balls_fit, balls_on_posts
-from artefact.reach import Requests, joined, spread_poses
-from artefact.worth.touch_choice import each_at, sphere_grid
-from artefact.worth.touch_criterion import Criterion
-from information.selection import best_groups
-from twin.errors import NotReachable
-from twin.frames import Array
-from twin.record import IntArray
+from matstd.artefact.body import DatumSphere
+from matstd.artefact.layout import Blank, balls_fit, balls_on_posts
+from matstd.artefact.reach import Requests, joined, spread_poses
+from matstd.artefact.worth.touch_choice import each_at, sphere_grid
+from matstd.artefact.worth.touch_criterion import Criterion
+from matstd.information.selection import best_groups
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
 
 _PLACES = 500  # that are tried; a third of them is barred beside freeform faces
 _DIRECTIONS = 9  # touches tried on each, at each of the poses

@@ -16,11 +16,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.reach import Requests
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.units import UM, URAD
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import Requests
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.units import UM, URAD
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.reach import Requests
-from artefact.worth.potential import VISIBLE, column_slices, library, residual_after
-from artefact.worth.touch_criterion import Criterion
-from twin.frames import Array
-from twin.model import Effect, columns
+from matstd.artefact.reach import Requests
+from matstd.artefact.worth.potential import VISIBLE, column_slices, library, residual_after
+from matstd.artefact.worth.touch_criterion import Criterion
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, columns
 
 __all__ = ["VISIBLE", "Visibility", "survival", "visibility"]
 

@@ -13,10 +13,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from twin.frames import Array
-from twin.library import proposals
-from twin.model import Effect, Tunable, columns
-from twin.record import Touches
+from matstd.twin.frames import Array
+from matstd.twin.library import proposals
+from matstd.twin.model import Effect, Tunable, columns
+from matstd.twin.record import Touches
 
 VISIBLE = 0.3
 """Share of the length of a signature that must survive the geometric model."""

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import DatumSphere, FreeformPatch, Standard
-from artefact.reach import Mask, ProbeReach, Requests, joined
-from artefact.worth.touch_criterion import Criterion
-from information.selection import (
+from matstd.artefact.body import DatumSphere, FreeformPatch, Standard
+from matstd.artefact.reach import Mask, ProbeReach, Requests, joined
+from matstd.artefact.worth.touch_criterion import Criterion
+from matstd.information.selection import (
     ROUNDS,
     Certificate,
     Quota,
@@ -28,11 +28,11 @@ from information.selection import (
     relaxed,
     rounded,
 )
-from twin.compute import blocks
-from twin.errors import NotReachable
-from twin.frames import Array
-from twin.machine import Chain
-from twin.units import DEG
+from matstd.twin.compute import blocks
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.units import DEG
 
 Surfaces = Sequence[FreeformPatch | DatumSphere]
 

@@ -15,27 +15,27 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import Standard
-from artefact.layout import Blank
-from artefact.reach import ProbeReach, Requests
-from artefact.worth.calibration import Calibration
-from artefact.worth.potential import Potential, potential
-from information.criteria import (
+from matstd.artefact.body import Standard
+from matstd.artefact.layout import Blank
+from matstd.artefact.reach import ProbeReach, Requests
+from matstd.artefact.worth.calibration import Calibration
+from matstd.artefact.worth.potential import Potential, potential
+from matstd.information.criteria import (
     DesignCriterion,
     five_criteria,
     robust,
     whitened,
     with_potential,
 )
-from sensitivity.first_order import Box, Workspace, latin_hypercube
-from sensitivity.population import Population, drawn_scales
-from twin.compute import blocks
-from twin.errors import DesignError, NotReachable
-from twin.frames import Array, apply
-from twin.machine import Family
-from twin.model import Model
-from twin.record import Touches, at_poses
-from twin.units import DEG
+from matstd.sensitivity.first_order import Box, Workspace, latin_hypercube
+from matstd.sensitivity.population import Population, drawn_scales
+from matstd.twin.compute import blocks
+from matstd.twin.errors import DesignError, NotReachable
+from matstd.twin.frames import Array, apply
+from matstd.twin.machine import Family
+from matstd.twin.model import Model
+from matstd.twin.record import Touches, at_poses
+from matstd.twin.units import DEG
 
 SETUP_SD = (1.0, 5e-3)
 """How far the standard may stand from where it is believed to stand, mm and rad. It is never known,

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.reach import Requests
-from artefact.worth.touch_criterion import Criterion
-from information.criteria import mean_prediction, with_potential
-from information.selection import Selection, fill
-from twin.errors import DesignError
-from twin.frames import Array
+from matstd.artefact.reach import Requests
+from matstd.artefact.worth.touch_criterion import Criterion
+from matstd.information.criteria import mean_prediction, with_potential
+from matstd.information.selection import Selection, fill
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
 
 COUNTS = (50, 70, 100, 140, 200, 300, 400, 550, 750, 1000)
 """Numbers of touches."""

@@ -11,11 +11,11 @@ from OCP.gp import gp_Ax2, gp_Dir
 from OCP.ShapeCustom import ShapeCustom
 from OCP.TopoDS import TopoDS_Shell
 
-from artefact.body import DatumSphere, Material, Standard
-from cad_out.build.faces import faces_of, solids_of, volume
-from cad_out.build.primitives import boolean, cone, point
-from cad_out.build.solid import Solid, build_solid
-from cad_out.details import (
+from matstd.artefact.body import DatumSphere, Material, Standard
+from matstd.cad_out.build.faces import faces_of, solids_of, volume
+from matstd.cad_out.build.primitives import boolean, cone, point
+from matstd.cad_out.build.solid import Solid, build_solid
+from matstd.cad_out.details import (
     BALL,
     SCREW,
     Details,
@@ -25,7 +25,7 @@ from cad_out.details import (
     notes_of,
     tolerances_of,
 )
-from twin.frames import Array
+from matstd.twin.frames import Array
 
 COLOURS = {
     "FF": (0.13, 0.40, 0.75),

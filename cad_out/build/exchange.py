@@ -16,17 +16,17 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool, XCAFDoc_Volume
 from OCP.XSControl import XSControl_WorkSession
 
-from cad_out.build.assembly import Product, colour_of
-from cad_out.build.pmi import add_diameter, add_notes, add_tolerances, settle_drawing
-from cad_out.build.settled import (
+from matstd.cad_out.build.assembly import Product, colour_of
+from matstd.cad_out.build.pmi import add_diameter, add_notes, add_tolerances, settle_drawing
+from matstd.cad_out.build.settled import (
     with_descriptions,
     with_settled_order,
     with_units_of_density,
     without_runout_zones,
 )
-from cad_out.build.xcaf import new_document, set_name, settings, text
-from twin.errors import NotBuildable
-from twin.versions import versions
+from matstd.cad_out.build.xcaf import new_document, set_name, settings, text
+from matstd.twin.errors import NotBuildable
+from matstd.twin.versions import versions
 
 TIME_STAMP = "2000-01-01T00:00:00"
 """In every STEP file: the same standard gives the same bytes."""

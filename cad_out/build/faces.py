@@ -14,10 +14,10 @@ from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
-from artefact.body import Standard
-from cad_out.details import Details
-from twin.errors import NotBuildable
-from twin.frames import Array
+from matstd.artefact.body import Standard
+from matstd.cad_out.details import Details
+from matstd.twin.errors import NotBuildable
+from matstd.twin.frames import Array
 
 _SAME = 1e-7  # mm: a face lies where it was put
 

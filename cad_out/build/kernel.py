@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from cad_out.build.process import run_apart
-from twin.errors import DesignError, NotBuildable
+from matstd.cad_out.build.process import run_apart
+from matstd.twin.errors import DesignError, NotBuildable
 
 
 def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float = 400.0) -> None:
-    """Run one task of `cad_out.build.worker` in a process of its own.
+    """Run one task of `matstd.cad_out.build.worker` in a process of its own.
 
     Args:
         task: Name of the function.
@@ -19,7 +19,7 @@ def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float 
         NotBuildable: The task refuses; or the kernel crashes, fails or takes too long.
         DesignError: The folder takes no more.
     """
-    ending = run_apart("cad_out.build.worker", task, folder, *arguments, timeout=timeout)
+    ending = run_apart("matstd.cad_out.build.worker", task, folder, *arguments, timeout=timeout)
     if ending.refusal:
         raise NotBuildable(ending.refusal)
     if ending.last_line.startswith("OSError: "):  # it could not even write down why

@@ -24,10 +24,10 @@ from OCP.IntTools import IntTools_FClass2d
 from OCP.TopAbs import TopAbs_Orientation, TopAbs_State
 from OCP.TopoDS import TopoDS, TopoDS_Shell
 
-from cad_out.build.faces import edges_of, faces_of
-from cad_out.build.primitives import boolean, point
-from cad_out.details import CUTTER, DEPTH, DOT, Lettering
-from twin.frames import Array, apply, turn
+from matstd.cad_out.build.faces import edges_of, faces_of
+from matstd.cad_out.build.primitives import boolean, point
+from matstd.cad_out.details import CUTTER, DEPTH, DOT, Lettering
+from matstd.twin.frames import Array, apply, turn
 
 _ON = 1e-6  # mm: a line of text lies in a face
 _RIM = 0.1  # mm between a dot and the edge of its face, at least

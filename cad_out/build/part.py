@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from artefact.body import Standard
+from matstd.artefact.body import Standard
 
 if TYPE_CHECKING:
     import build123d
@@ -28,8 +28,8 @@ def as_part(standard: Standard) -> tuple[build123d.Solid, dict[str, build123d.Fa
     """
     from build123d import Face, Solid
 
-    from cad_out.build.solid import build_solid
-    from cad_out.details import details_of
+    from matstd.cad_out.build.solid import build_solid
+    from matstd.cad_out.details import details_of
 
     built = build_solid(standard, details_of(standard))
     solid = Solid(built.shape)

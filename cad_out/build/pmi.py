@@ -31,9 +31,9 @@ from OCP.XCAFDoc import (
     XCAFDoc_GeomTolerance,
 )
 
-from cad_out.build.xcaf import name_of, text
-from cad_out.details import CALIBRATED, DATUMS, Tolerance
-from twin.frames import Array
+from matstd.cad_out.build.xcaf import name_of, text
+from matstd.cad_out.details import CALIBRATED, DATUMS, Tolerance
+from matstd.twin.frames import Array
 
 _KINDS = {
     "flatness": "Flatness",

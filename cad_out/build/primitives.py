@@ -20,11 +20,11 @@ from OCP.collections import List_TopoDS_Shape
 from OCP.GC import GC_MakeArcOfCircle
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Circ, gp_Dir, gp_Pnt, gp_Vec
 
-from artefact.body import Base
-from cad_out.build.faces import solids_of
-from cad_out.details import Bore
-from twin.errors import NotBuildable
-from twin.frames import Array
+from matstd.artefact.body import Base
+from matstd.cad_out.build.faces import solids_of
+from matstd.cad_out.details import Bore
+from matstd.twin.errors import NotBuildable
+from matstd.twin.frames import Array
 
 _SAME = 1e-7  # mm: two points or radii are one
 

@@ -24,7 +24,7 @@ from OCP.TopoDS import TopoDS
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from scipy.interpolate import NdBSpline
 
-from cad_out.build.faces import (
+from matstd.cad_out.build.faces import (
     area,
     edges_of,
     faces_of,
@@ -35,10 +35,10 @@ from cad_out.build.faces import (
     solids_of,
     volume,
 )
-from cad_out.build.pmi import notes_of_label, read_signs, read_tolerances
-from cad_out.build.xcaf import name_of, new_document, settings
-from cad_out.details import Tolerance
-from cad_out.triangles import (
+from matstd.cad_out.build.pmi import notes_of_label, read_signs, read_tolerances
+from matstd.cad_out.build.xcaf import name_of, new_document, settings
+from matstd.cad_out.details import Tolerance
+from matstd.cad_out.triangles import (
     Chart,
     Edge,
     Face,
@@ -55,8 +55,8 @@ from cad_out.triangles import (
     scaled_chart,
     torus,
 )
-from twin.errors import NotBuildable
-from twin.frames import Array
+from matstd.twin.errors import NotBuildable
+from matstd.twin.frames import Array
 
 _LOOKED_AT = 100  # triangles of a face whose distance is measured
 _ANGLE = 0.3  # rad between neighbouring triangles; the chord decides on all but tiny radii

@@ -6,10 +6,10 @@ import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from twin.errors import NotBuildable
+from matstd.twin.errors import NotBuildable
 
 if TYPE_CHECKING:
-    from cad_out.build.assembly import Product
+    from matstd.cad_out.build.assembly import Product
 
 _FIRST = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION("
 _ENTITY = re.compile(r"^#(\d+) = (.*?);$", re.S | re.M)

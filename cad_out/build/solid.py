@@ -15,8 +15,8 @@ from OCP.gp import gp_Ax2, gp_Pnt, gp_Vec
 from OCP.ShapeCustom import ShapeCustom
 from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
 
-from artefact.body import BLEND, Base, DatumSphere, FreeformPatch, MountingHole, Standard
-from cad_out.build.faces import (
+from matstd.artefact.body import BLEND, Base, DatumSphere, FreeformPatch, MountingHole, Standard
+from matstd.cad_out.build.faces import (
     Named,
     edges_of,
     ends_and_middle,
@@ -26,8 +26,8 @@ from cad_out.build.faces import (
     solids_of,
     volume,
 )
-from cad_out.build.letters import engraved
-from cad_out.build.primitives import (
+from matstd.cad_out.build.letters import engraved
+from matstd.cad_out.build.primitives import (
     boolean,
     box,
     cone,
@@ -37,9 +37,9 @@ from cad_out.build.primitives import (
     point,
     turned,
 )
-from cad_out.details import RELIEF, Details, Pad, Seat, Side, relief_profile
-from twin.errors import NotBuildable
-from twin.frames import Array, apply
+from matstd.cad_out.details import RELIEF, Details, Pad, Seat, Side, relief_profile
+from matstd.twin.errors import NotBuildable
+from matstd.twin.frames import Array, apply
 
 _FACE_TOLERANCE = 1e-7  # mm, of the kernel's own edges
 _ROOT = 2.0  # mm a post goes on into the base, so that no two faces coincide

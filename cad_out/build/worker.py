@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from artefact.body import Standard, read_standard
-from cad_out.details import details_of
-from cad_out.meshes import (
+from matstd.artefact.body import Standard, read_standard
+from matstd.cad_out.details import details_of
+from matstd.cad_out.meshes import (
     Mesh,
     Piece,
     ball_mesh,
@@ -23,11 +23,11 @@ from cad_out.meshes import (
     write_3mf,
     write_glb,
 )
-from twin.errors import NotBuildable
+from matstd.twin.errors import NotBuildable
 
 if TYPE_CHECKING:
-    from cad_out.build.assembly import Product
-    from cad_out.build.solid import Solid
+    from matstd.cad_out.build.assembly import Product
+    from matstd.cad_out.build.solid import Solid
 
 STANDARD, STEP, MESH, FACTS = "standard.toml", "standard.step", "mesh.npz", "facts.json"
 FACES = "standard-faces.step"
@@ -48,8 +48,8 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
         author: For the header of the STEP file.
         organisation: The same.
     """
-    from cad_out.build.assembly import face_products, products_of, whole_name
-    from cad_out.build.exchange import Origin, write_step
+    from matstd.cad_out.build.assembly import face_products, products_of, whole_name
+    from matstd.cad_out.build.exchange import Origin, write_step
 
     place = Path(folder)
     standard = read_standard(place / STANDARD)
@@ -70,8 +70,8 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
 
 def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list[Piece]:
     """Triangles of every product, the screws as coarse as a picture needs."""
-    from cad_out.build.assembly import colour_of
-    from cad_out.build.reader import tessellate
+    from matstd.cad_out.build.assembly import colour_of
+    from matstd.cad_out.build.reader import tessellate
 
     balls, out = {sphere.name for sphere in standard.spheres}, []
     for product in products:
@@ -90,7 +90,7 @@ def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list
 
 def reread(folder: str) -> None:
     """Read the STEP file of a folder anew and write down what the kernel finds in it."""
-    from cad_out.build.reader import read_step
+    from matstd.cad_out.build.reader import read_step
 
     facts = asdict(read_step(Path(folder) / STEP))
     (Path(folder) / FACTS).write_text(json.dumps(facts), encoding="utf-8")
@@ -101,7 +101,7 @@ def _mesh(standard: Standard, solid: Solid, chord: float) -> tuple[Mesh, float]:
 
     Both are measured at other places than the triangulation looks at.
     """
-    from cad_out.build.reader import face_numbers, farthest_from_faces, triangulate
+    from matstd.cad_out.build.reader import face_numbers, farthest_from_faces, triangulate
 
     names = {number: name for name, number in face_numbers(solid.plain, solid.plain_faces).items()}
     balls = [ball_mesh(sphere, chord) for sphere in standard.spheres]

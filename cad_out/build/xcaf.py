@@ -11,7 +11,7 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
-from twin.errors import NotBuildable
+from matstd.twin.errors import NotBuildable
 
 
 def new_document() -> Any:

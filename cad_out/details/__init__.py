@@ -5,11 +5,11 @@ holes, thermometer pocket, lettering. The kernel builds them, the drawing shows 
 makeability measures them.
 """
 
-from cad_out.details.annotations import annotations_of
-from cad_out.details.detail_list import Details, details_of, engraved_on
-from cad_out.details.dot_font import CUTTER, DEPTH, DOT
-from cad_out.details.lettering import Lettering
-from cad_out.details.mounting import (
+from matstd.cad_out.details.annotations import annotations_of
+from matstd.cad_out.details.detail_list import Details, details_of, engraved_on
+from matstd.cad_out.details.dot_font import CUTTER, DEPTH, DOT
+from matstd.cad_out.details.lettering import Lettering
+from matstd.cad_out.details.mounting import (
     BALL,
     RELIEF,
     RELIEF_RADIUS,
@@ -18,9 +18,9 @@ from cad_out.details.mounting import (
     Screw,
     relief_profile,
 )
-from cad_out.details.places import Bore, Side, datum_touches
-from cad_out.details.seats import Seat, glue_gap
-from cad_out.details.tolerances import CALIBRATED, DATUMS, Tolerance, notes_of, tolerances_of
+from matstd.cad_out.details.places import Bore, Side, datum_touches
+from matstd.cad_out.details.seats import Seat, glue_gap
+from matstd.cad_out.details.tolerances import CALIBRATED, DATUMS, Tolerance, notes_of, tolerances_of
 
 __all__ = [
     "BALL",

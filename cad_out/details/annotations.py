@@ -8,11 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from artefact.body import Standard, outline_distance
-from cad_out.details.detail_list import Details
-from cad_out.details.places import plan_room
-from cad_out.details.tolerances import BALL_SIZE, DATUMS, Tolerance, tolerances_of
-from twin.frames import Array
+from matstd.artefact.body import Standard, outline_distance
+from matstd.cad_out.details.detail_list import Details
+from matstd.cad_out.details.places import plan_room
+from matstd.cad_out.details.tolerances import BALL_SIZE, DATUMS, Tolerance, tolerances_of
+from matstd.twin.frames import Array
 
 _LETTER, _CELL, _PITCH = 5.0, 10.0, 13.0  # mm: a letter, a frame, from one frame to the next
 _AWAY, _LANDING = 25.0, 6.0  # mm from the plate to the columns; a leader is level so far

@@ -4,12 +4,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import Standard
-from cad_out.details.lettering import Lettering, lettering_of
-from cad_out.details.mounting import Pad, Screw, pads_of, screws_of
-from cad_out.details.places import HEAVY, Bore, Side, lifting_holes, sides_of, thermometer_pocket
-from cad_out.details.seats import Seat, seat_of
-from twin.frames import Array, apply
+from matstd.artefact.body import Standard
+from matstd.cad_out.details.lettering import Lettering, lettering_of
+from matstd.cad_out.details.mounting import Pad, Screw, pads_of, screws_of
+from matstd.cad_out.details.places import (
+    HEAVY,
+    Bore,
+    Side,
+    lifting_holes,
+    sides_of,
+    thermometer_pocket,
+)
+from matstd.cad_out.details.seats import Seat, seat_of
+from matstd.twin.frames import Array, apply
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ where whoever programs the cutting has to pick the few that matter.
 
 import numpy as np
 
-from twin.frames import Array
+from matstd.twin.frames import Array
 
 CUTTER = 0.5
 """Radius of the ball-ended cutter, mm."""

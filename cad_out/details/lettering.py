@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import BLEND, DatumSphere, FreeformPatch, Standard, outline_distance
-from cad_out.details.dot_font import LARGE, SMALL, dots, size
-from cad_out.details.places import Bore, Side, plan_room
-from twin.frames import Array, pose
+from matstd.artefact.body import BLEND, DatumSphere, FreeformPatch, Standard, outline_distance
+from matstd.cad_out.details.dot_font import LARGE, SMALL, dots, size
+from matstd.cad_out.details.places import Bore, Side, plan_room
+from matstd.twin.frames import Array, pose
 
 _OF_SIDE = 0.37  # of the plate's thickness, that letters on a side take: two lines have room
 _FREE = 1.5  # mm round a line of text

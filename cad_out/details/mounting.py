@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import Material, MountingHole, Standard, outline_distance
-from cad_out.details.places import Side
+from matstd.artefact.body import Material, MountingHole, Standard, outline_distance
+from matstd.cad_out.details.places import Side
 
 BALL = Material(name="100Cr6 (1.3505), hardened, ISO 3290-1 G5", density=7.83e-6, expansion=11.5e-6)
 """Of a bought ball."""

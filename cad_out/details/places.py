@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import BLEND, FreeformPatch, Standard, outline_distance
-from twin.frames import Array, apply
+from matstd.artefact.body import BLEND, FreeformPatch, Standard, outline_distance
+from matstd.twin.frames import Array, apply
 
 HEAVY = 25.0
 """Mass above which a standard is lifted by a crane, kg."""

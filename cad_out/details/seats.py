@@ -11,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import DatumSphere
-from twin.errors import NotBuildable
-from twin.units import DEG
+from matstd.artefact.body import DatumSphere
+from matstd.twin.errors import NotBuildable
+from matstd.twin.units import DEG
 
 HALF_ANGLES = (45.0 * DEG, 60.0 * DEG, 70.0 * DEG)
 """Of countersinks that are sold (90, 120 and 140 degrees); the steepest centres best."""

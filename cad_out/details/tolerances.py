@@ -7,8 +7,8 @@ the pads, is fine.
 
 from typing import NamedTuple
 
-from artefact.body import Standard
-from cad_out.details.detail_list import Details
+from matstd.artefact.body import Standard
+from matstd.cad_out.details.detail_list import Details
 
 DATUMS = {"A": "DATUM_A", "B": "DATUM_B", "C": "DATUM_C"}
 """Faces that are the datums, in their order."""

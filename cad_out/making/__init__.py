@@ -4,10 +4,10 @@ In: a `Standard`. Out: a `Making` and `making.json`. Neither the CAD kernel nor 
 bodies answer for distances, and plate and pillars are cubes of finite elements.
 """
 
-from cad_out.making.cutting import Cutting
-from cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
-from cad_out.making.making_file import FIRST_MODE, SAG, Making, making_of, write_making
-from cad_out.making.stiffness import Stiffness, stiffness_of, with_sag
+from matstd.cad_out.making.cutting import Cutting
+from matstd.cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
+from matstd.cad_out.making.making_file import FIRST_MODE, SAG, Making, making_of, write_making
+from matstd.cad_out.making.stiffness import Stiffness, stiffness_of, with_sag
 
 __all__ = [
     "FIRST_MODE",

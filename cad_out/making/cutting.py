@@ -5,11 +5,11 @@ from itertools import product
 
 import numpy as np
 
-from artefact.body import BLEND, FreeformPatch, Standard
-from artefact.brief import FINISHING
-from cad_out.details import Details
-from twin.frames import Array
-from twin.units import DEG
+from matstd.artefact.body import BLEND, FreeformPatch, Standard
+from matstd.artefact.brief import FINISHING
+from matstd.cad_out.details import Details
+from matstd.twin.frames import Array
+from matstd.twin.units import DEG
 
 RADIUS, OVERHANG = FINISHING, 60.0
 """Of the finishing ball-end mill, and how far it stands out of its holder: 10 D, mm."""

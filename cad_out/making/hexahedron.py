@@ -12,7 +12,7 @@ from itertools import product
 
 import numpy as np
 
-from twin.frames import Array
+from matstd.twin.frames import Array
 
 CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))
 """Natural coordinates of the nodes, (8, 3)."""

@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import FreeformPatch, Standard
-from cad_out.making.cutting import RADIUS, TILTS, is_free
-from twin.frames import Array
-from twin.units import UM
+from matstd.artefact.body import FreeformPatch, Standard
+from matstd.cad_out.making.cutting import RADIUS, TILTS, is_free
+from matstd.twin.frames import Array
+from matstd.twin.units import UM
 
 ROUGHNESS = (0.2 * UM, 0.4 * UM, 0.8 * UM)
 """Ra that step-overs are told for, mm."""

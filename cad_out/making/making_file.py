@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from artefact.body import Material, Standard
-from cad_out.details import details_of
-from cad_out.making.cutting import OVERHANG, RADIUS, Cutting, cutting_of
-from cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
-from cad_out.making.stiffness import Stiffness
-from twin.files import write_whole
-from twin.units import DEG, UM
+from matstd.artefact.body import Material, Standard
+from matstd.cad_out.details import details_of
+from matstd.cad_out.making.cutting import OVERHANG, RADIUS, Cutting, cutting_of
+from matstd.cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
+from matstd.cad_out.making.stiffness import Stiffness
+from matstd.twin.files import write_whole
+from matstd.twin.units import DEG, UM
 
 FIRST_MODE, SAG = 500.0, 0.1 * UM
 """Least first mode, Hz; most sag that needs no correction, mm."""

@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from artefact.body import DatumSphere, Standard
-from artefact.layout import post_stiffness
-from cad_out.details import BALL, Details
-from cad_out.making.hexahedron import CORNERS, cube
-from twin.frames import Array
+from matstd.artefact.body import DatumSphere, Standard
+from matstd.artefact.layout import post_stiffness
+from matstd.cad_out.details import BALL, Details
+from matstd.cad_out.making.hexahedron import CORNERS, cube
+from matstd.twin.frames import Array
 
 GRAVITY = 9.81e3
 """In mm/s^2."""

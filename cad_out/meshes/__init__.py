@@ -4,7 +4,7 @@ In: corners and triangles face by face. Out: a `Mesh` whose triangles know their
 figures by two mesh libraries, STL, 3MF and glTF files. No CAD kernel here.
 """
 
-from cad_out.meshes.mesh import (
+from matstd.cad_out.meshes.mesh import (
     Mesh,
     aspects,
     ball_mesh,
@@ -20,7 +20,7 @@ from cad_out.meshes.mesh import (
     welded,
     write_stl,
 )
-from cad_out.meshes.scene import Piece, write_3mf, write_glb
+from matstd.cad_out.meshes.scene import Piece, write_3mf, write_glb
 
 __all__ = [
     "Mesh",

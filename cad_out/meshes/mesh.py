@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from artefact.body import DatumSphere, FreeformPatch, Standard
-from twin.frames import Array, apply
+from matstd.artefact.body import DatumSphere, FreeformPatch, Standard
+from matstd.twin.frames import Array, apply
 
 WELD = 1e-6
 """Corners nearer than this are one corner, mm."""

@@ -8,8 +8,8 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from cad_out.meshes.mesh import Mesh
-from twin.frames import Array
+from matstd.cad_out.meshes.mesh import Mesh
+from matstd.twin.frames import Array
 
 _LONG_AGO = (1980, 1, 1, 0, 0, 0)  # the first time stamp that an archive can have
 _CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"

@@ -4,7 +4,7 @@ In: edges as curves, faces as outlines in charts of their surfaces. Out: corners
 joined along the edges, that keep a chord and no small angles.
 """
 
-from cad_out.triangles.charts import (
+from matstd.cad_out.triangles.charts import (
     Chart,
     Frame,
     Map,
@@ -18,7 +18,7 @@ from cad_out.triangles.charts import (
     scaled_chart,
     torus,
 )
-from cad_out.triangles.refinement import Edge, Face, Side, refined
+from matstd.cad_out.triangles.refinement import Edge, Face, Side, refined
 
 __all__ = [
     "Chart",

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.frames import Array
+from matstd.twin.frames import Array
 
 Map = Callable[[Array], Array]
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cad_out.triangles.delaunay import Sheet, apart, circumcircles
-from twin.frames import Array
+from matstd.cad_out.triangles.delaunay import Sheet, apart, circumcircles
+from matstd.twin.frames import Array
 
 _LEAST_SINE = np.sin(np.deg2rad(20.0))  # of a chart's angles: what Ruppert's refinement reaches
 _LEAST = 0.02  # mm, nothing is refined for its angles below twice this

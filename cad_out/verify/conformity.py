@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from artefact.body import BLEND, Standard
-from cad_out.build import FACES, FACTS, STEP, run_kernel
-from cad_out.details import BALL, Details, Screw, details_of
-from cad_out.meshes import (
+from matstd.artefact.body import BLEND, Standard
+from matstd.cad_out.build import FACES, FACTS, STEP, run_kernel
+from matstd.cad_out.details import BALL, Details, Screw, details_of
+from matstd.cad_out.meshes import (
     aspects,
     chord_errors,
     face_areas,
@@ -21,19 +21,19 @@ from cad_out.meshes import (
     mesh_volume,
     read_stl,
 )
-from cad_out.verify.face_figures import area_errors, face_deviations
-from cad_out.verify.part21 import (
+from matstd.cad_out.verify.face_figures import area_errors, face_deviations
+from matstd.cad_out.verify.part21 import (
     Instance,
     file_unit_is_millimetre,
     read_entities,
     read_faces,
     read_instances,
 )
-from cad_out.verify.untold import untold
-from twin.errors import NotBuildable
-from twin.files import write_whole
-from twin.frames import Array
-from twin.units import NM, UM
+from matstd.cad_out.verify.untold import untold
+from matstd.twin.errors import NotBuildable
+from matstd.twin.files import write_whole
+from matstd.twin.frames import Array
+from matstd.twin.units import NM, UM
 
 FACE_LIMIT = 0.01 * UM
 """Largest distance of a face in the STEP file from its design, mm."""

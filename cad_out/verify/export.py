@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.body import Standard, write_standard
-from cad_out.build import FACES, FACTS, MESH, SCENES, STANDARD, STEP, run_kernel
-from cad_out.meshes import Mesh, write_stl
-from cad_out.verify.conformity import Conformity, measure, refuse_faults, write_conformity
-from twin.errors import DesignError
+from matstd.artefact.body import Standard, write_standard
+from matstd.cad_out.build import FACES, FACTS, MESH, SCENES, STANDARD, STEP, run_kernel
+from matstd.cad_out.meshes import Mesh, write_stl
+from matstd.cad_out.verify.conformity import Conformity, measure, refuse_faults, write_conformity
+from matstd.twin.errors import DesignError
 
 STL, CONFORMITY = "standard.stl", "conformity.json"
 NOT_STATED = "not stated"

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from artefact.body import Standard
-from cad_out.verify.part21 import SphereFace, SplineFace
+from matstd.artefact.body import Standard
+from matstd.cad_out.verify.part21 import SphereFace, SplineFace
 
 _SAMPLES = 61  # points along each side of a face that is compared
 

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.errors import BadFile
-from twin.frames import Array
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
 
 _ENTITY = re.compile(r"#(\d+)\s*=\s*(.*?);\s*(?=#\d+\s*=|ENDSEC)", re.S)
 _FACE = re.compile(r"ADVANCED_FACE\('([^']*)',\(([^)]*)\),#(\d+),\.([TF])\.\)")

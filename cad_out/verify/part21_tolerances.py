@@ -4,8 +4,8 @@ import re
 
 import numpy as np
 
-from cad_out.details import Tolerance
-from twin.frames import Array
+from matstd.cad_out.details import Tolerance
+from matstd.twin.frames import Array
 
 _KINDS = {
     "FLATNESS": "flatness",

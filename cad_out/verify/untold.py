@@ -4,11 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from artefact.body import Standard
-from cad_out.details import Details, Tolerance, annotations_of, notes_of, tolerances_of
-from cad_out.verify.part21_tolerances import read_notes, read_signs, read_tolerances
-from twin.frames import Array
-from twin.units import NM
+from matstd.artefact.body import Standard
+from matstd.cad_out.details import Details, Tolerance, annotations_of, notes_of, tolerances_of
+from matstd.cad_out.verify.part21_tolerances import read_notes, read_signs, read_tolerances
+from matstd.twin.frames import Array
+from matstd.twin.units import NM
 
 
 def untold(

@@ -5,8 +5,8 @@ that correct them (`correction`), and the `Result` of any compensation over a wo
 corrects, a program, a table, a service, ends in one thing: readings that are added (`Corrects`).
 """
 
-from compensation.field.inverse import Datum, correction, datum_of, played, shifted
-from compensation.field.machine_errors import (
+from matstd.compensation.field.inverse import Datum, correction, datum_of, played, shifted
+from matstd.compensation.field.machine_errors import (
     Corrects,
     Disturbance,
     MachineErrors,
@@ -14,7 +14,7 @@ from compensation.field.machine_errors import (
     deviation,
     group_of,
 )
-from compensation.field.over_workspace import (
+from matstd.compensation.field.over_workspace import (
     Left,
     Result,
     aligned,
@@ -23,8 +23,8 @@ from compensation.field.over_workspace import (
     rms,
     workspace,
 )
-from compensation.field.shares import Share, contributions
-from compensation.field.state import State
+from matstd.compensation.field.shares import Share, contributions
+from matstd.compensation.field.state import State
 
 __all__ = [
     "Corrects",

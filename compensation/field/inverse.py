@@ -4,12 +4,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensation.field.machine_errors import Disturbance, MachineErrors, actual_tip, deviation
-from twin.errors import NotReachable
-from twin.frames import Array
-from twin.machine import Chain, linear_directions, tip
-from twin.record import Touches
-from twin.units import NM
+from matstd.compensation.field.machine_errors import (
+    Disturbance,
+    MachineErrors,
+    actual_tip,
+    deviation,
+)
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, linear_directions, tip
+from matstd.twin.record import Touches
+from matstd.twin.units import NM
 
 MOST = 6
 """Steps of the inverse: each leaves some 1e-4 of what was there, so two or three do."""

@@ -8,14 +8,22 @@ from typing import Literal, Protocol
 import numpy as np
 from scipy.linalg import block_diag
 
-from compensation.field.state import SWITCHED_ON, State
-from diagnosis.files import SavedModel
-from twin.errors import BadValue
-from twin.frames import Array
-from twin.machine import Chain, Contribution, Where, error_class, exact_tip, parse_symbol, tip
-from twin.model import Effect, contribution
-from twin.record import Touches
-from twin.words import did_you_mean
+from matstd.compensation.field.state import SWITCHED_ON, State
+from matstd.diagnosis.files import SavedModel
+from matstd.twin.errors import BadValue
+from matstd.twin.frames import Array
+from matstd.twin.machine import (
+    Chain,
+    Contribution,
+    Where,
+    error_class,
+    exact_tip,
+    parse_symbol,
+    tip,
+)
+from matstd.twin.model import Effect, contribution
+from matstd.twin.record import Touches
+from matstd.twin.words import did_you_mean
 
 
 class Disturbance(Protocol):

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensation.field.inverse import Datum, played
-from compensation.field.machine_errors import Corrects, MachineErrors, deviation
-from twin.frames import Array, skew
-from twin.machine import Chain
-from twin.record import Touches
+from matstd.compensation.field.inverse import Datum, played
+from matstd.compensation.field.machine_errors import Corrects, MachineErrors, deviation
+from matstd.twin.frames import Array, skew
+from matstd.twin.machine import Chain
+from matstd.twin.record import Touches
 
 POSES = 256
 """Over which figures are taken: their rms is then known to some 4 %."""

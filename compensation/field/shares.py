@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compensation.field.inverse import Datum
-from compensation.field.machine_errors import MachineErrors, deviation
-from compensation.field.over_workspace import rms
-from twin.frames import Array
-from twin.record import Touches
+from matstd.compensation.field.inverse import Datum
+from matstd.compensation.field.machine_errors import MachineErrors, deviation
+from matstd.compensation.field.over_workspace import rms
+from matstd.twin.frames import Array
+from matstd.twin.record import Touches
 
 
 class Share(NamedTuple):

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from twin.frames import Array
-from twin.machine import Chain
-from twin.record import Touches, at_poses
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.record import Touches, at_poses
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,8 +5,13 @@ In: a `Service`, and the control's INI file (`Control`). Out: a HAL file and the
 control as external offsets, which are added before kinematics.
 """
 
-from compensation.linuxcnc.control_files import HAL_FILE, SOCKET, Control, write_control_files
-from compensation.linuxcnc.link import serve_linuxcnc
+from matstd.compensation.linuxcnc.control_files import (
+    HAL_FILE,
+    SOCKET,
+    Control,
+    write_control_files,
+)
+from matstd.compensation.linuxcnc.link import serve_linuxcnc
 
 __all__ = [
     "HAL_FILE",

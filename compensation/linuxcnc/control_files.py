@@ -5,10 +5,10 @@ import re
 from pathlib import Path
 from shutil import copyfile
 
-from compensation.service import OutputLimits, Service
-from twin.errors import BadFile, DesignError
-from twin.files import read_text, write_whole
-from twin.machine import Chain
+from matstd.compensation.service import OutputLimits, Service
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.files import read_text, write_whole
+from matstd.twin.machine import Chain
 
 HAL_FILE, COMPONENT, SOCKET = "corrector.hal", "corrector.py", "corrector.sock"
 

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from compensation.service import DRIVEN_EVERY, Service, prompt
-from twin.errors import DesignError
+from matstd.compensation.service import DRIVEN_EVERY, Service, prompt
+from matstd.twin.errors import DesignError
 
 
 async def serve_linuxcnc(

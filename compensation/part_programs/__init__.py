@@ -5,10 +5,10 @@ In: a Klartext or G-code program (`read_part_program`) and where its zero stands
 module with `read`, `lines`, `comment`, `begin` and `listed`, and its ending in `program`.
 """
 
-from compensation.part_programs.frame import Frame
-from compensation.part_programs.loads import Load, forces, read_loads
-from compensation.part_programs.motion import Arc, Cycle, Keep, Motion, Paths
-from compensation.part_programs.program import Program, read_part_program
+from matstd.compensation.part_programs.frame import Frame
+from matstd.compensation.part_programs.loads import Load, forces, read_loads
+from matstd.compensation.part_programs.motion import Arc, Cycle, Keep, Motion, Paths
+from matstd.compensation.part_programs.program import Program, read_part_program
 
 __all__ = [
     "Arc",

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compensation.part_programs.language import Reading
-from compensation.part_programs.motion import Arc, Corner, Item, Motion, angle_between
-from compensation.part_programs.radius import NEAR, Element, cuts
-from twin.frames import Array
+from matstd.compensation.part_programs.language import Reading
+from matstd.compensation.part_programs.motion import Arc, Corner, Item, Motion, angle_between
+from matstd.compensation.part_programs.radius import NEAR, Element, cuts
+from matstd.twin.frames import Array
 
 SMOOTH = 1e-6
 """Sine of the angle of a corner that is none, rad."""

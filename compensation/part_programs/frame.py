@@ -5,10 +5,10 @@ from functools import cached_property
 
 import numpy as np
 
-from compensation.field import Datum
-from twin.errors import NotReachable
-from twin.frames import Array
-from twin.machine import Chain, inverse_linear, tip
+from matstd.compensation.field import Datum
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, inverse_linear, tip
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,12 +6,17 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.part_programs import gcode_cycles
-from compensation.part_programs.gcode_modes import CYCLES, HOMES, KEPT, Modes, function, take
-from compensation.part_programs.gcode_modes import tool as take_tool
-from compensation.part_programs.language import Reading, centre_by_radius, checked_arc, numbers
-from compensation.part_programs.motion import Arc, Cycle, Motion
-from twin.frames import Array
+from matstd.compensation.part_programs import gcode_cycles
+from matstd.compensation.part_programs.gcode_modes import CYCLES, HOMES, KEPT, Modes, function, take
+from matstd.compensation.part_programs.gcode_modes import tool as take_tool
+from matstd.compensation.part_programs.language import (
+    Reading,
+    centre_by_radius,
+    checked_arc,
+    numbers,
+)
+from matstd.compensation.part_programs.motion import Arc, Cycle, Motion
+from matstd.twin.frames import Array
 
 ENDING = ".ngc"
 OPENS = re.compile(r"%|O\d+|(?:\([^)]*\)|;.*)?\s*\Z", re.IGNORECASE)

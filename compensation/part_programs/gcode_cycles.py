@@ -1,9 +1,9 @@
 """Canned cycles of G-code: a hole along Z, called once at its compensated place."""
 
-from compensation.part_programs.gcode_modes import Modes
-from compensation.part_programs.language import Reading
-from compensation.part_programs.motion import Cycle
-from twin.frames import Array
+from matstd.compensation.part_programs.gcode_modes import Modes
+from matstd.compensation.part_programs.language import Reading
+from matstd.compensation.part_programs.motion import Cycle
+from matstd.twin.frames import Array
 
 _ALLOWED = frozenset("XYZRPQFLHSTK")
 _STICKY = "RZPQ"

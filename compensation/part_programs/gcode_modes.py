@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from compensation.part_programs.language import Reading
+from matstd.compensation.part_programs.language import Reading
 
 MOVES = frozenset({0.0, 1.0, 2.0, 3.0})
 CYCLES = frozenset({73.0, 74.0, 81.0, 82.0, 83.0, 84.0, 85.0, 86.0, 89.0})

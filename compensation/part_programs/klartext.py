@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.part_programs import klartext_cycles
-from compensation.part_programs.klartext_flow import Block, in_order
-from compensation.part_programs.klartext_motions import (
+from matstd.compensation.part_programs import klartext_cycles
+from matstd.compensation.part_programs.klartext_flow import Block, in_order
+from matstd.compensation.part_programs.klartext_motions import (
     Modes,
     Words,
     motion,
@@ -18,9 +18,9 @@ from compensation.part_programs.klartext_motions import (
     take_feed,
     take_functions,
 )
-from compensation.part_programs.language import NUMBER, Reading
-from compensation.part_programs.motion import Corner, Motion
-from twin.frames import Array
+from matstd.compensation.part_programs.language import NUMBER, Reading
+from matstd.compensation.part_programs.motion import Corner, Motion
+from matstd.twin.frames import Array
 
 ENDING = ".H"
 HAS_INVERSE_TIME = False

@@ -9,7 +9,7 @@ import re
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-from compensation.part_programs.language import NUMBER, Reading
+from matstd.compensation.part_programs.language import NUMBER, Reading
 
 DEEPEST = 8
 """Subprograms within one another, as the control has them."""

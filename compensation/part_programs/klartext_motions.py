@@ -5,11 +5,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compensation.part_programs import klartext_cycles
-from compensation.part_programs.language import NUMBER, Reading, centre_by_radius, checked_arc
-from compensation.part_programs.motion import Arc
-from twin.frames import Array
-from twin.units import DEG
+from matstd.compensation.part_programs import klartext_cycles
+from matstd.compensation.part_programs.language import (
+    NUMBER,
+    Reading,
+    centre_by_radius,
+    checked_arc,
+)
+from matstd.compensation.part_programs.motion import Arc
+from matstd.twin.frames import Array
+from matstd.twin.units import DEG
 
 _KEPT_M = {*range(10), 13, 14, 30, 90, 107, 108, 109, 110, 111, 116, 117, 120, 126, 127, 141}
 _SIDES = {"R0": 0.0, "RL": 1.0, "RR": -1.0}

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.part_programs.frame import Frame
-from compensation.part_programs.motion import (
+from matstd.compensation.part_programs.frame import Frame
+from matstd.compensation.part_programs.motion import (
     Arc,
     Corner,
     Cycle,
@@ -18,10 +18,10 @@ from compensation.part_programs.motion import (
     angle_between,
     centre_of,
 )
-from twin.errors import BadFile
-from twin.frames import Array
-from twin.machine import Chain
-from twin.units import DEG
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.units import DEG
 
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"
 

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.errors import BadFile
-from twin.files import CsvTable, read_text
-from twin.frames import Array
+from matstd.twin.errors import BadFile
+from matstd.twin.files import CsvTable, read_text
+from matstd.twin.frames import Array
 
 COLUMNS = ("first_line", "last_line", "Fx_N", "Fy_N", "Fz_N")
 LARGEST = 1e5

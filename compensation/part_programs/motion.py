@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.frames import Array
-from twin.record import IntArray
-from twin.units import DEG
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
+from matstd.twin.units import DEG
 
 
 @dataclass(frozen=True, slots=True)

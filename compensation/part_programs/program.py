@@ -8,16 +8,16 @@ from types import ModuleType
 
 import numpy as np
 
-from compensation.part_programs import gcode, klartext
-from compensation.part_programs.corners import without_corners
-from compensation.part_programs.frame import Frame
-from compensation.part_programs.language import Reading
-from compensation.part_programs.loads import Load
-from compensation.part_programs.motion import Item, Motion
-from compensation.part_programs.radius import resolved
-from twin.errors import BadFile
-from twin.files import read_any_text
-from twin.units import DEG
+from matstd.compensation.part_programs import gcode, klartext
+from matstd.compensation.part_programs.corners import without_corners
+from matstd.compensation.part_programs.frame import Frame
+from matstd.compensation.part_programs.language import Reading
+from matstd.compensation.part_programs.loads import Load
+from matstd.compensation.part_programs.motion import Item, Motion
+from matstd.compensation.part_programs.radius import resolved
+from matstd.twin.errors import BadFile
+from matstd.twin.files import read_any_text
+from matstd.twin.units import DEG
 
 _ENDINGS = {".h": klartext, ".ngc": gcode, ".nc": gcode, ".tap": gcode}
 MARK = "matstd model:"

@@ -11,9 +11,9 @@ from itertools import groupby
 
 import numpy as np
 
-from compensation.part_programs.language import Reading
-from compensation.part_programs.motion import Arc, Item, Keep, Motion, angle_between
-from twin.frames import Array
+from matstd.compensation.part_programs.language import Reading
+from matstd.compensation.part_programs.motion import Arc, Item, Keep, Motion, angle_between
+from matstd.twin.frames import Array
 
 SMOOTH = 1e-4
 """Sine of the angle of a corner that is none, rad: contours are programmed to a micrometre."""

@@ -4,10 +4,10 @@ In: a `Program` that was read, and `MachineErrors`. Out: `Compensated`: the prog
 every point as it should be, as the machine makes it without and with compensation.
 """
 
-from compensation.programs.compensation import TOLERANCE, Compensated, compensated, passed
-from compensation.programs.program_result_file import write_program_result
-from compensation.programs.shares_file import write_shares
-from compensation.programs.trajectory_file import write_trajectory
+from matstd.compensation.programs.compensation import TOLERANCE, Compensated, compensated, passed
+from matstd.compensation.programs.program_result_file import write_program_result
+from matstd.compensation.programs.shares_file import write_shares
+from matstd.compensation.programs.trajectory_file import write_trajectory
 
 __all__ = [
     "TOLERANCE",

@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from compensation.field import actual_tip, shifted
-from compensation.programs.path import ProgramPath, shares_of_lines
-from twin.frames import Array
-from twin.machine import tip
-from twin.record import IntArray
+from matstd.compensation.field import actual_tip, shifted
+from matstd.compensation.programs.path import ProgramPath, shares_of_lines
+from matstd.twin.frames import Array
+from matstd.twin.machine import tip
+from matstd.twin.record import IntArray
 
 PLACES = (0.25, 0.5, 0.75)
 """Of a line, at which it is looked at: what is left of a chord is a parabola, largest in its

@@ -7,17 +7,17 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from compensation.field import MachineErrors, actual_tip, aligned, shifted
-from compensation.part_programs import Keep, Motion, Program
-from compensation.programs.between import off_path
-from compensation.programs.path import ProgramPath, shares_of_lines
-from compensation.programs.times import Timed, in_time
-from compensation.tables import Header, point_spacing
-from twin.errors import OutsideTravel
-from twin.frames import Array
-from twin.machine import tip
-from twin.record import IntArray, Touches
-from twin.units import DEG, MINUTE, UM
+from matstd.compensation.field import MachineErrors, actual_tip, aligned, shifted
+from matstd.compensation.part_programs import Keep, Motion, Program
+from matstd.compensation.programs.between import off_path
+from matstd.compensation.programs.path import ProgramPath, shares_of_lines
+from matstd.compensation.programs.times import Timed, in_time
+from matstd.compensation.tables import Header, point_spacing
+from matstd.twin.errors import OutsideTravel
+from matstd.twin.frames import Array
+from matstd.twin.machine import tip
+from matstd.twin.record import IntArray, Touches
+from matstd.twin.units import DEG, MINUTE, UM
 
 TOLERANCE = 1.0 * UM
 """Distance between the wanted path and a straight line, mm: what good machines repeat."""

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from compensation.field import MachineErrors, correction
-from compensation.part_programs import Paths, Program, forces
-from twin.frames import Array
-from twin.record import IntArray, Touches
-from twin.units import DEG, MINUTE
+from matstd.compensation.field import MachineErrors, correction
+from matstd.compensation.part_programs import Paths, Program, forces
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray, Touches
+from matstd.twin.units import DEG, MINUTE
 
 RAPID = 10_000.0
 """Speed of rapid motions where a time is needed, mm/min: drift does not feel the difference."""

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.field import rms
-from compensation.programs.compensation import Compensated
-from twin.files import write_whole
-from twin.units import UM
+from matstd.compensation.field import rms
+from matstd.compensation.programs.compensation import Compensated
+from matstd.twin.files import write_whole
+from matstd.twin.units import UM
 
 FORMAT = "compensated-program/1"
 

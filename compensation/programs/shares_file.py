@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.field import Share
-from twin.files import write_whole
-from twin.frames import Array
-from twin.record import Touches
-from twin.units import DEG, UM
+from matstd.compensation.field import Share
+from matstd.twin.files import write_whole
+from matstd.twin.frames import Array
+from matstd.twin.record import Touches
+from matstd.twin.units import DEG, UM
 
 
 def write_shares(path: str | Path, touches: Touches, whole: Array, shares: Sequence[Share]) -> None:

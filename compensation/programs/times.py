@@ -10,11 +10,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compensation.programs.path import ProgramPath, shares_of_lines
-from twin.errors import BadFile
-from twin.frames import Array
-from twin.record import IntArray
-from twin.units import DEG, MINUTE
+from matstd.compensation.programs.path import ProgramPath, shares_of_lines
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
+from matstd.twin.units import DEG, MINUTE
 
 SAME = 0.02
 """Of the way of the linear axes: by less a correction changes no feed that anybody sets."""

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.programs.compensation import Compensated
-from twin.files import write_whole
-from twin.units import DEG, UM
+from matstd.compensation.programs.compensation import Compensated
+from matstd.twin.files import write_whole
+from matstd.twin.units import DEG, UM
 
 
 def write_trajectory(path: str | Path, done: Compensated) -> None:

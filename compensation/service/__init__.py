@@ -5,13 +5,13 @@
 server.
 """
 
-from compensation.service.history import History
-from compensation.service.latency import prompt
-from compensation.service.opcua_server import NAMESPACE, serve
-from compensation.service.output import Output, OutputLimits, Quality, Sent
-from compensation.service.point_correction import PointCorrection
-from compensation.service.service import DRIVEN_EVERY, Answer, Service
-from compensation.service.tabulated import CLOSE, ErrorTable, error_tables
+from matstd.compensation.service.history import History
+from matstd.compensation.service.latency import prompt
+from matstd.compensation.service.opcua_server import NAMESPACE, serve
+from matstd.compensation.service.output import Output, OutputLimits, Quality, Sent
+from matstd.compensation.service.point_correction import PointCorrection
+from matstd.compensation.service.service import DRIVEN_EVERY, Answer, Service
+from matstd.compensation.service.tabulated import CLOSE, ErrorTable, error_tables
 
 __all__ = [
     "CLOSE",

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from compensation.field import Datum, MachineErrors
-from compensation.service.history import History
-from diagnosis.drift import DriftLaw, LiveDrift
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.record import Touches
+from matstd.compensation.field import Datum, MachineErrors
+from matstd.compensation.service.history import History
+from matstd.diagnosis.drift import DriftLaw, LiveDrift
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.record import Touches
 
 
 class Drifts:

@@ -5,11 +5,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from compensation.field import State
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.machine import Chain
-from twin.record import Touches, at_poses
+from matstd.compensation.field import State
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.record import Touches, at_poses
 
 MOST = 4000
 """Moments that are kept; then every other one goes, so that old ones stand wider apart."""

@@ -10,9 +10,9 @@ from socket import create_server
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-from compensation.service.latency import prompt
-from compensation.service.service import DRIVEN_EVERY, Answer, Service
-from twin.errors import BadValue, DesignError, MissingLibrary, OutsideTravel
+from matstd.compensation.service.latency import prompt
+from matstd.compensation.service.service import DRIVEN_EVERY, Answer, Service
+from matstd.twin.errors import BadValue, DesignError, MissingLibrary, OutsideTravel
 
 if TYPE_CHECKING:
     from asyncua.common.node import Node

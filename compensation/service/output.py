@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from compensation.service.point_correction import Point
-from twin.errors import BadValue
-from twin.units import UM
+from matstd.compensation.service.point_correction import Point
+from matstd.twin.errors import BadValue
+from matstd.twin.units import UM
 
 _LONGEST = 0.05  # s that one step may stand for: a pause is no licence to jump
 

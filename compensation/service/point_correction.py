@@ -1,8 +1,8 @@
 """The correction of one point at a time, in plain numbers: fast enough while a machine moves.
 
-The same steps as `compensation.field.correction`, for one point and without arrays. From the tool
-to the workpiece every link moves the point by its motion and its component error; lines of axes
-that stand askew are put askew once, errors come from tables. Rotations by errors are taken to
+The same steps as `matstd.compensation.field.correction`, for one point and without arrays. From the
+tool to the workpiece every link moves the point by its motion and its component error; lines of
+axes that stand askew are put askew once, errors come from tables. Rotations by errors are taken to
 second order: what is left out is a sixth of the third power of an angle, 0.2 nm at a metre and
 1 mrad.
 """
@@ -15,13 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from compensation.field import Datum, MachineErrors
-from compensation.service.history import History
-from compensation.service.tabulated import CLOSE, ErrorTable, error_tables
-from twin.errors import DesignError, OutsideTravel
-from twin.frames import Array, rotation
-from twin.machine import Chain, Link
-from twin.units import DEG
+from matstd.compensation.field import Datum, MachineErrors
+from matstd.compensation.service.history import History
+from matstd.compensation.service.tabulated import CLOSE, ErrorTable, error_tables
+from matstd.twin.errors import DesignError, OutsideTravel
+from matstd.twin.frames import Array, rotation
+from matstd.twin.machine import Chain, Link
+from matstd.twin.units import DEG
 
 Point = tuple[float, float, float]
 Six = tuple[float, ...]

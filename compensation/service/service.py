@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensation.field import Datum, MachineErrors, relative_columns
-from compensation.service.drifts import Drifts
-from compensation.service.history import History
-from compensation.service.output import Output, OutputLimits, Quality, Sent
-from compensation.service.point_correction import Point, PointCorrection
-from twin.errors import DesignError, OutsideTravel
-from twin.units import DEG
+from matstd.compensation.field import Datum, MachineErrors, relative_columns
+from matstd.compensation.service.drifts import Drifts
+from matstd.compensation.service.history import History
+from matstd.compensation.service.output import Output, OutputLimits, Quality, Sent
+from matstd.compensation.service.point_correction import Point, PointCorrection
+from matstd.twin.errors import DesignError, OutsideTravel
+from matstd.twin.units import DEG
 
 DRIVEN_EVERY = 2.0
 """Between two looks at temperatures, s: bodies are slower, and tables are made again."""

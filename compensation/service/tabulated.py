@@ -12,12 +12,12 @@ from itertools import product
 
 import numpy as np
 
-from compensation.field import MachineErrors, State
-from compensation.service.history import History
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.model import Effect, contribution
-from twin.units import HOUR, NM
+from matstd.compensation.field import MachineErrors, State
+from matstd.compensation.service.history import History
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, contribution
+from matstd.twin.units import HOUR, NM
 
 CLOSE = 2.0 * NM
 """What straight lines between the points of one table may leave at its middles, mm at the tip."""

@@ -7,9 +7,9 @@ hold errors by name (`iso230`; `heidenhain` an axis's own alone) or corrections 
 `formats.FORMATS`.
 """
 
-from compensation.tables.acceptance import Acceptance
-from compensation.tables.by_name import point_spacing
-from compensation.tables.formats import (
+from matstd.compensation.tables.acceptance import Acceptance
+from matstd.compensation.tables.by_name import point_spacing
+from matstd.compensation.tables.formats import (
     FORMATS,
     Format,
     Harmful,
@@ -18,8 +18,8 @@ from compensation.tables.formats import (
     refuse_harmful,
     write_tables,
 )
-from compensation.tables.header import Header, hashed, header_of
-from compensation.tables.result_file import write_table_results
+from matstd.compensation.tables.header import Header, hashed, header_of
+from matstd.compensation.tables.result_file import write_table_results
 
 __all__ = [
     "FORMATS",

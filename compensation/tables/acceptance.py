@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from compensation.field import Corrects, Datum, MachineErrors, played, relative_columns
-from twin.frames import Array
+from matstd.compensation.field import Corrects, Datum, MachineErrors, played, relative_columns
+from matstd.twin.frames import Array
 
 
 @dataclass(frozen=True, eq=False)

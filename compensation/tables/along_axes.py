@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from compensation.field import (
+from matstd.compensation.field import (
     Datum,
     MachineErrors,
     aligned,
@@ -15,11 +15,19 @@ from compensation.field import (
     played,
     rms,
 )
-from compensation.tables.by_name import BETWEEN, FEWEST, FINE, interpolated, line, on_table, span
-from twin.frames import Array
-from twin.machine import Chain, Contribution, linear_directions
-from twin.record import Touches
-from twin.units import NM
+from matstd.compensation.tables.by_name import (
+    BETWEEN,
+    FEWEST,
+    FINE,
+    interpolated,
+    line,
+    on_table,
+    span,
+)
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Contribution, linear_directions
+from matstd.twin.record import Touches
+from matstd.twin.units import NM
 
 WORTH = 50.0 * NM
 """A table that lowers the rms error by less is not written, mm."""

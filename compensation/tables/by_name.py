@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from compensation.field import Datum, MachineErrors, correction
-from twin.frames import Array
-from twin.machine import Chain, Contribution, Link
-from twin.record import Touches
-from twin.units import NM
+from matstd.compensation.field import Datum, MachineErrors, correction
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Contribution, Link
+from matstd.twin.record import Touches
+from matstd.twin.units import NM
 
 FEWEST = 17
 """Points of an axis from which the number is doubled until they are enough."""

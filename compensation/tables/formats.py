@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from compensation.field import Datum, MachineErrors, Result, result_of, rms
-from compensation.tables import heidenhain_com, iso_csv, linuxcnc_comp, sinumerik_cec
-from compensation.tables.acceptance import Acceptance, acceptance
-from compensation.tables.along_axes import (
+from matstd.compensation.field import Datum, MachineErrors, Result, result_of, rms
+from matstd.compensation.tables import heidenhain_com, iso_csv, linuxcnc_comp, sinumerik_cec
+from matstd.compensation.tables.acceptance import Acceptance, acceptance
+from matstd.compensation.tables.along_axes import (
     WORTH,
     AxisTables,
     along_axes,
@@ -17,13 +17,18 @@ from compensation.tables.along_axes import (
     most_useful,
     unheld_along,
 )
-from compensation.tables.by_name import NamedTables, interpolation_bound, sampled, unheld_by_name
-from compensation.tables.header import Header
-from twin.errors import DesignError
-from twin.files import write_whole
-from twin.frames import Array
-from twin.machine import Chain
-from twin.units import UM
+from matstd.compensation.tables.by_name import (
+    NamedTables,
+    interpolation_bound,
+    sampled,
+    unheld_by_name,
+)
+from matstd.compensation.tables.header import Header
+from matstd.twin.errors import DesignError
+from matstd.twin.files import write_whole
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.units import UM
 
 Tables = NamedTables | AxisTables
 

@@ -5,10 +5,10 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from compensation.field import Datum, State
-from twin.errors import BadFile
-from twin.machine import Chain
-from twin.units import DEG, MINUTE
+from matstd.compensation.field import Datum, State
+from matstd.twin.errors import BadFile
+from matstd.twin.machine import Chain
+from matstd.twin.units import DEG, MINUTE
 
 _LINE = re.compile(r"\W*(matstd (?:[a-z ]+)): (.*?)\s*\)?\Z")
 

@@ -11,11 +11,11 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.tables.by_name import NamedTables
-from compensation.tables.header import Header
-from twin.errors import BadFile
-from twin.machine import Chain
-from twin.units import DEG
+from matstd.compensation.tables.by_name import NamedTables
+from matstd.compensation.tables.header import Header
+from matstd.twin.errors import BadFile
+from matstd.twin.machine import Chain
+from matstd.twin.units import DEG
 
 MOST_POINTS = 256
 """Points of a table (TNC 407 to iTNC 530)."""

@@ -10,12 +10,12 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.tables.by_name import NamedTables
-from compensation.tables.header import Header
-from twin.errors import BadFile
-from twin.frames import Array
-from twin.machine import LETTERS, Chain, Family, Symbol
-from twin.units import DEG
+from matstd.compensation.tables.by_name import NamedTables
+from matstd.compensation.tables.header import Header
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
+from matstd.twin.machine import LETTERS, Chain, Family, Symbol
+from matstd.twin.units import DEG
 
 NAME = "iso230.csv"
 MOST_POINTS = 1025

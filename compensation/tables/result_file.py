@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from compensation.field import MachineErrors, Result, rms
-from compensation.tables.formats import Played
-from compensation.tables.header import Header
-from twin.files import write_whole
-from twin.frames import Array
-from twin.machine import Chain
-from twin.units import DEG, UM
+from matstd.compensation.field import MachineErrors, Result, rms
+from matstd.compensation.tables.formats import Played
+from matstd.compensation.tables.header import Header
+from matstd.twin.files import write_whole
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.units import DEG, UM
 
 FORMAT = "compensation/1"
 

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.tables.along_axes import AxisTable, AxisTables
-from compensation.tables.header import Header
-from twin.errors import BadFile
-from twin.machine import Chain
-from twin.units import DEG
+from matstd.compensation.tables.along_axes import AxisTable, AxisTables
+from matstd.compensation.tables.header import Header
+from matstd.twin.errors import BadFile
+from matstd.twin.machine import Chain
+from matstd.twin.units import DEG
 
 NAME = "NC_CEC.INI"
 MOST_POINTS = 257

@@ -5,14 +5,14 @@ look-alikes, `sizes` numbers that rest on the touches alone, `detectable` what t
 shown, `next_measurement` touches that tell look-alikes apart, `proof` compares with a known truth.
 """
 
-from diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
-from diagnosis.answer.comparison import Comparison, GroupResidual, compare
-from diagnosis.answer.detectable import Detectable, Scanned
-from diagnosis.answer.next_measurement import Plan
-from diagnosis.answer.proof import Proof, probed_volume, prove, seen_from
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.answer.trend import RunErrors, Trend
-from diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
+from matstd.diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
+from matstd.diagnosis.answer.comparison import Comparison, GroupResidual, compare
+from matstd.diagnosis.answer.detectable import Detectable, Scanned
+from matstd.diagnosis.answer.next_measurement import Plan
+from matstd.diagnosis.answer.proof import Proof, probed_volume, prove, seen_from
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer.trend import RunErrors, Trend
+from matstd.diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
 
 __all__ = [
     "CONFUSED",

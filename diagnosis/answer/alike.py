@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.evidence import (
+from matstd.diagnosis.evidence import (
     EffectSet,
     Grid,
     ScaledEffect,
@@ -20,10 +20,10 @@ from diagnosis.evidence import (
     signatures,
     strongest,
 )
-from diagnosis.search import refined
-from twin.effects import usual_distance
-from twin.frames import Array
-from twin.model import Effect, Inner, Tunable
+from matstd.diagnosis.search import refined
+from matstd.twin.effects import usual_distance
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, Inner, Tunable
 
 ALIKE = float(np.log(100.0))
 """Log odds below which two periods count as not told apart."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.answer.alike import Alike
-from diagnosis.evidence import (
+from matstd.diagnosis.answer.alike import Alike
+from matstd.diagnosis.evidence import (
     EffectSet,
     ScaledEffect,
     Signatures,
@@ -16,10 +16,10 @@ from diagnosis.evidence import (
     score_all,
     signatures,
 )
-from diagnosis.search import refined
-from twin.frames import Array
-from twin.model import Effect
-from twin.record import Touches
+from matstd.diagnosis.search import refined
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect
+from matstd.twin.record import Touches
 
 CONFUSED = float(np.log(100.0))
 """Log odds below which two effects count as not told apart."""

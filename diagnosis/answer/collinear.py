@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.answer.verdict import Step
-from diagnosis.evidence import SAME, ResidualSpace, ScaledEffect
-from diagnosis.fit import Reported, Role
-from diagnosis.remarks import NotSignificant
-from diagnosis.search import CHANCE
-from twin.errors import DesignError
-from twin.frames import Array
+from matstd.diagnosis.answer.verdict import Step
+from matstd.diagnosis.evidence import SAME, ResidualSpace, ScaledEffect
+from matstd.diagnosis.fit import Reported, Role
+from matstd.diagnosis.remarks import NotSignificant
+from matstd.diagnosis.search import CHANCE
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
 
 LIKELY = 0.05
 """Probability by chance from which nothing is said against chance."""

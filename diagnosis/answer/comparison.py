@@ -6,20 +6,20 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
-from diagnosis.faults import DescriptionFault, description_faults
-from diagnosis.fit import Fit, Learnt, Prior, fit_run
-from diagnosis.geometry import LearntGeometry, learnt_geometry
-from diagnosis.regression import BoolArray, solve
-from diagnosis.remarks import Remark, remarks
-from diagnosis.residual import Region, Structure, find_structure, regions
-from twin.compute import one_blas_thread
-from twin.display import Tabular
-from twin.frames import Array
-from twin.library import ordinary_model
-from twin.model import Model
-from twin.record import Run, with_commanded, without_copies
-from twin.units import UM
+from matstd.diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
+from matstd.diagnosis.faults import DescriptionFault, description_faults
+from matstd.diagnosis.fit import Fit, Learnt, Prior, fit_run
+from matstd.diagnosis.geometry import LearntGeometry, learnt_geometry
+from matstd.diagnosis.regression import BoolArray, solve
+from matstd.diagnosis.remarks import Remark, remarks
+from matstd.diagnosis.residual import Region, Structure, find_structure, regions
+from matstd.twin.compute import one_blas_thread
+from matstd.twin.display import Tabular
+from matstd.twin.frames import Array
+from matstd.twin.library import ordinary_model
+from matstd.twin.model import Model
+from matstd.twin.record import Run, with_commanded, without_copies
+from matstd.twin.units import UM
 
 
 @dataclass(frozen=True, slots=True)

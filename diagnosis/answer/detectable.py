@@ -6,12 +6,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import chdtri
 
-from diagnosis.evidence import EffectSet, ScaledEffect, Signatures, projected
-from diagnosis.fit import inner_unit
-from diagnosis.search import CHANCE
-from twin.frames import Array
-from twin.model import Effect, inner_values
-from twin.record import Touches
+from matstd.diagnosis.evidence import EffectSet, ScaledEffect, Signatures, projected
+from matstd.diagnosis.fit import inner_unit
+from matstd.diagnosis.search import CHANCE
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, inner_values
+from matstd.twin.record import Touches
 
 POWER = 0.84
 """Standard deviations of the statistic above its threshold: found in four of five runs."""

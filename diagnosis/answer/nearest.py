@@ -9,15 +9,15 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from diagnosis.answer.verdict import Candidate, Dependence, Offer
-from diagnosis.evidence import ScaledEffect, f_probability, quiet
-from diagnosis.fit import Fit
-from diagnosis.regression import GrossErrors
-from diagnosis.search import DiagnosisTask, refined_named
-from twin.library import parse_effect
-from twin.machine import LETTERS
-from twin.model import Effect
-from twin.record import IntArray, Touches
+from matstd.diagnosis.answer.verdict import Candidate, Dependence, Offer
+from matstd.diagnosis.evidence import ScaledEffect, f_probability, quiet
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.regression import GrossErrors
+from matstd.diagnosis.search import DiagnosisTask, refined_named
+from matstd.twin.library import parse_effect
+from matstd.twin.machine import LETTERS
+from matstd.twin.model import Effect
+from matstd.twin.record import IntArray, Touches
 
 CERTAIN = 1e-6
 """Probability by chance from which a library effect is named however little it leaves better."""

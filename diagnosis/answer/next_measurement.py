@@ -5,13 +5,13 @@ from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from diagnosis.regression import BoolArray
-from twin.frames import Array
-from twin.machine import inverse_linear
-from twin.model import columns
-from twin.record import Run, Touches, linear_approach
-from twin.units import DEG
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.regression import BoolArray
+from matstd.twin.frames import Array
+from matstd.twin.machine import inverse_linear
+from matstd.twin.model import columns
+from matstd.twin.record import Run, Touches, linear_approach
+from matstd.twin.units import DEG
 
 WANTED = 24
 """Touches of a plan."""

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.answer.alike import periods_alike
-from diagnosis.answer.ambiguity import ConfusionClass, confusion_class
-from diagnosis.evidence import EffectSet, ScaledEffect, projected
-from diagnosis.residual import find_structure
-from diagnosis.search import (
+from matstd.diagnosis.answer.alike import periods_alike
+from matstd.diagnosis.answer.ambiguity import ConfusionClass, confusion_class
+from matstd.diagnosis.evidence import EffectSet, ScaledEffect, projected
+from matstd.diagnosis.residual import find_structure
+from matstd.diagnosis.search import (
     Member,
     Search,
     SearchState,

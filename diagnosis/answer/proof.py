@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from twin.errors import NotReachable
-from twin.frames import Array, apply, inverse
-from twin.machine import exact_tip, inverse_linear, tip
-from twin.model import Effect, Model, contribution
-from twin.record import Run, Setup, Touches, at_poses
+from matstd.diagnosis.fit import Fit
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.machine import exact_tip, inverse_linear, tip
+from matstd.twin.model import Effect, Model, contribution
+from matstd.twin.record import Run, Setup, Touches, at_poses
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,22 +5,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.answer.alike import period_value
-from diagnosis.answer.ambiguity import ConfusionClass
-from diagnosis.answer.collinear import check_distinct, not_significant, weakest
-from diagnosis.answer.detectable import detectable
-from diagnosis.answer.nearest import named_probability, nearest, to_repeat
-from diagnosis.answer.next_measurement import (
+from matstd.diagnosis.answer.alike import period_value
+from matstd.diagnosis.answer.ambiguity import ConfusionClass
+from matstd.diagnosis.answer.collinear import check_distinct, not_significant, weakest
+from matstd.diagnosis.answer.detectable import detectable
+from matstd.diagnosis.answer.nearest import named_probability, nearest, to_repeat
+from matstd.diagnosis.answer.next_measurement import (
     Plan,
     candidate_targets,
     candidate_touches,
     plan,
 )
-from diagnosis.answer.one_set import ToldSet, told_set, without
-from diagnosis.answer.several import with_trend
-from diagnosis.answer.sizes import sizes
-from diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
-from diagnosis.choice import (
+from matstd.diagnosis.answer.one_set import ToldSet, told_set, without
+from matstd.diagnosis.answer.several import with_trend
+from matstd.diagnosis.answer.sizes import sizes
+from matstd.diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
+from matstd.diagnosis.choice import (
     candidate_effects,
     choice_remarks,
     chosen_by_prediction,
@@ -28,7 +28,7 @@ from diagnosis.choice import (
     followed,
     found_in,
 )
-from diagnosis.evidence import (
+from matstd.diagnosis.evidence import (
     EffectSet,
     Progress,
     ResidualSpace,
@@ -36,13 +36,13 @@ from diagnosis.evidence import (
     projected,
     quiet,
 )
-from diagnosis.faults import description_faults
-from diagnosis.fit import Fit, Prior, prior_for
-from diagnosis.geometry import learnt_geometry
-from diagnosis.regression import GrossErrors
-from diagnosis.remarks import Remark, SearchEnded, remarks
-from diagnosis.residual import Region, Structure, find_structure, regions
-from diagnosis.search import (
+from matstd.diagnosis.faults import description_faults
+from matstd.diagnosis.fit import Fit, Prior, prior_for
+from matstd.diagnosis.geometry import learnt_geometry
+from matstd.diagnosis.regression import GrossErrors
+from matstd.diagnosis.remarks import Remark, SearchEnded, remarks
+from matstd.diagnosis.residual import Region, Structure, find_structure, regions
+from matstd.diagnosis.search import (
     LISTED,
     MOST_SETS,
     DiagnosisTask,
@@ -51,11 +51,11 @@ from diagnosis.search import (
     most_evident,
     refined_named,
 )
-from twin.compute import one_blas_thread
-from twin.library import ordinary_model, parse_effect
-from twin.model import Effect, Model, moved_components
-from twin.record import Run, Touches, with_commanded, without_copies
-from twin.thermal import ThermalField
+from matstd.twin.compute import one_blas_thread
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.model import Effect, Model, moved_components
+from matstd.twin.record import Run, Touches, with_commanded, without_copies
+from matstd.twin.thermal import ThermalField
 
 PERIODS_PLANNED = 8
 """Periods that look alike, the longest ones, that a plan of touches tells apart."""

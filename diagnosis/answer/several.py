@@ -10,19 +10,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.answer.trend import SingleChange, Trend, run_errors, single_change
-from diagnosis.answer.verdict import Diagnosis
-from diagnosis.fit import Fit, Prior, fit_run
-from diagnosis.geometry import (
+from matstd.diagnosis.answer.trend import SingleChange, Trend, run_errors, single_change
+from matstd.diagnosis.answer.verdict import Diagnosis
+from matstd.diagnosis.fit import Fit, Prior, fit_run
+from matstd.diagnosis.geometry import (
     GeometryRow,
     changed_runs,
     changing,
     geometry_rows,
     with_changes,
 )
-from diagnosis.regression import CLEARLY
-from diagnosis.search import FREEDOM, DiagnosisTask
-from twin.model import Model
+from matstd.diagnosis.regression import CLEARLY
+from matstd.diagnosis.search import FREEDOM, DiagnosisTask
+from matstd.twin.model import Model
 
 
 def with_trend(task: DiagnosisTask, diagnosed: Callable[[DiagnosisTask], Diagnosis]) -> Diagnosis:

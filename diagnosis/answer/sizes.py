@@ -10,12 +10,20 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, addition, projected
-from diagnosis.fit import Fit, Reported, continuous_inner, fit_run, reported, shifted, spacing
-from diagnosis.regression import PRIOR_DOF, GrossErrors
-from diagnosis.search import DiagnosisTask
-from twin.frames import Array
-from twin.model import Effect, Inner, Model, Tunable
+from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, addition, projected
+from matstd.diagnosis.fit import (
+    Fit,
+    Reported,
+    continuous_inner,
+    fit_run,
+    reported,
+    shifted,
+    spacing,
+)
+from matstd.diagnosis.regression import PRIOR_DOF, GrossErrors
+from matstd.diagnosis.search import DiagnosisTask
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, Inner, Model, Tunable
 
 FREE = 10.0
 """Factor on the stated distributions of the machine's ordinary errors: at the tenth of the stated

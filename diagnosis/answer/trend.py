@@ -5,11 +5,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from diagnosis.fit import Fit, fit_run
-from diagnosis.geometry import CHANGED, Estimate, GeometryRow, changed_since, changing
-from twin.effects import Change
-from twin.frames import Array
-from twin.model import Effect, columns
+from matstd.diagnosis.fit import Fit, fit_run
+from matstd.diagnosis.geometry import CHANGED, Estimate, GeometryRow, changed_since, changing
+from matstd.twin.effects import Change
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, columns
 
 
 @dataclass(frozen=True, slots=True)

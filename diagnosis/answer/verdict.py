@@ -6,20 +6,20 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.answer.ambiguity import ConfusionClass
-from diagnosis.answer.detectable import Detectable
-from diagnosis.answer.next_measurement import Plan
-from diagnosis.answer.trend import Trend
-from diagnosis.choice import Choice
-from diagnosis.faults import DescriptionFault
-from diagnosis.fit import Fit, Reported
-from diagnosis.geometry import LearntGeometry
-from diagnosis.remarks import Remark
-from diagnosis.residual import Region, Structure
-from twin.display import Tabular
-from twin.model import Effect
-from twin.record import IntArray, Run
-from twin.units import UM
+from matstd.diagnosis.answer.ambiguity import ConfusionClass
+from matstd.diagnosis.answer.detectable import Detectable
+from matstd.diagnosis.answer.next_measurement import Plan
+from matstd.diagnosis.answer.trend import Trend
+from matstd.diagnosis.choice import Choice
+from matstd.diagnosis.faults import DescriptionFault
+from matstd.diagnosis.fit import Fit, Reported
+from matstd.diagnosis.geometry import LearntGeometry
+from matstd.diagnosis.remarks import Remark
+from matstd.diagnosis.residual import Region, Structure
+from matstd.twin.display import Tabular
+from matstd.twin.model import Effect
+from matstd.twin.record import IntArray, Run
+from matstd.twin.units import UM
 
 
 class Verdict(Enum):

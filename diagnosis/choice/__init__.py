@@ -6,9 +6,14 @@ was chosen, which from here on is the set that is told, drawn and saved. Blocks 
 are correlated: poses, set-ups, stretches of time longer than the memory of what is left.
 """
 
-from diagnosis.choice.following import choice_remarks, field_shares, followed
-from diagnosis.choice.long_runs import found_in
-from diagnosis.choice.prediction import Choice, ChoiceRule, candidate_effects, chosen_by_prediction
+from matstd.diagnosis.choice.following import choice_remarks, field_shares, followed
+from matstd.diagnosis.choice.long_runs import found_in
+from matstd.diagnosis.choice.prediction import (
+    Choice,
+    ChoiceRule,
+    candidate_effects,
+    chosen_by_prediction,
+)
 
 __all__ = [
     "Choice",

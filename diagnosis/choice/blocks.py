@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from diagnosis.fit import MIN_POSES, Fit
-from diagnosis.regression import Memory
-from twin.frames import Array
-from twin.record import IntArray
+from matstd.diagnosis.fit import MIN_POSES, Fit
+from matstd.diagnosis.regression import Memory
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
 
 MOST = 6
 """Blocks of a choice by prediction: each is one more search."""

@@ -11,7 +11,7 @@ from itertools import combinations
 
 import numpy as np
 
-from diagnosis.evidence import (
+from matstd.diagnosis.evidence import (
     EffectSet,
     ResidualSpace,
     ScaledEffect,
@@ -19,14 +19,14 @@ from diagnosis.evidence import (
     projected,
     tuned_variants,
 )
-from diagnosis.regression import GrossErrors
-from diagnosis.search import WORTH, DiagnosisTask, refined_set
-from twin.effects import Again
-from twin.frames import Array
-from twin.machine import Chain, Family, Symbol
-from twin.model import Effect, moving_axes
-from twin.record import IntArray, Touches
-from twin.thermal import ThermalLag, drives, follower, is_speed
+from matstd.diagnosis.regression import GrossErrors
+from matstd.diagnosis.search import WORTH, DiagnosisTask, refined_set
+from matstd.twin.effects import Again
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Family, Symbol
+from matstd.twin.model import Effect, moving_axes
+from matstd.twin.record import IntArray, Touches
+from matstd.twin.thermal import ThermalLag, drives, follower, is_speed
 
 ALIKE = 0.999
 """Correlation from which two component errors act alike at the touches of a run."""

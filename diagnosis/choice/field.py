@@ -10,13 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from diagnosis.evidence import ResidualSpace, ScaledEffect
-from diagnosis.fit import Fit
-from diagnosis.regression import GrossErrors
-from diagnosis.search import FREEDOM, DiagnosisTask
-from twin.frames import Array
-from twin.model import Effect
-from twin.record import IntArray
+from matstd.diagnosis.evidence import ResidualSpace, ScaledEffect
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.regression import GrossErrors
+from matstd.diagnosis.search import FREEDOM, DiagnosisTask
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect
+from matstd.twin.record import IntArray
 
 SIZES = 2.0 ** np.arange(-10.0, 3.0)
 """Sizes of the prior that are tried, in usual sizes: an octave apart, since the error of prediction

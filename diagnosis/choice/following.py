@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.choice.prediction import SETS, Choice, ChoiceRule
-from diagnosis.choice.remembering import loudest
-from diagnosis.evidence import (
+from matstd.diagnosis.choice.prediction import SETS, Choice, ChoiceRule
+from matstd.diagnosis.choice.remembering import loudest
+from matstd.diagnosis.evidence import (
     Grid,
     Progress,
     ResidualSpace,
@@ -16,13 +16,13 @@ from diagnosis.evidence import (
     quiet,
     signatures,
 )
-from diagnosis.fit import Fit
-from diagnosis.regression import Memory
-from diagnosis.remarks import ChosenByPrediction, FieldShares, Remark, SearchEnded
-from diagnosis.residual import PatternTests, find_structure
-from diagnosis.search import DiagnosisTask, Library, Member, Search, SearchState
-from twin.model import Effect, columns
-from twin.thermal import LETTERS, ThermalField
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.regression import Memory
+from matstd.diagnosis.remarks import ChosenByPrediction, FieldShares, Remark, SearchEnded
+from matstd.diagnosis.residual import PatternTests, find_structure
+from matstd.diagnosis.search import DiagnosisTask, Library, Member, Search, SearchState
+from matstd.twin.model import Effect, columns
+from matstd.twin.thermal import LETTERS, ThermalField
 
 LISTED = 6
 """Drives of a field that are told."""

@@ -11,11 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.choice.remembering import memory_beside, remembered
-from diagnosis.evidence import Progress, ScaledEffect, quiet
-from diagnosis.search import WHOLE_BELOW, DiagnosisTask, SearchState, search_until_stable
-from twin.model import Effect
-from twin.record import Run
+from matstd.diagnosis.choice.remembering import memory_beside, remembered
+from matstd.diagnosis.evidence import Progress, ScaledEffect, quiet
+from matstd.diagnosis.search import WHOLE_BELOW, DiagnosisTask, SearchState, search_until_stable
+from matstd.twin.model import Effect
+from matstd.twin.record import Run
 
 CHOSEN = 3000
 """Rows of the choice: a wave of an eighth of the noise is found in so many."""

@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, projected
-from twin.effects import Again
-from twin.record import IntArray
+from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, projected
+from matstd.twin.effects import Again
+from matstd.twin.record import IntArray
 
 
 def needed(

@@ -13,15 +13,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.choice.blocks import blocks, rms
-from diagnosis.choice.bodies import bodies
-from diagnosis.choice.field import sized_field
-from diagnosis.choice.needed import needed
-from diagnosis.choice.remembering import memory_of
-from diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
-from diagnosis.fit import Fit
-from diagnosis.regression import CLEARLY, GrossErrors, Memory
-from diagnosis.search import (
+from matstd.diagnosis.choice.blocks import blocks, rms
+from matstd.diagnosis.choice.bodies import bodies
+from matstd.diagnosis.choice.field import sized_field
+from matstd.diagnosis.choice.needed import needed
+from matstd.diagnosis.choice.remembering import memory_of
+from matstd.diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.regression import CLEARLY, GrossErrors, Memory
+from matstd.diagnosis.search import (
     Budget,
     DiagnosisTask,
     Library,
@@ -30,12 +30,12 @@ from diagnosis.search import (
     refined_set,
     scaled,
 )
-from twin.effects import again
-from twin.frames import Array
-from twin.library import proposals
-from twin.model import Effect
-from twin.record import IntArray, Touches
-from twin.thermal import drives, field
+from matstd.twin.effects import again
+from matstd.twin.frames import Array
+from matstd.twin.library import proposals
+from matstd.twin.model import Effect
+from matstd.twin.record import IntArray, Touches
+from matstd.twin.thermal import drives, field
 
 SLOW = 4.0
 """Touches for one independent observation from which a residual is no longer nearly white."""

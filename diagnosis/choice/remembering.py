@@ -11,11 +11,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.evidence import Progress, ScaledEffect, quiet
-from diagnosis.fit import Fit
-from diagnosis.regression import CLEARLY, GrossErrors, Memory, likely_memory
-from diagnosis.search import DiagnosisTask, SearchState, search_until_stable
-from twin.model import Effect
+from matstd.diagnosis.evidence import Progress, ScaledEffect, quiet
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.regression import CLEARLY, GrossErrors, Memory, likely_memory
+from matstd.diagnosis.search import DiagnosisTask, SearchState, search_until_stable
+from matstd.twin.model import Effect
 
 FEWEST = 15.0
 """Independent observations that a run must hold for its memory to be known: the length of a memory

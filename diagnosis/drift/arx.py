@@ -14,11 +14,11 @@ from itertools import combinations
 
 import numpy as np
 
-from diagnosis.drift.lags import followed
-from diagnosis.drift.linear import LinearLaw, Sums, fitted, standardised, sums
-from diagnosis.drift.record import DriftRecord, IntArray
-from twin.frames import Array
-from twin.units import HOUR, MINUTE
+from matstd.diagnosis.drift.lags import followed
+from matstd.diagnosis.drift.linear import LinearLaw, Sums, fitted, standardised, sums
+from matstd.diagnosis.drift.record import DriftRecord, IntArray
+from matstd.twin.frames import Array
+from matstd.twin.units import HOUR, MINUTE
 
 SHORTEST, LONGEST, STEPS = 10.0 * MINUTE, 12.0 * HOUR, 6
 """Time constants that are tried, s: neighbours differ by a factor of 2.4."""

@@ -13,14 +13,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from pydantic import Field
 
-from diagnosis.drift.arx import arx
-from diagnosis.drift.linear import LinearLaw, memory_of
-from diagnosis.drift.record import DriftRecord, IntArray
-from twin.errors import BadFile
-from twin.files import Table, checked, parse_toml, read_text
-from twin.frames import Array
-from twin.units import T_REF, UM
-from twin.words import did_you_mean
+from matstd.diagnosis.drift.arx import arx
+from matstd.diagnosis.drift.linear import LinearLaw, memory_of
+from matstd.diagnosis.drift.record import DriftRecord, IntArray
+from matstd.twin.errors import BadFile
+from matstd.twin.files import Table, checked, parse_toml, read_text
+from matstd.twin.frames import Array
+from matstd.twin.units import T_REF, UM
+from matstd.twin.words import did_you_mean
 
 PER_K = 1e-6
 """One µm/(m K) in 1/K."""

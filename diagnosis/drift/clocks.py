@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from diagnosis.drift.lags import LAGS, followed
-from diagnosis.drift.record import DriftRecord, is_speed
-from twin.frames import Array
-from twin.units import HOUR
+from matstd.diagnosis.drift.lags import LAGS, followed
+from matstd.diagnosis.drift.record import DriftRecord, is_speed
+from matstd.twin.frames import Array
+from matstd.twin.units import HOUR
 
 FARTHEST = 2.0 * HOUR
 """Longest lead that is looked for, s."""

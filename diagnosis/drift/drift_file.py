@@ -8,18 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.drift.arx import ArxInputs, coefficients
-from diagnosis.drift.beams import Beam, BeamLaw
-from diagnosis.drift.judged import Judged, Law
-from diagnosis.drift.lags import Lagged
-from diagnosis.drift.linear import Inputs, LinearLaw
-from diagnosis.drift.network import Network
-from diagnosis.drift.plain_laws import Constant
-from diagnosis.drift.record import DriftRecord
-from twin.errors import BadFile
-from twin.files import read_text, write_whole
-from twin.frames import Array
-from twin.versions import versions
+from matstd.diagnosis.drift.arx import ArxInputs, coefficients
+from matstd.diagnosis.drift.beams import Beam, BeamLaw
+from matstd.diagnosis.drift.judged import Judged, Law
+from matstd.diagnosis.drift.lags import Lagged
+from matstd.diagnosis.drift.linear import Inputs, LinearLaw
+from matstd.diagnosis.drift.network import Network
+from matstd.diagnosis.drift.plain_laws import Constant
+from matstd.diagnosis.drift.record import DriftRecord
+from matstd.twin.errors import BadFile
+from matstd.twin.files import read_text, write_whole
+from matstd.twin.frames import Array
+from matstd.twin.versions import versions
 
 FORMAT = "matstd-thermal/1"
 SHOWN = {"mm": "um", "rad": "urad"}

@@ -13,17 +13,17 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from diagnosis.drift.beams import BeamLaw
-from diagnosis.drift.drift_file import SavedLaw, read_law
-from diagnosis.drift.linear import LinearLaw
-from diagnosis.drift.record import DriftRecord, is_speed
-from twin.errors import UnknownEffect
-from twin.frames import Array
-from twin.machine import Chain, Symbol
-from twin.model import Parameter, Term, Title, component_symbol, refusal
-from twin.record import Touches
-from twin.units import DEG
-from twin.words import did_you_mean
+from matstd.diagnosis.drift.beams import BeamLaw
+from matstd.diagnosis.drift.drift_file import SavedLaw, read_law
+from matstd.diagnosis.drift.linear import LinearLaw
+from matstd.diagnosis.drift.record import DriftRecord, is_speed
+from matstd.twin.errors import UnknownEffect
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Symbol
+from matstd.twin.model import Parameter, Term, Title, component_symbol, refusal
+from matstd.twin.record import Touches
+from matstd.twin.units import DEG
+from matstd.twin.words import did_you_mean
 
 USAGE = "drift-law(thermal.json,column:EZZ,...)"
 

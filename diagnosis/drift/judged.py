@@ -7,15 +7,15 @@ from typing import Protocol
 
 import numpy as np
 
-from diagnosis.drift.arx import arx
-from diagnosis.drift.beams import Beam, beam_law
-from diagnosis.drift.lags import at_once, remembered
-from diagnosis.drift.linear import ridge
-from diagnosis.drift.network import has_network, network
-from diagnosis.drift.plain_laws import OneStepArx, constant, one_step_arx
-from diagnosis.drift.record import DriftRecord, IntArray, blocks, is_speed
-from twin.compute import Progress
-from twin.frames import Array
+from matstd.diagnosis.drift.arx import arx
+from matstd.diagnosis.drift.beams import Beam, beam_law
+from matstd.diagnosis.drift.lags import at_once, remembered
+from matstd.diagnosis.drift.linear import ridge
+from matstd.diagnosis.drift.network import has_network, network
+from matstd.diagnosis.drift.plain_laws import OneStepArx, constant, one_step_arx
+from matstd.diagnosis.drift.record import DriftRecord, IntArray, blocks, is_speed
+from matstd.twin.compute import Progress
+from matstd.twin.frames import Array
 
 BLOCKS = 4
 """Parts of the training hours that are left out in turn: each must hold a load cycle."""

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.drift.record import DriftRecord, is_speed
-from twin.frames import Array
-from twin.units import MINUTE
+from matstd.diagnosis.drift.record import DriftRecord, is_speed
+from matstd.twin.frames import Array
+from matstd.twin.units import MINUTE
 
 LAGS = tuple(minutes * MINUTE for minutes in (4.0, 16.0, 64.0, 256.0))
 """Time constants of first-order lags, s; neighbours, a factor of four apart, imitate any between

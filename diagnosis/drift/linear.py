@@ -6,8 +6,8 @@ from typing import Protocol
 
 import numpy as np
 
-from diagnosis.drift.record import DriftRecord, IntArray
-from twin.frames import Array
+from matstd.diagnosis.drift.record import DriftRecord, IntArray
+from matstd.twin.frames import Array
 
 WEIGHTS = 10.0 ** np.arange(-6.0, 1.1, 0.5)
 """Of ridge regression, in variances of a standardised column."""

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.drift.drift_law import DriftLaw, Replay
-from diagnosis.drift.probing import Unknowns
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.record import Touches
+from matstd.diagnosis.drift.drift_law import DriftLaw, Replay
+from matstd.diagnosis.drift.probing import Unknowns
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.record import Touches
 
 
 class LiveDrift:

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.drift.record import DriftRecord, IntArray
-from twin.errors import BadFile
-from twin.files import CsvTable, read_text
-from twin.frames import Array
-from twin.units import HOUR, MINUTE, UM, URAD
+from matstd.diagnosis.drift.record import DriftRecord, IntArray
+from matstd.twin.errors import BadFile
+from matstd.twin.files import CsvTable, read_text
+from matstd.twin.frames import Array
+from matstd.twin.units import HOUR, MINUTE, UM, URAD
 
 EPOCH = datetime(2000, 1, 1)
 TIMES = {"time_s": 1.0, "time_min": MINUTE, "time_h": HOUR}

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.drift.linear import memory_of, standardised
-from diagnosis.drift.record import DriftRecord, IntArray
-from twin.errors import MissingLibrary
-from twin.frames import Array
+from matstd.diagnosis.drift.linear import memory_of, standardised
+from matstd.diagnosis.drift.record import DriftRecord, IntArray
+from matstd.twin.errors import MissingLibrary
+from matstd.twin.frames import Array
 
 HIDDEN = 10
 """Nodes of the hidden layer."""

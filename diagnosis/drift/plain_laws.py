@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.drift.linear import memory_of
-from diagnosis.drift.record import DriftRecord, IntArray
-from twin.frames import Array
+from matstd.diagnosis.drift.linear import memory_of
+from matstd.diagnosis.drift.record import DriftRecord, IntArray
+from matstd.twin.frames import Array
 
 LARGEST_POLE = 1.0 - 1e-6
 """A free run with a pole beyond it grows, or remembers its first reading for ever."""

@@ -13,11 +13,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.drift.judged import Judged
-from diagnosis.drift.linear import LinearLaw
-from diagnosis.drift.record import DriftRecord, IntArray
-from twin.frames import Array
-from twin.units import DAY
+from matstd.diagnosis.drift.judged import Judged
+from matstd.diagnosis.drift.linear import LinearLaw
+from matstd.diagnosis.drift.record import DriftRecord, IntArray
+from matstd.twin.frames import Array
+from matstd.twin.units import DAY
 
 RENEWED = 2.0 * DAY
 """Time in which a machine changes by as much as its coefficients were unknown, s: of a week with

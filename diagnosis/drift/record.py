@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.errors import NotEnoughData
-from twin.frames import Array
-from twin.units import UM, URAD
+from matstd.twin.errors import NotEnoughData
+from matstd.twin.frames import Array
+from matstd.twin.units import UM, URAD
 
 IntArray = NDArray[np.int64]
 

@@ -5,7 +5,7 @@ of all that the model can imitate, and `EffectSet`, a set of them in the model, 
 its held-out errors and the scores of every further effect. Nothing is refitted.
 """
 
-from diagnosis.evidence.effect_signatures import (
+from matstd.diagnosis.evidence.effect_signatures import (
     Grid,
     Progress,
     ResidualSpace,
@@ -17,7 +17,7 @@ from diagnosis.evidence.effect_signatures import (
     signatures,
     tuned_variants,
 )
-from diagnosis.evidence.evidence import (
+from matstd.diagnosis.evidence.evidence import (
     SAME,
     EffectSet,
     Scores,
@@ -27,7 +27,7 @@ from diagnosis.evidence.evidence import (
     score_all,
     screen,
 )
-from diagnosis.evidence.periods import period_of, scanned_grids, strongest
+from matstd.diagnosis.evidence.periods import period_of, scanned_grids, strongest
 
 __all__ = [
     "SAME",

@@ -14,11 +14,11 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.fit import Fit
-from diagnosis.regression import PRIOR_DOF, BoolArray, Whitener
-from twin.frames import Array
-from twin.model import Effect, columns, is_tunable
-from twin.record import Touches
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.regression import PRIOR_DOF, BoolArray, Whitener
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, columns, is_tunable
+from matstd.twin.record import Touches
 
 IntArray = NDArray[np.int64]
 Progress = Callable[[float, str], None]

@@ -7,10 +7,10 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 from scipy.special import betainc
 
-from diagnosis.evidence.effect_signatures import ResidualSpace, Signatures
-from diagnosis.regression import PRIOR_DOF, LeftOut, left_out
-from twin.frames import Array
-from twin.model import Effect
+from matstd.diagnosis.evidence.effect_signatures import ResidualSpace, Signatures
+from matstd.diagnosis.regression import PRIOR_DOF, LeftOut, left_out
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect
 
 VISIBLE = 0.25
 """Squared signature per unit of prior, over the noise, below which a direction of an effect's

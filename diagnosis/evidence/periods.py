@@ -11,13 +11,13 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.ndimage import median_filter
 
-from diagnosis.evidence.effect_signatures import (
+from matstd.diagnosis.evidence.effect_signatures import (
     Grid,
     ResidualSpace,
     tuned_variants,
 )
-from twin.frames import Array
-from twin.model import Effect, Inner, Tunable, columns, is_tunable
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, Inner, Tunable, columns, is_tunable
 
 KEPT = 300
 """Periods of a long scan that get a signature."""

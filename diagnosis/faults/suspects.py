@@ -12,12 +12,12 @@ from itertools import combinations
 
 import numpy as np
 
-from twin.effects import LocationError, ProbeRadius
-from twin.frames import Array
-from twin.machine import Chain, Link
-from twin.model import Effect
-from twin.record import Run, Touches, aligned, computed_deviation
-from twin.units import DEG
+from matstd.twin.effects import LocationError, ProbeRadius
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Link
+from matstd.twin.model import Effect
+from matstd.twin.record import Run, Touches, aligned, computed_deviation
+from matstd.twin.units import DEG
 
 FREE_LENGTH = 20.0
 """Standard deviation (mm) of a length that may be stated wrongly: a stylus of another length."""

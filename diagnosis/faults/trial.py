@@ -14,8 +14,8 @@ from itertools import islice
 
 import numpy as np
 
-from diagnosis.evidence import Progress, quiet
-from diagnosis.faults.suspects import (
+from matstd.diagnosis.evidence import Progress, quiet
+from matstd.diagnosis.faults.suspects import (
     Fault,
     Suspect,
     corrected,
@@ -24,15 +24,15 @@ from diagnosis.faults.suspects import (
     suspects,
     with_setups_placed,
 )
-from diagnosis.fit import Fit, fit_run, unit_mistake
-from diagnosis.geometry import FoundNumber
-from diagnosis.regression import PRIOR_DOF, solve
-from twin.effects import SHIFT_SD, TURN_SD, ProbeRadius, body_errors, placing_errors
-from twin.errors import NotEnoughData
-from twin.frames import Array, apply, inverse
-from twin.library import ordinary_model
-from twin.model import Effect, columns
-from twin.record import Run, Setup, Touches
+from matstd.diagnosis.fit import Fit, fit_run, unit_mistake
+from matstd.diagnosis.geometry import FoundNumber
+from matstd.diagnosis.regression import PRIOR_DOF, solve
+from matstd.twin.effects import SHIFT_SD, TURN_SD, ProbeRadius, body_errors, placing_errors
+from matstd.twin.errors import NotEnoughData
+from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.library import ordinary_model
+from matstd.twin.model import Effect, columns
+from matstd.twin.record import Run, Setup, Touches
 
 TOUCHES = 400
 """Touches that suspects are tried on: more change no answer, and thirty suspects take seconds."""

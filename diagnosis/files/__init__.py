@@ -5,15 +5,15 @@
 sentences from whoever calls: prose is made in `report`.
 """
 
-from diagnosis.files.diagnosis_file import (
+from matstd.diagnosis.files.diagnosis_file import (
     plan_text,
     write_comparison,
     write_diagnosis,
     write_residuals,
 )
-from diagnosis.files.model_file import SavedModel, check_machine, read_model
-from diagnosis.files.model_writer import write_model
-from diagnosis.files.uncertainty_file import write_uncertainty
+from matstd.diagnosis.files.model_file import SavedModel, check_machine, read_model
+from matstd.diagnosis.files.model_writer import write_model
+from matstd.diagnosis.files.uncertainty_file import write_uncertainty
 
 __all__ = [
     "SavedModel",

@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.answer import Comparison, Detectable, Diagnosis, GroupResidual, Plan, Step
-from diagnosis.choice import Choice
-from diagnosis.files.fault_table import fault_table
-from diagnosis.files.geometry_table import geometry_table
-from diagnosis.files.trend_table import trend_table
-from diagnosis.fit import Fit, file_unit
-from diagnosis.residual import Condition, Region, Side
-from twin.files import reading_columns, write_whole
-from twin.record import Touches
-from twin.units import UM
+from matstd.diagnosis.answer import Comparison, Detectable, Diagnosis, GroupResidual, Plan, Step
+from matstd.diagnosis.choice import Choice
+from matstd.diagnosis.files.fault_table import fault_table
+from matstd.diagnosis.files.geometry_table import geometry_table
+from matstd.diagnosis.files.trend_table import trend_table
+from matstd.diagnosis.fit import Fit, file_unit
+from matstd.diagnosis.residual import Condition, Region, Side
+from matstd.twin.files import reading_columns, write_whole
+from matstd.twin.record import Touches
+from matstd.twin.units import UM
 
 FORMAT = "diagnosis/1"
 COMPARISON = "comparison/1"

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from typing import Any
 
-from diagnosis.faults import DescriptionFault
-from diagnosis.files.geometry_table import number_table
-from twin.units import UM
+from matstd.diagnosis.faults import DescriptionFault
+from matstd.diagnosis.files.geometry_table import number_table
+from matstd.twin.units import UM
 
 
 def fault_table(faults: Sequence[DescriptionFault]) -> list[dict[str, Any]]:

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-from diagnosis.geometry import Estimate, FoundNumber, GeometryRow, LearntGeometry
-from twin.units import UM, URAD
+from matstd.diagnosis.geometry import Estimate, FoundNumber, GeometryRow, LearntGeometry
+from matstd.twin.units import UM, URAD
 
 UNITS = {"mm": ("um", UM), "rad": ("urad", URAD), "1": ("ppm", 1e-6)}
 """Suffix in files of a unit, and one of it in the base unit."""

@@ -8,11 +8,11 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
-from diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
-from diagnosis.regression import Memory
-from diagnosis.remarks import OfAnotherRun
-from twin.errors import BadFile, DesignError
-from twin.files import (
+from matstd.diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
+from matstd.diagnosis.regression import Memory
+from matstd.diagnosis.remarks import OfAnotherRun
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.files import (
     MachineTables,
     Table,
     check_format,
@@ -20,12 +20,12 @@ from twin.files import (
     parse_toml,
     read_text,
 )
-from twin.frames import Array
-from twin.library import owner_of, parse_effect
-from twin.machine import Chain
-from twin.model import Effect, Model, Tunable
-from twin.record import Run, Touches, without_copies
-from twin.units import DEG, UM
+from matstd.twin.frames import Array
+from matstd.twin.library import owner_of, parse_effect
+from matstd.twin.machine import Chain
+from matstd.twin.model import Effect, Model, Tunable
+from matstd.twin.record import Run, Touches, without_copies
+from matstd.twin.units import DEG, UM
 
 FORMAT = "model/1"
 

@@ -6,16 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.files.model_file import FORMAT, SavedModel, parameter_keys, probes_of
-from diagnosis.fit import Fit, Learnt, Reported, inner_unit
-from diagnosis.geometry import standing, state_of_standing
-from diagnosis.regression import Memory
-from twin.files import write_whole
-from twin.frames import Array
-from twin.library import owner_of
-from twin.machine import Chain
-from twin.model import Effect, columns, inner_values
-from twin.units import DEG, UM
+from matstd.diagnosis.files.model_file import FORMAT, SavedModel, parameter_keys, probes_of
+from matstd.diagnosis.fit import Fit, Learnt, Reported, inner_unit
+from matstd.diagnosis.geometry import standing, state_of_standing
+from matstd.diagnosis.regression import Memory
+from matstd.twin.files import write_whole
+from matstd.twin.frames import Array
+from matstd.twin.library import owner_of
+from matstd.twin.machine import Chain
+from matstd.twin.model import Effect, columns, inner_values
+from matstd.twin.units import DEG, UM
 
 
 def write_model(

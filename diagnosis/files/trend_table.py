@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from diagnosis.answer import RunErrors, Trend
-from diagnosis.files.geometry_table import UNITS
-from diagnosis.geometry import Estimate
-from twin.units import UM
+from matstd.diagnosis.answer import RunErrors, Trend
+from matstd.diagnosis.files.geometry_table import UNITS
+from matstd.diagnosis.geometry import Estimate
+from matstd.twin.units import UM
 
 
 def trend_table(trend: Trend) -> dict[str, Any]:

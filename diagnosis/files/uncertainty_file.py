@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from diagnosis.task import LEVEL, TaskUncertainty, guarded
-from twin.files import write_whole
-from twin.units import UM
+from matstd.diagnosis.task import LEVEL, TaskUncertainty, guarded
+from matstd.twin.files import write_whole
+from matstd.twin.units import UM
 
 FORMAT = "uncertainty/1"
 

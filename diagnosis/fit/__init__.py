@@ -5,13 +5,13 @@ set aside, the size of the noise, and errors of poses that were left out. `estim
 combinations the run determines; `reported` gives parameters as a user reads them.
 """
 
-from diagnosis.fit.describe import SINE, Reported, Role, file_unit, inner_unit, reported
-from diagnosis.fit.estimability import Estimable, estimable
-from diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run, prior_for
-from diagnosis.fit.inner import continuous_inner, shifted, spacing
-from diagnosis.fit.learnt_fit import Learnt
-from diagnosis.fit.prior import Prior
-from diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake, unit_mistake
+from matstd.diagnosis.fit.describe import SINE, Reported, Role, file_unit, inner_unit, reported
+from matstd.diagnosis.fit.estimability import Estimable, estimable
+from matstd.diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run, prior_for
+from matstd.diagnosis.fit.inner import continuous_inner, shifted, spacing
+from matstd.diagnosis.fit.learnt_fit import Learnt
+from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake, unit_mistake
 
 __all__ = [
     "MIN_POSES",

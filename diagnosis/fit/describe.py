@@ -7,13 +7,13 @@ from enum import Enum
 import numpy as np
 from scipy.linalg import orth
 
-from diagnosis.fit.identification import Fit
-from diagnosis.regression import BoolArray
-from twin.effects import Overtones, PositionTable
-from twin.frames import Array
-from twin.model import Effect, Inner, columns, inner_values
-from twin.record import Touches
-from twin.units import DEG, MINUTE, UM, URAD
+from matstd.diagnosis.fit.identification import Fit
+from matstd.diagnosis.regression import BoolArray
+from matstd.twin.effects import Overtones, PositionTable
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, Inner, columns, inner_values
+from matstd.twin.record import Touches
+from matstd.twin.units import DEG, MINUTE, UM, URAD
 
 AT_END = 1e-3
 """Share of an end of a scan within which a value lies at it."""

@@ -5,10 +5,15 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.fit.identification import Fit
-from information.identifiability import Freedom, Identifiability, combinations, identifiability
-from twin.frames import Array
-from twin.model import columns
+from matstd.diagnosis.fit.identification import Fit
+from matstd.information.identifiability import (
+    Freedom,
+    Identifiability,
+    combinations,
+    identifiability,
+)
+from matstd.twin.frames import Array
+from matstd.twin.model import columns
 
 DETERMINED = 10.0
 """A parameter counts as determined when the run cuts its standard deviation by this factor."""

@@ -6,10 +6,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from diagnosis.fit.inner import Tangent, tangents
-from diagnosis.fit.prior import Prior
-from diagnosis.fit.suited_prior import narrowed, widened_by, widening
-from diagnosis.regression import (
+from matstd.diagnosis.fit.inner import Tangent, tangents
+from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.fit.suited_prior import narrowed, widened_by, widening
+from matstd.diagnosis.regression import (
     BoolArray,
     GrossErrors,
     LeftOut,
@@ -25,12 +25,12 @@ from diagnosis.regression import (
     solve,
     whitener,
 )
-from twin.display import Shown
-from twin.effects import Free, placing_errors, setup_errors
-from twin.errors import NotEnoughData
-from twin.frames import Array
-from twin.model import Effect, Model, Parameter, columns
-from twin.record import IntArray, Run
+from matstd.twin.display import Shown
+from matstd.twin.effects import Free, placing_errors, setup_errors
+from matstd.twin.errors import NotEnoughData
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, Model, Parameter, columns
+from matstd.twin.record import IntArray, Run
 
 PASSES = 5
 SETTLED = 0.005

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.frames import Array
-from twin.model import Effect, Inner, Model, Parameter, Term, Tunable, columns, is_tunable
-from twin.record import Touches
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, Inner, Model, Parameter, Term, Tunable, columns, is_tunable
+from matstd.twin.record import Touches
 
 STEP = 0.02
 """Step of the central difference, as a share of the distance to the neighbour on the grid."""

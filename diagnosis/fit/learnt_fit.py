@@ -12,13 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import block_diag, rq, solve_triangular
 
-from diagnosis.fit.identification import Fit, fit_run, noise_of, row_weight
-from diagnosis.fit.prior import Prior
-from diagnosis.regression import BoolArray, GrossErrors, Memory, Solution, solve, whitener
-from twin.effects import setup_errors
-from twin.frames import Array
-from twin.model import Model, columns
-from twin.record import Run
+from matstd.diagnosis.fit.identification import Fit, fit_run, noise_of, row_weight
+from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.regression import BoolArray, GrossErrors, Memory, Solution, solve, whitener
+from matstd.twin.effects import setup_errors
+from matstd.twin.frames import Array
+from matstd.twin.model import Model, columns
+from matstd.twin.record import Run
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import block_diag
 
-from twin.frames import Array
-from twin.model import Effect
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect
 
 
 @dataclass(frozen=True, eq=False)

@@ -24,13 +24,13 @@ from itertools import product
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
-from diagnosis.fit.prior import Prior
-from diagnosis.regression import PRIOR_DOF, Solution
-from twin.effects import Change, ComponentError, LocationError
-from twin.frames import Array
-from twin.machine import LETTERS, Chain, error_class
-from twin.model import Effect, Model
-from twin.record import IntArray
+from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.regression import PRIOR_DOF, Solution
+from matstd.twin.effects import Change, ComponentError, LocationError
+from matstd.twin.frames import Array
+from matstd.twin.machine import LETTERS, Chain, error_class
+from matstd.twin.model import Effect, Model
+from matstd.twin.record import IntArray
 
 FACTORS = (1.0, 1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0)
 """On what is expected: from the class down to a machine of a laboratory."""

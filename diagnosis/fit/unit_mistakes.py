@@ -5,9 +5,9 @@ from enum import Enum
 
 import numpy as np
 
-from diagnosis.fit.identification import Fit
-from diagnosis.regression import robust_scale, solve
-from twin.units import UM
+from matstd.diagnosis.fit.identification import Fit
+from matstd.diagnosis.regression import robust_scale, solve
+from matstd.twin.units import UM
 
 SMALL = 30.0
 """Times smaller than expected that deviations are suspect if they also fall short of the noise."""

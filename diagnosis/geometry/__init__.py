@@ -5,25 +5,25 @@ errors and lines of the rotary axes with uncertainty, what they do at the ends o
 changed since a saved model, corrections of the machine file, and the ladder from the set-up alone.
 """
 
-from diagnosis.geometry.arm_machine import FoundArm, found_arm
-from diagnosis.geometry.changes import (
+from matstd.diagnosis.geometry.arm_machine import FoundArm, found_arm
+from matstd.diagnosis.geometry.changes import (
     changed_since,
     changing,
     standing,
     state_of_standing,
     with_changes,
 )
-from diagnosis.geometry.corrections import Correction, key_of
-from diagnosis.geometry.learnt import (
+from matstd.diagnosis.geometry.corrections import Correction, key_of
+from matstd.diagnosis.geometry.learnt import (
     LearntGeometry,
     Rung,
     changed_runs,
     geometry_rows,
     learnt_geometry,
 )
-from diagnosis.geometry.quantities import Quantity
-from diagnosis.geometry.rivals import FoundNumber
-from diagnosis.geometry.rows import CHANGED, CLEAR, Estimate, GeometryRow
+from matstd.diagnosis.geometry.quantities import Quantity
+from matstd.diagnosis.geometry.rivals import FoundNumber
+from matstd.diagnosis.geometry.rows import CHANGED, CLEAR, Estimate, GeometryRow
 
 __all__ = [
     "CHANGED",

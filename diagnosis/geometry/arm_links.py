@@ -25,11 +25,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from diagnosis.geometry.quantities import Functional, Quantity, geometric_effects
-from twin.effects import LocationError
-from twin.frames import Array, rotation
-from twin.machine import Chain, Symbol
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.geometry.quantities import Functional, Quantity, geometric_effects
+from matstd.twin.effects import LocationError
+from matstd.twin.frames import Array, rotation
+from matstd.twin.machine import Chain, Symbol
 
 PARALLEL = 0.05
 """Sine of the angle between two lines below which their distance, not their crossing, is told."""

@@ -12,12 +12,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.fit import Fit, fit_run
-from diagnosis.geometry.quantities import geometric_effects
-from twin.effects import LocationError
-from twin.frames import Array, apply, rotation
-from twin.machine import Chain
-from twin.model import Model
+from matstd.diagnosis.fit import Fit, fit_run
+from matstd.diagnosis.geometry.quantities import geometric_effects
+from matstd.twin.effects import LocationError
+from matstd.twin.frames import Array, apply, rotation
+from matstd.twin.machine import Chain
+from matstd.twin.model import Model
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,12 +11,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from diagnosis.fit import Prior
-from diagnosis.geometry.quantities import is_geometry
-from twin.effects import Change
-from twin.frames import Array
-from twin.model import Effect, Model
-from twin.record import Touches
+from matstd.diagnosis.fit import Prior
+from matstd.diagnosis.geometry.quantities import is_geometry
+from matstd.twin.effects import Change
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, Model
+from matstd.twin.record import Touches
 
 
 def changing(model: Model, touches: Touches, since: Sequence[int]) -> Model:

@@ -5,11 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from diagnosis.geometry.quantities import Quantity
-from diagnosis.geometry.rivals import Descriptions, FoundNumber
-from diagnosis.geometry.rows import CLEAR, Estimate, GeometryRow
-from twin.machine import LETTERS, Link
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.geometry.quantities import Quantity
+from matstd.diagnosis.geometry.rivals import Descriptions, FoundNumber
+from matstd.diagnosis.geometry.rows import CLEAR, Estimate, GeometryRow
+from matstd.twin.machine import LETTERS, Link
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from diagnosis.geometry.quantities import geometric_effects
-from twin.effects import ComponentError
-from twin.frames import Array
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.geometry.quantities import geometric_effects
+from matstd.twin.effects import ComponentError
+from matstd.twin.frames import Array
 
 
 def expected_size(fit: Fit, weights: Array, stated: Array) -> float:

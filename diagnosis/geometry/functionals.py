@@ -16,13 +16,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from diagnosis.geometry.arm_links import arm_functionals
-from diagnosis.geometry.quantities import Functional, Quantity, geometric_effects
-from twin.frames import Array
-from twin.machine import LETTERS, Chain, Family, Link, tip
-from twin.model import Model
-from twin.record import Touches, at_poses
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.geometry.arm_links import arm_functionals
+from matstd.diagnosis.geometry.quantities import Functional, Quantity, geometric_effects
+from matstd.twin.frames import Array
+from matstd.twin.machine import LETTERS, Chain, Family, Link, tip
+from matstd.twin.model import Model
+from matstd.twin.record import Touches, at_poses
 
 POINTS = 21
 """Poses of a line along an axis: a sine over the travel has ten of them in every half wave."""

@@ -15,16 +15,22 @@ from enum import Enum
 
 import numpy as np
 
-from diagnosis.fit import Fit, Prior, fit_run
-from diagnosis.geometry.changes import changed_since, of_first, since_first_run, standing, state
-from diagnosis.geometry.corrections import Correction, corrections
-from diagnosis.geometry.expected import expected_size, stated_sizes
-from diagnosis.geometry.functionals import functionals
-from diagnosis.geometry.quantities import Functional, Quantity
-from diagnosis.geometry.rivals import FoundNumber
-from diagnosis.geometry.rows import Estimate, GeometryRow, is_clear
-from twin.frames import Array
-from twin.model import Model
+from matstd.diagnosis.fit import Fit, Prior, fit_run
+from matstd.diagnosis.geometry.changes import (
+    changed_since,
+    of_first,
+    since_first_run,
+    standing,
+    state,
+)
+from matstd.diagnosis.geometry.corrections import Correction, corrections
+from matstd.diagnosis.geometry.expected import expected_size, stated_sizes
+from matstd.diagnosis.geometry.functionals import functionals
+from matstd.diagnosis.geometry.quantities import Functional, Quantity
+from matstd.diagnosis.geometry.rivals import FoundNumber
+from matstd.diagnosis.geometry.rows import Estimate, GeometryRow, is_clear
+from matstd.twin.frames import Array
+from matstd.twin.model import Model
 
 DETERMINED = 3.0
 """Expected over remaining standard deviation from which a quantity is a result: with less the

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
-from diagnosis.fit import Fit
-from twin.frames import Array
-from twin.model import Effect
+from matstd.diagnosis.fit import Fit
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect
 
 
 class Quantity(Enum):

@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from twin.effects import LocationError, ProbeRadius
-from twin.library import ordinary_model
-from twin.machine import Family
-from twin.model import Effect, columns
-from twin.record import Touches
+from matstd.diagnosis.fit import Fit
+from matstd.twin.effects import LocationError, ProbeRadius
+from matstd.twin.library import ordinary_model
+from matstd.twin.machine import Family
+from matstd.twin.model import Effect, columns
+from matstd.twin.record import Touches
 
 TOUCHES = 1000
 """Touches that are looked at: more tell no two columns apart that these do not."""

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.geometry.quantities import Quantity
+from matstd.diagnosis.geometry.quantities import Quantity
 
 CLEAR = 3.0
 """Standard uncertainties from which what exceeds the expectation is no chance."""

@@ -5,10 +5,10 @@ that were left out, gross errors, and noise that remembers, with a `Whitener` th
 independent. Nothing here knows a machine.
 """
 
-from diagnosis.regression.gross import GrossErrors, find_gross, robust_scale, shots
-from diagnosis.regression.linear import BoolArray, LeftOut, Solution, left_out, solve
-from diagnosis.regression.memory import CLEARLY, Memory, Whitener, likely_memory, whitener
-from diagnosis.regression.noise import PRIOR_DOF, Noise, noise_factor, replicate_factor
+from matstd.diagnosis.regression.gross import GrossErrors, find_gross, robust_scale, shots
+from matstd.diagnosis.regression.linear import BoolArray, LeftOut, Solution, left_out, solve
+from matstd.diagnosis.regression.memory import CLEARLY, Memory, Whitener, likely_memory, whitener
+from matstd.diagnosis.regression.noise import PRIOR_DOF, Noise, noise_factor, replicate_factor
 
 __all__ = [
     "CLEARLY",

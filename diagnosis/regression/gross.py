@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import gammainc, ndtri
 
-from diagnosis.regression.linear import BoolArray, Solution, solve
-from twin.frames import Array
-from twin.record import IntArray, Touches
+from matstd.diagnosis.regression.linear import BoolArray, Solution, solve
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray, Touches
 
 CHANCE = 1e-3
 """Probability that a run without gross errors is said to have one."""

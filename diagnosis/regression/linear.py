@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import qr, solve_triangular
 
-from twin.frames import Array
+from matstd.twin.frames import Array
 
 BoolArray = NDArray[np.bool_]
 

@@ -13,10 +13,10 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_banded
 from scipy.optimize import minimize_scalar
 
-from diagnosis.regression.linear import BoolArray
-from diagnosis.regression.noise import PRIOR_DOF
-from twin.frames import Array
-from twin.record import IntArray, Touches
+from matstd.diagnosis.regression.linear import BoolArray
+from matstd.diagnosis.regression.noise import PRIOR_DOF
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray, Touches
 
 CLEARLY = 8.0
 """Gain of log likelihood by which noise with memory must beat white noise: a chance of 6e-5, since

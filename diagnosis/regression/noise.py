@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.regression.linear import BoolArray
-from twin.frames import Array
-from twin.record import Instrument, Run
+from matstd.diagnosis.regression.linear import BoolArray
+from matstd.twin.frames import Array
+from matstd.twin.record import Instrument, Run
 
 PRIOR_DOF = 4.0
 """Weight of the stated uncertainty, in degrees of freedom: it decides where touches are few."""

@@ -1,13 +1,13 @@
 """What a user should know about a run besides the verdict: one record for each thing noticed.
 
-In: a `Fit`. Out: `Remark`s, which carry numbers; `report.words` makes the sentences. Something new
-to notice is a record here, and a function that makes it.
+In: a `Fit`. Out: `Remark`s, which carry numbers; `matstd.report.words` makes the sentences.
+Something new to notice is a record here, and a function that makes it.
 """
 
-from diagnosis.remarks.body_size import BodySize, body_sizes
-from diagnosis.remarks.order import JumpInOrder
-from diagnosis.remarks.other_run import OfAnotherRun
-from diagnosis.remarks.run_remarks import (
+from matstd.diagnosis.remarks.body_size import BodySize, body_sizes
+from matstd.diagnosis.remarks.order import JumpInOrder
+from matstd.diagnosis.remarks.other_run import OfAnotherRun
+from matstd.diagnosis.remarks.run_remarks import (
     ChosenByPrediction,
     FewDegreesOfFreedom,
     FewPoses,
@@ -30,7 +30,7 @@ from diagnosis.remarks.run_remarks import (
     WorseThanReplicates,
     remarks,
 )
-from diagnosis.remarks.turns import HarmonicsAlike
+from matstd.diagnosis.remarks.turns import HarmonicsAlike
 
 __all__ = [
     "BodySize",

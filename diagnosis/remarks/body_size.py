@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.record import BODY, Body, Touches
-from twin.units import T_REF
+from matstd.twin.record import BODY, Body, Touches
+from matstd.twin.units import T_REF
 
 
 @dataclass(frozen=True, slots=True)

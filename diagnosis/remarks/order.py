@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import betainc
 
-from diagnosis.fit import Fit, fit_run
-from diagnosis.regression import solve
-from twin.frames import Array
-from twin.record import Instrument, IntArray
+from matstd.diagnosis.fit import Fit, fit_run
+from matstd.diagnosis.regression import solve
+from matstd.twin.frames import Array
+from matstd.twin.record import Instrument, IntArray
 
 CHANCE = 1e-6
 """Probability, over all rows at which it may be, below which a jump is told."""

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from twin.model import Effect
+from matstd.twin.model import Effect
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.fit import MIN_POSES, Fit, UnitMistake, fit_run, unit_mistake
-from diagnosis.remarks.body_size import BodySize, body_sizes
-from diagnosis.remarks.order import JumpInOrder, jump_in_order
-from diagnosis.remarks.other_run import OfAnotherRun
-from diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
-from twin.elastic import short_beams
+from matstd.diagnosis.fit import MIN_POSES, Fit, UnitMistake, fit_run, unit_mistake
+from matstd.diagnosis.remarks.body_size import BodySize, body_sizes
+from matstd.diagnosis.remarks.order import JumpInOrder, jump_in_order
+from matstd.diagnosis.remarks.other_run import OfAnotherRun
+from matstd.diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
+from matstd.twin.elastic import short_beams
 
 FEW_DOF = 30.0
 """Below so many degrees of freedom only large effects can be seen."""

@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from twin.effects import Again, Harmonic, HigherOrder, PositionTable
-from twin.frames import Array
+from matstd.diagnosis.fit import Fit
+from matstd.twin.effects import Again, Harmonic, HigherOrder, PositionTable
+from matstd.twin.frames import Array
 
 EVEN = 2e-3
 """Largest distance of a target from an even spacing, rad: a tenth of a degree."""

@@ -5,13 +5,18 @@ residual and a `Remark` for everything noteworthy; `partial` is what the run sho
 A new test is a module beside `waves` and `crowds`, called by `structure`.
 """
 
-from diagnosis.residual.failing_regions import Condition, Region, Side, regions
-from diagnosis.residual.mean_displacements import has_poses, pose_vectors
-from diagnosis.residual.partial_residuals import SEES, Drawn, Driver, Partial, Seen, partial
-from diagnosis.residual.pattern_tests import PatternTests
-from diagnosis.residual.patterns import directions, groups, variables
-from diagnosis.residual.ranked_variables import RankedVariable, binned, rank_variables, standardised
-from diagnosis.residual.structure import Shape, Structure, find_structure
+from matstd.diagnosis.residual.failing_regions import Condition, Region, Side, regions
+from matstd.diagnosis.residual.mean_displacements import has_poses, pose_vectors
+from matstd.diagnosis.residual.partial_residuals import SEES, Drawn, Driver, Partial, Seen, partial
+from matstd.diagnosis.residual.pattern_tests import PatternTests
+from matstd.diagnosis.residual.patterns import directions, groups, variables
+from matstd.diagnosis.residual.ranked_variables import (
+    RankedVariable,
+    binned,
+    rank_variables,
+    standardised,
+)
+from matstd.diagnosis.residual.structure import Shape, Structure, find_structure
 
 __all__ = [
     "SEES",

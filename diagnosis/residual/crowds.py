@@ -4,9 +4,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import gammainc
 
-from diagnosis.regression import BoolArray, shots
-from diagnosis.residual.patterns import pairs, variables
-from twin.record import Touches
+from matstd.diagnosis.regression import BoolArray, shots
+from matstd.diagnosis.residual.patterns import pairs, variables
+from matstd.twin.record import Touches
 
 NEAREST = 5
 """Neighbours of a touch that are looked at."""

@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import fdtrc, ndtr
 
-from diagnosis.fit import Fit
-from diagnosis.regression import BoolArray
-from diagnosis.residual.patterns import variables
-from twin.frames import Array
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.regression import BoolArray
+from matstd.diagnosis.residual.patterns import variables
+from matstd.twin.frames import Array
 
 CHANCE = 1e-3
 """Probability that noise is said to have a region."""

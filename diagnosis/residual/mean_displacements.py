@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from twin.frames import Array
-from twin.record import IntArray
+from matstd.diagnosis.fit import Fit
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
 
 SEEN = 0.05
 """Smallest singular value of the normals, over the root of their number, of touches from all

@@ -13,13 +13,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from diagnosis.residual.patterns import variables
-from twin.effects import PositionTable, normal_in_tool
-from twin.frames import Array
-from twin.model import Effect, Where, columns, inner_values
-from twin.record import IntArray, Touches
-from twin.units import DEG
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.residual.patterns import variables
+from matstd.twin.effects import PositionTable, normal_in_tool
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, Where, columns, inner_values
+from matstd.twin.record import IntArray, Touches
+from matstd.twin.units import DEG
 
 LETTERS = "XYZABC"
 

@@ -10,12 +10,12 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.evidence import EffectSet, ResidualSpace
-from diagnosis.regression import PRIOR_DOF
-from diagnosis.residual.patterns import Pattern, patterns, thinned
-from diagnosis.residual.quadratic import ratio_probability
-from twin.frames import Array
-from twin.record import IntArray
+from matstd.diagnosis.evidence import EffectSet, ResidualSpace
+from matstd.diagnosis.regression import PRIOR_DOF
+from matstd.diagnosis.residual.patterns import Pattern, patterns, thinned
+from matstd.diagnosis.residual.quadratic import ratio_probability
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
 
 SIZES = np.geomspace(0.3, 3e4, 11) ** 2
 """Variances of a pattern over the noise variance of one touch that are tried for its evidence."""

@@ -11,10 +11,10 @@ from itertools import combinations
 
 import numpy as np
 
-from diagnosis.evidence import ResidualSpace
-from twin.frames import Array
-from twin.record import IntArray, Touches
-from twin.units import DEG
+from matstd.diagnosis.evidence import ResidualSpace
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray, Touches
+from matstd.twin.units import DEG
 
 ORDER_ALONE = 12
 """Half waves over the range of a variable by itself."""

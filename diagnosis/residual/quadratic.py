@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.special import log_ndtr
 
-from twin.frames import Array
+from matstd.twin.frames import Array
 
 HALVINGS = 36  # of the bracket: 2^-36 is far below what a probability is quoted to
 

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from diagnosis.residual.patterns import variables
-from twin.frames import Array
-from twin.record import Touches
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.residual.patterns import variables
+from matstd.twin.frames import Array
+from matstd.twin.record import Touches
 
 MOST_BINS = 12
 """Bins of a variable, of equally many touches each."""

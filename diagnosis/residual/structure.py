@@ -13,13 +13,13 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.special import ndtr
 
-from diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
-from diagnosis.regression import PRIOR_DOF
-from diagnosis.residual.crowds import crowds
-from diagnosis.residual.pattern_tests import PatternTests, TestedPattern
-from diagnosis.residual.waves import Wave, best_wave
-from twin.frames import Array
-from twin.record import IntArray, Touches
+from matstd.diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
+from matstd.diagnosis.regression import PRIOR_DOF
+from matstd.diagnosis.residual.crowds import crowds
+from matstd.diagnosis.residual.pattern_tests import PatternTests, TestedPattern
+from matstd.diagnosis.residual.waves import Wave, best_wave
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray, Touches
 
 CHANCE = 1e-3
 """Probability, all tests together, that white noise is said to have structure."""

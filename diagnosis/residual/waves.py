@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.evidence import EffectSet, f_probability
-from diagnosis.residual.patterns import directions
-from twin.frames import Array
-from twin.record import IntArray, Touches
+from matstd.diagnosis.evidence import EffectSet, f_probability
+from matstd.diagnosis.residual.patterns import directions
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray, Touches
 
 SHORTEST = 4.0
 """Shortest period, in mean distances of touches."""

@@ -6,16 +6,16 @@ way through, `selection` the choice, `refine` and `regrid` what a grid is too co
 `screening` what makes long runs affordable, `edges` gross errors that are none.
 """
 
-from diagnosis.search.refine import refined, refined_set, with_moved_points
-from diagnosis.search.screened import best_set, scaled
-from diagnosis.search.screening import WHOLE_BELOW, Library
-from diagnosis.search.search_loop import (
+from matstd.diagnosis.search.refine import refined, refined_set, with_moved_points
+from matstd.diagnosis.search.screened import best_set, scaled
+from matstd.diagnosis.search.screening import WHOLE_BELOW, Library
+from matstd.diagnosis.search.search_loop import (
     SearchState,
     most_evident,
     refined_named,
     search_until_stable,
 )
-from diagnosis.search.selection import (
+from matstd.diagnosis.search.selection import (
     CHANCE,
     LISTED,
     MOST_SETS,
@@ -25,7 +25,7 @@ from diagnosis.search.selection import (
     Search,
     Verified,
 )
-from diagnosis.search.task import FREEDOM, DiagnosisTask
+from matstd.diagnosis.search.task import FREEDOM, DiagnosisTask
 
 __all__ = [
     "CHANCE",

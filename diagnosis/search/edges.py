@@ -11,11 +11,11 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import gammaln
 
-from diagnosis.evidence import ScaledEffect
-from diagnosis.regression import BoolArray, GrossErrors
-from twin.frames import Array
-from twin.model import inner_values
-from twin.record import IntArray, Touches
+from matstd.diagnosis.evidence import ScaledEffect
+from matstd.diagnosis.regression import BoolArray, GrossErrors
+from matstd.twin.frames import Array
+from matstd.twin.model import inner_values
+from matstd.twin.record import IntArray, Touches
 
 CHANCE = 1e-3
 """Probability, all edges and lengths together, that accidents lie so at an edge."""

@@ -11,7 +11,7 @@ how far an effect reaches, and what noise remembers from one instant to the next
 import numpy as np
 from scipy.special import fdtrc
 
-from diagnosis.evidence import EffectSet
+from matstd.diagnosis.evidence import EffectSet
 
 SHARED = 0.5
 """Share of rows that stand at the instant and the readings of the row before, from which rows of an

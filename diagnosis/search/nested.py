@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable
 
-from twin.effects import PositionTable
-from twin.model import Effect
+from matstd.twin.effects import PositionTable
+from matstd.twin.model import Effect
 
 
 def would_hold(effect: Effect, members: Iterable[Effect]) -> bool:

@@ -4,10 +4,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, addition, projected
-from diagnosis.search.selection import WORTH
-from twin.effects import MOST_OVERTONES, Again, Overtones, Periodic, usual_distance
-from twin.model import Effect
+from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, addition, projected
+from matstd.diagnosis.search.selection import WORTH
+from matstd.twin.effects import MOST_OVERTONES, Again, Overtones, Periodic, usual_distance
+from matstd.twin.model import Effect
 
 HIGHEST_FOUND = 4
 """The strongest wave of a period is at most its fourth."""

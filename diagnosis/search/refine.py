@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.evidence import (
+from matstd.diagnosis.evidence import (
     EffectSet,
     ResidualSpace,
     ScaledEffect,
@@ -21,8 +21,8 @@ from diagnosis.evidence import (
     addition,
     projected,
 )
-from diagnosis.fit import continuous_inner, spacing
-from twin.model import Effect, Tunable
+from matstd.diagnosis.fit import continuous_inner, spacing
+from matstd.twin.model import Effect, Tunable
 
 POINTS = 9
 """Points of every scan, over one distance of the grid to either side."""

@@ -8,10 +8,10 @@ there, and the search is made again from that set: whatever only mopped up the d
 from collections.abc import Sequence
 from dataclasses import replace
 
-from diagnosis.evidence import EffectSet, Grid, ScaledEffect, projected, signatures
-from diagnosis.fit import continuous_inner
-from diagnosis.search.refine import refined_set, with_moved_points
-from diagnosis.search.selection import WORTH, EffectSubset, Member, Search
+from matstd.diagnosis.evidence import EffectSet, Grid, ScaledEffect, projected, signatures
+from matstd.diagnosis.fit import continuous_inner
+from matstd.diagnosis.search.refine import refined_set, with_moved_points
+from matstd.diagnosis.search.selection import WORTH, EffectSubset, Member, Search
 
 SETTLINGS = 3
 """Most searches with points of the grid moved to refined inner parameters."""

@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
-from diagnosis.evidence import EffectSet, Progress, ScaledEffect, projected, quiet
-from diagnosis.search.refine import with_moved_points
-from diagnosis.search.regrid import regridded
-from diagnosis.search.screening import Library, joined_shortlists
-from diagnosis.search.selection import Budget, EffectSubset, Member, Search
+from matstd.diagnosis.evidence import EffectSet, Progress, ScaledEffect, projected, quiet
+from matstd.diagnosis.search.refine import with_moved_points
+from matstd.diagnosis.search.regrid import regridded
+from matstd.diagnosis.search.screening import Library, joined_shortlists
+from matstd.diagnosis.search.selection import Budget, EffectSubset, Member, Search
 
 SCREENINGS = 3
 """Most screenings of the library in one round of a long run."""

@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.evidence import (
+from matstd.diagnosis.evidence import (
     EffectSet,
     Grid,
     Progress,
@@ -29,8 +29,8 @@ from diagnosis.evidence import (
     screen,
     signatures,
 )
-from twin.frames import Array
-from twin.model import Effect
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect
 
 WHOLE_BELOW = 4000
 """Up to so many touches the whole library is searched at every point of its grids; beyond, a choice

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from diagnosis.evidence import (
+from matstd.diagnosis.evidence import (
     EffectSet,
     Progress,
     ResidualSpace,
@@ -30,19 +30,19 @@ from diagnosis.evidence import (
     scanned_grids,
     signatures,
 )
-from diagnosis.fit import Fit
-from diagnosis.residual import PatternTests, Structure, find_structure
-from diagnosis.search.edges import unexplained_near_slip, without
-from diagnosis.search.overtones import with_overtones
-from diagnosis.search.refine import refined_set
-from diagnosis.search.screened import best_set, scaled
-from diagnosis.search.screening import Library
-from diagnosis.search.selection import Budget, EffectSubset, Search
-from diagnosis.search.taken_back import foretold
-from diagnosis.search.task import DiagnosisTask
-from twin.effects import Again, again
-from twin.frames import Array
-from twin.model import Effect
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.residual import PatternTests, Structure, find_structure
+from matstd.diagnosis.search.edges import unexplained_near_slip, without
+from matstd.diagnosis.search.overtones import with_overtones
+from matstd.diagnosis.search.refine import refined_set
+from matstd.diagnosis.search.screened import best_set, scaled
+from matstd.diagnosis.search.screening import Library
+from matstd.diagnosis.search.selection import Budget, EffectSubset, Search
+from matstd.diagnosis.search.taken_back import foretold
+from matstd.diagnosis.search.task import DiagnosisTask
+from matstd.twin.effects import Again, again
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect
 
 ROUNDS = 4
 """Most rounds of looking for gross errors and effects in turn; a usual run needs two."""

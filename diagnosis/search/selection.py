@@ -15,7 +15,7 @@ from itertools import combinations, count
 
 import numpy as np
 
-from diagnosis.evidence import (
+from matstd.diagnosis.evidence import (
     EffectSet,
     Progress,
     ResidualSpace,
@@ -24,10 +24,10 @@ from diagnosis.evidence import (
     quiet,
     score_all,
 )
-from diagnosis.search.instants import p_by_instants
-from diagnosis.search.nested import would_hold
-from twin.frames import Array
-from twin.model import Effect
+from matstd.diagnosis.search.instants import p_by_instants
+from matstd.diagnosis.search.nested import would_hold
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect
 
 CHANCE = 1e-3
 """Probability, all candidates and grids together, that a run without a hidden effect gets one."""

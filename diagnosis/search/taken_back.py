@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from diagnosis.evidence import ScaledEffect
-from diagnosis.fit import Fit
-from diagnosis.regression import GrossErrors, shots
-from diagnosis.search.task import DiagnosisTask
+from matstd.diagnosis.evidence import ScaledEffect
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.regression import GrossErrors, shots
+from matstd.diagnosis.search.task import DiagnosisTask
 
 
 def foretold(task: DiagnosisTask, effects: Sequence[ScaledEffect], before: GrossErrors) -> Fit:

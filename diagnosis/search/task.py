@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from diagnosis.evidence import ScaledEffect
-from diagnosis.fit import Fit, Prior, fit_run, prior_for
-from diagnosis.regression import GrossErrors, Memory
-from twin.model import Model
-from twin.record import Run
+from matstd.diagnosis.evidence import ScaledEffect
+from matstd.diagnosis.fit import Fit, Prior, fit_run, prior_for
+from matstd.diagnosis.regression import GrossErrors, Memory
+from matstd.twin.model import Model
+from matstd.twin.record import Run
 
 FREEDOM = 3.0
 """Factor on the prior of a found effect in its last fit: being found tells more of its size than

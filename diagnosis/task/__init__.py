@@ -5,9 +5,9 @@ task, and how well the features are calibrated. Out: a `TaskUncertainty`, the bu
 expanded uncertainty, and what it leaves of a tolerance (`Guarded`).
 """
 
-from diagnosis.task.decision import CONFORMITY, Guarded, guarded
-from diagnosis.task.uncertainty import LEVEL, TaskUncertainty, task_uncertainty
-from diagnosis.task.visits import MIN_PLACES, Visits, visits_of
+from matstd.diagnosis.task.decision import CONFORMITY, Guarded, guarded
+from matstd.diagnosis.task.uncertainty import LEVEL, TaskUncertainty, task_uncertainty
+from matstd.diagnosis.task.visits import MIN_PLACES, Visits, visits_of
 
 __all__ = [
     "CONFORMITY",

@@ -38,8 +38,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.task.visits import Visits
-from twin.frames import Array
+from matstd.diagnosis.task.visits import Visits
+from matstd.twin.frames import Array
 
 _SHARES = (0.0, 0.1, 1.0)  # of a part beside the largest; four of them cover no better
 _GRID = 100  # values of s_b for every R

@@ -27,8 +27,8 @@ from functools import cached_property
 
 import numpy as np
 
-from diagnosis.task.predictive import expected_error
-from diagnosis.task.visits import Visits
+from matstd.diagnosis.task.predictive import expected_error
+from matstd.diagnosis.task.visits import Visits
 
 LEVEL = 0.95
 """Share of results that U is to cover."""

@@ -10,14 +10,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from diagnosis.fit import Prior, fit_run
-from diagnosis.regression import BoolArray
-from twin.effects import body_errors, placing_errors
-from twin.errors import NotEnoughData
-from twin.frames import Array
-from twin.model import Model, columns
-from twin.record import Labels, Run, Touches
-from twin.units import DEG
+from matstd.diagnosis.fit import Prior, fit_run
+from matstd.diagnosis.regression import BoolArray
+from matstd.twin.effects import body_errors, placing_errors
+from matstd.twin.errors import NotEnoughData
+from matstd.twin.frames import Array
+from matstd.twin.model import Model, columns
+from matstd.twin.record import Labels, Run, Touches
+from matstd.twin.units import DEG
 
 MIN_PLACES = 8
 """Places below which nothing is said of a task: their spread has too few degrees of freedom."""

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from make_run import PROBES, spindle_run
 
-from diagnosis.answer import Diagnosis, diagnose
-from twin.library import load_user_effects
-from twin.units import UM
+from matstd.diagnosis.answer import Diagnosis, diagnose
+from matstd.twin.library import load_user_effects
+from matstd.twin.units import UM
 
 HERE = Path(__file__).resolve().parent
 

@@ -17,9 +17,9 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.files import read_machine, write_run
-from twin.record import Run, Setup, Touches
-from twin.units import UM
+from matstd.twin.files import read_machine, write_run
+from matstd.twin.record import Run, Setup, Touches
+from matstd.twin.units import UM
 
 HERE = Path(__file__).resolve().parent
 PROBES = {

@@ -8,9 +8,9 @@ directions at once, each by an amount of its own, but all at the same pace.
 
 from dataclasses import dataclass, replace
 
-from twin.model import Kind, Parameter, Term, Where, sensors
-from twin.thermal import SPINDLE, ThermalLag
-from twin.units import UM
+from matstd.twin.model import Kind, Parameter, Term, Where, sensors
+from matstd.twin.thermal import SPINDLE, ThermalLag
+from matstd.twin.units import UM
 
 
 @dataclass(frozen=True)

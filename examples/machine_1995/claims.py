@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 import warm_up
 
-from compensation.field import MachineErrors, correction, played, shifted
-from diagnosis.drift import chosen, joined, judge, offered, read_log
-from twin import parse_effect, read_machine, tip
-from twin.compute import silent
-from twin.units import UM, URAD
+from matstd.compensation.field import MachineErrors, correction, played, shifted
+from matstd.diagnosis.drift import chosen, joined, judge, offered, read_log
+from matstd.twin import parse_effect, read_machine, tip
+from matstd.twin.compute import silent
+from matstd.twin.units import UM, URAD
 
 MACHINE = Path(str(files("matstd").joinpath("machines", "hmc1995.toml")))
 

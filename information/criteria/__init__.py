@@ -5,15 +5,15 @@ choice of touches can be made for. A new criterion is a new `Measure` (`measures
 the two tangents (`tangents.py`).
 """
 
-from information.criteria.design_criterion import (
+from matstd.information.criteria.design_criterion import (
     DesignCriterion,
     five_criteria,
     mean_prediction,
     robust,
     with_potential,
 )
-from information.criteria.posterior import Posterior, prior_sd_of_tip, whitened
-from information.criteria.tangents import RowStep, Tangent
+from matstd.information.criteria.posterior import Posterior, prior_sd_of_tip, whitened
+from matstd.information.criteria.tangents import RowStep, Tangent
 
 __all__ = [
     "DesignCriterion",

@@ -1,7 +1,7 @@
 """What touches are chosen for: a measure of what stays unknown, over machines and directions.
 
 With ``M_s = prior_s + F`` for the information ``F = W^T W`` of the touches and the prior of a drawn
-machine s, the criterion is the mean of its `information.criteria.measures.Measure` over the
+machine s, the criterion is the mean of its `matstd.information.criteria.measures.Measure` over the
 machines, or over the worst of them (conditional value at risk). Without drawn machines the prior is
 the unit matrix. At any F there is a tangent, one for each machine, whose sum is nowhere above the
 criterion; searches follow it and bounds rest on it.
@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from information.criteria.measures import (
+from matstd.information.criteria.measures import (
     VISIBLE,
     Determinant,
     LargestEigenvalue,
@@ -23,9 +23,9 @@ from information.criteria.measures import (
     MeanVariance,
     Measure,
 )
-from information.criteria.tangents import Tangent
-from twin.errors import DesignError
-from twin.frames import Array
+from matstd.information.criteria.tangents import Tangent
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
 
 
 @dataclass(frozen=True, eq=False)

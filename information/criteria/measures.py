@@ -25,8 +25,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from information.criteria.tangents import LogDeterminant, Tangent, Trace
-from twin.frames import Array
+from matstd.information.criteria.tangents import LogDeterminant, Tangent, Trace
+from matstd.twin.frames import Array
 
 VISIBLE = 1e-13
 """Share of the largest eigenvalue below which a direction is neither felt nor shown: rounding."""

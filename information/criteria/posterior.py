@@ -1,9 +1,10 @@
 """What measurements can know of a model's parameters, before any of them is made.
 
 Everything here is linear: a row is the deviation along the normal of one touch per unit of every
-parameter (``n^T J`` times the shape functions, `twin.model.model.columns`), with a prior standard
-deviation for every parameter and a standard uncertainty for every touch. Rows are *whitened*,
-``W = rows * prior_sd / u``, so that one is what a typical error shows against the noise.
+parameter (``n^T J`` times the shape functions, `matstd.twin.model.model.columns`), with a prior
+standard deviation for every parameter and a standard uncertainty for every touch. Rows are
+*whitened*, ``W = rows * prior_sd / u``, so that one is what a typical error shows against the
+noise.
 """
 
 from dataclasses import dataclass
@@ -11,8 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
-from twin.errors import ShapeMismatch
-from twin.frames import Array
+from matstd.twin.errors import ShapeMismatch
+from matstd.twin.frames import Array
 
 
 def whitened(rows: Array, prior_sd: Array, u: Array | float) -> Array:

@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.frames import Array
+from matstd.twin.frames import Array
 
 
 class RowStep(NamedTuple):

@@ -2,13 +2,16 @@
 
 Whitened rows of touches go in; out come rank, condition, gauge freedoms with what would resolve
 them, combinations that are determined, parameters that are tied, degrees that are supported. All of
-it is data; `report.words` puts it into words.
+it is data; `matstd.report.words` puts it into words.
 """
 
-from information.identifiability.correlation import STRONG, Pair, Ties, ties
-from information.identifiability.degrees import Degree, supported_degrees
-from information.identifiability.estimable_combinations import EstimableCombination, combinations
-from information.identifiability.freedoms import (
+from matstd.information.identifiability.correlation import STRONG, Pair, Ties, ties
+from matstd.information.identifiability.degrees import Degree, supported_degrees
+from matstd.information.identifiability.estimable_combinations import (
+    EstimableCombination,
+    combinations,
+)
+from matstd.information.identifiability.freedoms import (
     Freedom,
     FreedomFamily,
     Reason,
@@ -16,8 +19,8 @@ from information.identifiability.freedoms import (
     Term,
     in_families,
 )
-from information.identifiability.nullspace import rank_analysis
-from information.identifiability.separation import Group, Identifiability, identifiability
+from matstd.information.identifiability.nullspace import rank_analysis
+from matstd.information.identifiability.separation import Group, Identifiability, identifiability
 
 __all__ = [
     "STRONG",

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.errors import ShapeMismatch
-from twin.frames import Array
+from matstd.twin.errors import ShapeMismatch
+from matstd.twin.frames import Array
 
 STRONG = 0.9
 """Absolute correlation from which two parameters are called tied."""

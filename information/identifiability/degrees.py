@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.effects import HigherOrder
-from twin.frames import Array
-from twin.machine import Family, Link, Symbol
-from twin.model import Model, columns
-from twin.record import Touches
+from matstd.twin.effects import HigherOrder
+from matstd.twin.frames import Array
+from matstd.twin.machine import Family, Link, Symbol
+from matstd.twin.model import Model, columns
+from matstd.twin.record import Touches
 
 HIGHEST = 8
 """Highest degree that is tried."""

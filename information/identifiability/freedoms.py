@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
-from twin.machine import Chain, Family, Symbol, parse_symbol
-from twin.model import Effect, Parameter
+from matstd.twin.machine import Chain, Family, Symbol, parse_symbol
+from matstd.twin.model import Effect, Parameter
 
 _SHAPED = re.compile(r"geometric\((\w+),([^,)]+)\)\Z")
 _ORDER = ("linear", "parabolic", "sinusoidal", "sinusoidal@90")

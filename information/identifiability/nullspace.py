@@ -18,7 +18,7 @@ from functools import cached_property
 import numpy as np
 from scipy.optimize import linprog
 
-from twin.frames import Array
+from matstd.twin.frames import Array
 
 INVISIBLE = 1e-8
 """Singular value over the largest, columns of length one, below which a direction is never seen:

@@ -2,9 +2,9 @@
 
 A gauge freedom is a direction of parameter space that no touch notices: the constants of an axis
 and the set-up of the standard, the tilt of a ram and its straightness at one tool length. They come
-from the null space of the rows, by `information.identifiability.nullspace`, and are checked, one
-by one, against richer touches that could have been made: another stylus length, another set-up, the
-whole travel.
+from the null space of the rows, by `matstd.information.identifiability.nullspace`, and are checked,
+one by one, against richer touches that could have been made: another stylus length, another set-up,
+the whole travel.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from information.identifiability.freedoms import (
+from matstd.information.identifiability.freedoms import (
     Freedom,
     Parameters,
     Reason,
@@ -20,16 +20,16 @@ from information.identifiability.freedoms import (
     Term,
     reason,
 )
-from information.identifiability.nullspace import (
+from matstd.information.identifiability.nullspace import (
     INVISIBLE,
     condition,
     groups,
     rank_analysis,
     sparse,
 )
-from twin.frames import Array
-from twin.machine import Chain, Family, Symbol
-from twin.units import UM, URAD
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Family, Symbol
+from matstd.twin.units import UM, URAD
 
 _KEPT = 1e-6  # part of its length that a gauge direction must show in richer touches to be resolved
 

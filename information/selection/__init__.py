@@ -6,11 +6,11 @@ best possible (`relaxation`), which also bound what any choice could reach (`cer
 limits how many of a kind are chosen.
 """
 
-from information.selection.certificate import Certificate, rounded
-from information.selection.groups import best_groups
-from information.selection.relaxation import ROUNDS, relaxed
-from information.selection.shares import heaviest
-from information.selection.touch_selection import Mask, Quota, Selection, exchange, fill
+from matstd.information.selection.certificate import Certificate, rounded
+from matstd.information.selection.groups import best_groups
+from matstd.information.selection.relaxation import ROUNDS, relaxed
+from matstd.information.selection.shares import heaviest
+from matstd.information.selection.touch_selection import Mask, Quota, Selection, exchange, fill
 
 __all__ = [
     "ROUNDS",

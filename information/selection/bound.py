@@ -24,8 +24,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from information.criteria import DesignCriterion
-from twin.frames import Array
+from matstd.information.criteria import DesignCriterion
+from matstd.twin.frames import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,17 +1,17 @@
 """How near a choice of touches is to the best that any choice could be, certified.
 
-The efficiency is the bound of `information.selection.bound` over the criterion of the choice; the
-fractions of `information.selection.relaxation` make the bound tight, their heaviest touches a good
-start for exchanges.
+The efficiency is the bound of `matstd.information.selection.bound` over the criterion of the
+choice; the fractions of `matstd.information.selection.relaxation` make the bound tight, their
+heaviest touches a good start for exchanges.
 """
 
 from dataclasses import dataclass
 
-from information.criteria import DesignCriterion
-from information.selection.relaxation import relaxed
-from information.selection.shares import heaviest
-from information.selection.touch_selection import Mask, Quota, Selection, exchange
-from twin.frames import Array
+from matstd.information.criteria import DesignCriterion
+from matstd.information.selection.relaxation import relaxed
+from matstd.information.selection.shares import heaviest
+from matstd.information.selection.touch_selection import Mask, Quota, Selection, exchange
+from matstd.twin.frames import Array
 
 
 @dataclass(frozen=True)

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from information.criteria import DesignCriterion, Tangent
-from twin.compute import blocks
-from twin.frames import Array
-from twin.record import IntArray
+from matstd.information.criteria import DesignCriterion, Tangent
+from matstd.twin.compute import blocks
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
 
 _GROUPS_A_BLOCK = 100
 

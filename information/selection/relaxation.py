@@ -16,13 +16,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from information.criteria import DesignCriterion, Tangent
-from information.selection.bound import slope
-from information.selection.shares import cells, keeps, largest_sum
-from information.selection.touch_selection import Mask, Quota
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.record import IntArray
+from matstd.information.criteria import DesignCriterion, Tangent
+from matstd.information.selection.bound import slope
+from matstd.information.selection.shares import cells, keeps, largest_sum
+from matstd.information.selection.touch_selection import Mask, Quota
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
 
 _STEPS = 400  # vertex exchanges between two looks at all candidates
 _CURVED = 40  # the same along one tangent of a criterion that is curved

@@ -6,10 +6,10 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import csr_array, vstack
 
-from information.selection.touch_selection import Mask, Quota
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.record import IntArray
+from matstd.information.selection.touch_selection import Mask, Quota
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,8 @@ variance of the tool point over the poses that the user cares about,
 
 for parameters in units of their prior. The same row-by-row updates serve every criterion by its
 tangent. A greedy choice is mended by exchanges until none that is tried helps; that is a local
-optimum and is called nothing else. `information.selection.certificate` says how near it is to the
-best.
+optimum and is called nothing else. `matstd.information.selection.certificate` says how near it is
+to the best.
 """
 
 from dataclasses import dataclass
@@ -16,10 +16,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from information.criteria import DesignCriterion, RowStep, Tangent
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.record import IntArray
+from matstd.information.criteria import DesignCriterion, RowStep, Tangent
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
 
 Mask = NDArray[np.bool_]
 

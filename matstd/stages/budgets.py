@@ -6,19 +6,19 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.brief import Project, Task
-from artefact.certify import like_task, misplaced, on_faces
-from artefact.reach import Requests
-from artefact.worth import Calibration
-from diagnosis.fit import Prior, fit_run
-from diagnosis.task import TaskUncertainty, Visits, task_uncertainty, visits_of
-from probe_paths.campaign import VirtualMachine, visits
-from twin.errors import DesignError
-from twin.frames import pose, rotation
-from twin.model import Model
-from twin.record import Run
-from twin.units import UM, URAD
+from matstd.artefact.body import Standard
+from matstd.artefact.brief import Project, Task
+from matstd.artefact.certify import like_task, misplaced, on_faces
+from matstd.artefact.reach import Requests
+from matstd.artefact.worth import Calibration
+from matstd.diagnosis.fit import Prior, fit_run
+from matstd.diagnosis.task import TaskUncertainty, Visits, task_uncertainty, visits_of
+from matstd.probe_paths.campaign import VirtualMachine, visits
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import pose, rotation
+from matstd.twin.model import Model
+from matstd.twin.record import Run
+from matstd.twin.units import UM, URAD
 
 PLAIN = "as measured"
 """Results that no model corrects."""

@@ -10,17 +10,27 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.body import Standard, write_standard
-from artefact.brief import Project
-from artefact.certify import dmis_program, like_task
-from artefact.compare import WorstRegions, identifiability_report, worst_regions
-from artefact.place import Placement, design_standard
-from cad_out.details import datum_touches, details_of, engraved_on
-from cad_out.making import Stiffness, making_of, stiffness_of, with_sag, write_making
-from cad_out.verify import Conformity, export_standard
-from diagnosis.answer import probed_volume, prove, seen_from
-from diagnosis.files import write_uncertainty
-from diagnosis.fit import fit_run
+from matstd.artefact.body import Standard, write_standard
+from matstd.artefact.brief import Project
+from matstd.artefact.certify import dmis_program, like_task
+from matstd.artefact.compare import WorstRegions, identifiability_report, worst_regions
+from matstd.artefact.place import Placement, design_standard
+from matstd.cad_out.details import datum_touches, details_of, engraved_on
+from matstd.cad_out.making import Stiffness, making_of, stiffness_of, with_sag, write_making
+from matstd.cad_out.verify import Conformity, export_standard
+from matstd.diagnosis.answer import probed_volume, prove, seen_from
+from matstd.diagnosis.files import write_uncertainty
+from matstd.diagnosis.fit import fit_run
+from matstd.probe_paths.campaign import Campaign, VirtualMachine, simulate
+from matstd.probe_paths.plan import TouchPlan
+from matstd.probe_paths.stations import all_programs, make_stations, plan_campaign
+from matstd.report.drawing import Issuer, write_drawing
+from matstd.report.identifiability import write_identifiability, write_identification
+from matstd.report.pages import Design, Proven
+from matstd.sensitivity.first_order import Workspace, latin_hypercube
+from matstd.sensitivity.montecarlo import Workers
+from matstd.sensitivity.population import drawn_errors
+from matstd.sensitivity.study import Study
 from matstd.stages.budgets import virtual_budgets
 from matstd.stages.from_project import (
     blank,
@@ -38,21 +48,11 @@ from matstd.stages.seat import check_beside, check_seat
 from matstd.stages.space import check_space
 from matstd.stages.streams import streams
 from matstd.stages.study_run import study_and_maps
-from probe_paths.campaign import Campaign, VirtualMachine, simulate
-from probe_paths.plan import TouchPlan
-from probe_paths.stations import all_programs, make_stations, plan_campaign
-from report.drawing import Issuer, write_drawing
-from report.identifiability import write_identifiability, write_identification
-from report.pages import Design, Proven
-from sensitivity.first_order import Workspace, latin_hypercube
-from sensitivity.montecarlo import Workers
-from sensitivity.population import drawn_errors
-from sensitivity.study import Study
-from twin.compute import Progress
-from twin.files import errors_toml, write_run, write_whole
-from twin.frames import Array
-from twin.model import Effect, contribution
-from twin.record import at_poses
+from matstd.twin.compute import Progress
+from matstd.twin.files import errors_toml, write_run, write_whole
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, contribution
+from matstd.twin.record import at_poses
 
 PROOF_POSES = 2000
 """Poses at which predicted and true volumetric error are compared, none of them probed."""

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from artefact.body import Base, Limits, Material
-from artefact.brief import BASE_THICKNESS, CORNER_RADIUS, BodyTable, ProbeTable, Project
-from artefact.layout import Blank, Fittings
-from artefact.place import PlacementOptions
-from artefact.reach import (
+from matstd.artefact.body import Base, Limits, Material
+from matstd.artefact.brief import BASE_THICKNESS, CORNER_RADIUS, BodyTable, ProbeTable, Project
+from matstd.artefact.layout import Blank, Fittings
+from matstd.artefact.place import PlacementOptions
+from matstd.artefact.reach import (
     DatumBall,
     ProbeReach,
     Solid,
@@ -17,17 +17,17 @@ from artefact.reach import (
     round_table,
     still_frames,
 )
-from artefact.seat import (
+from matstd.artefact.seat import (
     middle_room,
 )
-from artefact.worth import Calibration, CriterionOptions, TouchOptions
-from probe_paths.emit import SEARCH, Feeds
-from probe_paths.language import Dialect, checked_name, read_dialect
-from probe_paths.plan import PlanOptions, Probe, Sensor
-from probe_paths.stations import Clamping, with_tool
-from twin.errors import BadFile
-from twin.frames import pose, rotation
-from twin.units import DEG, KG_M3, UM, URAD
+from matstd.artefact.worth import Calibration, CriterionOptions, TouchOptions
+from matstd.probe_paths.emit import SEARCH, Feeds
+from matstd.probe_paths.language import Dialect, checked_name, read_dialect
+from matstd.probe_paths.plan import PlanOptions, Probe, Sensor
+from matstd.probe_paths.stations import Clamping, with_tool
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import pose, rotation
+from matstd.twin.units import DEG, KG_M3, UM, URAD
 
 _LOWEST_SPHERE, _HIGHEST_SPHERE = 60.0, 130.0 / 220.0
 """Of the sphere centres above the seat, mm and as a share of the blank's height: as far apart as

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.body import DatumSphere, Standard
-from artefact.brief import Project
-from artefact.reach import (
+from matstd.artefact.body import DatumSphere, Standard
+from matstd.artefact.brief import Project
+from matstd.artefact.reach import (
     ANGLE,
     Limit,
     PlacesInReach,
@@ -21,10 +21,19 @@ from artefact.reach import (
     spread_poses,
     turned,
 )
-from artefact.seat import (
+from matstd.artefact.seat import (
     seat_height,
 )
-from artefact.worth import poses_within
+from matstd.artefact.worth import poses_within
+from matstd.probe_paths.plan import (
+    home_readings,
+    readings_at,
+    solid_hull,
+    swing_height,
+    top_height,
+)
+from matstd.report.plots import draw_reach
+from matstd.report.style import save
 from matstd.stages.from_project import (
     blank,
     placement_options,
@@ -33,20 +42,11 @@ from matstd.stages.from_project import (
     probe_reach,
 )
 from matstd.stages.seat import RISEN, lifted, stands
-from probe_paths.plan import (
-    home_readings,
-    readings_at,
-    solid_hull,
-    swing_height,
-    top_height,
-)
-from report.plots import draw_reach
-from report.style import save
-from twin.errors import NotReachable
-from twin.frames import Array
-from twin.machine import linear_directions
-from twin.record import Setup
-from twin.units import DEG
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array
+from matstd.twin.machine import linear_directions
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG
 
 PICTURE = "reach.png"
 """File of the picture in a folder of results."""

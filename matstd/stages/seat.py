@@ -9,15 +9,15 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.brief import BodyTable, Project
-from artefact.reach import (
+from matstd.artefact.body import Standard
+from matstd.artefact.brief import BodyTable, Project
+from matstd.artefact.reach import (
     Solid,
     closed_mesh,
     hangs,
     table_face,
 )
-from artefact.seat import (
+from matstd.artefact.seat import (
     TOUCHING,
     base_corners,
     common_part,
@@ -26,12 +26,12 @@ from artefact.seat import (
     overlap,
     seat_height,
 )
-from cad_out.meshes import read_stl
+from matstd.cad_out.meshes import read_stl
 from matstd.stages.from_project import blank, solids_of, table_of
-from twin.errors import BadFile
-from twin.frames import Array, apply, fixed_xyz, fixed_xyz_angles, inverse, pose, rotation
-from twin.record import Setup
-from twin.units import DEG
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array, apply, fixed_xyz, fixed_xyz_angles, inverse, pose, rotation
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG
 
 RISEN = 1.0
 """By which a seat may lie above or below what carries it, mm: set-ups are measured."""

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from matstd.options import print_report
-from probe_paths.emit import Feeds
-from probe_paths.locate import RAISED, companions
-from probe_paths.stations import Station
-from report.pages import Printer, write_setup_page
+from matstd.probe_paths.emit import Feeds
+from matstd.probe_paths.locate import RAISED, companions
+from matstd.probe_paths.stations import Station
+from matstd.report.pages import Printer, write_setup_page
 
 
 def write_sheets(

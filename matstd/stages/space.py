@@ -10,14 +10,14 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.brief import FEWEST_PATCHES, Project
-from artefact.layout import WALL_GAP, least_gap
-from artefact.place import Room, check_room, room_for
+from matstd.artefact.brief import FEWEST_PATCHES, Project
+from matstd.artefact.layout import WALL_GAP, least_gap
+from matstd.artefact.place import Room, check_room, room_for
+from matstd.report.plots import draw_room
+from matstd.report.style import save
 from matstd.stages.from_project import blank, placement_options, probe_reach
-from report.plots import draw_room
-from report.style import save
-from twin.errors import NotBuildable
-from twin.frames import Array
+from matstd.twin.errors import NotBuildable
+from matstd.twin.frames import Array
 
 PICTURE = "room.png"
 """Of the patches that fit on the blank; only a refusal draws it."""

@@ -4,18 +4,18 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.brief import Project
+from matstd.artefact.brief import Project
+from matstd.report.maps import draw_maps, draw_path
+from matstd.report.pages import write_study_page
+from matstd.report.words import sampling_words, study_words
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.montecarlo import Workers
+from matstd.sensitivity.study import Study, run_study, write_study
 from matstd.stages.streams import Streams, streams
-from report.maps import draw_maps, draw_path
-from report.pages import write_study_page
-from report.words import sampling_words, study_words
-from sensitivity.first_order import Workspace
-from sensitivity.montecarlo import Workers
-from sensitivity.study import Study, run_study, write_study
-from twin.compute import Progress
-from twin.errors import BadFile
-from twin.files import read_poses
-from twin.frames import Array
+from matstd.twin.compute import Progress
+from matstd.twin.errors import BadFile
+from matstd.twin.files import read_poses
+from matstd.twin.frames import Array
 
 
 def study_project(

@@ -6,24 +6,30 @@ never learns what the virtual machine knew. `visits` runs them again and again. 
 `probing_time` say what a plan costs.
 """
 
-from probe_paths.campaign.as_programmed import check_as_programmed
-from probe_paths.campaign.ball_change import (
+from matstd.probe_paths.campaign.as_programmed import check_as_programmed
+from matstd.probe_paths.campaign.ball_change import (
     BallChange,
     ball_changes,
     check_changes,
     effective_radii,
     read_heights,
 )
-from probe_paths.campaign.collisions import check_moves
-from probe_paths.campaign.contact_points import foot_points
-from probe_paths.campaign.contact_solver import FIRST_MORNING, ContactSolver, VirtualMachine
-from probe_paths.campaign.disturbances import effects_over_record, in_campaign
-from probe_paths.campaign.duration import probing_time
-from probe_paths.campaign.evaluation import ball_centres, evaluate
-from probe_paths.campaign.log_parts import checked_parts
-from probe_paths.campaign.order_study import Order, Ordering, orders
-from probe_paths.campaign.simulation import SMALLEST_U, Campaign, simulate, simulate_search, visits
-from probe_paths.campaign.tolerance import setup_tolerance
+from matstd.probe_paths.campaign.collisions import check_moves
+from matstd.probe_paths.campaign.contact_points import foot_points
+from matstd.probe_paths.campaign.contact_solver import FIRST_MORNING, ContactSolver, VirtualMachine
+from matstd.probe_paths.campaign.disturbances import effects_over_record, in_campaign
+from matstd.probe_paths.campaign.duration import probing_time
+from matstd.probe_paths.campaign.evaluation import ball_centres, evaluate
+from matstd.probe_paths.campaign.log_parts import checked_parts
+from matstd.probe_paths.campaign.order_study import Order, Ordering, orders
+from matstd.probe_paths.campaign.simulation import (
+    SMALLEST_U,
+    Campaign,
+    simulate,
+    simulate_search,
+    visits,
+)
+from matstd.probe_paths.campaign.tolerance import setup_tolerance
 
 __all__ = [
     "FIRST_MORNING",

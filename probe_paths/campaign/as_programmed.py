@@ -9,10 +9,10 @@ from datetime import timedelta
 
 import numpy as np
 
-from probe_paths.control import UNDATED, LogPart, ProbeStep, ReadProgram
-from twin.errors import BadFile
-from twin.machine import Chain
-from twin.units import DEG
+from matstd.probe_paths.control import UNDATED, LogPart, ProbeStep, ReadProgram
+from matstd.twin.errors import BadFile
+from matstd.twin.machine import Chain
+from matstd.twin.units import DEG
 
 TOGETHER = timedelta(days=30)
 """Between the first and the last log of one evaluation: a standard stays clamped for days."""

@@ -17,14 +17,14 @@ from typing import NamedTuple, get_args, get_type_hints
 
 import numpy as np
 
-from artefact.body import Standard
-from probe_paths.campaign.evaluation import ball_centres
-from probe_paths.control import LogPart
-from probe_paths.language import Dialect
-from twin.errors import BadFile, DesignError
-from twin.frames import Array, apply, inverse
-from twin.machine import Chain
-from twin.units import HOUR, UM
+from matstd.artefact.body import Standard
+from matstd.probe_paths.campaign.evaluation import ball_centres
+from matstd.probe_paths.control import LogPart
+from matstd.probe_paths.language import Dialect
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.machine import Chain
+from matstd.twin.units import HOUR, UM
 
 EXPANDED = 2.0
 """Of a change in standard uncertainties, below which it is none."""

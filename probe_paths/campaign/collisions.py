@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from artefact.body import Meeting, Standard, contact
-from artefact.reach import Mask
-from probe_paths.control import Move, ProbeStep, ReadProgram
-from probe_paths.plan import (
+from matstd.artefact.body import Meeting, Standard, contact
+from matstd.artefact.reach import Mask
+from matstd.probe_paths.control import Move, ProbeStep, ReadProgram
+from matstd.probe_paths.plan import (
     SMALLEST_GAP,
     ToolClearance,
     solid_hull,
@@ -13,10 +13,10 @@ from probe_paths.plan import (
     swing_height,
     top_height,
 )
-from twin.errors import BadFile
-from twin.frames import Array, apply, inverse, turn
-from twin.machine import Chain, linear_directions, tip
-from twin.record import IntArray, Labels
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array, apply, inverse, turn
+from matstd.twin.machine import Chain, linear_directions, tip
+from matstd.twin.record import IntArray, Labels
 
 
 def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:

@@ -11,13 +11,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from artefact.body import Standard
-from twin.effects import StylusError, setup_errors
-from twin.frames import Array
-from twin.library import ordinary_model
-from twin.model import Model
-from twin.record import Labels, Run, computed_deviation
-from twin.units import UM
+from matstd.artefact.body import Standard
+from matstd.twin.effects import StylusError, setup_errors
+from matstd.twin.frames import Array
+from matstd.twin.library import ordinary_model
+from matstd.twin.model import Model
+from matstd.twin.record import Labels, Run, computed_deviation
+from matstd.twin.units import UM
 
 _NOISE = 2.0 * UM
 """How closely the model is asked to fit at most, mm: what it lacks is not noise, but as large."""

@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from twin.files import SensorRecord
-from twin.frames import Array
-from twin.machine import Contribution
-from twin.model import Effect, contribution
-from twin.record import Setup, Touches
-from twin.thermal import ThermalLag
+from matstd.twin.files import SensorRecord
+from matstd.twin.frames import Array
+from matstd.twin.machine import Contribution
+from matstd.twin.model import Effect, contribution
+from matstd.twin.record import Setup, Touches
+from matstd.twin.thermal import ThermalLag
 
 Disturbance = Callable[[Touches], Contribution]
 

@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.reach import Requests
-from probe_paths.emit import make_programs
-from probe_paths.plan import PlanOptions, Probe, plan_touches
-from twin.errors import NotReachable
-from twin.machine import Chain
-from twin.record import Setup
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import Requests
+from matstd.probe_paths.emit import make_programs
+from matstd.probe_paths.plan import PlanOptions, Probe, plan_touches
+from matstd.twin.errors import NotReachable
+from matstd.twin.machine import Chain
+from matstd.twin.record import Setup
 
 
 def probing_time(

@@ -5,17 +5,30 @@ from dataclasses import replace
 
 import numpy as np
 
-from artefact.body import Standard
-from probe_paths.campaign.contact_points import at_true_contacts, foot_points
-from probe_paths.campaign.log_parts import checked_parts, distinct_parts, sensed, without_rows
-from probe_paths.control import LogPart
-from probe_paths.language import Dialect
-from probe_paths.plan import LINEAR, Probe, ProgramFrame
-from twin.errors import BadFile, NotEnoughData
-from twin.frames import Array, apply, inverse, pose, rotation
-from twin.machine import Chain, tip
-from twin.record import IntArray, Labels, Run, Setup, Touches, computed_deviation, linear_approach
-from twin.units import DEG, GPA, NM
+from matstd.artefact.body import Standard
+from matstd.probe_paths.campaign.contact_points import at_true_contacts, foot_points
+from matstd.probe_paths.campaign.log_parts import (
+    checked_parts,
+    distinct_parts,
+    sensed,
+    without_rows,
+)
+from matstd.probe_paths.control import LogPart
+from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.plan import LINEAR, Probe, ProgramFrame
+from matstd.twin.errors import BadFile, NotEnoughData
+from matstd.twin.frames import Array, apply, inverse, pose, rotation
+from matstd.twin.machine import Chain, tip
+from matstd.twin.record import (
+    IntArray,
+    Labels,
+    Run,
+    Setup,
+    Touches,
+    computed_deviation,
+    linear_approach,
+)
+from matstd.twin.units import DEG, GPA, NM
 
 BESIDE = 10.0
 """Farthest that a ball can be from the surface it touched while the set-up is only believed, mm."""
@@ -44,7 +57,7 @@ def evaluate(
     The ball centre that a nominal machine would have is taken into the frame of the standard. The
     set-up is fitted first (six parameters each, Gauss-Newton on the deviations, foot points anew
     every round), then the machine's errors as far as the touches tell
-    (`probe_paths.campaign.contact_points`), as a
+    (`matstd.probe_paths.campaign.contact_points`), as a
     ball that met the surface beside its foot point would have the curvature in between pass for a
     deviation. Then ``dev = n . (ball centre - p) - radius`` with the believed ball centre.
 

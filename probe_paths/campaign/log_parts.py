@@ -7,14 +7,14 @@ from itertools import pairwise
 
 import numpy as np
 
-from artefact.body import Standard
-from probe_paths.campaign.as_programmed import check_numbers
-from probe_paths.control import UNDATED, LogPart
-from probe_paths.plan import calibration_hash, stated_serial
-from twin.errors import BadFile
-from twin.frames import Array
-from twin.record import IntArray
-from twin.units import NM
+from matstd.artefact.body import Standard
+from matstd.probe_paths.campaign.as_programmed import check_numbers
+from matstd.probe_paths.control import UNDATED, LogPart
+from matstd.probe_paths.plan import calibration_hash, stated_serial
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
+from matstd.twin.units import NM
 
 LARGEST_OFFSET = 0.1
 """Of a stylus that somebody has centred, mm: ten times what a dial gauge shows."""

@@ -11,9 +11,9 @@ from enum import Enum
 
 import numpy as np
 
-from probe_paths.control import Clock, ProbeStep, step_times
-from probe_paths.emit import Feeds, make_programs
-from probe_paths.plan import (
+from matstd.probe_paths.control import Clock, ProbeStep, step_times
+from matstd.probe_paths.emit import Feeds, make_programs
+from matstd.probe_paths.plan import (
     LINEAR,
     TouchPlan,
     Visit,
@@ -21,10 +21,10 @@ from probe_paths.plan import (
     nearest_neighbours,
     short_order,
 )
-from twin.frames import Array
-from twin.library import parse_effect
-from twin.model import Effect, Model, columns
-from twin.record import IntArray, Setup, Touches
+from matstd.twin.frames import Array
+from matstd.twin.library import parse_effect
+from matstd.twin.model import Effect, Model, columns
+from matstd.twin.record import IntArray, Setup, Touches
 
 _FREE = 1e3
 """Prior of what is looked for, in units of its typical size: nearly none."""

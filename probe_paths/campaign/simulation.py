@@ -7,15 +7,15 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.body import Standard
-from probe_paths.campaign.collisions import check_moves
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.virtual_run import VirtualRun, run_programs
-from probe_paths.control import LogPart, ReadProgram, read_log, read_program
-from probe_paths.plan import Probe
-from twin.compute import Progress, silent
-from twin.record import Run
+from matstd.artefact.body import Standard
+from matstd.probe_paths.campaign.collisions import check_moves
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.probe_paths.campaign.virtual_run import VirtualRun, run_programs
+from matstd.probe_paths.control import LogPart, ReadProgram, read_log, read_program
+from matstd.probe_paths.plan import Probe
+from matstd.twin.compute import Progress, silent
+from matstd.twin.record import Run
 
 SMALLEST_U = 1e-5
 """Uncertainty stated where no noise is simulated, mm: a run file cannot state none."""

@@ -4,11 +4,11 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from artefact.body import Meeting, contact
-from probe_paths.plan import TouchPlan
-from twin.frames import Array, apply, fixed_xyz, inverse, pose, turn
-from twin.machine import linear_directions, tip
-from twin.units import DEG
+from matstd.artefact.body import Meeting, contact
+from matstd.probe_paths.plan import TouchPlan
+from matstd.twin.frames import Array, apply, fixed_xyz, inverse, pose, turn
+from matstd.twin.machine import linear_directions, tip
+from matstd.twin.units import DEG
 
 STEPS_MM = (0.5, 1.0, 1.5, 2.0, 2.5)
 """Displacements that are tried, mm; a touch looks 3 mm beyond the surface."""

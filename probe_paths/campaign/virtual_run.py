@@ -12,10 +12,10 @@ from enum import StrEnum
 
 import numpy as np
 
-from artefact.body import Standard
-from probe_paths.campaign.contact_solver import ContactSolver, VirtualMachine
-from probe_paths.campaign.disturbances import in_campaign
-from probe_paths.control import (
+from matstd.artefact.body import Standard
+from matstd.probe_paths.campaign.contact_solver import ContactSolver, VirtualMachine
+from matstd.probe_paths.campaign.disturbances import in_campaign
+from matstd.probe_paths.control import (
     STATUS,
     Halt,
     Print,
@@ -26,10 +26,10 @@ from probe_paths.control import (
     Value,
     step_times,
 )
-from probe_paths.plan import LINEAR, ProgramFrame, Sensor, stated_serial
-from twin.errors import DesignError, NotReachable
-from twin.frames import Array
-from twin.record import Labels, Touches
+from matstd.probe_paths.plan import LINEAR, ProgramFrame, Sensor, stated_serial
+from matstd.twin.errors import DesignError, NotReachable
+from matstd.twin.frames import Array
+from matstd.twin.record import Labels, Touches
 
 CHANGEOVER = 60.0
 """Between two programs, s."""

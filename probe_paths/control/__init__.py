@@ -5,11 +5,11 @@ takes (`ReadProgram`), and what one run of it logged (`LogPart`). Rules for sing
 `modes` and `motion`, those for a whole program in `structure` and `runner`.
 """
 
-from probe_paths.control.clock import Clock, step_times
-from probe_paths.control.interpreter import interpret, read_program, stated_probe
-from probe_paths.control.log import BALL, FIRST, UNDATED, LogPart, read_log
-from probe_paths.control.motion import MAX_FEED
-from probe_paths.control.steps import (
+from matstd.probe_paths.control.clock import Clock, step_times
+from matstd.probe_paths.control.interpreter import interpret, read_program, stated_probe
+from matstd.probe_paths.control.log import BALL, FIRST, UNDATED, LogPart, read_log
+from matstd.probe_paths.control.motion import MAX_FEED
+from matstd.probe_paths.control.steps import (
     STATUS,
     Halt,
     Move,

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from probe_paths.control.steps import Move, ProbeStep, Step
-from twin.frames import Array
-from twin.machine import Chain
+from matstd.probe_paths.control.steps import Move, ProbeStep, Step
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
-from probe_paths.control.runner import MaskSource, Runner
-from probe_paths.control.state import State
-from probe_paths.control.steps import ProbeStep, ReadProgram
-from probe_paths.control.structure import (
+from matstd.probe_paths.control.runner import MaskSource, Runner
+from matstd.probe_paths.control.state import State
+from matstd.probe_paths.control.steps import ProbeStep, ReadProgram
+from matstd.probe_paths.control.structure import (
     Promise,
     check_cycles,
     heading,
@@ -22,7 +22,7 @@ from probe_paths.control.structure import (
     program_name,
     promise,
 )
-from probe_paths.language import (
+from matstd.probe_paths.language import (
     Dialect,
     Label,
     Q,
@@ -31,9 +31,9 @@ from probe_paths.language import (
     read_blocks,
     turn_tests,
 )
-from probe_paths.plan import Heading, Probe, ProgramFrame
-from twin.errors import BadFile
-from twin.machine import Chain
+from matstd.probe_paths.plan import Heading, Probe, ProgramFrame
+from matstd.twin.errors import BadFile
+from matstd.twin.machine import Chain
 
 _BEYOND = 1.05
 """Of its limit, what is off where it is tried whether a program stops."""

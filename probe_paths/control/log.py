@@ -14,13 +14,13 @@ from pathlib import Path
 
 import numpy as np
 
-from probe_paths.control.log_clock import LogClock
-from probe_paths.language import LOG_HEAD
-from probe_paths.plan import Heading, parse_heading
-from twin.errors import BadFile
-from twin.frames import Array
-from twin.record import IntArray
-from twin.units import DAY
+from matstd.probe_paths.control.log_clock import LogClock
+from matstd.probe_paths.language import LOG_HEAD
+from matstd.probe_paths.plan import Heading, parse_heading
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
+from matstd.twin.units import DAY
 
 LARGEST = 1e6
 """A coordinate (mm, degrees) or a number of a touch beyond this was not logged by our programs."""

@@ -1,6 +1,6 @@
 """Times of a log from the time of day alone: over midnight, and over a clock that was set."""
 
-from twin.units import DAY, HOUR
+from matstd.twin.units import DAY, HOUR
 
 _BACK = 0.5 * DAY
 """A time of day that seems to be later by more than this is an earlier one of the same day."""

@@ -4,10 +4,10 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 
-from probe_paths.control.state import State
-from probe_paths.language import TOOL_LENGTH, Block, Datum, Kind, Label, language_of
-from probe_paths.plan import LINEAR
-from twin.units import DEG
+from matstd.probe_paths.control.state import State
+from matstd.probe_paths.language import TOOL_LENGTH, Block, Datum, Kind, Label, language_of
+from matstd.probe_paths.plan import LINEAR
+from matstd.twin.units import DEG
 
 MAX_PROBING_FEED = 1000.0
 """Above this a cycle 4 is refused, mm/min: the trigger delay and the overtravel grow with it."""

@@ -4,12 +4,12 @@ import re
 
 import numpy as np
 
-from probe_paths.control.state import SAME, TOP, State
-from probe_paths.control.steps import Move
-from probe_paths.language import Block, Q
-from probe_paths.plan import LINEAR
-from twin.frames import Array
-from twin.units import DEG, MINUTE
+from matstd.probe_paths.control.state import SAME, TOP, State
+from matstd.probe_paths.control.steps import Move
+from matstd.probe_paths.language import Block, Q
+from matstd.probe_paths.plan import LINEAR
+from matstd.twin.frames import Array
+from matstd.twin.units import DEG, MINUTE
 
 _AXIS = re.compile(r"([A-Z])([+-][\d.]+)")
 MAX_FEED = 5000.0

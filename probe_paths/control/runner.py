@@ -6,11 +6,20 @@ from pathlib import Path
 
 import numpy as np
 
-from probe_paths.control.modes import check_cycle, read_datum, set_mode
-from probe_paths.control.motion import retract_max, straight_line
-from probe_paths.control.state import State
-from probe_paths.control.steps import STATUS, Halt, Move, Print, ProbeStep, Result, Step, Value
-from probe_paths.language import (
+from matstd.probe_paths.control.modes import check_cycle, read_datum, set_mode
+from matstd.probe_paths.control.motion import retract_max, straight_line
+from matstd.probe_paths.control.state import State
+from matstd.probe_paths.control.steps import (
+    STATUS,
+    Halt,
+    Move,
+    Print,
+    ProbeStep,
+    Result,
+    Step,
+    Value,
+)
+from matstd.probe_paths.language import (
     Block,
     Interlock,
     Kind,
@@ -22,9 +31,9 @@ from probe_paths.language import (
     parse_mask,
     shared_masks,
 )
-from probe_paths.plan import Heading, ProgramFrame, Sensor
-from twin.errors import BadFile
-from twin.units import MINUTE
+from matstd.probe_paths.plan import Heading, ProgramFrame, Sensor
+from matstd.twin.errors import BadFile
+from matstd.twin.units import MINUTE
 
 MAX_CALLS = 8
 """Depth of nested subprograms that the control allows."""

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from probe_paths.control.steps import Value
-from probe_paths.language import FREE, Block, Interlock, Label, Says, language_of, turn_tests
-from probe_paths.plan import ProgramFrame
-from twin.errors import BadFile
-from twin.frames import Array
-from twin.units import DEG
+from matstd.probe_paths.control.steps import Value
+from matstd.probe_paths.language import FREE, Block, Interlock, Label, Says, language_of, turn_tests
+from matstd.probe_paths.plan import ProgramFrame
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
+from matstd.twin.units import DEG
 
 TOP = 20.0
 """How far below the upper end of Z's travel a retract with M91 may end, mm."""

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import NamedTuple
 
-from probe_paths.language import MaskLine
-from probe_paths.plan import Heading, Sensor
-from twin.frames import Array
+from matstd.probe_paths.language import MaskLine
+from matstd.probe_paths.plan import Heading, Sensor
+from matstd.twin.frames import Array
 
 STATUS = 3
 """Part of a cycle's result that states whether there was a contact; negative: none."""

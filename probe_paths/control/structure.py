@@ -6,9 +6,9 @@ from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
-from probe_paths.language import Block, Kind, Label, language_of
-from probe_paths.plan import Heading, parse_heading
-from twin.errors import BadFile
+from matstd.probe_paths.language import Block, Kind, Label, language_of
+from matstd.probe_paths.plan import Heading, parse_heading
+from matstd.twin.errors import BadFile
 
 _TOUCHES = re.compile(r"TOUCHES (\d+) TO (\d+),.*")
 _DRY = re.compile(r"DRY RUN, RAISED BY [+-][\d.]+ MM, NO TOUCH")

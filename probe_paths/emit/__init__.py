@@ -4,7 +4,7 @@ In: a `TouchPlan` and a `Dialect`. Out: a `ProgramSet`, text of programs and mas
 interpreter has read back. What stands in a program, and in which order, is in `writer`.
 """
 
-from probe_paths.emit.program import (
+from matstd.probe_paths.emit.program import (
     SEARCH,
     Program,
     ProgramSet,
@@ -14,7 +14,7 @@ from probe_paths.emit.program import (
     make_programs,
     make_search,
 )
-from probe_paths.emit.writer import Feeds
+from matstd.probe_paths.emit.writer import Feeds
 
 __all__ = [
     "SEARCH",

@@ -6,12 +6,12 @@ ball comes down and nothing else, goes to one alarm, and prints its whole log at
 
 import numpy as np
 
-from probe_paths.emit.writer import Writer
-from probe_paths.language import Datum, ErrorText, Label, Q, Touch, interlocks
-from probe_paths.plan import home_readings
-from twin.errors import NotReachable
-from twin.frames import Array
-from twin.units import MINUTE
+from matstd.probe_paths.emit.writer import Writer
+from matstd.probe_paths.language import Datum, ErrorText, Label, Q, Touch, interlocks
+from matstd.probe_paths.plan import home_readings
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array
+from matstd.twin.units import MINUTE
 
 _FROM_ABOVE = -0.999
 """Of the Z component of a touch from above."""

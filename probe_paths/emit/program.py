@@ -10,15 +10,15 @@ from pathlib import Path
 
 import numpy as np
 
-from probe_paths.control import BALL, FIRST, Clock, ReadProgram, interpret, step_times
-from probe_paths.emit.first import FirstWriter
-from probe_paths.emit.writer import Feeds, Special, Writer
-from probe_paths.language import LANGUAGES, Dialect, checked_name, head_mask, shared_masks
-from probe_paths.plan import TouchPlan
-from twin.errors import DesignError
-from twin.files import write_whole
-from twin.record import IntArray
-from twin.units import DEG, MINUTE
+from matstd.probe_paths.control import BALL, FIRST, Clock, ReadProgram, interpret, step_times
+from matstd.probe_paths.emit.first import FirstWriter
+from matstd.probe_paths.emit.writer import Feeds, Special, Writer
+from matstd.probe_paths.language import LANGUAGES, Dialect, checked_name, head_mask, shared_masks
+from matstd.probe_paths.plan import TouchPlan
+from matstd.twin.errors import DesignError
+from matstd.twin.files import write_whole
+from matstd.twin.record import IntArray
+from matstd.twin.units import DEG, MINUTE
 
 DRY_RUN, SEARCH = "DRY", "LOC"
 """Last letters of the names of these programs; others have `BALL` and `FIRST`."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.body import Standard
-from probe_paths.language import (
+from matstd.artefact.body import Standard
+from matstd.probe_paths.language import (
     LANGUAGES,
     MAX_LINE,
     TOOL_LENGTH,
@@ -22,7 +22,7 @@ from probe_paths.language import (
     parse_mask,
     turn_tests,
 )
-from probe_paths.plan import (
+from matstd.probe_paths.plan import (
     LINEAR,
     Heading,
     ProgramFrame,
@@ -33,10 +33,10 @@ from probe_paths.plan import (
     stated_serial,
     waypoints,
 )
-from twin.errors import DesignError
-from twin.frames import Array, apply
-from twin.record import IntArray
-from twin.units import DEG, MINUTE
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array, apply
+from matstd.twin.record import IntArray
+from matstd.twin.units import DEG, MINUTE
 
 _LONGEST_TITLE = MAX_LINE - len("12345 * - ")
 """Characters of the title of a visit beside its block number and mark."""

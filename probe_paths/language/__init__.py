@@ -3,11 +3,12 @@
 A closed list of blocks (`Kind`): a language (`klartext`, `gcode`) writes them, `read_blocks` takes
 no others. `Dialect` holds what differs between controls of one language and between workshops, read
 from a file by `read_dialect`; `Q` the parameters that our programs use. A new block needs a
-function in every language, a pattern in its reader and an execution in `probe_paths.control`.
+function in every language, a pattern in its reader and an execution in
+`matstd.probe_paths.control`.
 """
 
-from probe_paths.language.blocks import Block, Kind
-from probe_paths.language.dialect import (
+from matstd.probe_paths.language.blocks import Block, Kind
+from matstd.probe_paths.language.dialect import (
     FREE,
     TOOL_LENGTH,
     Dialect,
@@ -15,11 +16,11 @@ from probe_paths.language.dialect import (
     Label,
     Q,
 )
-from probe_paths.language.dialect_file import read_dialect
-from probe_paths.language.interlock import Interlock, interlocks, turn_tests
-from probe_paths.language.language import Datum, Says, Touch
-from probe_paths.language.languages import LANGUAGES, language_of, read_blocks
-from probe_paths.language.masks import (
+from matstd.probe_paths.language.dialect_file import read_dialect
+from matstd.probe_paths.language.interlock import Interlock, interlocks, turn_tests
+from matstd.probe_paths.language.language import Datum, Says, Touch
+from matstd.probe_paths.language.languages import LANGUAGES, language_of, read_blocks
+from matstd.probe_paths.language.masks import (
     LOG_HEAD,
     MaskLine,
     SharedMask,
@@ -27,7 +28,7 @@ from probe_paths.language.masks import (
     parse_mask,
     shared_masks,
 )
-from probe_paths.language.text import MAX_LINE, checked_name
+from matstd.probe_paths.language.text import MAX_LINE, checked_name
 
 __all__ = [
     "FREE",

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
-from probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
-from twin.errors import BadFile
+from matstd.probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
+from matstd.twin.errors import BadFile
 
 _NUM = r"[+-]\d{1,5}(?:\.\d{0,7})?"
 _XYZ = rf"X({_NUM}) Y({_NUM}) Z({_NUM})"

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Literal
 
-from probe_paths.plan import Sensor
+from matstd.probe_paths.plan import Sensor
 
 
 class Q(IntEnum):

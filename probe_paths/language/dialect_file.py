@@ -5,9 +5,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
-from twin.errors import BadFile, DesignError
-from twin.files import Table, check_format, checked, parse_toml, read_text
+from matstd.probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.files import Table, check_format, checked, parse_toml, read_text
 
 _SHIPPED = Path(__file__).parent / "dialects"
 _DIALOG = r"^[A-Z][A-Z0-9 -]{0,23}$"

@@ -11,10 +11,16 @@ the machine stands.
 import re
 from collections.abc import Mapping, Sequence
 
-from probe_paths.language.dialect import TOOL_LENGTH, Dialect, Label, Q
-from probe_paths.language.language import Datum, Says, Tilting, Touch
-from probe_paths.language.masks import LogForm, MaskLine
-from probe_paths.language.text import axis_words, checked_line, checked_name, parameter, signed
+from matstd.probe_paths.language.dialect import TOOL_LENGTH, Dialect, Label, Q
+from matstd.probe_paths.language.language import Datum, Says, Tilting, Touch
+from matstd.probe_paths.language.masks import LogForm, MaskLine
+from matstd.probe_paths.language.text import (
+    axis_words,
+    checked_line,
+    checked_name,
+    parameter,
+    signed,
+)
 
 ENDING = ".ngc"
 LINE_END = "\n"

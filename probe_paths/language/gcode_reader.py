@@ -4,11 +4,11 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from probe_paths.language import gcode as g
-from probe_paths.language.blocks import Block, Kind, physical_lines
-from probe_paths.language.dialect import TOOL_LENGTH, Label, Q
-from probe_paths.language.text import parameter
-from twin.errors import BadFile
+from matstd.probe_paths.language import gcode as g
+from matstd.probe_paths.language.blocks import Block, Kind, physical_lines
+from matstd.probe_paths.language.dialect import TOOL_LENGTH, Label, Q
+from matstd.probe_paths.language.text import parameter
+from matstd.twin.errors import BadFile
 
 Words = dict[str, str | None]
 

@@ -7,9 +7,9 @@ alarm that the operator reads. A language without a datum has no such test.
 
 from typing import NamedTuple
 
-from probe_paths.language.dialect import LENGTH_LIMIT, Label
-from probe_paths.language.language import Datum, Language
-from probe_paths.plan import LINEAR, ProgramFrame
+from matstd.probe_paths.language.dialect import LENGTH_LIMIT, Label
+from matstd.probe_paths.language.language import Datum, Language
+from matstd.probe_paths.plan import LINEAR, ProgramFrame
 
 PRESET_LIMIT = 1.0
 """Of the preset's place, mm: the clearance that is planned at a touch."""

@@ -7,11 +7,17 @@ resolution the control takes, so that what is planned, printed and read back is 
 
 from collections.abc import Mapping, Sequence
 
-from probe_paths.language.dialect import TOOL_LENGTH, Dialect
-from probe_paths.language.language import Datum, Says, Tilting, Touch
-from probe_paths.language.masks import LogForm, MaskLine
-from probe_paths.language.text import axis_words, checked_line, checked_name, parameter, signed
-from twin.errors import DesignError
+from matstd.probe_paths.language.dialect import TOOL_LENGTH, Dialect
+from matstd.probe_paths.language.language import Datum, Says, Tilting, Touch
+from matstd.probe_paths.language.masks import LogForm, MaskLine
+from matstd.probe_paths.language.text import (
+    axis_words,
+    checked_line,
+    checked_name,
+    parameter,
+    signed,
+)
+from matstd.twin.errors import DesignError
 
 ENDING = ".H"
 LINE_END = "\r\n"

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple, Protocol
 
-from probe_paths.language.dialect import Dialect
-from probe_paths.language.masks import LogForm, MaskLine
+from matstd.probe_paths.language.dialect import Dialect
+from matstd.probe_paths.language.masks import LogForm, MaskLine
 
 
 class Datum(StrEnum):

@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from os.path import splitext
 from pathlib import Path
 
-from probe_paths.language import gcode, klartext
-from probe_paths.language.blocks import Block, read_klartext
-from probe_paths.language.dialect import Dialect
-from probe_paths.language.gcode_reader import read_gcode
-from probe_paths.language.language import Language
+from matstd.probe_paths.language import gcode, klartext
+from matstd.probe_paths.language.blocks import Block, read_klartext
+from matstd.probe_paths.language.dialect import Dialect
+from matstd.probe_paths.language.gcode_reader import read_gcode
+from matstd.probe_paths.language.language import Language
 
 LANGUAGES: Mapping[str, Language] = {"klartext": klartext, "gcode": gcode}
 """By the name that dialects give."""

@@ -8,10 +8,10 @@ from enum import StrEnum
 from pathlib import Path
 from typing import NamedTuple
 
-from probe_paths.language.dialect import TOOL_LENGTH, Q
-from probe_paths.language.text import MAX_LINE, checked_name
-from probe_paths.plan import Sensor
-from twin.errors import BadFile, DesignError
+from matstd.probe_paths.language.dialect import TOOL_LENGTH, Q
+from matstd.probe_paths.language.text import MAX_LINE, checked_name
+from matstd.probe_paths.plan import Sensor
+from matstd.twin.errors import BadFile, DesignError
 
 
 class SharedMask(StrEnum):

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping
 
-from twin.errors import DesignError
+from matstd.twin.errors import DesignError
 
 MAX_NAME = 16
 """Longest program name that the oldest software displays whole."""

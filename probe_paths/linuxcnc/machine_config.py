@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from probe_paths.language import Dialect
-from probe_paths.linuxcnc.latch import PERIOD
-from probe_paths.plan import Probe, ProgramFrame
-from twin.machine import Chain
-from twin.units import DEG
+from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.linuxcnc.latch import PERIOD
+from matstd.probe_paths.plan import Probe, ProgramFrame
+from matstd.twin.machine import Chain
+from matstd.twin.units import DEG
 
 SPEED, ACCELERATION = 500.0, 5000.0
 """Of linear axes, mm/s and mm/s^2; of rotary ones in degrees. Nothing is gained by a slow twin."""

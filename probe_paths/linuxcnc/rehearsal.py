@@ -7,19 +7,19 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.body import Standard
-from probe_paths.campaign import SMALLEST_U, VirtualMachine, check_moves, evaluate
-from probe_paths.control import MAX_FEED, read_log, read_program
-from probe_paths.emit import Feeds, ProgramSet, make_programs
-from probe_paths.linuxcnc.latch import latch_error, latch_u
-from probe_paths.linuxcnc.machine_config import machine_files
-from probe_paths.linuxcnc.replanned import shortened
-from probe_paths.linuxcnc.session import machine_folder, run_on_linuxcnc
-from probe_paths.linuxcnc.twin_contact import TwinContact
-from twin.errors import DesignError
-from twin.files import write_whole
-from twin.frames import Array
-from twin.record import Run
+from matstd.artefact.body import Standard
+from matstd.probe_paths.campaign import SMALLEST_U, VirtualMachine, check_moves, evaluate
+from matstd.probe_paths.control import MAX_FEED, read_log, read_program
+from matstd.probe_paths.emit import Feeds, ProgramSet, make_programs
+from matstd.probe_paths.linuxcnc.latch import latch_error, latch_u
+from matstd.probe_paths.linuxcnc.machine_config import machine_files
+from matstd.probe_paths.linuxcnc.replanned import shortened
+from matstd.probe_paths.linuxcnc.session import machine_folder, run_on_linuxcnc
+from matstd.probe_paths.linuxcnc.twin_contact import TwinContact
+from matstd.twin.errors import DesignError
+from matstd.twin.files import write_whole
+from matstd.twin.frames import Array
+from matstd.twin.record import Run
 
 
 @dataclass(frozen=True, eq=False)

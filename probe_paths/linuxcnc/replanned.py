@@ -4,14 +4,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from artefact.body import Standard
-from probe_paths.campaign import foot_points
-from probe_paths.control import Move, ProbeStep, ReadProgram
-from probe_paths.plan import LINEAR, PlanOptions, TouchPlan, Visit
-from twin.errors import DesignError
-from twin.frames import Array, apply, inverse
-from twin.machine import Chain, tip
-from twin.record import IntArray
+from matstd.artefact.body import Standard
+from matstd.probe_paths.campaign import foot_points
+from matstd.probe_paths.control import Move, ProbeStep, ReadProgram
+from matstd.probe_paths.plan import LINEAR, PlanOptions, TouchPlan, Visit
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.machine import Chain, tip
+from matstd.twin.record import IntArray
 
 
 def shortened(

@@ -16,10 +16,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TextIO
 
-from probe_paths.emit import Program
-from probe_paths.linuxcnc.machine_config import BESIDE, HEADLESS, PROBER, PROGRAMS, SAID
-from probe_paths.linuxcnc.twin_contact import TwinContact
-from twin.errors import DesignError
+from matstd.probe_paths.emit import Program
+from matstd.probe_paths.linuxcnc.machine_config import BESIDE, HEADLESS, PROBER, PROGRAMS, SAID
+from matstd.probe_paths.linuxcnc.twin_contact import TwinContact
+from matstd.twin.errors import DesignError
 
 NEEDED = ("linuxcnc", "halcmd", "halrun")
 LOCK = Path("/tmp/linuxcnc.lock")

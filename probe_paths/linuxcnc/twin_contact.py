@@ -6,14 +6,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.body import Standard
-from probe_paths.campaign import ContactSolver, VirtualMachine, in_campaign
-from probe_paths.control import LogPart, ProbeStep, ReadProgram, step_times
-from probe_paths.plan import ProgramFrame
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.record import Touches
-from twin.units import UM
+from matstd.artefact.body import Standard
+from matstd.probe_paths.campaign import ContactSolver, VirtualMachine, in_campaign
+from matstd.probe_paths.control import LogPart, ProbeStep, ReadProgram, step_times
+from matstd.probe_paths.plan import ProgramFrame
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.record import Touches
+from matstd.twin.units import UM
 
 _ON_LINE = 0.1 * UM
 """How far beside the line of a programmed touch the axes may stand, mm, or as much in mrad: digits

@@ -6,12 +6,12 @@ the touches of earlier programs, planned again there (`planned_again`). `compani
 programs that are run beside those of a plan.
 """
 
-from probe_paths.locate.again import planned_again
-from probe_paths.locate.beside import RAISED, Companions, companions
-from probe_paths.locate.find import Found, find_standard
-from probe_paths.locate.relief import Relief
-from probe_paths.locate.search_plan import plan_search
-from probe_paths.locate.spread import SPREADS, Spread
+from matstd.probe_paths.locate.again import planned_again
+from matstd.probe_paths.locate.beside import RAISED, Companions, companions
+from matstd.probe_paths.locate.find import Found, find_standard
+from matstd.probe_paths.locate.relief import Relief
+from matstd.probe_paths.locate.search_plan import plan_search
+from matstd.probe_paths.locate.spread import SPREADS, Spread
 
 __all__ = [
     "RAISED",

@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.reach import DatumBall, Requests, Workshop
-from probe_paths.control import ReadProgram
-from probe_paths.linuxcnc import shortened
-from probe_paths.plan import TouchPlan, plan_touches
-from twin.machine import Chain
-from twin.record import Setup
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import DatumBall, Requests, Workshop
+from matstd.probe_paths.control import ReadProgram
+from matstd.probe_paths.linuxcnc import shortened
+from matstd.probe_paths.plan import TouchPlan, plan_touches
+from matstd.twin.machine import Chain
+from matstd.twin.record import Setup
 
 DROPPED = 0.1
 """Of the touches that may be refused at another place, each with its reason."""

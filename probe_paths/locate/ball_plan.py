@@ -6,13 +6,13 @@ from itertools import product
 
 import numpy as np
 
-from artefact.body import DatumSphere, Standard
-from artefact.reach import ProbeReach, Requests, joined
-from probe_paths.plan import PlanOptions, TouchPlan, home_readings, plan_touches, readings_at
-from twin.errors import NotReachable
-from twin.frames import Array
-from twin.machine import table_to_tool
-from twin.units import DEG
+from matstd.artefact.body import DatumSphere, Standard
+from matstd.artefact.reach import ProbeReach, Requests, joined
+from matstd.probe_paths.plan import PlanOptions, TouchPlan, home_readings, plan_touches, readings_at
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array
+from matstd.twin.machine import table_to_tool
+from matstd.twin.units import DEG
 
 _TILTS = (75.0 * DEG, 60.0 * DEG, 45.0 * DEG)
 """Of the ring from the tool axis, rad, the steepest first: 75 degrees tell radius from height five

@@ -3,13 +3,20 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from probe_paths.emit import Feeds, ProgramSet, make_ball, make_dry_run, make_first, make_search
-from probe_paths.language import Dialect
-from probe_paths.locate.ball_plan import plan_ball
-from probe_paths.locate.search_plan import plan_search
-from probe_paths.locate.spread import SPREADS, Spread
-from probe_paths.plan import TouchPlan
-from twin.errors import NotReachable
+from matstd.probe_paths.emit import (
+    Feeds,
+    ProgramSet,
+    make_ball,
+    make_dry_run,
+    make_first,
+    make_search,
+)
+from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.locate.ball_plan import plan_ball
+from matstd.probe_paths.locate.search_plan import plan_search
+from matstd.probe_paths.locate.spread import SPREADS, Spread
+from matstd.probe_paths.plan import TouchPlan
+from matstd.twin.errors import NotReachable
 
 RAISED = 100.0
 """Of a dry run, mm."""

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import Standard, contact
-from probe_paths.locate.relief import Relief
-from probe_paths.locate.spread import Spread
-from twin.errors import NotEnoughData
-from twin.frames import Array, apply, fixed_xyz, inverse, pose
-from twin.record import Setup
-from twin.units import DEG
+from matstd.artefact.body import Standard, contact
+from matstd.probe_paths.locate.relief import Relief
+from matstd.probe_paths.locate.spread import Spread
+from matstd.twin.errors import NotEnoughData
+from matstd.twin.frames import Array, apply, fixed_xyz, inverse, pose
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG
 
 _TRIED, _FEWEST_TRIED = 40_000, 2_000
 """Places in the first round for a spread of 20 mm and 5 degrees, and for a small one."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from artefact.body import FreeformPatch, Standard
-from twin.frames import Array
+from matstd.artefact.body import FreeformPatch, Standard
+from matstd.twin.frames import Array
 
 PITCH = 1.0
 """Of the places, mm; what is found on them is refined on the exact surfaces."""

@@ -9,12 +9,12 @@ them needs to know what it touches.
 import numpy as np
 from scipy import ndimage
 
-from artefact.body import Standard
-from artefact.reach import Workshop
-from probe_paths.locate.find import KNOWN, KNOWN_ANGLE, lifted
-from probe_paths.locate.relief import NOWHERE, PITCH, Relief
-from probe_paths.locate.spread import Spread
-from probe_paths.plan import (
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import Workshop
+from matstd.probe_paths.locate.find import KNOWN, KNOWN_ANGLE, lifted
+from matstd.probe_paths.locate.relief import NOWHERE, PITCH, Relief
+from matstd.probe_paths.locate.spread import Spread
+from matstd.probe_paths.plan import (
     PlanOptions,
     Probe,
     ToolClearance,
@@ -23,11 +23,11 @@ from probe_paths.plan import (
     home_readings,
     readings_at,
 )
-from twin.errors import NotReachable
-from twin.frames import Array, apply
-from twin.machine import Chain, inverse_linear, linear_directions
-from twin.record import Setup
-from twin.units import DEG
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array, apply
+from matstd.twin.machine import Chain, inverse_linear, linear_directions
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG
 
 TOUCHES = 20
 """Of the search: as many as five minutes have room for."""

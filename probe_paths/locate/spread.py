@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from twin.units import DEG
+from matstd.twin.units import DEG
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ collision check alike (`solid_hull`, `ToolClearance`). A rule for the order of p
 `order`.
 """
 
-from probe_paths.plan.clearance import (
+from matstd.probe_paths.plan.clearance import (
     SMALLEST_GAP,
     ToolClearance,
     readings_at,
@@ -14,25 +14,25 @@ from probe_paths.plan.clearance import (
     swing_height,
     top_height,
 )
-from probe_paths.plan.frame import LINEAR, ProgramFrame
-from probe_paths.plan.heading import (
+from matstd.probe_paths.plan.frame import LINEAR, ProgramFrame
+from matstd.probe_paths.plan.heading import (
     Heading,
     Sensor,
     calibration_hash,
     parse_heading,
     stated_serial,
 )
-from probe_paths.plan.order import (
+from matstd.probe_paths.plan.order import (
     Visit,
     home_readings,
     nearest_neighbours,
     short_order,
     waypoints,
 )
-from probe_paths.plan.planner import plan_touches
-from probe_paths.plan.probe import Probe
-from probe_paths.plan.strokes import stroke_gaps
-from probe_paths.plan.touch_plan import PlanOptions, Refusal, TouchPlan, requests_at
+from matstd.probe_paths.plan.planner import plan_touches
+from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.strokes import stroke_gaps
+from matstd.probe_paths.plan.touch_plan import PlanOptions, Refusal, TouchPlan, requests_at
 
 __all__ = [
     "LINEAR",

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import Meeting, Standard, contact
-from artefact.reach import Mask
-from twin.frames import Array, apply, inverse, turn
-from twin.machine import Chain, linear_directions, table_to_tool, tip
-from twin.record import Labels, Setup
-from twin.units import DEG
+from matstd.artefact.body import Meeting, Standard, contact
+from matstd.artefact.reach import Mask
+from matstd.twin.frames import Array, apply, inverse, turn
+from matstd.twin.machine import Chain, linear_directions, table_to_tool, tip
+from matstd.twin.record import Labels, Setup
+from matstd.twin.units import DEG
 
 _LEANS = (15.0 * DEG, 30.0 * DEG)
 """From the normal, rad; beyond 30 degrees the ball slides where it should trigger."""

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from artefact.body import BLEND, FreeformPatch, Plate, Standard
-from artefact.reach import Workshop, table_face
-from probe_paths.plan.separation import CORNERS, Hulls
-from twin.frames import Array, apply, pose, turn
-from twin.record import IntArray, Labels
+from matstd.artefact.body import BLEND, FreeformPatch, Plate, Standard
+from matstd.artefact.reach import Workshop, table_face
+from matstd.probe_paths.plan.separation import CORNERS, Hulls
+from matstd.twin.frames import Array, apply, pose, turn
+from matstd.twin.record import IntArray, Labels
 
 _CELL = (
     4.0  # mm of a face that one prism is the lid of: its corners are 0.2 mm off at a radius of 12

@@ -8,14 +8,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from artefact.body import Standard
-from artefact.reach import Workshop, still_frames, table_face
-from probe_paths.plan.bodies import Bodies, standing_bodies
-from probe_paths.plan.probe import Probe
-from probe_paths.plan.separation import Sweeps, gaps
-from twin.frames import Array, apply, inverse, turn
-from twin.machine import Chain, linear_directions, table_to_tool, tip
-from twin.record import IntArray, Labels, Setup
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import Workshop, still_frames, table_face
+from matstd.probe_paths.plan.bodies import Bodies, standing_bodies
+from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.separation import Sweeps, gaps
+from matstd.twin.frames import Array, apply, inverse, turn
+from matstd.twin.machine import Chain, linear_directions, table_to_tool, tip
+from matstd.twin.record import IntArray, Labels, Setup
 
 SMALLEST_GAP = 0.5
 """Least gap between the probe and anything solid while it is positioned, mm."""

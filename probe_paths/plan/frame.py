@@ -15,11 +15,11 @@ from functools import cached_property
 
 import numpy as np
 
-from probe_paths.plan.probe import Probe
-from twin.errors import DesignError
-from twin.frames import Array, fixed_xyz
-from twin.machine import Chain, linear_directions, table_to_tool, tip
-from twin.units import DEG
+from matstd.probe_paths.plan.probe import Probe
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array, fixed_xyz
+from matstd.twin.machine import Chain, linear_directions, table_to_tool, tip
+from matstd.twin.units import DEG
 
 LINEAR = "XYZ"
 

@@ -14,13 +14,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.reach import TABLE, DatumBall, Solid, Workshop
-from probe_paths.plan.probe import Probe
-from twin.errors import BadFile, DesignError
-from twin.frames import Array, fixed_xyz, fixed_xyz_angles, pose
-from twin.record import Setup
-from twin.units import DEG
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import TABLE, DatumBall, Solid, Workshop
+from matstd.probe_paths.plan.probe import Probe
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.frames import Array, fixed_xyz, fixed_xyz_angles, pose
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG
 
 _NAME = re.compile(r"[A-Za-z0-9_.+-]{1,24}\Z")
 _SOLID_NAME = re.compile(r"[A-Za-z0-9_.+-]{1,16}\Z")

@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.errors import NotReachable
-from twin.frames import Array
-from twin.machine import Chain
-from twin.record import IntArray
-from twin.units import DEG
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.record import IntArray
+from matstd.twin.units import DEG
 
 GOLDEN = 0.5 * (np.sqrt(5.0) - 1.0)
 """Fractional parts of its multiples are spread as evenly as any; no randomness is needed."""

@@ -5,10 +5,10 @@ from functools import cached_property
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.reach import ProbeReach, Requests, joined
-from probe_paths.plan.approach import Approaches
-from probe_paths.plan.clearance import (
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import ProbeReach, Requests, joined
+from matstd.probe_paths.plan.approach import Approaches
+from matstd.probe_paths.plan.clearance import (
     SMALLEST_GAP,
     ToolClearance,
     readings_at,
@@ -16,17 +16,17 @@ from probe_paths.plan.clearance import (
     swing_height,
     top_height,
 )
-from probe_paths.plan.frame import LINEAR, ProgramFrame
-from probe_paths.plan.heading import rounded_setup, rounded_workshop
-from probe_paths.plan.order import Visit, home_readings, rotary_path, short_order, visits
-from probe_paths.plan.probe import Probe
-from probe_paths.plan.strokes import Stage, stroke_gaps
-from probe_paths.plan.touch_plan import GRID, PlanOptions, Refusal, TouchPlan
-from twin.errors import DesignError, NotReachable, ShapeMismatch
-from twin.frames import Array
-from twin.machine import Chain, table_to_tool
-from twin.record import IntArray, Labels, Setup
-from twin.units import DEG
+from matstd.probe_paths.plan.frame import LINEAR, ProgramFrame
+from matstd.probe_paths.plan.heading import rounded_setup, rounded_workshop
+from matstd.probe_paths.plan.order import Visit, home_readings, rotary_path, short_order, visits
+from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.strokes import Stage, stroke_gaps
+from matstd.probe_paths.plan.touch_plan import GRID, PlanOptions, Refusal, TouchPlan
+from matstd.twin.errors import DesignError, NotReachable, ShapeMismatch
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, table_to_tool
+from matstd.twin.record import IntArray, Labels, Setup
+from matstd.twin.units import DEG
 
 _MARGIN = 0.011  # mm: gaps are found to 0.01, readings in programs are rounded to 0.0001
 _ANCHOR_SPARE = 5.0 * DEG  # an anchor stays away from where the ball ends above its stem

@@ -4,9 +4,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.reach import ProbeShape
-from twin.errors import DesignError
-from twin.frames import Array
+from matstd.artefact.reach import ProbeShape
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
 
 NOSE_HEIGHT = 150.0
 """How much of the spindle above the gauge line is kept clear, mm."""

@@ -13,8 +13,8 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.frames import Array
-from twin.record import IntArray
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
 
 CORNERS = 8
 """Of a body at most."""

@@ -4,9 +4,9 @@ from enum import StrEnum
 
 import numpy as np
 
-from probe_paths.plan.clearance import SMALLEST_GAP, ToolClearance
-from twin.frames import Array
-from twin.record import Labels
+from matstd.probe_paths.plan.clearance import SMALLEST_GAP, ToolClearance
+from matstd.twin.frames import Array
+from matstd.twin.record import Labels
 
 
 class Stage(StrEnum):

@@ -10,14 +10,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.reach import DatumBall, ProbeReach, Requests, Workshop
-from probe_paths.plan.order import Visit
-from probe_paths.plan.probe import Probe
-from twin.frames import Array
-from twin.machine import Chain
-from twin.record import IntArray, Labels, Setup
-from twin.units import DEG
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import DatumBall, ProbeReach, Requests, Workshop
+from matstd.probe_paths.plan.order import Visit
+from matstd.probe_paths.plan.probe import Probe
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.record import IntArray, Labels, Setup
+from matstd.twin.units import DEG
 
 GRID = 1e-4 * DEG
 """Rotary readings are rounded to what a program can state, rad."""

@@ -2,10 +2,10 @@
 
 In: the touches that are wanted, the probes and the places of the standard. Out: a `Station` for
 every probe in every clamping, with its plan and its programs, in the order in which they are run.
-Their logs are evaluated together (`probe_paths.campaign.evaluate`).
+Their logs are evaluated together (`matstd.probe_paths.campaign.evaluate`).
 """
 
-from probe_paths.stations.planned import Clamping, plan_campaign
-from probe_paths.stations.programmed import Station, all_programs, make_stations, with_tool
+from matstd.probe_paths.stations.planned import Clamping, plan_campaign
+from matstd.probe_paths.stations.programmed import Station, all_programs, make_stations, with_tool
 
 __all__ = ["Clamping", "Station", "all_programs", "make_stations", "plan_campaign", "with_tool"]

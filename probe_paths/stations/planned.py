@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from artefact.body import Standard
-from artefact.reach import ProbeReach, Requests, Workshop
-from probe_paths.plan import PlanOptions, Probe, Refusal, TouchPlan, plan_touches
-from twin.errors import NotReachable
-from twin.machine import Chain
-from twin.record import IntArray, Setup
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import ProbeReach, Requests, Workshop
+from matstd.probe_paths.plan import PlanOptions, Probe, Refusal, TouchPlan, plan_touches
+from matstd.twin.errors import NotReachable
+from matstd.twin.machine import Chain
+from matstd.twin.record import IntArray, Setup
 
 _POSES_TRIED = 6
 """Table poses at which a place of a further clamping is looked for, the best inclined first."""

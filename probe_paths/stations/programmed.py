@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from probe_paths.emit import Feeds, ProgramSet, make_programs
-from probe_paths.language import Dialect
-from probe_paths.plan import TouchPlan
+from matstd.probe_paths.emit import Feeds, ProgramSet, make_programs
+from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.plan import TouchPlan
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,11 +1,11 @@
 """Compensation in words and pictures: what is corrected, what is left, before and after."""
 
-from report.compensation.program_picture import draw_program
-from report.compensation.program_words import program_lines
-from report.compensation.shares_picture import draw_shares_along, share_lines
-from report.compensation.table_page import write_compensation_page
-from report.compensation.table_pictures import draw_errors_left, draw_shares
-from report.compensation.table_words import (
+from matstd.report.compensation.program_picture import draw_program
+from matstd.report.compensation.program_words import program_lines
+from matstd.report.compensation.shares_picture import draw_shares_along, share_lines
+from matstd.report.compensation.table_page import write_compensation_page
+from matstd.report.compensation.table_pictures import draw_errors_left, draw_shares
+from matstd.report.compensation.table_words import (
     control_title,
     held_words,
     result_sentence,

@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from compensation.programs import Compensated
-from report.style import BLUE, FAINT, INK, RED, figure, plain, save
-from twin.units import MINUTE, UM
+from matstd.compensation.programs import Compensated
+from matstd.report.style import BLUE, FAINT, INK, RED, figure, plain, save
+from matstd.twin.units import MINUTE, UM
 
 SHOWN = 0.06
 """Of the path's size, as which its largest deviation is drawn."""

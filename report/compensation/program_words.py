@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from compensation.field import rms
-from compensation.programs import Compensated
-from report.numbers import digits
-from twin.units import MINUTE, NM, UM
+from matstd.compensation.field import rms
+from matstd.compensation.programs import Compensated
+from matstd.report.numbers import digits
+from matstd.twin.units import MINUTE, NM, UM
 
 
 def program_lines(name: str, done: Compensated) -> Iterator[tuple[str, bool]]:

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.field import Share, rms
-from report.numbers import with_uncertainty
-from report.style import INK, NEUTRAL, SOFT, figure, plain, save, series
-from twin.frames import Array
-from twin.units import MINUTE, UM
+from matstd.compensation.field import Share, rms
+from matstd.report.numbers import with_uncertainty
+from matstd.report.style import INK, NEUTRAL, SOFT, figure, plain, save, series
+from matstd.twin.frames import Array
+from matstd.twin.units import MINUTE, UM
 
 LONGEST = 32
 """Letters of a label."""

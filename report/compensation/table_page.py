@@ -4,14 +4,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from compensation.field import MachineErrors, rms
-from compensation.tables import Header, Played
-from report.compensation.table_pictures import draw_errors_left, draw_shares
-from report.compensation.table_words import control_title, result_sentence, small
-from report.numbers import digits, signed, with_uncertainty
-from report.pages import Picture, write_page
-from twin.machine import Chain
-from twin.units import DEG, UM
+from matstd.compensation.field import MachineErrors, rms
+from matstd.compensation.tables import Header, Played
+from matstd.report.compensation.table_pictures import draw_errors_left, draw_shares
+from matstd.report.compensation.table_words import control_title, result_sentence, small
+from matstd.report.numbers import digits, signed, with_uncertainty
+from matstd.report.pages import Picture, write_page
+from matstd.twin.machine import Chain
+from matstd.twin.units import DEG, UM
 
 PAGE = "report.html"
 PICTURES = "pictures"

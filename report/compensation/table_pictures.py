@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.field import Left, Result
-from report.style import INK, NEUTRAL, SOFT, figure, nothing, plain, save, series
-from twin.units import UM
+from matstd.compensation.field import Left, Result
+from matstd.report.style import INK, NEUTRAL, SOFT, figure, nothing, plain, save, series
+from matstd.twin.units import UM
 
 BARS = 16
 """Errors that are drawn at most."""

@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from compensation.field import Left, Result, rms
-from compensation.tables import Played
-from report.numbers import digits, with_uncertainty
-from twin.units import NM, UM
+from matstd.compensation.field import Left, Result, rms
+from matstd.compensation.tables import Played
+from matstd.report.numbers import digits, with_uncertainty
+from matstd.twin.units import NM, UM
 
 _TITLES = {
     "iso230": "ISO 230 names (ISG kernel, TwinCAT CNC)",

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from artefact.body import DatumSphere, FreeformPatch, Standard, max_slope, min_concave_radius
-from cad_out.details import (
+from matstd.artefact.body import DatumSphere, FreeformPatch, Standard, max_slope, min_concave_radius
+from matstd.cad_out.details import (
     BALL,
     DATUMS,
     Details,
@@ -16,12 +16,12 @@ from cad_out.details import (
     notes_of,
     tolerances_of,
 )
-from report.drawing.sections import draw_screw, draw_seat, engraving_words
-from report.drawing.sheet import WIDTH, Sheet, View
-from report.drawing.views import draw_from, draw_top
-from twin.files import written_whole
-from twin.units import DEG
-from twin.versions import versions
+from matstd.report.drawing.sections import draw_screw, draw_seat, engraving_words
+from matstd.report.drawing.sheet import WIDTH, Sheet, View
+from matstd.report.drawing.views import draw_from, draw_top
+from matstd.twin.files import written_whole
+from matstd.twin.units import DEG
+from matstd.twin.versions import versions
 
 DRAWING = ("drawing.pdf", "drawing.svg")
 """Names of the files."""

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from artefact.body import BLEND, Standard
-from cad_out.details import CUTTER, DEPTH, RELIEF, Details, glue_gap
-from report.drawing.sheet import THIN, WIDE, Sheet, View
-from twin.units import DEG
+from matstd.artefact.body import BLEND, Standard
+from matstd.cad_out.details import CUTTER, DEPTH, RELIEF, Details, glue_gap
+from matstd.report.drawing.sheet import THIN, WIDE, Sheet, View
+from matstd.twin.units import DEG
 
 
 def draw_seat(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:

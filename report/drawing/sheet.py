@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from report.style import figure
-from twin.frames import Array
+from matstd.report.style import figure
+from matstd.twin.frames import Array
 
 WIDTH, HEIGHT = 594.0, 420.0
 """A2, mm."""

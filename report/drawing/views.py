@@ -5,10 +5,10 @@ from functools import partial
 
 import numpy as np
 
-from artefact.body import DatumSphere, FreeformPatch, Standard
-from cad_out.details import DOT, RELIEF, Details
-from report.drawing.sheet import THIN, WIDE, Sheet, View
-from twin.frames import Array, apply
+from matstd.artefact.body import DatumSphere, FreeformPatch, Standard
+from matstd.cad_out.details import DOT, RELIEF, Details
+from matstd.report.drawing.sheet import THIN, WIDE, Sheet, View
+from matstd.twin.frames import Array, apply
 
 _SAMPLES = 41  # along an edge of a face
 _LEVELS = 6  # lines of equal height on a face

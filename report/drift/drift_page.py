@@ -6,13 +6,20 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.drift import ArxInputs, DriftRecord, IntArray, Judged, LinearLaw, arx_coefficients
-from report.drift.drift_pictures import draw_drift, draw_laws
-from report.drift.drift_words import law_title, law_words, together, units_word
-from report.numbers import digits, span
-from report.pages import Picture, write_page
-from twin.frames import Array
-from twin.units import HOUR
+from matstd.diagnosis.drift import (
+    ArxInputs,
+    DriftRecord,
+    IntArray,
+    Judged,
+    LinearLaw,
+    arx_coefficients,
+)
+from matstd.report.drift.drift_pictures import draw_drift, draw_laws
+from matstd.report.drift.drift_words import law_title, law_words, together, units_word
+from matstd.report.numbers import digits, span
+from matstd.report.pages import Picture, write_page
+from matstd.twin.frames import Array
+from matstd.twin.units import HOUR
 
 PAGE = "report.html"
 PICTURES = "pictures"

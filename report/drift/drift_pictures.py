@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.drift import DriftRecord, IntArray, Judged
-from report.drift.drift_words import law_title, together
-from report.style import BLUE, FAINT, INK, NEUTRAL, WASH, figure, plain, save, series
-from twin.frames import Array
-from twin.units import HOUR
+from matstd.diagnosis.drift import DriftRecord, IntArray, Judged
+from matstd.report.drift.drift_words import law_title, together
+from matstd.report.style import BLUE, FAINT, INK, NEUTRAL, WASH, figure, plain, save, series
+from matstd.twin.frames import Array
+from matstd.twin.units import HOUR
 
 POINTS = 3000
 """Points of a curve that are drawn at most."""

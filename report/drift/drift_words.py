@@ -4,10 +4,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from diagnosis.drift import ArxInputs, DriftRecord, IntArray, Judged, Kept, LinearLaw
-from report.numbers import digits, span
-from twin.frames import Array
-from twin.units import MINUTE
+from matstd.diagnosis.drift import ArxInputs, DriftRecord, IntArray, Judged, Kept, LinearLaw
+from matstd.report.numbers import digits, span
+from matstd.twin.frames import Array
+from matstd.twin.units import MINUTE
 
 _TITLES = {
     "hold": "last value held",

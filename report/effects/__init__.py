@@ -3,7 +3,7 @@
 In: an `Effect`, a `Step`, a `Plan`, a name. Out: titles, and classes told as classes.
 """
 
-from report.effects.naming import (
+from matstd.report.effects.naming import (
     class_words,
     effect_cell,
     effect_title,

@@ -6,11 +6,11 @@ bodies may carry it, what else it may be, and the names.
 
 from collections.abc import Sequence
 
-from diagnosis.answer import Plan, Step
-from twin.library import parse_effect, title_of
-from twin.machine import Chain
-from twin.model import Effect, Title, is_tunable
-from twin.words import listed
+from matstd.diagnosis.answer import Plan, Step
+from matstd.twin.library import parse_effect, title_of
+from matstd.twin.machine import Chain
+from matstd.twin.model import Effect, Title, is_tunable
+from matstd.twin.words import listed
 
 TOLD = 4
 """Bodies, titles or names that are told one by one; of more the first ones."""

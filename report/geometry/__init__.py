@@ -4,10 +4,10 @@ In: a `LearntGeometry`, `DescriptionFault`s, a `Trend`. Out: lines of a table an
 numbers to copy into a machine file, a sentence for each mistake and for what changed between runs.
 """
 
-from report.geometry.console_words import console_lines
-from report.geometry.copied_numbers import copy_lines
-from report.geometry.fault_words import fault_sentences
-from report.geometry.geometry_words import (
+from matstd.report.geometry.console_words import console_lines
+from matstd.report.geometry.copied_numbers import copy_lines
+from matstd.report.geometry.fault_words import fault_sentences
+from matstd.report.geometry.geometry_words import (
     USUAL,
     correction_line,
     estimate_words,
@@ -15,8 +15,8 @@ from report.geometry.geometry_words import (
     quantity_name,
     shown_unit,
 )
-from report.geometry.page_section import geometry_section
-from report.geometry.trend_words import change_sentences
+from matstd.report.geometry.page_section import geometry_section
+from matstd.report.geometry.trend_words import change_sentences
 
 __all__ = [
     "USUAL",

@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 
-from diagnosis.answer import Trend
-from diagnosis.faults import DescriptionFault
-from diagnosis.geometry import LearntGeometry
-from report.geometry.copied_numbers import copy_lines
-from report.geometry.fault_words import fault_sentences
-from report.geometry.geometry_words import far_lines, ladder_sentence, noted_lines
-from report.geometry.trend_words import trend_lines
-from twin.record import Touches
+from matstd.diagnosis.answer import Trend
+from matstd.diagnosis.faults import DescriptionFault
+from matstd.diagnosis.geometry import LearntGeometry
+from matstd.report.geometry.copied_numbers import copy_lines
+from matstd.report.geometry.fault_words import fault_sentences
+from matstd.report.geometry.geometry_words import far_lines, ladder_sentence, noted_lines
+from matstd.report.geometry.trend_words import trend_lines
+from matstd.twin.record import Touches
 
 
 def console_lines(

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from diagnosis.faults import DescriptionFault, Fault
-from diagnosis.geometry import Correction, FoundNumber, LearntGeometry, key_of
-from report.geometry.geometry_words import correction_line
-from report.numbers import with_uncertainty
-from twin.machine import LETTERS, Chain
-from twin.record import Touches
-from twin.units import DEG
+from matstd.diagnosis.faults import DescriptionFault, Fault
+from matstd.diagnosis.geometry import Correction, FoundNumber, LearntGeometry, key_of
+from matstd.report.geometry.geometry_words import correction_line
+from matstd.report.numbers import with_uncertainty
+from matstd.twin.machine import LETTERS, Chain
+from matstd.twin.record import Touches
+from matstd.twin.units import DEG
 
 
 @dataclass(frozen=True, slots=True)

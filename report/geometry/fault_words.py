@@ -2,11 +2,11 @@
 
 from collections.abc import Sequence
 
-from diagnosis.faults import DescriptionFault, Fault
-from report.numbers import digits, with_uncertainty
-from report.words import microns
-from twin.units import DEG
-from twin.words import listed
+from matstd.diagnosis.faults import DescriptionFault, Fault
+from matstd.report.numbers import digits, with_uncertainty
+from matstd.report.words import microns
+from matstd.twin.units import DEG
+from matstd.twin.words import listed
 
 
 def fault_sentences(faults: Sequence[DescriptionFault]) -> list[str]:

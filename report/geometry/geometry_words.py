@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from diagnosis.geometry import (
+from matstd.diagnosis.geometry import (
     CLEAR,
     Correction,
     Estimate,
@@ -11,10 +11,10 @@ from diagnosis.geometry import (
     Quantity,
     Rung,
 )
-from report.numbers import digits, with_uncertainty
-from report.words import microns
-from twin.units import UM, URAD
-from twin.words import listed
+from matstd.report.numbers import digits, with_uncertainty
+from matstd.report.words import microns
+from matstd.twin.units import UM, URAD
+from matstd.twin.words import listed
 
 _UNITS = {"mm": ("µm", UM), "rad": ("µrad", URAD), "1": ("ppm", 1e-6)}
 

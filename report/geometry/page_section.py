@@ -2,11 +2,11 @@
 
 from typing import Any
 
-from diagnosis.geometry import LearntGeometry
-from report.geometry.copied_numbers import file_lines
-from report.geometry.geometry_words import geometry_lines
-from twin.record import Touches
-from twin.units import UM
+from matstd.diagnosis.geometry import LearntGeometry
+from matstd.report.geometry.copied_numbers import file_lines
+from matstd.report.geometry.geometry_words import geometry_lines
+from matstd.twin.record import Touches
+from matstd.twin.units import UM
 
 
 def geometry_section(touches: Touches, geometry: LearntGeometry) -> dict[str, Any]:

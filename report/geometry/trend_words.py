@@ -2,13 +2,13 @@
 
 from collections.abc import Sequence
 
-from diagnosis.answer import Trend
-from diagnosis.geometry import CHANGED, Estimate, GeometryRow
-from report.effects import effect_title
-from report.geometry.geometry_words import USUAL, estimate_words, quantity_name, shown_unit
-from report.numbers import digits
-from report.words import microns
-from twin.units import UM
+from matstd.diagnosis.answer import Trend
+from matstd.diagnosis.geometry import CHANGED, Estimate, GeometryRow
+from matstd.report.effects import effect_title
+from matstd.report.geometry.geometry_words import USUAL, estimate_words, quantity_name, shown_unit
+from matstd.report.numbers import digits
+from matstd.report.words import microns
+from matstd.twin.units import UM
 
 TOLD = 4
 """Changes of one run that are told in a sentence, the largest over the travel first."""

@@ -4,8 +4,8 @@ Names of parameters in plain words, combinations that are known, freedoms with w
 would resolve them; `identifiability.json` and `identification.json`.
 """
 
-from report.identifiability.identifiability_file import write_identifiability
-from report.identifiability.identifiability_words import (
+from matstd.report.identifiability.identifiability_file import write_identifiability
+from matstd.report.identifiability.identifiability_words import (
     combination_words,
     family_words,
     freedom_words,
@@ -14,8 +14,8 @@ from report.identifiability.identifiability_words import (
     reason_words,
     resolution_words,
 )
-from report.identifiability.identification_file import write_identification
-from report.identifiability.parameter_words import in_words, short
+from matstd.report.identifiability.identification_file import write_identification
+from matstd.report.identifiability.parameter_words import in_words, short
 
 __all__ = [
     "combination_words",

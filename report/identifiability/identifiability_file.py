@@ -5,9 +5,9 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from artefact.compare import Alternative, IdentifiabilityReport
-from information.identifiability import Degree
-from report.identifiability.identifiability_words import (
+from matstd.artefact.compare import Alternative, IdentifiabilityReport
+from matstd.information.identifiability import Degree
+from matstd.report.identifiability.identifiability_words import (
     combination_words,
     degree_words,
     freedom_words,
@@ -16,11 +16,11 @@ from report.identifiability.identifiability_words import (
     reason_words,
     resolution_words,
 )
-from report.identifiability.parameter_words import in_words, short
-from report.numbers import shown
-from twin.files import write_whole
-from twin.machine import Chain, Link
-from twin.units import DEG
+from matstd.report.identifiability.parameter_words import in_words, short
+from matstd.report.numbers import shown
+from matstd.twin.files import write_whole
+from matstd.twin.machine import Chain, Link
+from matstd.twin.units import DEG
 
 FORMAT = "identifiability/1"
 """Of the file."""

@@ -9,8 +9,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from artefact.compare import IdentifiabilityReport
-from information.identifiability import (
+from matstd.artefact.compare import IdentifiabilityReport
+from matstd.information.identifiability import (
     Degree,
     Freedom,
     FreedomFamily,
@@ -18,10 +18,10 @@ from information.identifiability import (
     Resolution,
     Term,
 )
-from report.identifiability.parameter_words import in_words
-from report.numbers import shown
-from twin.frames import Array
-from twin.machine import Chain
+from matstd.report.identifiability.parameter_words import in_words
+from matstd.report.numbers import shown
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
 
 NAMED = 4
 """Most parameters that are written out in the words of a combination."""

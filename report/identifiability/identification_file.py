@@ -5,12 +5,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from diagnosis.answer import Proof
-from diagnosis.fit import Estimable, Fit, estimable
-from report.identifiability.identifiability_words import combination_words, freedom_words
-from report.numbers import shown
-from twin.files import write_whole
-from twin.units import UM
+from matstd.diagnosis.answer import Proof
+from matstd.diagnosis.fit import Estimable, Fit, estimable
+from matstd.report.identifiability.identifiability_words import combination_words, freedom_words
+from matstd.report.numbers import shown
+from matstd.twin.files import write_whole
+from matstd.twin.units import UM
 
 FORMAT = "identification/1"
 

@@ -2,7 +2,7 @@
 
 import re
 
-from twin.machine import Chain, Family, Symbol, parse_symbol
+from matstd.twin.machine import Chain, Family, Symbol, parse_symbol
 
 _NAME = re.compile(r"(geometric|location|setup|coupling)\(([^,)]+)(?:,([^)]*))?\)(?:: (\w+))?\Z")
 _SETUP = {"dx": "X", "dy": "Y", "dz": "Z", "rx": "X", "ry": "Y", "rz": "Z"}

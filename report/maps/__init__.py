@@ -4,10 +4,10 @@ Each takes a `Study` and a folder, and returns files with captions; none compute
 draws. A new map goes into the list in `study_maps.draw_maps`.
 """
 
-from report.maps.correlation_picture import draw_ties
-from report.maps.regions_picture import draw_regions
-from report.maps.study_maps import draw_maps
-from report.maps.trajectory_pictures import draw_path
+from matstd.report.maps.correlation_picture import draw_ties
+from matstd.report.maps.regions_picture import draw_regions
+from matstd.report.maps.study_maps import draw_maps
+from matstd.report.maps.trajectory_pictures import draw_path
 
 __all__ = [
     "draw_maps",

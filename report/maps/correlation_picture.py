@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from information.identifiability import Ties
-from report.identifiability import short
-from report.style import INK, figure, nothing
+from matstd.information.identifiability import Ties
+from matstd.report.identifiability import short
+from matstd.report.style import INK, figure, nothing
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,7 +20,7 @@ def draw_ties(ties: Ties, most: int = _SHOWN) -> Figure:
     """Correlations of the parameters of the largest groups, each group in a frame of its own.
 
     Args:
-        ties: As `information.identifiability.correlation.ties` gives them.
+        ties: As `matstd.information.identifiability.correlation.ties` gives them.
         most: Number of parameters that are shown; a group that would pass it is cut short.
     """
     from matplotlib.patches import Rectangle

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from report.style import INK, axis_title, figure, nothing, plain, series
-from report.words import place_words
-from sensitivity.shares import Region, RegionTotals
-from twin.frames import Array
-from twin.machine import Chain
-from twin.units import UM
+from matstd.report.style import INK, axis_title, figure, nothing, plain, series
+from matstd.report.words import place_words
+from matstd.sensitivity.shares import Region, RegionTotals
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.units import UM
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -28,7 +28,7 @@ def draw_regions(
     """Bars of the largest shares of variance in every region, coloured by the link they belong to.
 
     Args:
-        regions: As `sensitivity.shares.workspace_regions.regions` gives them.
+        regions: As `matstd.sensitivity.shares.workspace_regions.regions` gives them.
         totals: What the errors do to |d|, drawn as diamonds with twice their standard error.
     """
     from matplotlib.lines import Line2D

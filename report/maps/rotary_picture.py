@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from report.style import LINE, figure, nothing, reading_label
-from sensitivity.first_order import covariance, normal_length, sensitivity
-from sensitivity.study import PointOverRotary, Study, points_over_rotary
-from twin.frames import Array
-from twin.machine import Symbol
-from twin.units import UM, URAD
+from matstd.report.style import LINE, figure, nothing, reading_label
+from matstd.sensitivity.first_order import covariance, normal_length, sensitivity
+from matstd.sensitivity.study import PointOverRotary, Study, points_over_rotary
+from matstd.twin.frames import Array
+from matstd.twin.machine import Symbol
+from matstd.twin.units import UM, URAD
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

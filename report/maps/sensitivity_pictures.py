@@ -6,12 +6,21 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from report.style import INK, NEUTRAL, axis_title, figure, nothing, plain, reading_label, series
-from sensitivity.first_order import Workspace, section, sensitivity
-from sensitivity.study import Study
-from twin.frames import Array
-from twin.machine import LETTERS, Family, Symbol
-from twin.units import UM, URAD
+from matstd.report.style import (
+    INK,
+    NEUTRAL,
+    axis_title,
+    figure,
+    nothing,
+    plain,
+    reading_label,
+    series,
+)
+from matstd.sensitivity.first_order import Workspace, section, sensitivity
+from matstd.sensitivity.study import Study
+from matstd.twin.frames import Array
+from matstd.twin.machine import LETTERS, Family, Symbol
+from matstd.twin.units import UM, URAD
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

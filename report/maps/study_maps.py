@@ -7,15 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from report.maps.regions_picture import draw_regions
-from report.maps.rotary_picture import draw_rotary
-from report.maps.sensitivity_pictures import maps_of_S, overview
-from report.style import INK, axis_title, figure, nothing, plain, reading_label, save, series
-from report.words import sampling_words, unsampled
-from sensitivity.shares import region_totals, regions
-from sensitivity.study import Study
-from twin.frames import Array
-from twin.units import DEG, UM
+from matstd.report.maps.regions_picture import draw_regions
+from matstd.report.maps.rotary_picture import draw_rotary
+from matstd.report.maps.sensitivity_pictures import maps_of_S, overview
+from matstd.report.style import INK, axis_title, figure, nothing, plain, reading_label, save, series
+from matstd.report.words import sampling_words, unsampled
+from matstd.sensitivity.shares import region_totals, regions
+from matstd.sensitivity.study import Study
+from matstd.twin.frames import Array
+from matstd.twin.units import DEG, UM
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

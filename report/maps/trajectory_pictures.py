@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from report.style import INK, figure, plain, reading_label, save, series
-from report.words import sampling_words
-from sensitivity.montecarlo import Volumetric
-from sensitivity.study import AlongPath, Study, Trajectory
-from twin.effects import ComponentError
-from twin.frames import Array
-from twin.machine import Chain
-from twin.units import UM, URAD
+from matstd.report.style import INK, figure, plain, reading_label, save, series
+from matstd.report.words import sampling_words
+from matstd.sensitivity.montecarlo import Volumetric
+from matstd.sensitivity.study import AlongPath, Study, Trajectory
+from matstd.twin.effects import ComponentError
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.units import UM, URAD
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,16 +4,16 @@
 numbers, rows and pictures that its template shows.
 """
 
-from report.pages.compare_page import write_compare_page
-from report.pages.design_page import write_design_page
-from report.pages.design_result import Design, Proven
-from report.pages.diagnosis_page import write_diagnosis_page
-from report.pages.page import write_page
-from report.pages.pdf import Printer, printer, write_pdf
-from report.pages.residual_section import Picture
-from report.pages.setup_page import write_setup_page
-from report.pages.study_page import write_study_page
-from report.pages.uncertainty_page import write_uncertainty_page
+from matstd.report.pages.compare_page import write_compare_page
+from matstd.report.pages.design_page import write_design_page
+from matstd.report.pages.design_result import Design, Proven
+from matstd.report.pages.diagnosis_page import write_diagnosis_page
+from matstd.report.pages.page import write_page
+from matstd.report.pages.pdf import Printer, printer, write_pdf
+from matstd.report.pages.residual_section import Picture
+from matstd.report.pages.setup_page import write_setup_page
+from matstd.report.pages.study_page import write_study_page
+from matstd.report.pages.uncertainty_page import write_uncertainty_page
 
 __all__ = [
     "Design",

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.answer import Comparison
-from diagnosis.fit import Reported
-from report.geometry import fault_sentences, geometry_section
-from report.pages.page import write_page
-from report.pages.residual_section import (
+from matstd.diagnosis.answer import Comparison
+from matstd.diagnosis.fit import Reported
+from matstd.report.geometry import fault_sentences, geometry_section
+from matstd.report.pages.page import write_page
+from matstd.report.pages.residual_section import (
     Picture,
     gross_rows,
     pattern_pictures,
@@ -17,9 +17,9 @@ from report.pages.residual_section import (
     residual_pictures,
     setting,
 )
-from report.plots import draw_on_standard, is_spread
-from report.words import comparison_sentence, learnt_lines, remark_sentence, structure_words
-from twin.units import UM
+from matstd.report.plots import draw_on_standard, is_spread
+from matstd.report.words import comparison_sentence, learnt_lines, remark_sentence, structure_words
+from matstd.twin.units import UM
 
 PAGE = "report.html"
 PICTURES = "pictures"

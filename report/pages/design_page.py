@@ -6,34 +6,34 @@ from typing import Any
 
 import numpy as np
 
-from artefact.body import FreeformPatch, Standard, max_slope, min_concave_radius
-from artefact.compare import Rival
-from artefact.reach import standing_remarks
-from artefact.worth import Criterion, touch_curve
-from cad_out.making import FIRST_MODE, ROUGHNESS, SAG, Cutting, FaceHint, Making, Stiffness
-from report.pages.design_result import Design, Proven
-from report.pages.identifiability_section import known_content
-from report.pages.page import digits, write_page
-from report.pages.study_page import draw_study_volumes, study_content
-from report.pages.time_section import minutes, order_content
-from report.plots import (
+from matstd.artefact.body import FreeformPatch, Standard, max_slope, min_concave_radius
+from matstd.artefact.compare import Rival
+from matstd.artefact.reach import standing_remarks
+from matstd.artefact.worth import Criterion, touch_curve
+from matstd.cad_out.making import FIRST_MODE, ROUGHNESS, SAG, Cutting, FaceHint, Making, Stiffness
+from matstd.report.pages.design_result import Design, Proven
+from matstd.report.pages.identifiability_section import known_content
+from matstd.report.pages.page import digits, write_page
+from matstd.report.pages.study_page import draw_study_volumes, study_content
+from matstd.report.pages.time_section import minutes, order_content
+from matstd.report.plots import (
     draw_touch_curves,
     write_order_picture,
     write_proof_picture,
     write_touches_picture,
 )
-from report.scenes import draw_standard
-from report.style import save
-from report.task import budget_rows, modulus_words, task_lines
-from report.words import (
+from matstd.report.scenes import draw_standard
+from matstd.report.style import save
+from matstd.report.task import budget_rows, modulus_words, task_lines
+from matstd.report.words import (
     best_rival,
     comparison_remarks,
     criterion_words,
     design_lines,
     verdict_of_design,
 )
-from twin.errors import DesignError
-from twin.units import DEG, UM
+from matstd.twin.errors import DesignError
+from matstd.twin.units import DEG, UM
 
 MAPS, CURVES = "sensitivity", "touch_curves.png"
 """Folder of the maps, file of a picture."""

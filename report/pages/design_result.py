@@ -3,21 +3,21 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from artefact.brief import Project
-from artefact.compare import IdentifiabilityReport, WorstRegions
-from artefact.place import Placement
-from cad_out.making import Making
-from cad_out.verify import Conformity
-from diagnosis.answer import Proof
-from diagnosis.fit import Fit
-from diagnosis.task import TaskUncertainty, Visits
-from probe_paths.campaign import Campaign
-from probe_paths.emit import ProgramSet
-from probe_paths.plan import TouchPlan
-from probe_paths.stations import Station, all_programs
-from sensitivity.study import Study
-from twin.frames import Array
-from twin.model import Effect
+from matstd.artefact.brief import Project
+from matstd.artefact.compare import IdentifiabilityReport, WorstRegions
+from matstd.artefact.place import Placement
+from matstd.cad_out.making import Making
+from matstd.cad_out.verify import Conformity
+from matstd.diagnosis.answer import Proof
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.task import TaskUncertainty, Visits
+from matstd.probe_paths.campaign import Campaign
+from matstd.probe_paths.emit import ProgramSet
+from matstd.probe_paths.plan import TouchPlan
+from matstd.probe_paths.stations import Station, all_programs
+from matstd.sensitivity.study import Study
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect
 
 
 @dataclass(frozen=True, eq=False)

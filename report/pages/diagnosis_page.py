@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.answer import Detectable, Diagnosis, Plan, Step, Verdict
-from diagnosis.fit import file_unit
-from report.effects import class_words, effect_cell, plan_words
-from report.geometry import fault_sentences, geometry_section
-from report.numbers import digits, unit_words
-from report.pages.page import write_page
-from report.pages.residual_section import (
+from matstd.diagnosis.answer import Detectable, Diagnosis, Plan, Step, Verdict
+from matstd.diagnosis.fit import file_unit
+from matstd.report.effects import class_words, effect_cell, plan_words
+from matstd.report.geometry import fault_sentences, geometry_section
+from matstd.report.numbers import digits, unit_words
+from matstd.report.pages.page import write_page
+from matstd.report.pages.residual_section import (
     Picture,
     gross_rows,
     pattern_pictures,
@@ -21,8 +21,8 @@ from report.pages.residual_section import (
     residual_pictures,
     setting,
 )
-from report.pages.trend_section import trend_section
-from report.plots import (
+from matstd.report.pages.trend_section import trend_section
+from matstd.report.plots import (
     draw_candidates,
     draw_effect,
     draw_fall,
@@ -32,8 +32,8 @@ from report.plots import (
     is_form,
     is_spread,
 )
-from report.style import series
-from report.words import (
+from matstd.report.style import series
+from matstd.report.words import (
     remark_sentence,
     scanned_sentence,
     sizes,
@@ -41,9 +41,9 @@ from report.words import (
     values,
     verdict_sentence,
 )
-from twin.files import reading_columns
-from twin.library import kinds, parse_effect
-from twin.units import UM
+from matstd.twin.files import reading_columns
+from matstd.twin.library import kinds, parse_effect
+from matstd.twin.units import UM
 
 PAGE = "report.html"
 PICTURES = "pictures"

@@ -5,9 +5,9 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from artefact.compare import Alone, IdentifiabilityReport
-from information.identifiability import STRONG, Degree, FreedomFamily, Resolution, ties
-from report.identifiability import (
+from matstd.artefact.compare import Alone, IdentifiabilityReport
+from matstd.information.identifiability import STRONG, Degree, FreedomFamily, Resolution, ties
+from matstd.report.identifiability import (
     combination_words,
     family_words,
     gist,
@@ -17,13 +17,13 @@ from report.identifiability import (
     resolution_words,
     short,
 )
-from report.maps import draw_ties
-from report.numbers import shown
-from report.pages.design_result import Design
-from report.pages.page import digits
-from report.style import save
-from twin.machine import Chain, Link
-from twin.units import DEG
+from matstd.report.maps import draw_ties
+from matstd.report.numbers import shown
+from matstd.report.pages.design_result import Design
+from matstd.report.pages.page import digits
+from matstd.report.style import save
+from matstd.twin.machine import Chain, Link
+from matstd.twin.units import DEG
 
 CORRELATION = "correlation.png"
 """Picture of the parameters that the touches tie together."""

@@ -1,7 +1,7 @@
 """Results as they show themselves: a short text, and in a notebook a table with a picture.
 
-`twin.display` calls this module by name. To teach it a result, register a text, and a picture if
-there is one that says most.
+`matstd.twin.display` calls this module by name. To teach it a result, register a text, and a
+picture if there is one that says most.
 """
 
 from collections.abc import Callable
@@ -13,20 +13,20 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from artefact.compare import IdentifiabilityReport
-from diagnosis.answer import Comparison, Diagnosis
-from diagnosis.fit import Fit
-from diagnosis.residual import rank_variables
-from report.identifiability import gist
-from report.maps import draw_regions
-from report.pages.page import picture
-from report.plots import draw_fall, draw_over_variables
-from report.style import save
-from report.words import comparison_sentence, microns, study_words, verdict_sentence
-from sensitivity.shares import regions
-from sensitivity.study import Study
-from twin.display import Tabular
-from twin.record import Run
+from matstd.artefact.compare import IdentifiabilityReport
+from matstd.diagnosis.answer import Comparison, Diagnosis
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.residual import rank_variables
+from matstd.report.identifiability import gist
+from matstd.report.maps import draw_regions
+from matstd.report.pages.page import picture
+from matstd.report.plots import draw_fall, draw_over_variables
+from matstd.report.style import save
+from matstd.report.words import comparison_sentence, microns, study_words, verdict_sentence
+from matstd.sensitivity.shares import regions
+from matstd.sensitivity.study import Study
+from matstd.twin.display import Tabular
+from matstd.twin.record import Run
 
 _ROWS = 10  # of a table that are shown; the rest is told
 

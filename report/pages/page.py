@@ -7,13 +7,13 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup, escape
 
-from report.effects import effect_title
-from report.numbers import digits as digits
-from report.numbers import percent, signed
-from report.pages.tables import write_tables
-from twin.files import write_whole
-from twin.versions import versions
-from twin.words import in_own_unit
+from matstd.report.effects import effect_title
+from matstd.report.numbers import digits as digits
+from matstd.report.numbers import percent, signed
+from matstd.report.pages.tables import write_tables
+from matstd.twin.files import write_whole
+from matstd.twin.versions import versions
+from matstd.twin.words import in_own_unit
 
 _MINUS = re.compile(r"(?<![^\s(,])-(?=\d)")
 _APART = re.compile(r"(?<=[\d.]) (?=±|[µ%°]|min\b|h\b|mm\b|deg\b)|(?<=±) ")
@@ -35,7 +35,7 @@ def write_page(path: str | Path, template: str, **content: object) -> None:
         content: What it shows; a missing name is our own mistake and raises.
     """
     environment = Environment(
-        loader=PackageLoader("report.pages"),
+        loader=PackageLoader("matstd.report.pages"),
         autoescape=select_autoescape(["html"]),
         undefined=StrictUndefined,
         trim_blocks=True,

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from twin.errors import DesignError, MissingLibrary
-from twin.files import written_whole
+from matstd.twin.errors import DesignError, MissingLibrary
+from matstd.twin.files import written_whole
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
 """Names under which browsers that can print without a window are found."""

@@ -6,20 +6,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from diagnosis.residual import Region, Structure, has_poses, rank_variables
-from report.numbers import span
-from report.pages.page import p_value
-from report.plots import (
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.residual import Region, Structure, has_poses, rank_variables
+from matstd.report.numbers import span
+from matstd.report.pages.page import p_value
+from matstd.report.plots import (
     draw_normal_plot,
     draw_over_variables,
     draw_pattern,
     draw_pose_arrows,
 )
-from report.words import microns, region_words, stated_noise, structure_words
-from twin.frames import Array
-from twin.record import Run, Touches
-from twin.units import UM
+from matstd.report.words import microns, region_words, stated_noise, structure_words
+from matstd.twin.frames import Array
+from matstd.twin.record import Run, Touches
+from matstd.twin.units import UM
 
 FIRST = 12
 """Variables that are shown at once; the others are folded away."""

@@ -3,16 +3,16 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from probe_paths.campaign import setup_tolerance
-from probe_paths.language import LANGUAGES, Label, Q, interlocks
-from probe_paths.locate import Companions
-from probe_paths.plan import SMALLEST_GAP, Heading, ProgramFrame, calibration_hash
-from probe_paths.stations import Station
-from report.pages.page import write_page
-from report.plots import write_setup_picture
-from report.scenes import PLAYBACK, write_playback
-from twin.frames import fixed_xyz_angles
-from twin.units import DEG, MINUTE
+from matstd.probe_paths.campaign import setup_tolerance
+from matstd.probe_paths.language import LANGUAGES, Label, Q, interlocks
+from matstd.probe_paths.locate import Companions
+from matstd.probe_paths.plan import SMALLEST_GAP, Heading, ProgramFrame, calibration_hash
+from matstd.probe_paths.stations import Station
+from matstd.report.pages.page import write_page
+from matstd.report.plots import write_setup_picture
+from matstd.report.scenes import PLAYBACK, write_playback
+from matstd.twin.frames import fixed_xyz_angles
+from matstd.twin.units import DEG, MINUTE
 
 PAGE, PICTURE = "setup.html", "setup.png"
 """Names in the folder of the sheet."""

@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from report.pages.page import write_page
-from report.scenes import Scene, draw_volumes
-from report.words import dominant_words, place_words, sampling_words, unsampled
-from sensitivity.shares import regions
-from sensitivity.study import Study, Volume, has_volume, level, volume
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.machine import Family, Symbol
-from twin.units import DEG, UM, URAD
+from matstd.report.pages.page import write_page
+from matstd.report.scenes import Scene, draw_volumes
+from matstd.report.words import dominant_words, place_words, sampling_words, unsampled
+from matstd.sensitivity.shares import regions
+from matstd.sensitivity.study import Study, Volume, has_volume, level, volume
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.machine import Family, Symbol
+from matstd.twin.units import DEG, UM, URAD
 
 ERROR_3D, S_3D = "volumetric_3d.png", "sensitivity_3d.png"
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from html.parser import HTMLParser
 from pathlib import Path
 
-from twin.files import write_whole, written_whole
+from matstd.twin.files import write_whole, written_whole
 
 FOLDER, WORKBOOK = "tables", "tables.xlsx"
 """Where they go, beside the page."""

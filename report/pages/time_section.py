@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from probe_paths.campaign import Order, Ordering, orders, probing_time
-from report.numbers import percent
-from report.pages.design_result import Design
-from twin.units import HOUR, MINUTE, UM, URAD
+from matstd.probe_paths.campaign import Order, Ordering, orders, probing_time
+from matstd.report.numbers import percent
+from matstd.report.pages.design_result import Design
+from matstd.twin.units import HOUR, MINUTE, UM, URAD
 
 _ORDERINGS = {
     Ordering.AS_PLANNED: "as planned: mixed, twice, from both sides, anchor touches",

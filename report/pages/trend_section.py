@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from diagnosis.answer import Trend
-from diagnosis.geometry import Estimate, GeometryRow
-from report.geometry import USUAL, change_sentences, estimate_words, quantity_name
-from report.numbers import digits
-from report.plots import draw_trend
-from twin.units import UM
+from matstd.diagnosis.answer import Trend
+from matstd.diagnosis.geometry import Estimate, GeometryRow
+from matstd.report.geometry import USUAL, change_sentences, estimate_words, quantity_name
+from matstd.report.numbers import digits
+from matstd.report.plots import draw_trend
+from matstd.twin.units import UM
 
 DRAWN = 8
 """Quantities that are drawn, those that changed first; with the errors that makes three rows."""

@@ -3,10 +3,10 @@
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from diagnosis.task import TaskUncertainty
-from report.pages.page import write_page
-from report.task import budget_rows
-from twin.units import UM
+from matstd.diagnosis.task import TaskUncertainty
+from matstd.report.pages.page import write_page
+from matstd.report.task import budget_rows
+from matstd.twin.units import UM
 
 
 def write_uncertainty_page(

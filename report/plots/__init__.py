@@ -4,17 +4,17 @@ Each takes a result (`TouchPlan`, `Proof`, `Fit`, `Diagnosis`) and the path of a
 written whole or not at all.
 """
 
-from report.plots.effect_pictures import draw_candidates, draw_effect, draw_fall, draw_rivals
-from report.plots.form_pictures import draw_form, is_form
-from report.plots.pattern_pictures import draw_pattern
-from report.plots.plan_pictures import write_order_picture, write_touches_picture
-from report.plots.proof_picture import write_proof_picture
-from report.plots.reach_picture import draw_reach, draw_room
-from report.plots.residual_pictures import draw_normal_plot, draw_over_variables
-from report.plots.setup_picture import write_setup_picture
-from report.plots.spatial_pictures import draw_on_standard, draw_pose_arrows, is_spread
-from report.plots.touch_curve_picture import draw_touch_curves
-from report.plots.trend_picture import draw_trend
+from matstd.report.plots.effect_pictures import draw_candidates, draw_effect, draw_fall, draw_rivals
+from matstd.report.plots.form_pictures import draw_form, is_form
+from matstd.report.plots.pattern_pictures import draw_pattern
+from matstd.report.plots.plan_pictures import write_order_picture, write_touches_picture
+from matstd.report.plots.proof_picture import write_proof_picture
+from matstd.report.plots.reach_picture import draw_reach, draw_room
+from matstd.report.plots.residual_pictures import draw_normal_plot, draw_over_variables
+from matstd.report.plots.setup_picture import write_setup_picture
+from matstd.report.plots.spatial_pictures import draw_on_standard, draw_pose_arrows, is_spread
+from matstd.report.plots.touch_curve_picture import draw_touch_curves
+from matstd.report.plots.trend_picture import draw_trend
 
 __all__ = [
     "draw_candidates",

@@ -6,14 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.answer import CONFUSED, Candidate, ConfusionClass, Diagnosis, Step
-from diagnosis.fit import MIN_POSES, Fit
-from diagnosis.regression import BoolArray
-from diagnosis.residual import Partial, Seen, binned, partial
-from report.effects import effect_cell, effect_title
-from report.numbers import noun, shown
-from report.plots.residual_pictures import kept
-from report.style import (
+from matstd.diagnosis.answer import CONFUSED, Candidate, ConfusionClass, Diagnosis, Step
+from matstd.diagnosis.fit import MIN_POSES, Fit
+from matstd.diagnosis.regression import BoolArray
+from matstd.diagnosis.residual import Partial, Seen, binned, partial
+from matstd.report.effects import effect_cell, effect_title
+from matstd.report.numbers import noun, shown
+from matstd.report.plots.residual_pictures import kept
+from matstd.report.style import (
     BLUE,
     FAINT,
     INK,
@@ -28,11 +28,11 @@ from report.style import (
     save,
     series,
 )
-from report.words import microns
-from twin.frames import Array
-from twin.library import parse_effect
-from twin.model import Effect
-from twin.units import UM
+from matstd.report.words import microns
+from matstd.twin.frames import Array
+from matstd.twin.library import parse_effect
+from matstd.twin.model import Effect
+from matstd.twin.units import UM
 
 MOST_BARS = 14
 """Rivals or candidates that get a bar."""

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from diagnosis.regression import BoolArray
-from report.style import DIVERGING, INK, figure, plain, robust_limit, save
-from twin.frames import Array
-from twin.model import Effect, columns
-from twin.units import UM
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.regression import BoolArray
+from matstd.report.style import DIVERGING, INK, figure, plain, robust_limit, save
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, columns
+from matstd.twin.units import UM
 
 LEVELS = 15
 

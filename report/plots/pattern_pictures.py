@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from diagnosis.residual import SEES, Structure, binned, directions, groups, variables
-from report.numbers import span, time_unit
-from report.plots.residual_pictures import kept
-from report.style import (
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.residual import SEES, Structure, binned, directions, groups, variables
+from matstd.report.numbers import span, time_unit
+from matstd.report.plots.residual_pictures import kept
+from matstd.report.style import (
     BLUE,
     DIVERGING,
     FAINT,
@@ -22,9 +22,9 @@ from report.style import (
     robust_limit,
     save,
 )
-from twin.frames import Array
-from twin.record import IntArray
-from twin.units import UM
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
+from matstd.twin.units import UM
 
 NEIGHBOURS = 14
 """Touches over which a map of two variables is averaged."""

@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from artefact.body import DatumSphere, FreeformPatch
-from probe_paths.plan import TouchPlan
-from report.style import BLUE, INK, RED, SOFT, figure, plain, save
-from twin.units import DEG
+from matstd.artefact.body import DatumSphere, FreeformPatch
+from matstd.probe_paths.plan import TouchPlan
+from matstd.report.style import BLUE, INK, RED, SOFT, figure, plain, save
+from matstd.twin.units import DEG
 
 
 def write_touches_picture(path: str | Path, plan: TouchPlan) -> None:

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.answer import Proof
-from report.style import BLUE, RED, SOFT, figure, plain, save, series
-from twin.units import UM
+from matstd.diagnosis.answer import Proof
+from matstd.report.style import BLUE, RED, SOFT, figure, plain, save, series
+from matstd.twin.units import UM
 
 
 def write_proof_picture(path: str | Path, proofs: Sequence[Proof]) -> None:

@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from artefact.layout import Blank, least_gap
-from artefact.place import Room
-from artefact.reach import ANGLE, Limit, PlacesInReach
-from report.style import BLUE, INK, RED, figure, plain
-from twin.machine import Chain
-from twin.units import DEG
+from matstd.artefact.layout import Blank, least_gap
+from matstd.artefact.place import Room
+from matstd.artefact.reach import ANGLE, Limit, PlacesInReach
+from matstd.report.style import BLUE, INK, RED, figure, plain
+from matstd.twin.machine import Chain
+from matstd.twin.units import DEG
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

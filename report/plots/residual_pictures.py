@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from diagnosis.residual import RankedVariable, binned, standardised
-from report.style import (
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.residual import RankedVariable, binned, standardised
+from matstd.report.style import (
     BLUE,
     FAINT,
     INK,
@@ -21,9 +21,9 @@ from report.style import (
     robust_limit,
     save,
 )
-from twin.frames import Array
-from twin.record import IntArray
-from twin.units import UM
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
+from matstd.twin.units import UM
 
 MOST_DRAWN = 4000
 """Touches that are drawn as points; means are always over all."""

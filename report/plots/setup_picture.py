@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from artefact.body import Plate
-from artefact.reach import table_face
-from probe_paths.plan import TouchPlan
-from report.style import BLUE, INK, RED, SOFT, figure, plain, save
-from twin.frames import Array, apply, inverse
+from matstd.artefact.body import Plate
+from matstd.artefact.reach import table_face
+from matstd.probe_paths.plan import TouchPlan
+from matstd.report.style import BLUE, INK, RED, SOFT, figure, plain, save
+from matstd.twin.frames import Array, apply, inverse
 
 
 def write_setup_picture(path: str | Path, plan: TouchPlan) -> None:

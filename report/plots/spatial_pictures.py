@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 
-from diagnosis.fit import Fit
-from diagnosis.regression import BoolArray
-from diagnosis.residual import pose_vectors
-from report.style import (
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.regression import BoolArray
+from matstd.diagnosis.residual import pose_vectors
+from matstd.report.style import (
     BLUE,
     DIVERGING,
     GREEN,
@@ -22,9 +22,9 @@ from report.style import (
     robust_limit,
     save,
 )
-from twin.frames import Array
-from twin.record import IntArray, Touches
-from twin.units import DEG, UM
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray, Touches
+from matstd.twin.units import DEG, UM
 
 EXTENT = 1.0
 """Touched points closer together than this (mm) are a place, not a standard."""

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from artefact.worth import TouchCurve
-from report.style import INK, LINE, figure, series
-from twin.units import UM
+from matstd.artefact.worth import TouchCurve
+from matstd.report.style import INK, LINE, figure, series
+from matstd.twin.units import UM
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

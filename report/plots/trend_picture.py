@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from diagnosis.answer import Trend
-from diagnosis.geometry import GeometryRow
-from report.geometry import quantity_name, shown_unit
-from report.style import BLUE, INK, RED, figure, plain, save, series
-from twin.units import UM
+from matstd.diagnosis.answer import Trend
+from matstd.diagnosis.geometry import GeometryRow
+from matstd.report.geometry import quantity_name, shown_unit
+from matstd.report.style import BLUE, INK, RED, figure, plain, save, series
+from matstd.twin.units import UM
 
 ACROSS = 3
 """Quantities side by side."""

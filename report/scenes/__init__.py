@@ -5,8 +5,8 @@ in; `*_scene` speaks to the rest of the house, `*_render` runs over there. Bodie
 a playback are triangles, which the reader's browser draws.
 """
 
-from report.scenes.playback import PLAYBACK, write_playback
-from report.scenes.standard_scene import draw_standard
-from report.scenes.volume_scene import Scene, draw_volumes
+from matstd.report.scenes.playback import PLAYBACK, write_playback
+from matstd.report.scenes.standard_scene import draw_standard
+from matstd.report.scenes.volume_scene import Scene, draw_volumes
 
 __all__ = ["PLAYBACK", "Scene", "draw_standard", "draw_volumes", "write_playback"]

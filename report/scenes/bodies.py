@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from artefact.body import FreeformPatch, Standard
-from artefact.reach import Solid, table_face
-from probe_paths.plan import TouchPlan
-from report.style import series
-from twin.frames import Array, apply, inverse, pose
+from matstd.artefact.body import FreeformPatch, Standard
+from matstd.artefact.reach import Solid, table_face
+from matstd.probe_paths.plan import TouchPlan
+from matstd.report.style import series
+from matstd.twin.frames import Array, apply, inverse, pose
 
 TOOL = "tool"
 """Carries the probe; other names are those of axes, and empty for the table."""

@@ -12,16 +12,16 @@ from pathlib import Path
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from probe_paths.control import Clock, Move, ProbeStep, ReadProgram, interpret, step_times
-from probe_paths.emit import ProgramSet
-from probe_paths.language import Dialect
-from probe_paths.plan import TouchPlan
-from report.scenes.bodies import TOOL, Drawn, drawn_bodies
-from twin.files import write_whole
-from twin.frames import Array, inverse
-from twin.machine import Chain, table_to_tool
-from twin.record import IntArray
-from twin.units import DEG
+from matstd.probe_paths.control import Clock, Move, ProbeStep, ReadProgram, interpret, step_times
+from matstd.probe_paths.emit import ProgramSet
+from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.plan import TouchPlan
+from matstd.report.scenes.bodies import TOOL, Drawn, drawn_bodies
+from matstd.twin.files import write_whole
+from matstd.twin.frames import Array, inverse
+from matstd.twin.machine import Chain, table_to_tool
+from matstd.twin.record import IntArray
+from matstd.twin.units import DEG
 
 PLAYBACK = "playback.html"
 """Name of the page."""
@@ -71,7 +71,7 @@ def write_playback(page: Path, plan: TouchPlan, programs: ProgramSet, dialect: D
         "probe": carriers.index(TOOL),
     }
     environment = Environment(
-        loader=PackageLoader("report.scenes"), autoescape=True, undefined=StrictUndefined
+        loader=PackageLoader("matstd.report.scenes"), autoescape=True, undefined=StrictUndefined
     )
     template = environment.get_template(PLAYBACK)
     write_whole(page, template.render(scene=scene, standard=plan.standard.name))

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from cad_out.build import run_apart
-from twin.errors import DesignError, MissingLibrary
-from twin.frames import Array
+from matstd.cad_out.build import run_apart
+from matstd.twin.errors import DesignError, MissingLibrary
+from matstd.twin.frames import Array
 
 FACTS, STL = "facts.npz", "standard.stl"
 """Names of the files through which the two processes speak."""
@@ -42,10 +42,10 @@ def shared_folder(stl: Path | None, facts: Mapping[str, Any]) -> Iterator[Path]:
 
 
 def render(module: str, task: str, place: Path, what: str) -> None:
-    """Let a task of `report.scenes` draw what stands in a folder.
+    """Let a task of `matstd.report.scenes` draw what stands in a folder.
 
     Args:
-        module: Of `report.scenes`.
+        module: Of `matstd.report.scenes`.
         task: Function that takes the folder.
         place: The folder.
         what: Is missing if it fails: `picture`.
@@ -54,7 +54,9 @@ def render(module: str, task: str, place: Path, what: str) -> None:
         MissingLibrary: No OpenGL without a screen on this machine; names the system package.
         DesignError: The task refuses.
     """
-    ending = run_apart(f"report.scenes.{module}", task, place, timeout=SECONDS, environment=_EGL)
+    ending = run_apart(
+        f"matstd.report.scenes.{module}", task, place, timeout=SECONDS, environment=_EGL
+    )
     if ending.refusal:
         raise DesignError(ending.refusal)
     if not ending.is_good:

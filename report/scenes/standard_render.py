@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from artefact.body import DatumSphere, FreeformPatch, Standard, read_standard
-from cad_out.meshes import owners, read_stl
-from report.scenes.renderer import STL, screenshot
-from report.scenes.standard_scene import PICTURE, STANDARD
-from report.style import series
-from twin.frames import Array
+from matstd.artefact.body import DatumSphere, FreeformPatch, Standard, read_standard
+from matstd.cad_out.meshes import owners, read_stl
+from matstd.report.scenes.renderer import STL, screenshot
+from matstd.report.scenes.standard_scene import PICTURE, STANDARD
+from matstd.report.style import series
+from matstd.twin.frames import Array
 
 SIZE = (2000, 860)
 _BODY = "#b9bec4"

@@ -3,9 +3,9 @@
 import shutil
 from pathlib import Path
 
-from artefact.body import Standard, write_standard
-from report.scenes.renderer import render, shared_folder
-from twin.files import written_whole
+from matstd.artefact.body import Standard, write_standard
+from matstd.report.scenes.renderer import render, shared_folder
+from matstd.twin.files import written_whole
 
 STANDARD, PICTURE = "standard.toml", "picture.png"
 """Further files through which the two processes speak."""

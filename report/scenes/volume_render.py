@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from cad_out.meshes import read_stl
-from report.scenes.renderer import FACTS, STL, screenshot
-from report.scenes.volume_scene import COLOURS, IMAGE, PIXELS, eye
-from report.style import INK, LINE
-from twin.frames import Array
+from matstd.cad_out.meshes import read_stl
+from matstd.report.scenes.renderer import FACTS, STL, screenshot
+from matstd.report.scenes.volume_scene import COLOURS, IMAGE, PIXELS, eye
+from matstd.report.style import INK, LINE
+from matstd.twin.frames import Array
 
 _LEVELS = 5  # iso-surfaces between smallest and largest value
 

@@ -13,11 +13,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cad_out.meshes import read_stl
-from report.scenes.renderer import render, shared_folder
-from report.style import INK, RED, WIDTH, figure, save
-from twin.errors import DesignError, ShapeMismatch
-from twin.frames import Array, apply
+from matstd.cad_out.meshes import read_stl
+from matstd.report.scenes.renderer import render, shared_folder
+from matstd.report.style import INK, RED, WIDTH, figure, save
+from matstd.twin.errors import DesignError, ShapeMismatch
+from matstd.twin.frames import Array, apply
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

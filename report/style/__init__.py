@@ -4,7 +4,7 @@ A picture module takes an empty `figure`, the colours and the labels from here, 
 figure to `save`. To change how all pictures look, change this part and nothing else.
 """
 
-from report.style.colours import (
+from matstd.report.style.colours import (
     BLUE,
     DIVERGING,
     FAINT,
@@ -18,8 +18,8 @@ from report.style.colours import (
     WASH,
     series,
 )
-from report.style.labels import axis_of, axis_title, reading_label, robust_limit
-from report.style.sheet import WIDTH, figure, nothing, plain, save
+from matstd.report.style.labels import axis_of, axis_title, reading_label, robust_limit
+from matstd.report.style.sheet import WIDTH, figure, nothing, plain, save
 
 __all__ = [
     "BLUE",

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from report.numbers import noun, time_unit, unit_of
-from twin.frames import Array
-from twin.machine import Chain, Link
-from twin.units import DEG
+from matstd.report.numbers import noun, time_unit, unit_of
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Link
+from matstd.twin.units import DEG
 
 
 def axis_title(link: Link) -> str:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from report.style.colours import INK, LINE, SOFT
-from twin.files import written_whole
-from twin.words import in_own_unit
+from matstd.report.style.colours import INK, LINE, SOFT
+from matstd.twin.files import written_whole
+from matstd.twin.words import in_own_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -1,13 +1,18 @@
 """Calibration of a standard and uncertainty of a task, in words and rows of tables."""
 
-from report.task.calibration_words import (
+from matstd.report.task.calibration_words import (
     calibration_lines,
     refusal_sentence,
     verdict_lines,
     verdict_rows,
 )
-from report.task.standard_words import modulus_words
-from report.task.task_words import budget_rows, decision_sentence, measured_sentence, task_lines
+from matstd.report.task.standard_words import modulus_words
+from matstd.report.task.task_words import (
+    budget_rows,
+    decision_sentence,
+    measured_sentence,
+    task_lines,
+)
 
 __all__ = [
     "budget_rows",

@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from artefact.body import Verdict
-from artefact.certify import Calibrated, CommonCause
-from report.numbers import digits
-from twin.units import T_REF, UM, URAD
+from matstd.artefact.body import Verdict
+from matstd.artefact.certify import Calibrated, CommonCause
+from matstd.report.numbers import digits
+from matstd.twin.units import T_REF, UM, URAD
 
 PPM = 1e-6
 _SIGNED = ("diameter", "scale")

@@ -1,8 +1,8 @@
 """What a standard is made of, in words."""
 
-from artefact.body import Material
-from artefact.layout import SOFT
-from twin.units import GPA
+from matstd.artefact.body import Material
+from matstd.artefact.layout import SOFT
+from matstd.twin.units import GPA
 
 
 def modulus_words(material: Material) -> str:

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from typing import Any
 
-from diagnosis.task import LEVEL, TaskUncertainty, Visits, guarded
-from report.numbers import digits, percent
-from twin.units import UM
+from matstd.diagnosis.task import LEVEL, TaskUncertainty, Visits, guarded
+from matstd.report.numbers import digits, percent
+from matstd.twin.units import UM
 
 FEW_VISITS = 10
 """Cycles that ISO 15530-3 asks for at least."""

@@ -4,9 +4,9 @@ A module for each room below: what a result says in numbers and names is told he
 units, values with their uncertainty.
 """
 
-from report.words.artefact_words import comparison_remarks, criterion_words
-from report.words.design_words import best_rival, design_lines, proof_line, verdict_of_design
-from report.words.diagnosis_words import (
+from matstd.report.words.artefact_words import comparison_remarks, criterion_words
+from matstd.report.words.design_words import best_rival, design_lines, proof_line, verdict_of_design
+from matstd.report.words.diagnosis_words import (
     comparison_sentence,
     learnt_lines,
     promise_sentence,
@@ -17,10 +17,10 @@ from report.words.diagnosis_words import (
     values,
     verdict_sentence,
 )
-from report.words.open_words import microns, stated_noise
-from report.words.probe_words import ball_lines, located_lines
-from report.words.remark_words import remark_sentence
-from report.words.sensitivity_words import (
+from matstd.report.words.open_words import microns, stated_noise
+from matstd.report.words.probe_words import ball_lines, located_lines
+from matstd.report.words.remark_words import remark_sentence
+from matstd.report.words.sensitivity_words import (
     dominant_words,
     place_words,
     sampling_words,

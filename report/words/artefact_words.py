@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from artefact.brief import StandardTable
-from artefact.compare import ERROR, RISK, WANTED
-from artefact.place import Placement
-from report.numbers import digits, percent
-from twin.units import UM
+from matstd.artefact.brief import StandardTable
+from matstd.artefact.compare import ERROR, RISK, WANTED
+from matstd.artefact.place import Placement
+from matstd.report.numbers import digits, percent
+from matstd.twin.units import UM
 
 _CRITERIA = {
     "I": "mean variance of the predicted tool point over probed volume and workspace",

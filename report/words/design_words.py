@@ -8,14 +8,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from artefact.compare import Rival, WorstRegions
-from artefact.place import Placement
-from diagnosis.answer import Proof
-from diagnosis.fit import Fit
-from report.numbers import digits
-from report.words.artefact_words import blind_spots, identification_sentence, proof_sentence
-from twin.units import DEG, UM
-from twin.words import listed
+from matstd.artefact.compare import Rival, WorstRegions
+from matstd.artefact.place import Placement
+from matstd.diagnosis.answer import Proof
+from matstd.diagnosis.fit import Fit
+from matstd.report.numbers import digits
+from matstd.report.words.artefact_words import blind_spots, identification_sentence, proof_sentence
+from matstd.twin.units import DEG, UM
+from matstd.twin.words import listed
 
 COVERED, FAR = 0.5, 3.0
 """Least share of the workspace of an axis that touches read for nothing to be said; where the

@@ -5,17 +5,17 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from diagnosis.answer import Comparison, Detectable, Diagnosis, Step, Verdict
-from diagnosis.fit import SINE, Fit, Reported, Role
-from diagnosis.remarks import OfAnotherRun
-from diagnosis.residual import Condition, Shape, Side, Structure
-from report.effects import class_words, words_of_name
-from report.numbers import condition, digits, noun, span, unit_words, with_uncertainty
-from report.words.open_words import microns, nearest_clause, stated_noise, undecided_sentence
-from report.words.remark_words import memory_words
-from twin.library import title_of
-from twin.units import DEG, UM
-from twin.words import listed
+from matstd.diagnosis.answer import Comparison, Detectable, Diagnosis, Step, Verdict
+from matstd.diagnosis.fit import SINE, Fit, Reported, Role
+from matstd.diagnosis.remarks import OfAnotherRun
+from matstd.diagnosis.residual import Condition, Shape, Side, Structure
+from matstd.report.effects import class_words, words_of_name
+from matstd.report.numbers import condition, digits, noun, span, unit_words, with_uncertainty
+from matstd.report.words.open_words import microns, nearest_clause, stated_noise, undecided_sentence
+from matstd.report.words.remark_words import memory_words
+from matstd.twin.library import title_of
+from matstd.twin.units import DEG, UM
+from matstd.twin.words import listed
 
 _WORDS = {
     "rms": "rms that it explains",

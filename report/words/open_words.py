@@ -1,10 +1,10 @@
 """What a diagnosis leaves open, in sentences: the nearest effect, noise that nothing shows."""
 
-from diagnosis.answer import Diagnosis
-from report.numbers import digits
-from twin.record import Run
-from twin.units import UM
-from twin.words import listed
+from matstd.diagnosis.answer import Diagnosis
+from matstd.report.numbers import digits
+from matstd.twin.record import Run
+from matstd.twin.units import UM
+from matstd.twin.words import listed
 
 
 def microns(value: float) -> str:

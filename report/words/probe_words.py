@@ -5,11 +5,11 @@ from datetime import datetime
 
 import numpy as np
 
-from probe_paths.campaign import BallChange
-from probe_paths.locate import Found
-from twin.frames import fixed_xyz_angles, inverse
-from twin.record import Setup
-from twin.units import DEG, UM
+from matstd.probe_paths.campaign import BallChange
+from matstd.probe_paths.locate import Found
+from matstd.twin.frames import fixed_xyz_angles, inverse
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG, UM
 
 
 def ball_lines(

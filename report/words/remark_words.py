@@ -3,12 +3,12 @@
 from collections.abc import Callable
 from typing import Any
 
-import diagnosis.remarks as noticed
-from diagnosis.fit import MistakenUnit, UnitMistake
-from report.numbers import digits, unit_words, with_uncertainty
-from twin.library import title_of
-from twin.units import T_REF, UM
-from twin.words import listed
+import matstd.diagnosis.remarks as noticed
+from matstd.diagnosis.fit import MistakenUnit, UnitMistake
+from matstd.report.numbers import digits, unit_words, with_uncertainty
+from matstd.twin.library import title_of
+from matstd.twin.units import T_REF, UM
+from matstd.twin.words import listed
 
 NONE_CERTAIN = ", none of which stands with all rows in use"
 """Behind a way of choosing of which nothing came."""

@@ -4,10 +4,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sensitivity.montecarlo import Stability, Volumetric
-from sensitivity.shares import Part, Place, Region
-from sensitivity.study import Study
-from twin.units import DEG, UM
+from matstd.sensitivity.montecarlo import Stability, Volumetric
+from matstd.sensitivity.shares import Part, Place, Region
+from matstd.sensitivity.study import Study
+from matstd.twin.units import DEG, UM
 
 _SHOWN = 5  # parameters with the largest shares
 

@@ -4,7 +4,7 @@ One walk along the chain from the table to the tool. A workpiece-carrying axis m
 minus its reading, so seen from the table every axis turns by plus its reading, and both sides of
 the foundation are one product. With R the rotation of a body in the table frame, p the tip and c
 the lever point of an axis, a component error e or r of it moves the tip by ``R e`` and
-``(R r) x (p - c)``. `twin.machine.kinematics.reach` says the same in 4x4 matrices and shares
+``(R r) x (p - c)``. `matstd.twin.machine.kinematics.reach` says the same in 4x4 matrices and shares
 nothing with this file.
 
 A vector is kept as its components x y z x y, (5, n): what follows one another in a cross product is
@@ -17,9 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.compute import blocks
-from twin.frames import Array, rotation, skew
-from twin.machine import Chain, Family, Link, Symbol, checked_readings
+from matstd.twin.compute import blocks
+from matstd.twin.frames import Array, rotation, skew
+from matstd.twin.machine import Chain, Family, Link, Symbol, checked_readings
 
 _POSES_A_BLOCK = 5000
 """Poses at once: a few columns stay in the second cache (10 000 take no less), and a call of numpy
@@ -65,8 +65,8 @@ def jacobian_by_parameter(
 ) -> Array:
     """First-order deviation of the tool point per unit of every error parameter, parameter first.
 
-    The same numbers as `sensitivity.first_order.jacobians.jacobian`, in the order of memory that
-    fills fastest.
+    The same numbers as `matstd.sensitivity.first_order.jacobians.jacobian`, in the order of memory
+    that fills fastest.
 
     Args:
         q: Readings, shape (N, A), mm and rad.
@@ -212,7 +212,7 @@ def _displaced(link: Link, stand: PoseCache, directions: slice, is_angular: bool
     """What a displaced line does along machine directions, (., 5, n).
 
     Displacement, or of a tilted line of a rotary axis rotation about the lever point. See
-    `twin.machine.kinematics.place_as_twist`.
+    `matstd.twin.machine.kinematics.place_as_twist`.
     """
     if link.kind == "fixed":
         own = stand.carrier[directions]

@@ -5,11 +5,11 @@ from itertools import combinations, groupby
 
 import numpy as np
 
-from sensitivity.first_order.by_parameter import jacobian_blocks
-from sensitivity.first_order.jacobians import jacobian
-from sensitivity.population import CONSTANT, Mix, Population, product_moment
-from twin.frames import Array
-from twin.machine import Symbol, checked_readings, shape, sine_argument
+from matstd.sensitivity.first_order.by_parameter import jacobian_blocks
+from matstd.sensitivity.first_order.jacobians import jacobian
+from matstd.sensitivity.population import CONSTANT, Mix, Population, product_moment
+from matstd.twin.frames import Array
+from matstd.twin.machine import Symbol, checked_readings, shape, sine_argument
 
 _PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))  # entries of a symmetric matrix
 
@@ -141,7 +141,7 @@ def variance_shares(population: Population, q: Array, length: Array | float) -> 
 
     These are Sobol's indices of the vector deviation (first-order and total are the same, as it is
     linear in independent errors), by the trace of its covariance. For the norm |d| itself they
-    hold approximately; `sensitivity.shares.total_effect_indices` has them by simulation.
+    hold approximately; `matstd.sensitivity.shares.total_effect_indices` has them by simulation.
 
     Reference:
         Gamboa et al., Electron. J. Statist. 8 (2014) 575: Sobol indices of vector outputs.

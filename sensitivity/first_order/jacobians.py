@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sensitivity.first_order.by_parameter import jacobian_by_parameter
-from twin.frames import Array
-from twin.machine import Chain, Symbol
+from matstd.sensitivity.first_order.by_parameter import jacobian_by_parameter
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Symbol
 
 
 def jacobian(
@@ -15,8 +15,9 @@ def jacobian(
     """First-order deviation of the tool point per unit of every error parameter.
 
     ``dp/dE`` in closed form: a component error by the twist of its axis, a location or set-up
-    error by the displacement of its link (`sensitivity.first_order.by_parameter`). A component
-    error counts with the value it has at the reading of the pose, whatever its distribution.
+    error by the displacement of its link (`matstd.sensitivity.first_order.by_parameter`). A
+    component error counts with the value it has at the reading of the pose, whatever its
+    distribution.
 
     Args:
         q: Readings, shape (N, A), mm and rad.
@@ -39,7 +40,7 @@ def sensitivity(
 
     It is one for every translational component error everywhere, and the distance from the axis of
     the rotation for an angular one: a map of it says how far from the axis a pose is, and the
-    signed ``n . dp/dE`` of touches (`information.criteria.posterior`) what a touch can tell.
+    signed ``n . dp/dE`` of touches (`matstd.information.criteria.posterior`) what a touch can tell.
 
     Args:
         q: Readings, shape (N, A), mm and rad.

@@ -17,7 +17,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from twin.frames import Array
+from matstd.twin.frames import Array
 
 LEVELS = (0.5, 0.95, 0.99)
 _START = (0.67, 1.6, 1.94)  # below every quantile of a length with root mean square one

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from twin.errors import DesignError, NotReachable, OutsideTravel, UnknownAxis
-from twin.frames import Array
-from twin.machine import Chain, inverse_linear, tip
-from twin.units import DEG
+from matstd.twin.errors import DesignError, NotReachable, OutsideTravel, UnknownAxis
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, inverse_linear, tip
+from matstd.twin.units import DEG
 
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 _ROUNDS = 40  # draws of joints until enough tool points lie in the box

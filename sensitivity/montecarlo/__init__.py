@@ -5,14 +5,14 @@ by sampling come out (`volumetric`). Batches of machines are the unit of work, w
 an executor or a Dask cluster does, to the same last bit.
 """
 
-from sensitivity.montecarlo.batches import MACHINES_A_BATCH, seed_words
-from sensitivity.montecarlo.dask_cluster import cluster
-from sensitivity.montecarlo.exact import ExactCheck, exact_check
-from sensitivity.montecarlo.lengths import BINS, count_lengths
-from sensitivity.montecarlo.random_machines import volumetric
-from sensitivity.montecarlo.stability import Stability
-from sensitivity.montecarlo.tally import Volumetric
-from sensitivity.montecarlo.workers import Workers
+from matstd.sensitivity.montecarlo.batches import MACHINES_A_BATCH, seed_words
+from matstd.sensitivity.montecarlo.dask_cluster import cluster
+from matstd.sensitivity.montecarlo.exact import ExactCheck, exact_check
+from matstd.sensitivity.montecarlo.lengths import BINS, count_lengths
+from matstd.sensitivity.montecarlo.random_machines import volumetric
+from matstd.sensitivity.montecarlo.stability import Stability
+from matstd.sensitivity.montecarlo.tally import Volumetric
+from matstd.sensitivity.montecarlo.workers import Workers
 
 __all__ = [
     "BINS",

@@ -5,12 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sensitivity.montecarlo.lengths import BINS, Lengths, count_lengths
-from sensitivity.population import DRAWS_A_CHILD, Population, coefficients, draw
-from twin.compute import blocks
-from twin.frames import Array
-from twin.model import Model
-from twin.record import at_poses
+from matstd.sensitivity.montecarlo.lengths import BINS, Lengths, count_lengths
+from matstd.sensitivity.population import DRAWS_A_CHILD, Population, coefficients, draw
+from matstd.twin.compute import blocks
+from matstd.twin.frames import Array
+from matstd.twin.model import Model
+from matstd.twin.record import at_poses
 
 MACHINES_A_BATCH = 20 * DRAWS_A_CHILD
 """10 240: as many as JCGM 101, 7.9.4 b) wants for a coverage of up to 99 %."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-from twin.errors import DesignError, MissingLibrary
+from matstd.twin.errors import DesignError, MissingLibrary
 
 ANSWER = 5.0
 """Seconds in which a scheduler has to answer and to have a worker."""

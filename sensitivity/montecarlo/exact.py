@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sensitivity.population import Population, coefficients, draw
-from twin.frames import Array
-from twin.record import at_poses
+from matstd.sensitivity.population import Population, coefficients, draw
+from matstd.twin.frames import Array
+from matstd.twin.record import at_poses
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,7 @@
 """Compiled loops of the Monte Carlo (the extra `fast`): counting lengths, finding worst poses.
 
-`sensitivity.montecarlo.lengths` has both in numpy, which is the reference; nothing here is needed
-to run.
+`matstd.sensitivity.montecarlo.lengths` has both in numpy, which is the reference; nothing here is
+needed to run.
 """
 
 from collections.abc import Callable
@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.compute import compiled_loop
+from matstd.twin.compute import compiled_loop
 
 MACHINES_A_BLOCK = 64
 """Machines whose lengths lie side by side: a pass over the poses takes them all at once."""

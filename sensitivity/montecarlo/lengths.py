@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from sensitivity.montecarlo.kernels import MACHINES_A_BLOCK, Kernels, compiled
-from twin.compute import blocks, one_blas_thread
-from twin.frames import Array
+from matstd.sensitivity.montecarlo.kernels import MACHINES_A_BLOCK, Kernels, compiled
+from matstd.twin.compute import blocks, one_blas_thread
+from matstd.twin.frames import Array
 
 BINS = 2048  # a quantile is then read to 0.05 % of the longest length
 _POSES_A_BLOCK = 256  # lengths of a block stay in a core's second cache

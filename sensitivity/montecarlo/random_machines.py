@@ -4,8 +4,8 @@ from functools import partial
 
 import numpy as np
 
-from sensitivity.first_order import rms
-from sensitivity.montecarlo.batches import (
+from matstd.sensitivity.first_order import rms
+from matstd.sensitivity.montecarlo.batches import (
     MACHINES_A_BATCH,
     batches,
     bin_width,
@@ -13,14 +13,14 @@ from sensitivity.montecarlo.batches import (
     seed_words,
     shared_arrays,
 )
-from sensitivity.montecarlo.lengths import Lengths
-from sensitivity.montecarlo.stability import Stabiliser
-from sensitivity.montecarlo.tally import QUANTILES, Tally, Volumetric, moments, quantiles
-from sensitivity.montecarlo.workers import Workers, in_order
-from sensitivity.population import Population
-from twin.compute import Progress, silent
-from twin.errors import DesignError
-from twin.frames import Array
+from matstd.sensitivity.montecarlo.lengths import Lengths
+from matstd.sensitivity.montecarlo.stability import Stabiliser
+from matstd.sensitivity.montecarlo.tally import QUANTILES, Tally, Volumetric, moments, quantiles
+from matstd.sensitivity.montecarlo.workers import Workers, in_order
+from matstd.sensitivity.population import Population
+from matstd.twin.compute import Progress, silent
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
 
 WORST = 0.05
 """Share of the poses that counts as the worst ones of a machine."""
@@ -66,8 +66,8 @@ def volumetric(
         digits: Significant digits that have to be stable; 0 for none.
         recurrence: Whether to look for the worst poses of every machine; not a number otherwise.
         workers: Who does the work: None for this process, an executor of `concurrent.futures`, or
-            the client of a Dask cluster (`sensitivity.montecarlo.dask_cluster`). The result for a
-            seed is the same to the last bit wherever numpy and processor are the same.
+            the client of a Dask cluster (`matstd.sensitivity.montecarlo.dask_cluster`). The result
+            for a seed is the same to the last bit wherever numpy and processor are the same.
 
     Raises:
         DesignError: Fewer than two draws, no pose, fewer draws than two batches for stable digits,

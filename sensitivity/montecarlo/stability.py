@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.errors import DesignError
-from twin.frames import Array
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
 
 
 def numerical_tolerance(u: Array, digits: int) -> Array:

@@ -5,10 +5,10 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from sensitivity.montecarlo.lengths import BINS, Lengths
-from sensitivity.montecarlo.stability import Stability
-from twin.compute import blocks
-from twin.frames import Array
+from matstd.sensitivity.montecarlo.lengths import BINS, Lengths
+from matstd.sensitivity.montecarlo.stability import Stability
+from matstd.twin.compute import blocks
+from matstd.twin.frames import Array
 
 QUANTILES = (0.5, 0.95, 0.99)
 _ROWS = 1000  # poses whose histograms are summed at once

@@ -10,8 +10,8 @@ from concurrent.futures import BrokenExecutor, Executor
 from os import cpu_count
 from typing import Any, Protocol, TypeVar
 
-from sensitivity.montecarlo.dask_cluster import awaited, is_cluster
-from twin.errors import DesignError
+from matstd.sensitivity.montecarlo.dask_cluster import awaited, is_cluster
+from matstd.twin.errors import DesignError
 
 Shared = TypeVar("Shared")
 Job = TypeVar("Job")

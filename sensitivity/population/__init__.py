@@ -4,9 +4,9 @@ Ranges, shapes and correlations go in (`Population`); drawn machines come out as
 of one model, so that their deviations are one product of matrices.
 """
 
-from sensitivity.population.dependence import Dependence, Group, grouped, product_moment
-from sensitivity.population.distributions import CLASSES, CONSTANT, Distributions, Mix
-from sensitivity.population.sampling import (
+from matstd.sensitivity.population.dependence import Dependence, Group, grouped, product_moment
+from matstd.sensitivity.population.distributions import CLASSES, CONSTANT, Distributions, Mix
+from matstd.sensitivity.population.sampling import (
     DRAWS_A_CHILD,
     Population,
     coefficients,
@@ -15,7 +15,7 @@ from sensitivity.population.sampling import (
     drawn_in_chunks,
     shape_columns,
 )
-from sensitivity.population.scales import drawn_scales
+from matstd.sensitivity.population.scales import drawn_scales
 
 __all__ = [
     "CLASSES",

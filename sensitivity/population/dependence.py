@@ -21,8 +21,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.errors import DesignError, ShapeMismatch
-from twin.frames import Array
+from matstd.twin.errors import DesignError, ShapeMismatch
+from matstd.twin.frames import Array
 
 _ROUNDING = 1e-9  # of a correlation as typed
 _HALVINGS = 60  # of the correlation: to the last digit

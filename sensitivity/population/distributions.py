@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from twin.errors import BadValue, DesignError
-from twin.machine import SHAPES, Chain, Family, ShapeName, Symbol, error_class
+from matstd.twin.errors import BadValue, DesignError
+from matstd.twin.machine import SHAPES, Chain, Family, ShapeName, Symbol, error_class
 
 CLASSES = ("linear_translation", "linear_rotation", "rotary_translation", "rotary_rotation")
 """Classes of errors that vary with a reading; all others are constants."""

@@ -7,14 +7,14 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from sensitivity.population.dependence import Dependence, amplitude, score_factor
-from sensitivity.population.distributions import CONSTANT, Distributions, Mix
-from twin.effects import ComponentError, LocationError
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.machine import Chain, Family, Ranges, ShapeName, Symbol
-from twin.machine import shape as shape_function
-from twin.model import Effect, Model
+from matstd.sensitivity.population.dependence import Dependence, amplitude, score_factor
+from matstd.sensitivity.population.distributions import CONSTANT, Distributions, Mix
+from matstd.twin.effects import ComponentError, LocationError
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Family, Ranges, ShapeName, Symbol
+from matstd.twin.machine import shape as shape_function
+from matstd.twin.model import Effect, Model
 
 DRAWS_A_CHILD = 512
 """Machines drawn from one child of a generator: fixed, so that blocks do not change the draws."""

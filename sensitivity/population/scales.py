@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from sensitivity.population.sampling import Population, draw
-from twin.frames import Array
-from twin.machine import Symbol
-from twin.model import Model
+from matstd.sensitivity.population.sampling import Population, draw
+from matstd.twin.frames import Array
+from matstd.twin.machine import Symbol
+from matstd.twin.model import Model
 
 LEAST = 1e-3
 """A drawn error is taken to be at least this part of its expected size: none is known to be nil."""

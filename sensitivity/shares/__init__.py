@@ -4,8 +4,8 @@ A population and poses go in; out come the share of every error in the variance 
 exact to first order, and its total effect on the length |d|, by simulation.
 """
 
-from sensitivity.shares.total_effect_indices import TotalEffects, norm_shares, total_effects
-from sensitivity.shares.workspace_regions import (
+from matstd.sensitivity.shares.total_effect_indices import TotalEffects, norm_shares, total_effects
+from matstd.sensitivity.shares.workspace_regions import (
     Part,
     Place,
     Region,

@@ -15,12 +15,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from sensitivity.first_order import jacobian_by_parameter
-from sensitivity.montecarlo import seed_words
-from sensitivity.population import Population, coefficients, draw, shape_columns
-from twin.compute import blocks, compiled_loop, one_blas_thread
-from twin.errors import DesignError, ShapeMismatch
-from twin.frames import Array
+from matstd.sensitivity.first_order import jacobian_by_parameter
+from matstd.sensitivity.montecarlo import seed_words
+from matstd.sensitivity.population import Population, coefficients, draw, shape_columns
+from matstd.twin.compute import blocks, compiled_loop, one_blas_thread
+from matstd.twin.errors import DesignError, ShapeMismatch
+from matstd.twin.frames import Array
 
 MACHINES = 1024
 _POSES_A_BLOCK = 32

@@ -1,9 +1,9 @@
 """Parts of a workspace, and which errors make the deviation in each.
 
-The shares are those of `sensitivity.first_order.indices`: exact for the deviation to first order.
-What is sampled are only the poses of a region, evenly and without chance; the range of the shares
-over them is real and no uncertainty. What an error does to the length |d|, interactions included,
-is another matter and takes random machines.
+The shares are those of `matstd.sensitivity.first_order.indices`: exact for the deviation to first
+order. What is sampled are only the poses of a region, evenly and without chance; the range of the
+shares over them is real and no uncertainty. What an error does to the length |d|, interactions
+included, is another matter and takes random machines.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sensitivity.first_order import Workspace, variance_parts
-from sensitivity.population import Population
-from sensitivity.shares.total_effect_indices import MACHINES, norm_shares
-from twin.frames import Array
-from twin.machine import tip
-from twin.units import DEG
+from matstd.sensitivity.first_order import Workspace, variance_parts
+from matstd.sensitivity.population import Population
+from matstd.sensitivity.shares.total_effect_indices import MACHINES, norm_shares
+from matstd.twin.frames import Array
+from matstd.twin.machine import tip
+from matstd.twin.units import DEG
 
 POSES = 256
 """Poses that stand for a region."""

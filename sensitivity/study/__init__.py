@@ -3,11 +3,11 @@
 `run_study` computes, `write_study` writes; trajectories and volumes are looked at by themselves.
 """
 
-from sensitivity.study.machine_study import Study, run_study
-from sensitivity.study.points_of_table import PointOverRotary, level, points_over_rotary
-from sensitivity.study.study_file import write_study
-from sensitivity.study.trajectory import AlongPath, Trajectory, along_path, paper_trajectory
-from sensitivity.study.volume_map import Volume, has_volume, volume
+from matstd.sensitivity.study.machine_study import Study, run_study
+from matstd.sensitivity.study.points_of_table import PointOverRotary, level, points_over_rotary
+from matstd.sensitivity.study.study_file import write_study
+from matstd.sensitivity.study.trajectory import AlongPath, Trajectory, along_path, paper_trajectory
+from matstd.sensitivity.study.volume_map import Volume, has_volume, volume
 
 __all__ = [
     "AlongPath",

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from sensitivity.first_order import (
+from matstd.sensitivity.first_order import (
     NormalLength,
     Workspace,
     covariance,
@@ -18,15 +18,15 @@ from sensitivity.first_order import (
     sensitivity,
     variance_shares,
 )
-from sensitivity.montecarlo import ExactCheck, Volumetric, Workers, exact_check, volumetric
-from sensitivity.population import Population
-from sensitivity.shares import TotalEffects, norm_shares
-from sensitivity.study.study_table import pose_columns, statistics_columns
-from sensitivity.study.trajectory import AlongPath, Trajectory, axis_effect, paper_trajectory
-from twin.compute import Progress, silent
-from twin.display import Tabular
-from twin.frames import Array
-from twin.machine import Chain
+from matstd.sensitivity.montecarlo import ExactCheck, Volumetric, Workers, exact_check, volumetric
+from matstd.sensitivity.population import Population
+from matstd.sensitivity.shares import TotalEffects, norm_shares
+from matstd.sensitivity.study.study_table import pose_columns, statistics_columns
+from matstd.sensitivity.study.trajectory import AlongPath, Trajectory, axis_effect, paper_trajectory
+from matstd.twin.compute import Progress, silent
+from matstd.twin.display import Tabular
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
 
 SECTION = 25
 """Values of each of the two readings of a section."""
@@ -172,7 +172,7 @@ def run_study(
         progress: Told what is being done.
         tolerance: For the exceedance, mm.
         digits: Significant digits that have to be stable (JCGM 101); 0 for none.
-        workers: Who draws the machines (`sensitivity.montecarlo.workers`).
+        workers: Who draws the machines (`matstd.sensitivity.montecarlo.workers`).
 
     Raises:
         NotReachable: The workspace has no pose.

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sensitivity.first_order import Workspace
-from sensitivity.study.volume_map import has_volume
-from twin.frames import Array
-from twin.machine import inverse_linear, tip
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.study.volume_map import has_volume
+from matstd.twin.frames import Array
+from matstd.twin.machine import inverse_linear, tip
 
 _VALUES = 61  # of each rotary reading
 _SLACK = 1e-9  # mm

@@ -6,16 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from sensitivity.montecarlo import Volumetric
-from sensitivity.study.machine_study import Study
-from sensitivity.study.study_table import pose_columns, statistics_columns
-from twin.files import write_whole, written_whole
-from twin.frames import Array
-from twin.units import UM, URAD
+from matstd.sensitivity.montecarlo import Volumetric
+from matstd.sensitivity.study.machine_study import Study
+from matstd.sensitivity.study.study_table import pose_columns, statistics_columns
+from matstd.twin.files import write_whole, written_whole
+from matstd.twin.frames import Array
+from matstd.twin.units import UM, URAD
 
 
 def write_study(study: Study, folder: str | Path, statement: str) -> None:
-    """Write the data of a study into a folder; `report.maps.study_maps.draw_maps` draws it.
+    """Write the data of a study into a folder; `matstd.report.maps.study_maps.draw_maps` draws it.
 
     `poses.csv` (readings and statistics of the volumetric error with their standard errors by
     sampling), `sensitivity.csv` (S a column a parameter), `shares.csv` (of the variance of the

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from sensitivity.first_order import NormalLength
-from sensitivity.montecarlo import Volumetric
-from twin.files import reading_columns
-from twin.frames import Array
-from twin.machine import Chain
-from twin.units import UM
+from matstd.sensitivity.first_order import NormalLength
+from matstd.sensitivity.montecarlo import Volumetric
+from matstd.twin.files import reading_columns
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.units import UM
 
 
 def pose_columns(chain: Chain, q: Array) -> dict[str, Array]:

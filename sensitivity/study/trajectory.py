@@ -10,14 +10,14 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from sensitivity.first_order import Workspace
-from twin.effects import ComponentError, component
-from twin.errors import DesignError, OutsideTravel, UnknownAxis
-from twin.frames import Array
-from twin.machine import DEFAULT_RANGES, Chain, error_class
-from twin.model import Effect, Model
-from twin.record import at_poses
-from twin.units import UM, URAD
+from matstd.sensitivity.first_order import Workspace
+from matstd.twin.effects import ComponentError, component
+from matstd.twin.errors import DesignError, OutsideTravel, UnknownAxis
+from matstd.twin.frames import Array
+from matstd.twin.machine import DEFAULT_RANGES, Chain, error_class
+from matstd.twin.model import Effect, Model
+from matstd.twin.record import at_poses
+from matstd.twin.units import UM, URAD
 
 POSES = 361
 _QUARTER = 0.5 * np.pi

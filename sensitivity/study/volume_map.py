@@ -10,11 +10,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from sensitivity.first_order import Workspace, covariance, normal_length, sensitivity
-from sensitivity.population import Population
-from twin.errors import NotReachable
-from twin.frames import Array, apply
-from twin.machine import Symbol, inverse_linear, reach, tip
+from matstd.sensitivity.first_order import Workspace, covariance, normal_length, sensitivity
+from matstd.sensitivity.population import Population
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array, apply
+from matstd.twin.machine import Symbol, inverse_linear, reach, tip
 
 POINTS = (19, 19, 17)
 """Readings of each axis in a volume."""
@@ -54,7 +54,7 @@ class Volume:
         """95 % quantile of the volumetric error at every point, `shape`, mm, without sampling.
 
         First order, and as if the errors were normally distributed
-        (`sensitivity.first_order.normal_lengths`);
+        (`matstd.sensitivity.first_order.normal_lengths`);
         not a number where the tool point leaves the volume of the workspace.
         """
         C = covariance(population, self.q, self.workspace.length)

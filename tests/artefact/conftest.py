@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from artefact.layout.sites import Blank
-from artefact.reach.probe_clearance import ProbeShape
-from artefact.reach.touchable import ProbeReach
-from artefact.worth.touch_criterion import criterion_for
-from sensitivity.first_order.workspace import Workspace
-from sensitivity.population.sampling import Population
-from twin.machine.chain import Axis, make_chain
-from twin.record.touches import Setup
-from twin.units import DEG, UM
+from matstd.artefact.layout.sites import Blank
+from matstd.artefact.reach.probe_clearance import ProbeShape
+from matstd.artefact.reach.touchable import ProbeReach
+from matstd.artefact.worth.touch_criterion import criterion_for
+from matstd.sensitivity.first_order.workspace import Workspace
+from matstd.sensitivity.population.sampling import Population
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import DEG, UM
 
 
 @pytest.fixture(scope="session")

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from artefact.brief.standard_tables import BlankTable, LimitsTable, MaterialTable, check_body
-from cad_out.making.cutting import CUTTERS
-from twin.errors import BadFile
+from matstd.artefact.brief.standard_tables import BlankTable, LimitsTable, MaterialTable, check_body
+from matstd.cad_out.making.cutting import CUTTERS
+from matstd.twin.errors import BadFile
 
 
 def check(**limits: float) -> None:

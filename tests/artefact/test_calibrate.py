@@ -8,29 +8,29 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.body.spline import greville
-from artefact.body.standard_file import read_standard, write_standard
-from artefact.certify.calibration_fit import calibrated, fitted_ball
-from artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
-from artefact.certify.dmis import APPROACH, dmis_program
-from artefact.worth.calibration import Calibration
-from cad_out.details.detail_list import engraved_on
-from cad_out.details.places import datum_touches
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.fit.identification import fit_run
+from matstd.artefact.body.spline import greville
+from matstd.artefact.body.standard_file import read_standard, write_standard
+from matstd.artefact.certify.calibration_fit import calibrated, fitted_ball
+from matstd.artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
+from matstd.artefact.certify.dmis import APPROACH, dmis_program
+from matstd.artefact.worth.calibration import Calibration
+from matstd.cad_out.details.detail_list import engraved_on
+from matstd.cad_out.details.places import datum_touches
 from matstd.cli import main
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.simulation import simulate
-from probe_paths.emit.program import make_programs
-from probe_paths.emit.writer import Feeds
-from probe_paths.language.dialect_file import read_dialect
-from probe_paths.plan.planner import plan_touches
-from probe_paths.plan.probe import Probe
-from probe_paths.plan.touch_plan import PlanOptions
-from twin.errors import BadFile, NotEnoughData
-from twin.frames import apply, pose, rotation
-from twin.library.ordinary import ordinary_model
-from twin.units import UM
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.simulation import simulate
+from matstd.probe_paths.emit.program import make_programs
+from matstd.probe_paths.emit.writer import Feeds
+from matstd.probe_paths.language.dialect_file import read_dialect
+from matstd.probe_paths.plan.planner import plan_touches
+from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.touch_plan import PlanOptions
+from matstd.twin.errors import BadFile, NotEnoughData
+from matstd.twin.frames import apply, pose, rotation
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.units import UM
 
 ROOT = Path(__file__).parents[2]
 NOISE = 0.3 * UM
@@ -150,7 +150,7 @@ def test_file_keeps_it(found, tmp_path) -> None:
 
 
 def test_uncertainties_take_the_place_of_those_assumed(nominal, found) -> None:
-    from artefact.reach.touchable import Requests
+    from matstd.artefact.reach.touchable import Requests
 
     ball = nominal.spheres[0]
     n = np.array([[0.0, 0.0, 1.0]])
@@ -344,7 +344,7 @@ def test_dmis_program_probes_the_features_and_nothing_else(nominal) -> None:
 
 def test_the_piece_is_probed_and_the_design_believed(golden, nominal, found, tmp_path) -> None:
     """`simulate --real-standard`: the balls that stand off are told by their deviations."""
-    from twin.files.run_file import read_run
+    from matstd.twin.files.run_file import read_run
 
     write_standard(tmp_path / "standard.toml", nominal)
     write_standard(tmp_path / "real.toml", found.standard)

@@ -6,14 +6,14 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from artefact.layout.sites import Blank
-from artefact.worth import ball_choice
-from artefact.worth.calibration import Calibration
-from artefact.worth.touch_choice import each_at, face_grid, sphere_grid, table_poses
-from information.criteria.posterior import Posterior
-from twin.errors import DesignError
-from twin.frames import apply, fixed_xyz, pose
-from twin.units import DEG, NM, UM
+from matstd.artefact.layout.sites import Blank
+from matstd.artefact.worth import ball_choice
+from matstd.artefact.worth.calibration import Calibration
+from matstd.artefact.worth.touch_choice import each_at, face_grid, sphere_grid, table_poses
+from matstd.information.criteria.posterior import Posterior
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import apply, fixed_xyz, pose
+from matstd.twin.units import DEG, NM, UM
 
 ALGEBRA = 1e-8  # relative: a marginal by a Cholesky factor against a block of an inverse
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from artefact.reach.probe_clearance import ProbeShape, clearance
-from twin.errors import ShapeMismatch
-from twin.frames import unit
+from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
+from matstd.twin.errors import ShapeMismatch
+from matstd.twin.frames import unit
 
 PROBE = ProbeShape(3.0, ((50.0, 1.5), (80.0, 10.0), (160.0, 31.0)))
 BALL = 3.0

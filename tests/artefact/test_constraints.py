@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from artefact.body.freeform import OVERHANG, graph_patch
-from artefact.body.limits import (
+from matstd.artefact.body.freeform import OVERHANG, graph_patch
+from matstd.artefact.body.limits import (
     Limits,
     check,
     constraints,
@@ -14,11 +14,11 @@ from artefact.body.limits import (
     min_concave_radius,
     overhang,
 )
-from artefact.body.spline import clamped_knots
-from artefact.body.standard import Base
-from artefact.layout.sites import Blank, Fittings, Site, patch_of_site, standard_from_sites
-from twin.errors import NotBuildable, ShapeMismatch
-from twin.units import DEG
+from matstd.artefact.body.spline import clamped_knots
+from matstd.artefact.body.standard import Base
+from matstd.artefact.layout.sites import Blank, Fittings, Site, patch_of_site, standard_from_sites
+from matstd.twin.errors import NotBuildable, ShapeMismatch
+from matstd.twin.units import DEG
 
 FLAT = np.zeros((8, 8))
 LIMITS = Limits()

@@ -6,8 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from artefact.body.freeform import graph_patch
-from artefact.body.limits import (
+from matstd.artefact.body.freeform import graph_patch
+from matstd.artefact.body.limits import (
     Limits,
     check,
     constraints,
@@ -15,15 +15,15 @@ from artefact.body.limits import (
     min_concave_radius,
     overhang,
 )
-from artefact.layout.sites import Blank
-from artefact.place.placement import PlacementOptions, design_standard
-from artefact.reach.probe_clearance import ProbeShape
-from artefact.reach.touchable import ProbeReach, Requests
-from artefact.worth.touch_choice import TouchOptions
-from sensitivity.first_order.workspace import Workspace
-from twin.errors import NotBuildable, NotReachable, OutsideTravel
-from twin.record.touches import Setup
-from twin.units import DEG
+from matstd.artefact.layout.sites import Blank
+from matstd.artefact.place.placement import PlacementOptions, design_standard
+from matstd.artefact.reach.probe_clearance import ProbeShape
+from matstd.artefact.reach.touchable import ProbeReach, Requests
+from matstd.artefact.worth.touch_choice import TouchOptions
+from matstd.sensitivity.first_order.workspace import Workspace
+from matstd.twin.errors import NotBuildable, NotReachable, OutsideTravel
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import DEG
 
 LIMITS = Limits()
 EVERYTHING = {"room": -100.0, "steepest": 2.5}  # neither angle nor room for the probe matter

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from artefact.body.datum import DatumPlane, DatumSphere, MountingHole, outline_distance
-from twin.errors import ShapeMismatch
-from twin.units import NM
+from matstd.artefact.body.datum import DatumPlane, DatumSphere, MountingHole, outline_distance
+from matstd.twin.errors import ShapeMismatch
+from matstd.twin.units import NM
 
 SPHERE = DatumSphere("SPH1", np.array([10.0, -20.0, 80.0]), 12.5, 6.0, 9.0, 30.0)
 PLANE = DatumPlane("DATUM_A", 30.0, (100.0, 80.0), 20.0)

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from artefact.body.first_contact import contact
-from artefact.body.patch import Meeting
-from artefact.body.standard import Standard
-from twin.units import NM, UM
+from matstd.artefact.body.first_contact import contact
+from matstd.artefact.body.patch import Meeting
+from matstd.artefact.body.standard import Standard
+from matstd.twin.units import NM, UM
 
 BALL = 3.0
 STANDOFF = 5.0

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline, NdBSpline, make_interp_spline
 from scipy.optimize import brentq, minimize
 
-from artefact.body.freeform import OVERHANG, graph_patch
-from artefact.body.spline import basis, clamped_knots, greville
-from twin.errors import ShapeMismatch
-from twin.frames import fixed_xyz, pose
-from twin.units import NM, UM
+from matstd.artefact.body.freeform import OVERHANG, graph_patch
+from matstd.artefact.body.spline import basis, clamped_knots, greville
+from matstd.twin.errors import ShapeMismatch
+from matstd.twin.frames import fixed_xyz, pose
+from matstd.twin.units import NM, UM
 
 ROUNDING = 1e-11  # mm: float64 on coordinates of a few hundred mm
 BALL = 3.0

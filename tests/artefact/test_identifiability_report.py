@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from artefact.compare import alternatives as module
-from artefact.compare.alternatives import (
+from matstd.artefact.compare import alternatives as module
+from matstd.artefact.compare.alternatives import (
     alternatives,
     joined_rows,
     machine_rank,
@@ -14,19 +14,22 @@ from artefact.compare.alternatives import (
     setup_parameters,
     touches_reached_in,
 )
-from artefact.compare.identifiability import identifiability_report
-from artefact.layout.sites import Blank
-from artefact.reach.touchable import ProbeReach
-from artefact.worth.touch_criterion import criterion_for, random_touches
-from information.identifiability.estimable_combinations import combinations
-from information.identifiability.freedoms import Resolution
-from probe_paths.plan.probe import Probe
-from report.identifiability.identifiability_file import identifiability_table, write_identifiability
-from sensitivity.first_order.workspace import Workspace
-from sensitivity.population.sampling import Population
-from twin.machine.chain import Axis, make_chain
-from twin.record.touches import Setup
-from twin.units import DEG, UM
+from matstd.artefact.compare.identifiability import identifiability_report
+from matstd.artefact.layout.sites import Blank
+from matstd.artefact.reach.touchable import ProbeReach
+from matstd.artefact.worth.touch_criterion import criterion_for, random_touches
+from matstd.information.identifiability.estimable_combinations import combinations
+from matstd.information.identifiability.freedoms import Resolution
+from matstd.probe_paths.plan.probe import Probe
+from matstd.report.identifiability.identifiability_file import (
+    identifiability_table,
+    write_identifiability,
+)
+from matstd.sensitivity.first_order.workspace import Workspace
+from matstd.sensitivity.population.sampling import Population
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import DEG, UM
 
 TOUCHES = 240
 SHAPES = 4

@@ -5,27 +5,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from artefact.body.first_contact import contact
-from artefact.body.limits import Limits, check
-from artefact.body.patch import Meeting
-from artefact.body.standard import Base
-from artefact.compare.power import proof_power, task_normals
-from artefact.layout.sites import Blank
-from artefact.place.placement import PlacementOptions, design_standard
-from artefact.reach.probe_clearance import ProbeShape, clearance
-from artefact.reach.touchable import ProbeReach
-from artefact.worth.potential import library
-from artefact.worth.touch_choice import TouchOptions, table_poses
-from artefact.worth.touch_criterion import CriterionOptions
-from information.criteria.posterior import Posterior
-from sensitivity.population.dependence import Group, grouped
-from sensitivity.population.sampling import Population
-from sensitivity.population.scales import drawn_scales
-from twin.errors import DesignError, NotBuildable, NotReachable
-from twin.machine.kinematics import table_to_tool, tip
-from twin.model.model import Model, columns
-from twin.record.touches import Setup
-from twin.units import DEG, NM, UM
+from matstd.artefact.body.first_contact import contact
+from matstd.artefact.body.limits import Limits, check
+from matstd.artefact.body.patch import Meeting
+from matstd.artefact.body.standard import Base
+from matstd.artefact.compare.power import proof_power, task_normals
+from matstd.artefact.layout.sites import Blank
+from matstd.artefact.place.placement import PlacementOptions, design_standard
+from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
+from matstd.artefact.reach.touchable import ProbeReach
+from matstd.artefact.worth.potential import library
+from matstd.artefact.worth.touch_choice import TouchOptions, table_poses
+from matstd.artefact.worth.touch_criterion import CriterionOptions
+from matstd.information.criteria.posterior import Posterior
+from matstd.sensitivity.population.dependence import Group, grouped
+from matstd.sensitivity.population.sampling import Population
+from matstd.sensitivity.population.scales import drawn_scales
+from matstd.twin.errors import DesignError, NotBuildable, NotReachable
+from matstd.twin.machine.kinematics import table_to_tool, tip
+from matstd.twin.model.model import Model, columns
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import DEG, NM, UM
 
 pytestmark = pytest.mark.slow  # whole designs; `test_placement_parts` and the command's test stay
 
@@ -213,7 +213,7 @@ def test_every_patch_says_what_it_is_for(placement, chain):
 
 def test_the_same_seed_gives_the_same_standard(reach, workspace, monkeypatch):
     """A small design says it as well as a large one, and rivals have no part in it."""
-    monkeypatch.setattr("artefact.place.placement.compare", lambda *_: ((), ()))
+    monkeypatch.setattr("matstd.artefact.place.placement.compare", lambda *_: ((), ()))
     options = PlacementOptions(patches=3, sites=30, choice=TouchOptions(60, 5, 30))
     first, again = (
         design_standard(reach, Blank(), workspace, np.random.default_rng(3), options=options)
@@ -290,7 +290,7 @@ def test_groups_of_errors_reach_the_placement(reach, workspace, chain, monkeypat
         drawn.append((model.names, drawn_scales(population, count, rng, model)))
         raise ScalesAreDrawn
 
-    monkeypatch.setattr("artefact.worth.touch_criterion.drawn_scales", recorded)
+    monkeypatch.setattr("matstd.artefact.worth.touch_criterion.drawn_scales", recorded)
     options = replace(OPTIONS, criterion=CriterionOptions(robust_machines=6))
     for groups in ([Group(names, correlation=1.0)], [Group(names, correlation=0.0)]):
         population = Population(chain, dependence=grouped(groups))

@@ -7,17 +7,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from artefact.body.datum import outline_distance
-from artefact.body.freeform import graph_patch
-from artefact.body.limits import Limits, max_slope, min_concave_radius
-from artefact.body.standard import Material
-from artefact.compare.comparison import _scatter
-from artefact.layout.post import post_foot, post_stiffness
-from artefact.layout.shapes import smooth_heights
-from artefact.layout.side_by_side import most_side_by_side
-from artefact.layout.sites import Blank
-from artefact.layout.spread import spread
-from artefact.layout.upright import (
+from matstd.artefact.body.datum import outline_distance
+from matstd.artefact.body.freeform import graph_patch
+from matstd.artefact.body.limits import Limits, max_slope, min_concave_radius
+from matstd.artefact.body.standard import Material
+from matstd.artefact.compare.comparison import _scatter
+from matstd.artefact.layout.post import post_foot, post_stiffness
+from matstd.artefact.layout.shapes import smooth_heights
+from matstd.artefact.layout.side_by_side import most_side_by_side
+from matstd.artefact.layout.sites import Blank
+from matstd.artefact.layout.spread import spread
+from matstd.artefact.layout.upright import (
     ball_on_post,
     balls_fit,
     balls_on_posts,
@@ -26,18 +26,18 @@ from artefact.layout.upright import (
     freeform_faces,
     holes_on,
 )
-from artefact.place import identifying
-from artefact.reach.probe_clearance import ProbeShape
-from artefact.reach.touchable import ProbeReach, Requests, joined
-from artefact.worth.attribution import error_shares
-from artefact.worth.touch_choice import TouchOptions, chosen_touches_on, mended_touches
-from artefact.worth.touch_criterion import random_touches
-from twin.errors import NotBuildable, NotReachable
-from twin.frames import fixed_xyz, pose
-from twin.machine.chain import Axis, make_chain
-from twin.machine.kinematics import inverse_linear
-from twin.record.touches import Setup
-from twin.units import DEG, NM
+from matstd.artefact.place import identifying
+from matstd.artefact.reach.probe_clearance import ProbeShape
+from matstd.artefact.reach.touchable import ProbeReach, Requests, joined
+from matstd.artefact.worth.attribution import error_shares
+from matstd.artefact.worth.touch_choice import TouchOptions, chosen_touches_on, mended_touches
+from matstd.artefact.worth.touch_criterion import random_touches
+from matstd.twin.errors import NotBuildable, NotReachable
+from matstd.twin.frames import fixed_xyz, pose
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.machine.kinematics import inverse_linear
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import DEG, NM
 
 PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))
 TRAVEL = {n: Axis(range=(-400.0, 400.0)) for n in "XYZ"}

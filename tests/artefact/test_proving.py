@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from artefact.place.covering import covering, even_shares
-from artefact.place.proving import proving_touches, telling_touches, touches_on_faces
-from artefact.reach.touchable import Requests
-from twin.errors import NotReachable
-from twin.units import DEG
+from matstd.artefact.place.covering import covering, even_shares
+from matstd.artefact.place.proving import proving_touches, telling_touches, touches_on_faces
+from matstd.artefact.reach.touchable import Requests
+from matstd.twin.errors import NotReachable
+from matstd.twin.units import DEG
 
 POSES = np.array([[-120.0], [-30.0], [0.0], [75.0], [150.0]]) * DEG
 HONEYCOMB = 5.0 / (18.0 * np.sqrt(3.0))  # mean squared distance to the middle of a unit cell

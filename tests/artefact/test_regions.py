@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from artefact.compare import regions as room
-from twin.units import UM
+from matstd.artefact.compare import regions as room
+from matstd.twin.units import UM
 
 
 @pytest.fixture

@@ -6,22 +6,22 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from artefact.body.freeform import graph_patch
-from artefact.layout.rival_artefacts import with_spheres
-from artefact.layout.side_by_side import most_side_by_side
-from artefact.layout.sites import Blank
-from artefact.layout.upright import balls_on_posts, faces_beside, freeform_faces
-from artefact.place.body_choice import BodyChoice
-from artefact.place.room import check_room, light_enough, room_among
-from artefact.place.touched import seen_beside, touches_on, untouched
-from artefact.reach.probe_clearance import ProbeShape
-from artefact.reach.touchable import ProbeReach, joined
-from artefact.worth.touch_choice import each_at, sphere_grid
-from twin.errors import NotBuildable
-from twin.frames import pose, rotation
-from twin.machine.chain import Axis, make_chain
-from twin.record.touches import Setup
-from twin.units import DEG
+from matstd.artefact.body.freeform import graph_patch
+from matstd.artefact.layout.rival_artefacts import with_spheres
+from matstd.artefact.layout.side_by_side import most_side_by_side
+from matstd.artefact.layout.sites import Blank
+from matstd.artefact.layout.upright import balls_on_posts, faces_beside, freeform_faces
+from matstd.artefact.place.body_choice import BodyChoice
+from matstd.artefact.place.room import check_room, light_enough, room_among
+from matstd.artefact.place.touched import seen_beside, touches_on, untouched
+from matstd.artefact.reach.probe_clearance import ProbeShape
+from matstd.artefact.reach.touchable import ProbeReach, joined
+from matstd.artefact.worth.touch_choice import each_at, sphere_grid
+from matstd.twin.errors import NotBuildable
+from matstd.twin.frames import pose, rotation
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import DEG
 
 PROBE = ProbeShape(3.0, ((80.0, 2.0), (160.0, 25.0)))
 STEEP = Blank(limits=replace(Blank().limits, max_slope=55.0 * DEG))

@@ -5,9 +5,9 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from artefact.body.freeform import ErrorShare
-from artefact.body.standard_file import read_standard, write_standard
-from twin.errors import BadFile, DesignError
+from matstd.artefact.body.freeform import ErrorShare
+from matstd.artefact.body.standard_file import read_standard, write_standard
+from matstd.twin.errors import BadFile, DesignError
 
 
 def equal(one, other):

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from artefact.worth.touch_criterion import random_touches
-from artefact.worth.touch_curves import TouchCurve, touch_curve
-from information.criteria.posterior import Posterior
-from report.plots.touch_curve_picture import draw_touch_curves
-from twin.errors import DesignError
-from twin.units import UM
+from matstd.artefact.worth.touch_criterion import random_touches
+from matstd.artefact.worth.touch_curves import TouchCurve, touch_curve
+from matstd.information.criteria.posterior import Posterior
+from matstd.report.plots.touch_curve_picture import draw_touch_curves
+from matstd.twin.errors import DesignError
+from matstd.twin.units import UM
 
 ALGEBRA = 1e-6  # relative: trace of a form against the sum over poses
 

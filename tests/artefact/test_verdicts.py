@@ -14,11 +14,11 @@ import pytest
 from scipy.interpolate import BSpline
 from scipy.spatial.transform import Rotation
 
-from artefact.body.datum import DatumSphere
-from artefact.body.known import Known, Verdict
-from artefact.body.standard_file import read_standard, write_standard
+from matstd.artefact.body.datum import DatumSphere
+from matstd.artefact.body.known import Known, Verdict
+from matstd.artefact.body.standard_file import read_standard, write_standard
 from matstd.cli import main
-from twin.units import UM
+from matstd.twin.units import UM
 
 PLACES = ((-50.0, 35.0, 62.0), (5.0, -45.0, 70.0), (60.0, -10.0, 55.0))
 MORE = ((-60.0, -30.0, 58.0), (62.0, 45.0, 66.0), (-5.0, 60.0, 75.0), (40.0, -55.0, 50.0))

@@ -8,19 +8,19 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from artefact.body.solids import BLEND
-from cad_out.details.detail_list import details_of, engraved_on
-from cad_out.details.dot_font import DOT
-from cad_out.details.mounting import RELIEF
-from cad_out.details.places import datum_touches, plan_room
-from cad_out.details.seats import glue_gap, seat_of
-from cad_out.details.tolerances import Tolerance, notes_of
-from cad_out.meshes.mesh import ball_mesh, inner_folds, mesh_volume
-from cad_out.verify.part21 import read_entities, read_faces, read_instances
-from cad_out.verify.part21_tolerances import read_notes, read_signs, read_tolerances
-from cad_out.verify.untold import untold
-from twin.errors import NotBuildable
-from twin.frames import apply, pose
+from matstd.artefact.body.solids import BLEND
+from matstd.cad_out.details.detail_list import details_of, engraved_on
+from matstd.cad_out.details.dot_font import DOT
+from matstd.cad_out.details.mounting import RELIEF
+from matstd.cad_out.details.places import datum_touches, plan_room
+from matstd.cad_out.details.seats import glue_gap, seat_of
+from matstd.cad_out.details.tolerances import Tolerance, notes_of
+from matstd.cad_out.meshes.mesh import ball_mesh, inner_folds, mesh_volume
+from matstd.cad_out.verify.part21 import read_entities, read_faces, read_instances
+from matstd.cad_out.verify.part21_tolerances import read_notes, read_signs, read_tolerances
+from matstd.cad_out.verify.untold import untold
+from matstd.twin.errors import NotBuildable
+from matstd.twin.frames import apply, pose
 
 
 def test_a_ball_touches_its_countersink_in_one_circle_and_the_post_stays_in_its_cone(upright):

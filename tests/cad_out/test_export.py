@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 import volume_by_hand
 
-import cad_out
-from artefact.body.datum import DatumSphere
-from cad_out.build import kernel
-from cad_out.build.process import Ending, run_apart
-from cad_out.build.settled import with_units_of_density
-from cad_out.details.detail_list import details_of
-from cad_out.meshes.mesh import (
+from matstd import cad_out
+from matstd.artefact.body.datum import DatumSphere
+from matstd.cad_out.build import kernel
+from matstd.cad_out.build.process import Ending, run_apart
+from matstd.cad_out.build.settled import with_units_of_density
+from matstd.cad_out.details.detail_list import details_of
+from matstd.cad_out.meshes.mesh import (
     chord_errors,
     is_watertight,
     manifold_volume,
@@ -24,11 +24,11 @@ from cad_out.meshes.mesh import (
     owners,
     read_stl,
 )
-from cad_out.verify.conformity import ASPECT_LIMIT, FACE_LIMIT, face_names
-from cad_out.verify.face_figures import face_deviations
-from cad_out.verify.part21 import SphereFace, SplineFace, read_faces
-from twin.errors import BadFile, DesignError, NotBuildable
-from twin.units import NM, UM
+from matstd.cad_out.verify.conformity import ASPECT_LIMIT, FACE_LIMIT, face_names
+from matstd.cad_out.verify.face_figures import face_deviations
+from matstd.cad_out.verify.part21 import SphereFace, SplineFace, read_faces
+from matstd.twin.errors import BadFile, DesignError, NotBuildable
+from matstd.twin.units import NM, UM
 
 FILES = tuple(f"standard{end}" for end in ("-faces.step", ".3mf", ".glb", ".step", ".stl"))
 
@@ -98,7 +98,7 @@ def test_poles_and_knots_in_the_file_are_those_of_the_design(upright, built):
 
 
 def test_the_header_says_where_the_file_comes_from(upright, built):
-    from cad_out.build.exchange import in_ascii
+    from matstd.cad_out.build.exchange import in_ascii
 
     place, _, _ = built
     header = re.sub(r"\s*\n\s*", "", (place / "standard.step").read_text().split("ENDSEC;")[0])

@@ -6,17 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from artefact.body.freeform import graph_patch
-from artefact.body.standard import Base, Material
-from artefact.layout.post import post_stiffness
-from cad_out.details.detail_list import details_of
-from cad_out.making.cutting import OVERHANG, RADIUS, cutting_of, is_free, untrimmed_radius
-from cad_out.making.hexahedron import CORNERS, cube
-from cad_out.making.hints import hints_of, step_over
-from cad_out.making.making_file import Making, making_of, write_making
-from cad_out.making.stiffness import GRAVITY, stiffness_of, with_sag
-from twin.frames import pose
-from twin.units import DEG, UM
+from matstd.artefact.body.freeform import graph_patch
+from matstd.artefact.body.standard import Base, Material
+from matstd.artefact.layout.post import post_stiffness
+from matstd.cad_out.details.detail_list import details_of
+from matstd.cad_out.making.cutting import OVERHANG, RADIUS, cutting_of, is_free, untrimmed_radius
+from matstd.cad_out.making.hexahedron import CORNERS, cube
+from matstd.cad_out.making.hints import hints_of, step_over
+from matstd.cad_out.making.making_file import Making, making_of, write_making
+from matstd.cad_out.making.stiffness import GRAVITY, stiffness_of, with_sag
+from matstd.twin.frames import pose
+from matstd.twin.units import DEG, UM
 
 E, NU = 200e3, 0.3
 

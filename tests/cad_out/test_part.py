@@ -3,9 +3,9 @@
 import pytest
 import volume_by_hand
 
-from artefact.body.standard import Standard
-from cad_out.build.part import as_part
-from cad_out.details.detail_list import details_of
+from matstd.artefact.body.standard import Standard
+from matstd.cad_out.build.part import as_part
+from matstd.cad_out.details.detail_list import details_of
 
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::SyntaxWarning")

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from bench import oracle_tip
 
-from compensation.field.state import State
-from compensation.part_programs.frame import Frame
-from compensation.part_programs.program import read_part_program
-from compensation.programs.compensation import compensated
-from compensation.tables.header import header_of
 from matstd.cli import main
-from twin.units import DEG, UM
+from matstd.compensation.field.state import State
+from matstd.compensation.part_programs.frame import Frame
+from matstd.compensation.part_programs.program import read_part_program
+from matstd.compensation.programs.compensation import compensated
+from matstd.compensation.tables.header import header_of
+from matstd.twin.units import DEG, UM
 
 GCODE = """G0 X0 Y0 Z-20
 G1 X300 F800

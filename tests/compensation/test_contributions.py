@@ -3,11 +3,11 @@
 import numpy as np
 from bench import LENGTH
 
-from compensation.field.machine_errors import deviation
-from compensation.field.over_workspace import rms
-from compensation.field.shares import contributions
 from matstd.cli import main
-from twin.units import UM
+from matstd.compensation.field.machine_errors import deviation
+from matstd.compensation.field.over_workspace import rms
+from matstd.compensation.field.shares import contributions
+from matstd.twin.units import UM
 
 
 def test_each_alone_and_all_together(known, datum, poses):

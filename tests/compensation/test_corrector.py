@@ -14,13 +14,13 @@ import numpy as np
 import pytest
 from bench import LENGTH
 
-from compensation.linuxcnc import control_files
-from compensation.linuxcnc.control_files import Control, hal_text, write_control_files
-from compensation.linuxcnc.link import serve_linuxcnc
-from compensation.service.output import OutputLimits
-from compensation.service.service import Service
-from twin.errors import BadFile, DesignError
-from twin.units import UM
+from matstd.compensation.linuxcnc import control_files
+from matstd.compensation.linuxcnc.control_files import Control, hal_text, write_control_files
+from matstd.compensation.linuxcnc.link import serve_linuxcnc
+from matstd.compensation.service.output import OutputLimits
+from matstd.compensation.service.service import Service
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.units import UM
 
 RATE, PERIOD = 1.0, 0.002
 FREE = [(-1e9, 1e9)] * 2

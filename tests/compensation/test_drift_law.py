@@ -7,22 +7,22 @@ import numpy as np
 import pytest
 from bench import LENGTH
 
-from compensation.field.machine_errors import MachineErrors, deviation
-from compensation.field.state import State
-from compensation.service.output import OutputLimits, Quality
-from compensation.service.service import Service
-from diagnosis.drift.drift_file import write_drift
-from diagnosis.drift.judged import Judged
-from diagnosis.drift.lags import Lagged
-from diagnosis.drift.linear import LinearLaw
-from diagnosis.drift.record import DriftRecord
 from matstd.cli import main
 from matstd.commands.compensation.job import _with_unknowns
+from matstd.compensation.field.machine_errors import MachineErrors, deviation
+from matstd.compensation.field.state import State
+from matstd.compensation.service.output import OutputLimits, Quality
+from matstd.compensation.service.service import Service
+from matstd.diagnosis.drift.drift_file import write_drift
+from matstd.diagnosis.drift.judged import Judged
+from matstd.diagnosis.drift.lags import Lagged
+from matstd.diagnosis.drift.linear import LinearLaw
+from matstd.diagnosis.drift.record import DriftRecord
 from matstd.drift_law import DRIFT_LAW
-from twin.errors import BadFile, DesignError, UnknownEffect, UnknownSymbol
-from twin.library import parse_effect, register
-from twin.record import at_poses
-from twin.units import HOUR, MINUTE, UM, URAD
+from matstd.twin.errors import BadFile, DesignError, UnknownEffect, UnknownSymbol
+from matstd.twin.library import parse_effect, register
+from matstd.twin.record import at_poses
+from matstd.twin.units import HOUR, MINUTE, UM, URAD
 
 STEP, TAU, SPIN = 60.0, 0.5 * HOUR, 20.0 * MINUTE
 PER_K, PER_RPM, TILT = 4.0 * UM, 0.01 * UM, 3.0 * URAD

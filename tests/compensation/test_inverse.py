@@ -4,17 +4,23 @@ import numpy as np
 import pytest
 from bench import LENGTH, oracle_tip
 
-from compensation.field.inverse import correction, played
-from compensation.field.machine_errors import MachineErrors
-from compensation.field.over_workspace import aligned, relative_columns, result_of, rms, workspace
-from compensation.field.state import State
-from diagnosis.files.model_file import SavedModel, SourceEntry
-from diagnosis.fit.prior import Prior
-from twin.effects.setup_error import SetupError
-from twin.errors import BadValue, NotReachable
-from twin.library.catalogue import parse_effect
-from twin.model.model import Model
-from twin.units import NM, UM, URAD
+from matstd.compensation.field.inverse import correction, played
+from matstd.compensation.field.machine_errors import MachineErrors
+from matstd.compensation.field.over_workspace import (
+    aligned,
+    relative_columns,
+    result_of,
+    rms,
+    workspace,
+)
+from matstd.compensation.field.state import State
+from matstd.diagnosis.files.model_file import SavedModel, SourceEntry
+from matstd.diagnosis.fit.prior import Prior
+from matstd.twin.effects.setup_error import SetupError
+from matstd.twin.errors import BadValue, NotReachable
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.model.model import Model
+from matstd.twin.units import NM, UM, URAD
 
 
 def test_the_corrected_machine_stands_where_it_should(known, bench_chain, poses):

@@ -15,14 +15,14 @@ import pytest
 from bench import LENGTH
 from control import AXES, AXIS, INI, a_user
 
-from compensation.field.machine_errors import MachineErrors
-from compensation.linuxcnc.control_files import SOCKET, Control, write_control_files
-from compensation.linuxcnc.link import serve_linuxcnc
-from compensation.service.output import OutputLimits
-from compensation.service.service import Service
-from probe_paths.linuxcnc.session import LOCK
-from twin.library import parse_effect
-from twin.units import UM
+from matstd.compensation.field.machine_errors import MachineErrors
+from matstd.compensation.linuxcnc.control_files import SOCKET, Control, write_control_files
+from matstd.compensation.linuxcnc.link import serve_linuxcnc
+from matstd.compensation.service.output import OutputLimits
+from matstd.compensation.service.service import Service
+from matstd.probe_paths.linuxcnc.session import LOCK
+from matstd.twin.library import parse_effect
+from matstd.twin.units import UM
 
 pytestmark = pytest.mark.slow
 

@@ -5,19 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from compensation.field.inverse import datum_of
-from compensation.field.machine_errors import MachineErrors, deviation
-from compensation.field.state import State
-from compensation.part_programs.frame import Frame
-from compensation.part_programs.loads import Load, read_loads
-from compensation.part_programs.program import read_part_program
-from compensation.programs.compensation import compensated, passed
-from compensation.tables.header import header_of
 from matstd.cli import main
-from twin.errors import BadFile
-from twin.library.catalogue import parse_effect
-from twin.machine.chain import Axis, make_chain
-from twin.units import UM
+from matstd.compensation.field.inverse import datum_of
+from matstd.compensation.field.machine_errors import MachineErrors, deviation
+from matstd.compensation.field.state import State
+from matstd.compensation.part_programs.frame import Frame
+from matstd.compensation.part_programs.loads import Load, read_loads
+from matstd.compensation.part_programs.program import read_part_program
+from matstd.compensation.programs.compensation import compensated, passed
+from matstd.compensation.tables.header import header_of
+from matstd.twin.errors import BadFile
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.units import UM
 
 PROGRAM = "G21 G90 G17\nG0 X0 Y0 Z0\nG1 X50 F500\nG1 X100\nG1 Y50\nM30\n"
 MACHINE = """format = "machine/1"

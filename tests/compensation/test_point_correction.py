@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from bench import LENGTH, oracle_tip
 
-from compensation.field.inverse import correction
-from compensation.field.machine_errors import MachineErrors
-from compensation.field.over_workspace import workspace
-from compensation.service.point_correction import PointCorrection
-from compensation.service.tabulated import error_tables
-from twin.errors import DesignError, OutsideTravel
-from twin.files.machine_file import read_machine
-from twin.library.catalogue import parse_effect
-from twin.library.ordinary import ordinary_model
-from twin.units import NM, UM
+from matstd.compensation.field.inverse import correction
+from matstd.compensation.field.machine_errors import MachineErrors
+from matstd.compensation.field.over_workspace import workspace
+from matstd.compensation.service.point_correction import PointCorrection
+from matstd.compensation.service.tabulated import error_tables
+from matstd.twin.errors import DesignError, OutsideTravel
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.units import NM, UM
 
 MACHINES = Path(__file__).parents[2] / "examples" / "machines"
 

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from rs274 import interpreted, is_there
 
-from compensation.field.state import State
-from compensation.part_programs.frame import Frame
-from compensation.part_programs.program import read_part_program
-from compensation.programs.compensation import compensated
-from compensation.tables.header import header_of
-from twin.errors import BadFile
-from twin.units import DEG, UM
+from matstd.compensation.field.state import State
+from matstd.compensation.part_programs.frame import Frame
+from matstd.compensation.part_programs.program import read_part_program
+from matstd.compensation.programs.compensation import compensated
+from matstd.compensation.tables.header import header_of
+from matstd.twin.errors import BadFile
+from matstd.twin.units import DEG, UM
 
 HOLES = """%
 O1234 (A PLATE)

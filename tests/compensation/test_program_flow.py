@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from bench import LENGTH
 
-from compensation.field.inverse import datum_of
-from compensation.part_programs.frame import Frame
-from compensation.part_programs.motion import Motion, Paths
-from compensation.part_programs.program import read_part_program
-from twin.errors import BadFile
+from matstd.compensation.field.inverse import datum_of
+from matstd.compensation.part_programs.frame import Frame
+from matstd.compensation.part_programs.motion import Motion, Paths
+from matstd.compensation.part_programs.program import read_part_program
+from matstd.twin.errors import BadFile
 
 is_there = pytest.mark.skipif(
     shutil.which("rs274") is None, reason="LinuxCNC (rs274) is not installed"
@@ -110,7 +110,7 @@ def test_formulas(frame, tmp_path, formula, value):
     ],
 )
 def test_what_does_not_run_is_named_with_its_line(frame, tmp_path, blocks, said, monkeypatch):
-    monkeypatch.setattr("compensation.part_programs.klartext_flow.MOST", 1000)
+    monkeypatch.setattr("matstd.compensation.part_programs.klartext_flow.MOST", 1000)
     with pytest.raises(BadFile) as refused:
         program(f"{START}{blocks}\nEND PGM A MM\n", frame, tmp_path)
     assert said in str(refused.value)

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from bench import LENGTH, oracle_tip
 
-from compensation.field.machine_errors import MachineErrors
-from compensation.field.state import State
-from compensation.part_programs.frame import Frame
-from compensation.part_programs.motion import Keep
-from compensation.part_programs.program import read_part_program
-from compensation.programs.compensation import compensated
-from compensation.tables.header import header_of
 from matstd.cli import main
-from twin.errors import BadFile, OutsideTravel
-from twin.library.catalogue import parse_effect
-from twin.units import DEG, NM, UM
+from matstd.compensation.field.machine_errors import MachineErrors
+from matstd.compensation.field.state import State
+from matstd.compensation.part_programs.frame import Frame
+from matstd.compensation.part_programs.motion import Keep
+from matstd.compensation.part_programs.program import read_part_program
+from matstd.compensation.programs.compensation import compensated
+from matstd.compensation.tables.header import header_of
+from matstd.twin.errors import BadFile, OutsideTravel
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.units import DEG, NM, UM
 
 is_there = pytest.mark.skipif(
     shutil.which("rs274") is None, reason="LinuxCNC (rs274) is not installed"

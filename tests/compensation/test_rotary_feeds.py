@@ -13,14 +13,14 @@ import pytest
 from control import AXES, AXIS, INI, a_user
 from rs274 import interpreted, is_there
 
-from compensation.field.state import State
-from compensation.part_programs.frame import Frame
-from compensation.part_programs.program import read_part_program
-from compensation.programs.compensation import compensated
-from compensation.tables.header import header_of
-from probe_paths.linuxcnc.session import LOCK
-from twin.errors import BadFile
-from twin.units import UM
+from matstd.compensation.field.state import State
+from matstd.compensation.part_programs.frame import Frame
+from matstd.compensation.part_programs.program import read_part_program
+from matstd.compensation.programs.compensation import compensated
+from matstd.compensation.tables.header import header_of
+from matstd.probe_paths.linuxcnc.session import LOCK
+from matstd.twin.errors import BadFile
+from matstd.twin.units import UM
 
 SAME = 0.02
 """Of a time: what a correction may change of the way of linear axes in feed per minute."""

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 from bench import LENGTH
 
-from compensation.field.inverse import correction
-from compensation.field.machine_errors import MachineErrors
-from compensation.field.state import State
-from compensation.service.history import MOST, History
-from compensation.service.opcua_server import NAMESPACE, serve
-from compensation.service.output import Output, OutputLimits, Quality
-from compensation.service.service import Service
-from twin.errors import BadValue, DesignError
-from twin.library.catalogue import parse_effect
-from twin.thermal.thermal_lag import ThermalLag
-from twin.units import DEG, MINUTE, NM, UM
+from matstd.compensation.field.inverse import correction
+from matstd.compensation.field.machine_errors import MachineErrors
+from matstd.compensation.field.state import State
+from matstd.compensation.service.history import MOST, History
+from matstd.compensation.service.opcua_server import NAMESPACE, serve
+from matstd.compensation.service.output import Output, OutputLimits, Quality
+from matstd.compensation.service.service import Service
+from matstd.twin.errors import BadValue, DesignError
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.thermal.thermal_lag import ThermalLag
+from matstd.twin.units import DEG, MINUTE, NM, UM
 
 LIMITS = OutputLimits(most=100.0 * UM, rate=1.0, patience=0.5, hold=5.0)
 

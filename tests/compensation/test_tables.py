@@ -6,20 +6,26 @@ import numpy as np
 import pytest
 from bench import LENGTH, oracle_tip
 
-from compensation.field.inverse import datum_of, played
-from compensation.field.machine_errors import MachineErrors, deviation
-from compensation.field.over_workspace import aligned, rms, workspace
-from compensation.field.state import State
-from compensation.tables.along_axes import along_axes
-from compensation.tables.by_name import line
-from compensation.tables.formats import FORMATS, Harmful, play_tables, refuse_harmful, write_tables
-from compensation.tables.header import Header, header_of
 from matstd.cli import main
-from twin.errors import BadFile
-from twin.files.machine_file import read_machine
-from twin.library.catalogue import parse_effect
-from twin.machine.chain import Axis, make_chain
-from twin.units import DEG, NM, UM, URAD
+from matstd.compensation.field.inverse import datum_of, played
+from matstd.compensation.field.machine_errors import MachineErrors, deviation
+from matstd.compensation.field.over_workspace import aligned, rms, workspace
+from matstd.compensation.field.state import State
+from matstd.compensation.tables.along_axes import along_axes
+from matstd.compensation.tables.by_name import line
+from matstd.compensation.tables.formats import (
+    FORMATS,
+    Harmful,
+    play_tables,
+    refuse_harmful,
+    write_tables,
+)
+from matstd.compensation.tables.header import Header, header_of
+from matstd.twin.errors import BadFile
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.units import DEG, NM, UM, URAD
 
 
 @pytest.fixture(scope="module")

@@ -6,12 +6,12 @@ from made_up import ARM, arm_poses
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
 
-from diagnosis.fit.identification import fit_run
-from diagnosis.geometry.arm_links import arm_functionals
-from diagnosis.geometry.quantities import geometric_effects
-from twin.effects.location import LocationError
-from twin.library.ordinary import ordinary_model
-from twin.record.run import Run
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.geometry.arm_links import arm_functionals
+from matstd.diagnosis.geometry.quantities import geometric_effects
+from matstd.twin.effects.location import LocationError
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.record.run import Run
 
 JOINTS = ("C", "B", "B1", "A")
 

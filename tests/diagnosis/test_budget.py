@@ -1,10 +1,10 @@
 """A search that never has enough ends at its limit, and says so."""
 
-import diagnosis.search.search_loop as rounds
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.remarks.run_remarks import SearchEnded
-from diagnosis.search.selection import MOST_SETS, Budget
-from twin.library.catalogue import parse_effect
+import matstd.diagnosis.search.search_loop as rounds
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.remarks.run_remarks import SearchEnded
+from matstd.diagnosis.search.selection import MOST_SETS, Budget
+from matstd.twin.library.catalogue import parse_effect
 
 KEY = (8, "hmc1995", ("thermal-expansion(Y,scaleY)",))
 LIBRARY = ("thermal-expansion(Y,scaleY)", "backlash(X)", "drift", "probe-radius", "probe-lobing")

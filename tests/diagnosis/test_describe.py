@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from diagnosis.fit.describe import size
-from twin.model.effect import Parameter
+from matstd.diagnosis.fit.describe import size
+from matstd.twin.model.effect import Parameter
 
 DRAWS = 1000
 BINOMIAL = 4.0

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from simulator_case import read_back, simulate_case
 
-from diagnosis.faults.suspects import Fault
-from diagnosis.faults.trial import description_faults, faults_of_refused
-from diagnosis.fit.identification import fit_run
 from matstd.cli import main
-from report.geometry.fault_words import fault_sentences
-from twin.errors import BadFile
-from twin.library.ordinary import ordinary_model
+from matstd.diagnosis.faults.suspects import Fault
+from matstd.diagnosis.faults.trial import description_faults, faults_of_refused
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.report.geometry.fault_words import fault_sentences
+from matstd.twin.errors import BadFile
+from matstd.twin.library.ordinary import ordinary_model
 
 
 @pytest.fixture(scope="module")

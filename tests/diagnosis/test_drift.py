@@ -5,18 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.drift.arx import ArxInputs, arx, coefficients
-from diagnosis.drift.beams import Beam, beam_estimate, read_beams
-from diagnosis.drift.judged import chosen, judge, offered
-from diagnosis.drift.lags import Lagged, at_once, followed
-from diagnosis.drift.linear import WEIGHTS, fitted, ridge
-from diagnosis.drift.network import _regressor, network
-from diagnosis.drift.plain_laws import one_step_arx
-from diagnosis.drift.probing import RENEWED, kept
-from diagnosis.drift.record import DriftRecord, blocks, joined
-from twin.compute import silent
-from twin.errors import BadFile
-from twin.units import UM
+from matstd.diagnosis.drift.arx import ArxInputs, arx, coefficients
+from matstd.diagnosis.drift.beams import Beam, beam_estimate, read_beams
+from matstd.diagnosis.drift.judged import chosen, judge, offered
+from matstd.diagnosis.drift.lags import Lagged, at_once, followed
+from matstd.diagnosis.drift.linear import WEIGHTS, fitted, ridge
+from matstd.diagnosis.drift.network import _regressor, network
+from matstd.diagnosis.drift.plain_laws import one_step_arx
+from matstd.diagnosis.drift.probing import RENEWED, kept
+from matstd.diagnosis.drift.record import DriftRecord, blocks, joined
+from matstd.twin.compute import silent
+from matstd.twin.errors import BadFile
+from matstd.twin.units import UM
 
 STEP = 300.0
 

@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis.drift.clocks import lead
-from diagnosis.drift.drift_file import read_law
-from diagnosis.drift.log_file import read_log, read_probed
-from diagnosis.drift.record import varying
 from matstd.cli import main
-from report.drift.drift_words import clock_line
-from twin.errors import BadFile
-from twin.units import UM
+from matstd.diagnosis.drift.clocks import lead
+from matstd.diagnosis.drift.drift_file import read_law
+from matstd.diagnosis.drift.log_file import read_log, read_probed
+from matstd.diagnosis.drift.record import varying
+from matstd.report.drift.drift_words import clock_line
+from matstd.twin.errors import BadFile
+from matstd.twin.units import UM
 
 ROOT = Path(__file__).parents[2]
 HEAD = "time_min,T_nose_degC,spindle_rpm,z_um"

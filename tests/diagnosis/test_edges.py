@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.answer.verdict import Verdict
-from diagnosis.evidence.effect_signatures import ScaledEffect
-from diagnosis.regression.gross import GrossErrors
-from diagnosis.search.edges import unexplained_near_slip
-from twin.effects.artefact import ArtefactSlip
-from twin.library.catalogue import parse_effect
-from twin.units import UM
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer.verdict import Verdict
+from matstd.diagnosis.evidence.effect_signatures import ScaledEffect
+from matstd.diagnosis.regression.gross import GrossErrors
+from matstd.diagnosis.search.edges import unexplained_near_slip
+from matstd.twin.effects.artefact import ArtefactSlip
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.units import UM
 
 NOTHING = (2, "hsm600u", ())
 SHIFT = np.array([6.0, -5.0, 4.0]) * UM

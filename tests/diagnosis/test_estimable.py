@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.fit.estimability import estimable
-from diagnosis.fit.identification import fit_run
-from twin.model.model import columns
-from twin.units import NM
+from matstd.diagnosis.fit.estimability import estimable
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.twin.model.model import columns
+from matstd.twin.units import NM
 
 MACHINES = 20
 BINOMIAL = 4.0

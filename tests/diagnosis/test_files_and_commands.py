@@ -7,17 +7,17 @@ import numpy as np
 import pytest
 from simulator_case import simulate_case
 
-from diagnosis.files.model_file import read_model
-from diagnosis.files.model_writer import write_model
-from diagnosis.fit.identification import fit_run
-from diagnosis.fit.unit_mistakes import unit_mistake
-from diagnosis.remarks.run_remarks import remarks
 from matstd.cli import main
-from report.words.remark_words import remark_sentence
-from twin.errors import BadFile
-from twin.library.ordinary import ordinary_model
-from twin.record.copies import without_copies
-from twin.units import NM, UM
+from matstd.diagnosis.files.model_file import read_model
+from matstd.diagnosis.files.model_writer import write_model
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.fit.unit_mistakes import unit_mistake
+from matstd.diagnosis.remarks.run_remarks import remarks
+from matstd.report.words.remark_words import remark_sentence
+from matstd.twin.errors import BadFile
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.record.copies import without_copies
+from matstd.twin.units import NM, UM
 
 NUMBER = (int, float)
 DIGITS = 2e-6
@@ -33,8 +33,8 @@ KEYS = {
 }
 HOSE = """
 from dataclasses import dataclass
-from twin.model import Parameter, Term, Where
-from twin.model import Kind
+from matstd.twin.model import Parameter, Term, Where
+from matstd.twin.model import Kind
 
 @dataclass(frozen=True)
 class Hose:
@@ -322,7 +322,7 @@ def test_plans_stand_beside_the_diagnosis(warmed, table) -> None:
 
 
 def test_named_effects_and_effects_of_ones_own(folder, tmp_path, monkeypatch) -> None:
-    import twin.library.catalogue as library
+    import matstd.twin.library.catalogue as library
 
     monkeypatch.setattr(library, "_REGISTER", dict(library._REGISTER))
     (tmp_path / "mine.py").write_text(HOSE, encoding="utf-8")

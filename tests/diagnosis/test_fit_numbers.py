@@ -8,10 +8,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.fit.identification import fit_run
-from diagnosis.regression.linear import left_out, solve
-from diagnosis.regression.noise import replicate_groups
-from diagnosis.remarks.run_remarks import (
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.regression.linear import left_out, solve
+from matstd.diagnosis.regression.noise import replicate_groups
+from matstd.diagnosis.remarks.run_remarks import (
     FewTouches,
     NoiseMisstated,
     OutliersKept,
@@ -19,13 +19,13 @@ from diagnosis.remarks.run_remarks import (
     WorseThanReplicates,
     remarks,
 )
-from twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
-from twin.errors import NotEnoughData
-from twin.foreign.axis_run import one_axis_machine, positioning_run
-from twin.foreign.positioning import PositioningTest
-from twin.library.ordinary import ordinary_model
-from twin.model.model import columns
-from twin.units import NM, UM
+from matstd.twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
+from matstd.twin.errors import NotEnoughData
+from matstd.twin.foreign.axis_run import one_axis_machine, positioning_run
+from matstd.twin.foreign.positioning import PositioningTest
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.model.model import columns
+from matstd.twin.units import NM, UM
 
 ROUNDING = 1e-12
 """Numbers of size 1 out of sums of two products."""

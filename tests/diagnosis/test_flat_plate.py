@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from flat_plate import HEIGHT, lag, write_plate
 
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.answer.verdict import Verdict
-from report.words.diagnosis_words import verdict_sentence
-from twin.files.run_file import read_run
-from twin.record.commanded import with_commanded
-from twin.units import UM
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer.verdict import Verdict
+from matstd.report.words.diagnosis_words import verdict_sentence
+from matstd.twin.files.run_file import read_run
+from matstd.twin.record.commanded import with_commanded
+from matstd.twin.units import UM
 
 
 def test_commanded_readings_are_those_of_the_plane(tmp_path):

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from made_up import arm_poses
 
-from diagnosis.fit.identification import fit_run
-from diagnosis.regression.gross import find_gross, shots
-from diagnosis.remarks.run_remarks import ManyStoodOut, remarks
-from diagnosis.residual.crowds import crowds
-from report.words.remark_words import remark_sentence
-from twin.library.ordinary import ordinary_model
-from twin.record.run import Run
-from twin.units import UM
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.regression.gross import find_gross, shots
+from matstd.diagnosis.remarks.run_remarks import ManyStoodOut, remarks
+from matstd.diagnosis.residual.crowds import crowds
+from matstd.report.words.remark_words import remark_sentence
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.record.run import Run
+from matstd.twin.units import UM
 
 
 def test_a_chip_that_bends_the_fit_towards_itself_is_found() -> None:

@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from simulator_experiment import random_experiment, random_noise
 
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.answer.verdict import Verdict
-from diagnosis.remarks.run_remarks import OutliersLeftOut
-from report.words.diagnosis_words import verdict_sentence
-from twin.library.catalogue import parse_effect
-from twin.model.model import columns
-from twin.units import UM
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer.verdict import Verdict
+from matstd.diagnosis.remarks.run_remarks import OutliersLeftOut
+from matstd.report.words.diagnosis_words import verdict_sentence
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.model.model import columns
+from matstd.twin.units import UM
 
 WITHIN = 4.0
 """Standard uncertainties between a size found and the true one; by chance 1 in 16000."""

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.fit.identification import fit_run
-from diagnosis.remarks.order import jump_in_order
-from twin.foreign.point_list import PointList
-from twin.foreign.points import linear_machine, points_run
-from twin.library.ordinary import ordinary_model
-from twin.units import UM
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.remarks.order import jump_in_order
+from matstd.twin.foreign.point_list import PointList
+from matstd.twin.foreign.points import linear_machine, points_run
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.units import UM
 
 N, AT = 40, 23
 SIZE = 9.0 * UM

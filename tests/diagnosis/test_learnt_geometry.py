@@ -5,20 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.fit.identification import fit_run
-from diagnosis.fit.prior import Prior
-from diagnosis.geometry.functionals import Quantity
-from diagnosis.geometry.learnt import Rung, geometry_rows, learnt_geometry
-from report.geometry.geometry_words import correction_line, noted_lines
-from twin.errors import BadValue
-from twin.frames import apply, inverse
-from twin.library.ordinary import ordinary_model
-from twin.machine.chain import Axis, make_chain
-from twin.machine.kinematics import tip
-from twin.record.instrument import Instrument
-from twin.record.run import Run
-from twin.record.touches import Setup, Touches
-from twin.units import UM, URAD
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.geometry.functionals import Quantity
+from matstd.diagnosis.geometry.learnt import Rung, geometry_rows, learnt_geometry
+from matstd.report.geometry.geometry_words import correction_line, noted_lines
+from matstd.twin.errors import BadValue
+from matstd.twin.frames import apply, inverse
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.machine.kinematics import tip
+from matstd.twin.record.instrument import Instrument
+from matstd.twin.record.run import Run
+from matstd.twin.record.touches import Setup, Touches
+from matstd.twin.units import UM, URAD
 
 KEY = (2, "hsm600u")
 SHRUNK = 0.03

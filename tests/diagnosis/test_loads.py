@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 from made_up import made_up
 
-from diagnosis.fit.describe import Role, reported
-from diagnosis.fit.identification import fit_run
-from diagnosis.remarks.run_remarks import LoadTooSmall, ShortBeam, remarks
-from report.words.remark_words import remark_sentence
-from twin.library.catalogue import parse_effect
-from twin.model.model import Model, columns
-from twin.record.run import Run
-from twin.units import UM
+from matstd.diagnosis.fit.describe import Role, reported
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.remarks.run_remarks import LoadTooSmall, ShortBeam, remarks
+from matstd.report.words.remark_words import remark_sentence
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.model.model import Model, columns
+from matstd.twin.record.run import Run
+from matstd.twin.units import UM
 
 
 def fitted(load, texts, seed=3):

@@ -5,17 +5,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from diagnosis.answer.collinear import weakest
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.answer.verdict import Step, Verdict
-from diagnosis.choice.long_runs import CHOSEN, chosen_rows
-from diagnosis.fit.describe import Reported, Role
-from twin.frames import Array
-from twin.machine import Axis, make_chain
-from twin.record.instrument import Instrument
-from twin.record.run import Run
-from twin.record.touches import Setup, Touches, motion
-from twin.units import UM
+from matstd.diagnosis.answer.collinear import weakest
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer.verdict import Step, Verdict
+from matstd.diagnosis.choice.long_runs import CHOSEN, chosen_rows
+from matstd.diagnosis.fit.describe import Reported, Role
+from matstd.twin.frames import Array
+from matstd.twin.machine import Axis, make_chain
+from matstd.twin.record.instrument import Instrument
+from matstd.twin.record.run import Run
+from matstd.twin.record.touches import Setup, Touches, motion
+from matstd.twin.units import UM
 
 AXIS = make_chain("one axis", "[w f X t]", {"X": Axis((0.0, 400.0))})
 

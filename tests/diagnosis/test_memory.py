@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 from scipy.linalg import block_diag
 
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.answer.verdict import Verdict
-from diagnosis.files.model_writer import write_model
-from diagnosis.fit.identification import fit_run
-from diagnosis.fit.prior import Prior
-from diagnosis.regression.memory import CLEARLY, Memory, likely_memory, whitener
-from diagnosis.remarks.run_remarks import remarks
-from report.words.diagnosis_words import verdict_sentence
-from report.words.remark_words import remark_sentence
-from twin.effects.setup_error import setup_errors
-from twin.library.ordinary import ordinary_model
-from twin.model.model import columns
-from twin.units import UM
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer.verdict import Verdict
+from matstd.diagnosis.files.model_writer import write_model
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.regression.memory import CLEARLY, Memory, likely_memory, whitener
+from matstd.diagnosis.remarks.run_remarks import remarks
+from matstd.report.words.diagnosis_words import verdict_sentence
+from matstd.report.words.remark_words import remark_sentence
+from matstd.twin.effects.setup_error import setup_errors
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.model.model import columns
+from matstd.twin.units import UM
 
 SEED = (2, "hmc1995")
 STATED = 0.6 * UM

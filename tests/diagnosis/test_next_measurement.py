@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from diagnosis.answer.next_measurement import CONE, candidate_touches
-from twin.machine.kinematics import tip
-from twin.units import NM
+from matstd.diagnosis.answer.next_measurement import CONE, candidate_touches
+from matstd.twin.machine.kinematics import tip
+from matstd.twin.units import NM
 
 
 def spindle_in_artefact(touches):

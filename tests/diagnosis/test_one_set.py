@@ -7,29 +7,29 @@ import numpy as np
 import pytest
 from simulator_case import simulate_case
 
-from diagnosis.answer import one_set
-from diagnosis.answer.ambiguity import ConfusionClass, Rival
-from diagnosis.answer.collinear import left_by
-from diagnosis.answer.one_set import told_set, with_members
-from diagnosis.choice.following import choice_remarks
-from diagnosis.choice.prediction import SETS, Choice, ChoiceRule
-from diagnosis.files.diagnosis_file import choice_table
-from diagnosis.files.model_file import read_model
-from diagnosis.files.model_writer import write_model
-from diagnosis.fit.identification import fit_run
-from diagnosis.fit.learnt_fit import Learnt
-from diagnosis.fit.prior import Prior
-from diagnosis.regression.memory import Memory
-from diagnosis.remarks.run_remarks import SearchEnded
-from diagnosis.search.search_loop import search_until_stable
-from diagnosis.search.task import DiagnosisTask
 from matstd.cli import main
-from report.words.diagnosis_words import figures, number_words
-from twin.library.catalogue import parse_effect
-from twin.library.ordinary import ordinary_model
-from twin.model.model import Model, columns
-from twin.record.copies import without_copies
-from twin.units import UM
+from matstd.diagnosis.answer import one_set
+from matstd.diagnosis.answer.ambiguity import ConfusionClass, Rival
+from matstd.diagnosis.answer.collinear import left_by
+from matstd.diagnosis.answer.one_set import told_set, with_members
+from matstd.diagnosis.choice.following import choice_remarks
+from matstd.diagnosis.choice.prediction import SETS, Choice, ChoiceRule
+from matstd.diagnosis.files.diagnosis_file import choice_table
+from matstd.diagnosis.files.model_file import read_model
+from matstd.diagnosis.files.model_writer import write_model
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.fit.learnt_fit import Learnt
+from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.regression.memory import Memory
+from matstd.diagnosis.remarks.run_remarks import SearchEnded
+from matstd.diagnosis.search.search_loop import search_until_stable
+from matstd.diagnosis.search.task import DiagnosisTask
+from matstd.report.words.diagnosis_words import figures, number_words
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.model.model import Model, columns
+from matstd.twin.record.copies import without_copies
+from matstd.twin.units import UM
 
 LAG = (5, "hsm600u", ("thermal-lag(EXC)",))
 COLLINEAR = ("thermal-static(EXX,ambient)", "thermal-static(EXB,ambient)")

@@ -14,16 +14,16 @@ import simulator_effects as effects
 from simulator import probe, run_text
 from simulator_experiment import MACHINES, STATED_NOISE, placed, random_experiment
 
-from compensation.field import MachineErrors
-from diagnosis import compare, fit_run, read_model, write_model
 from matstd.cli import main
-from report.words import remark_sentence
-from twin.errors import BadFile
-from twin.files import read_run
-from twin.library import load_user_effects, ordinary_model, parse_effect
-from twin.model import Model
-from twin.record import without_copies
-from twin.units import UM
+from matstd.compensation.field import MachineErrors
+from matstd.diagnosis import compare, fit_run, read_model, write_model
+from matstd.report.words import remark_sentence
+from matstd.twin.errors import BadFile
+from matstd.twin.files import read_run
+from matstd.twin.library import load_user_effects, ordinary_model, parse_effect
+from matstd.twin.model import Model
+from matstd.twin.record import without_copies
+from matstd.twin.units import UM
 
 SLIP, BACKLASH = 40.0, 30.0
 """Planted in the first run, µm."""
@@ -172,7 +172,8 @@ def test_what_is_left_is_known_as_well_as_before(visits):
 
 def test_an_effect_that_belongs_to_nothing_known_is_refused(tmp_path):
     (tmp_path / "mine.py").write_text(
-        "from twin.effects.artefact import ArtefactSlip\nfrom twin.model import Kind\n"
+        "from matstd.twin.effects.artefact import ArtefactSlip\n"
+        "from matstd.twin.model import Kind\n"
         "from dataclasses import dataclass\n"
         "@dataclass(frozen=True)\nclass Mine(ArtefactSlip):\n    kind = 'mine'\n"
         "    name = 'mine'\n"

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 from made_up import run_of
 
-from diagnosis.answer import Diagnosis, Verdict, diagnose
-from report.words import sizes
-from twin.errors import UnknownEffect
-from twin.library.catalogue import parse_effect
-from twin.units import UM
+from matstd.diagnosis.answer import Diagnosis, Verdict, diagnose
+from matstd.report.words import sizes
+from matstd.twin.errors import UnknownEffect
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.units import UM
 
 NOISE = 0.15 * UM
 

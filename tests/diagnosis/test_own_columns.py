@@ -7,19 +7,19 @@ import pytest
 from made_up import gauge_touches
 from scipy.integrate import solve_ivp
 
-from diagnosis.answer.comparison import compare
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.choice.field import sized_field
-from diagnosis.choice.prediction import candidate_effects
-from diagnosis.evidence.effect_signatures import ScaledEffect
-from diagnosis.files.model_file import read_model
-from diagnosis.files.model_writer import write_model
-from diagnosis.fit.prior import Prior
-from diagnosis.search.task import DiagnosisTask
-from twin.library.catalogue import parse_effect
-from twin.library.ordinary import ordinary_model
-from twin.record.run import Run
-from twin.units import MINUTE, UM
+from matstd.diagnosis.answer.comparison import compare
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.choice.field import sized_field
+from matstd.diagnosis.choice.prediction import candidate_effects
+from matstd.diagnosis.evidence.effect_signatures import ScaledEffect
+from matstd.diagnosis.files.model_file import read_model
+from matstd.diagnosis.files.model_writer import write_model
+from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.search.task import DiagnosisTask
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.record.run import Run
+from matstd.twin.units import MINUTE, UM
 
 N = 150
 TAU = 25.0 * MINUTE

@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 from made_up import run_of
 
-from diagnosis.answer import Verdict, diagnose
-from diagnosis.answer.alike import even_step
-from diagnosis.fit.describe import Role
-from report.words.diagnosis_words import scanned_sentence
-from twin.effects.periodic import scanned_periods
-from twin.frames import Array
-from twin.model import Tunable
-from twin.record import Run
-from twin.units import UM
+from matstd.diagnosis.answer import Verdict, diagnose
+from matstd.diagnosis.answer.alike import even_step
+from matstd.diagnosis.fit.describe import Role
+from matstd.report.words.diagnosis_words import scanned_sentence
+from matstd.twin.effects.periodic import scanned_periods
+from matstd.twin.frames import Array
+from matstd.twin.model import Tunable
+from matstd.twin.record import Run
+from matstd.twin.units import UM
 
 
 def positioning(targets: Array, period: float, amplitude: float, seed: int = 0) -> Run:

@@ -8,16 +8,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.evidence.effect_signatures import ScaledEffect
-from diagnosis.fit.prior import Prior
-from diagnosis.search.task import DiagnosisTask
-from twin.foreign.axis_run import one_axis_machine, positioning_run
-from twin.foreign.positioning import PositioningTest
-from twin.library.catalogue import parse_effect
-from twin.library.ordinary import ordinary_model
-from twin.record.run import Run
-from twin.units import UM
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.evidence.effect_signatures import ScaledEffect
+from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.search.task import DiagnosisTask
+from matstd.twin.foreign.axis_run import one_axis_machine, positioning_run
+from matstd.twin.foreign.positioning import PositioningTest
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.record.run import Run
+from matstd.twin.units import UM
 
 L = 500.0
 NOISE = 0.3 * UM

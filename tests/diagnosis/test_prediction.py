@@ -7,33 +7,33 @@ import pytest
 from made_up import gauge_touches
 from scipy.integrate import solve_ivp
 
-from diagnosis.answer.comparison import compare
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.answer.sizes import sizes
-from diagnosis.answer.verdict import Diagnosis
-from diagnosis.choice import prediction
-from diagnosis.choice.blocks import blocks
-from diagnosis.choice.bodies import bodies
-from diagnosis.choice.field import SIZES, sized_field
-from diagnosis.choice.following import followed
-from diagnosis.choice.needed import needed
-from diagnosis.choice.prediction import Choice, candidate_effects, without
-from diagnosis.evidence.effect_signatures import ResidualSpace, ScaledEffect, projected
-from diagnosis.evidence.evidence import EffectSet
-from diagnosis.fit.identification import fit_run
-from diagnosis.fit.prior import Prior
-from diagnosis.regression.memory import Memory
-from diagnosis.search.search_loop import search_until_stable
-from diagnosis.search.task import DiagnosisTask
+from matstd.diagnosis.answer.comparison import compare
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer.sizes import sizes
+from matstd.diagnosis.answer.verdict import Diagnosis
+from matstd.diagnosis.choice import prediction
+from matstd.diagnosis.choice.blocks import blocks
+from matstd.diagnosis.choice.bodies import bodies
+from matstd.diagnosis.choice.field import SIZES, sized_field
+from matstd.diagnosis.choice.following import followed
+from matstd.diagnosis.choice.needed import needed
+from matstd.diagnosis.choice.prediction import Choice, candidate_effects, without
+from matstd.diagnosis.evidence.effect_signatures import ResidualSpace, ScaledEffect, projected
+from matstd.diagnosis.evidence.evidence import EffectSet
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.regression.memory import Memory
+from matstd.diagnosis.search.search_loop import search_until_stable
+from matstd.diagnosis.search.task import DiagnosisTask
 from matstd.inputs import candidates
-from report.words.diagnosis_words import named_value, promise_sentence
-from twin.errors import DesignError
-from twin.library.catalogue import parse_effect
-from twin.library.ordinary import ordinary_model
-from twin.model.model import columns
-from twin.record.run import Run
-from twin.thermal.thermal_field import field
-from twin.units import MINUTE, UM
+from matstd.report.words.diagnosis_words import named_value, promise_sentence
+from matstd.twin.errors import DesignError
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.model.model import columns
+from matstd.twin.record.run import Run
+from matstd.twin.thermal.thermal_field import field
+from matstd.twin.units import MINUTE, UM
 
 N = 240
 STATED = 1.0 * UM

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.answer.proof import probed_volume, prove
-from diagnosis.fit.identification import fit_run
-from sensitivity.population.sampling import Population, drawn_errors
-from twin.frames import apply, fixed_xyz, inverse, pose
-from twin.library.ordinary import ordinary_model
-from twin.machine.kinematics import exact_tip
-from twin.model.effect import contribution
-from twin.record.touches import Setup
-from twin.units import NM, UM
+from matstd.diagnosis.answer.proof import probed_volume, prove
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.sensitivity.population.sampling import Population, drawn_errors
+from matstd.twin.frames import apply, fixed_xyz, inverse, pose
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.machine.kinematics import exact_tip
+from matstd.twin.model.effect import contribution
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import NM, UM
 
 MACHINES = 6
 

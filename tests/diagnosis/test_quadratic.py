@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from diagnosis.evidence.evidence import f_probability
-from diagnosis.residual.quadratic import ratio_probability
+from matstd.diagnosis.evidence.evidence import f_probability
+from matstd.diagnosis.residual.quadratic import ratio_probability
 
 A_FEW_PER_CENT = 0.05
 

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.files.diagnosis_file import conditions_text
-from diagnosis.fit.identification import fit_run
-from diagnosis.residual.failing_regions import Condition, Side, regions
-from report.words.diagnosis_words import region_words
-from twin.model.model import Model
-from twin.units import DEG, UM
+from matstd.diagnosis.files.diagnosis_file import conditions_text
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.residual.failing_regions import Condition, Side, regions
+from matstd.report.words.diagnosis_words import region_words
+from matstd.twin.model.model import Model
+from matstd.twin.units import DEG, UM
 
 KEY = (2, "hsm600u")
 SIGMAS = 4.0

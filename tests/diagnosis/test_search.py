@@ -5,23 +5,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.answer.ambiguity import CONFUSED, confusion_class, plausibility
-from diagnosis.evidence.effect_signatures import (
+from matstd.diagnosis.answer.ambiguity import CONFUSED, confusion_class, plausibility
+from matstd.diagnosis.evidence.effect_signatures import (
     Grid,
     ResidualSpace,
     signatures,
     tuned_variants,
 )
-from diagnosis.evidence.evidence import EffectSet, addition
-from diagnosis.fit.identification import fit_run
-from diagnosis.search.refine import refined, with_moved_points
-from diagnosis.search.regrid import regridded
-from diagnosis.search.screening import Library, joined_shortlists
-from diagnosis.search.selection import MOST_SETS, Search
-from twin.library.catalogue import parse_effect
-from twin.library.ordinary import ordinary_model
-from twin.model.model import columns
-from twin.units import MINUTE, UM
+from matstd.diagnosis.evidence.evidence import EffectSet, addition
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.search.refine import refined, with_moved_points
+from matstd.diagnosis.search.regrid import regridded
+from matstd.diagnosis.search.screening import Library, joined_shortlists
+from matstd.diagnosis.search.selection import MOST_SETS, Search
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.model.model import columns
+from matstd.twin.units import MINUTE, UM
 
 KEY = (2, "hsm600u")
 NAMES = (
@@ -153,7 +153,7 @@ def test_what_a_coarse_grid_leaves_is_no_second_effect(planted) -> None:
 
 def test_a_shortlist_of_a_long_run_is_a_value(planted, monkeypatch) -> None:
     """Asked twice it says the same, and the pool has exactly its points."""
-    monkeypatch.setattr("diagnosis.search.screening.WHOLE_BELOW", 300)
+    monkeypatch.setattr("matstd.diagnosis.search.screening.WHOLE_BELOW", 300)
     space = planted({"thermal-lag(EZZ)": ((1500.0,), 2.0)})
     made = Library.of(space, library(space))
     empty = EffectSet(space, np.zeros((len(space.residual), 0)))

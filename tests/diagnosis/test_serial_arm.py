@@ -3,12 +3,12 @@
 import numpy as np
 from made_up import ARM, arm_poses
 
-from diagnosis.answer.run_diagnosis import diagnose
-from twin.library.catalogue import parse_effect
-from twin.library.ordinary import ordinary_model
-from twin.model.model import Model
-from twin.record.run import Run
-from twin.units import UM, URAD
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.model.model import Model
+from matstd.twin.record.run import Run
+from matstd.twin.units import UM, URAD
 
 NOISE = 10.0 * UM
 POSES = 60

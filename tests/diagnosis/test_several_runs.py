@@ -10,21 +10,21 @@ from simulator_experiment import MACHINES
 from simulator_machine import read_machine
 from simulator_runs import read_runs, simulated_runs
 
-from diagnosis.answer.comparison import compare
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.answer.trend import single_change
-from diagnosis.answer.verdict import Verdict
-from diagnosis.fit.identification import fit_run
-from diagnosis.fit.prior import Prior
-from diagnosis.geometry.changes import changing
-from diagnosis.geometry.learnt import Rung, changed_runs
 from matstd.cli import main
-from report.geometry.trend_words import change_sentences
-from twin.library.catalogue import parse_effect
-from twin.library.ordinary import ordinary_model
-from twin.model.model import Model
-from twin.record.several_runs import joined
-from twin.units import UM, URAD
+from matstd.diagnosis.answer.comparison import compare
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer.trend import single_change
+from matstd.diagnosis.answer.verdict import Verdict
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.geometry.changes import changing
+from matstd.diagnosis.geometry.learnt import Rung, changed_runs
+from matstd.report.geometry.trend_words import change_sentences
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.model.model import Model
+from matstd.twin.record.several_runs import joined
+from matstd.twin.units import UM, URAD
 
 MACHINE, POSES = "hsm600u", 5
 NOISE = 0.6 * UM

@@ -11,16 +11,16 @@ import pytest
 from simulator_experiment import random_experiment
 from simulator_warmth import probed_warm, true_scales
 
-from diagnosis.answer.comparison import compare
-from diagnosis.fit.identification import fit_run
-from diagnosis.geometry.functionals import Quantity
-from diagnosis.geometry.learnt import geometry_rows
-from diagnosis.remarks import BodySize
-from diagnosis.task.visits import visits_of
-from report.words.remark_words import remark_sentence
-from twin.library.catalogue import proposals
-from twin.library.ordinary import ordinary_model
-from twin.record.body import StatedBody, with_body
+from matstd.diagnosis.answer.comparison import compare
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.geometry.functionals import Quantity
+from matstd.diagnosis.geometry.learnt import geometry_rows
+from matstd.diagnosis.remarks import BodySize
+from matstd.diagnosis.task.visits import visits_of
+from matstd.report.words.remark_words import remark_sentence
+from matstd.twin.library.catalogue import proposals
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.record.body import StatedBody, with_body
 
 ALPHA = 10.5e-6
 STATED = f"# standard = {{ expansion_1_K = {ALPHA}, expansion_u_1_K = 1e-6"

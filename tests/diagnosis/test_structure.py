@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.evidence.effect_signatures import ResidualSpace
-from diagnosis.evidence.evidence import EffectSet
-from diagnosis.fit.identification import fit_run
-from diagnosis.residual.structure import CHANCE, Shape, find_structure
-from twin.model.model import Model
-from twin.units import UM
+from matstd.diagnosis.evidence.effect_signatures import ResidualSpace
+from matstd.diagnosis.evidence.evidence import EffectSet
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.residual.structure import CHANCE, Shape, find_structure
+from matstd.twin.model.model import Model
+from matstd.twin.units import UM
 
 KEY = (1, "hmc1995")
 NOISE = 0.6 * UM

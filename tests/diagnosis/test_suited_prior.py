@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_t
 
-from diagnosis.fit.identification import fit_run
-from diagnosis.fit.prior import Prior
-from diagnosis.fit.suited_prior import _evidence, _released
-from diagnosis.geometry.learnt import geometry_rows
-from diagnosis.regression.noise import PRIOR_DOF
-from twin.library.ordinary import ordinary_model
-from twin.machine.chain import Axis, make_chain
-from twin.record.run import Run
-from twin.record.touches import Setup, Touches
-from twin.units import UM, URAD
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.fit.suited_prior import _evidence, _released
+from matstd.diagnosis.geometry.learnt import geometry_rows
+from matstd.diagnosis.regression.noise import PRIOR_DOF
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.record.run import Run
+from matstd.twin.record.touches import Setup, Touches
+from matstd.twin.units import UM, URAD
 
 NOISE = 3.0 * UM
 SCALE, SQUARE = -18e-6, 41.0 * URAD

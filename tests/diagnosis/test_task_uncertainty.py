@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from diagnosis.task.decision import guarded
-from diagnosis.task.uncertainty import task_uncertainty
-from diagnosis.task.visits import Visits
+from matstd.diagnosis.task.decision import guarded
+from matstd.diagnosis.task.uncertainty import task_uncertainty
+from matstd.diagnosis.task.visits import Visits
 
 
 def test_one_place_is_students_interval_of_the_next_visit() -> None:

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.evidence.effect_signatures import ResidualSpace
-from diagnosis.evidence.evidence import EffectSet
-from diagnosis.fit.identification import fit_run
-from diagnosis.residual.patterns import thinned
-from diagnosis.residual.waves import best_wave
-from twin.library.ordinary import ordinary_model
-from twin.units import UM
+from matstd.diagnosis.evidence.effect_signatures import ResidualSpace
+from matstd.diagnosis.evidence.evidence import EffectSet
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.residual.patterns import thinned
+from matstd.diagnosis.residual.waves import best_wave
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.units import UM
 
 KEY = (1, "hmc1995")
 

@@ -8,20 +8,20 @@ from pathlib import Path
 
 import numpy as np
 
-from artefact.body.datum import DatumSphere
-from artefact.body.freeform import FreeformPatch, graph_patch
-from artefact.body.standard import STEEL, Base, Standard
-from artefact.reach.touchable import Requests
-from probe_paths.emit.program import ProgramSet, make_programs
-from probe_paths.emit.writer import Feeds
-from probe_paths.language.dialect_file import read_dialect
-from probe_paths.plan.planner import plan_touches
-from probe_paths.plan.probe import Probe
-from probe_paths.plan.touch_plan import PlanOptions, TouchPlan, requests_at
-from twin.frames import pose, rotation
-from twin.machine.chain import Axis, Chain, make_chain
-from twin.record.touches import Setup
-from twin.units import DEG
+from matstd.artefact.body.datum import DatumSphere
+from matstd.artefact.body.freeform import FreeformPatch, graph_patch
+from matstd.artefact.body.standard import STEEL, Base, Standard
+from matstd.artefact.reach.touchable import Requests
+from matstd.probe_paths.emit.program import ProgramSet, make_programs
+from matstd.probe_paths.emit.writer import Feeds
+from matstd.probe_paths.language.dialect_file import read_dialect
+from matstd.probe_paths.plan.planner import plan_touches
+from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.touch_plan import PlanOptions, TouchPlan, requests_at
+from matstd.twin.frames import pose, rotation
+from matstd.twin.machine.chain import Axis, Chain, make_chain
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import DEG
 
 FOLDER = Path(__file__).parent / "programs"
 LINUXCNC = Path(__file__).parent / "linuxcnc"

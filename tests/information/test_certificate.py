@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy.optimize import LinearConstraint, minimize
 
-from information.criteria.design_criterion import DesignCriterion
-from information.criteria.measures import Determinant, MeanVariance
-from information.selection.bound import slope
-from information.selection.certificate import certificate, rounded
-from information.selection.relaxation import relaxed
-from information.selection.shares import largest_sum
-from information.selection.touch_selection import Selection, exchange, fill
-from twin.errors import DesignError
+from matstd.information.criteria.design_criterion import DesignCriterion
+from matstd.information.criteria.measures import Determinant, MeanVariance
+from matstd.information.selection.bound import slope
+from matstd.information.selection.certificate import certificate, rounded
+from matstd.information.selection.relaxation import relaxed
+from matstd.information.selection.shares import largest_sum
+from matstd.information.selection.touch_selection import Selection, exchange, fill
+from matstd.twin.errors import DesignError
 
 ROUNDING = 1e-9
 GAP = 1e-3

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from information.identifiability.correlation import correlation, ties
-from report.identifiability.identifiability_words import pair_words
-from report.identifiability.parameter_words import short
-from report.maps.correlation_picture import draw_ties
-from twin.errors import ShapeMismatch
+from matstd.information.identifiability.correlation import correlation, ties
+from matstd.report.identifiability.identifiability_words import pair_words
+from matstd.report.identifiability.parameter_words import short
+from matstd.report.maps.correlation_picture import draw_ties
+from matstd.twin.errors import ShapeMismatch
 
 NAMES = (
     "geometric(EXX,linear)",

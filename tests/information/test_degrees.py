@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from information.identifiability.degrees import HIGHEST, SUPPORTED, supported_degrees
-from report.identifiability.identifiability_words import degree_words
-from sensitivity.population.sampling import Population
-from twin.machine.chain import Axis, make_chain
-from twin.machine.symbols import Family
-from twin.model.model import Model
-from twin.record.touches import at_poses
-from twin.units import UM
+from matstd.information.identifiability.degrees import HIGHEST, SUPPORTED, supported_degrees
+from matstd.report.identifiability.identifiability_words import degree_words
+from matstd.sensitivity.population.sampling import Population
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.machine.symbols import Family
+from matstd.twin.model.model import Model
+from matstd.twin.record.touches import at_poses
+from matstd.twin.units import UM
 
 HALF = 200.0  # mm, half a travel
 NOISE = 1.0 * UM

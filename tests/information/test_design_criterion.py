@@ -5,24 +5,24 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from information.criteria.design_criterion import (
+from matstd.information.criteria.design_criterion import (
     DesignCriterion,
     five_criteria,
     mean_prediction,
     robust,
     with_potential,
 )
-from information.criteria.measures import (
+from matstd.information.criteria.measures import (
     Determinant,
     LargestEigenvalue,
     LargestVariance,
     MeanVariance,
 )
-from information.selection.certificate import rounded
-from information.selection.relaxation import relaxed
-from information.selection.shares import keeps, largest_sum
-from information.selection.touch_selection import Quota, Selection, exchange, fill
-from twin.errors import DesignError
+from matstd.information.selection.certificate import rounded
+from matstd.information.selection.relaxation import relaxed
+from matstd.information.selection.shares import keeps, largest_sum
+from matstd.information.selection.touch_selection import Quota, Selection, exchange, fill
+from matstd.twin.errors import DesignError
 
 ROUNDING = 1e-9
 WEIGHT = 3e-3

@@ -9,16 +9,16 @@ its own ordinary model: several set-ups, linear, parabolic and sinusoidal errors
 import numpy as np
 import pytest
 
-from information.identifiability.nullspace import rank_analysis
-from sensitivity.first_order.workspace import Workspace, latin_hypercube
-from sensitivity.population.sampling import Population
-from twin.effects.geometric import ComponentError, HigherOrder
-from twin.effects.location import LocationError
-from twin.machine.chain import Axis, make_chain
-from twin.machine.symbols import Family
-from twin.model.model import Model
-from twin.record.touches import at_poses
-from twin.units import DEG
+from matstd.information.identifiability.nullspace import rank_analysis
+from matstd.sensitivity.first_order.workspace import Workspace, latin_hypercube
+from matstd.sensitivity.population.sampling import Population
+from matstd.twin.effects.geometric import ComponentError, HigherOrder
+from matstd.twin.effects.location import LocationError
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.machine.symbols import Family
+from matstd.twin.model.model import Model
+from matstd.twin.record.touches import at_poses
+from matstd.twin.units import DEG
 
 RANKS = {
     (1, 1): (66, 39),

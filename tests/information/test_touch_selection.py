@@ -5,11 +5,11 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from information.criteria.design_criterion import DesignCriterion, mean_prediction
-from information.criteria.measures import MeanVariance
-from information.selection.groups import best_groups
-from information.selection.touch_selection import Quota, Selection, exchange, fill
-from twin.errors import DesignError
+from matstd.information.criteria.design_criterion import DesignCriterion, mean_prediction
+from matstd.information.criteria.measures import MeanVariance
+from matstd.information.selection.groups import best_groups
+from matstd.information.selection.touch_selection import Quota, Selection, exchange, fill
+from matstd.twin.errors import DesignError
 
 ROUNDING = 1e-9
 
@@ -29,7 +29,7 @@ def value_of(criterion, W, rows):
 
 
 def test_updates_are_exact(case, monkeypatch):
-    monkeypatch.setattr("information.selection.touch_selection._REFRESH", 10**9)
+    monkeypatch.setattr("matstd.information.selection.touch_selection._REFRESH", 10**9)
     criterion, W = case
     selection = Selection(criterion, W)
     rng = np.random.default_rng(1)

@@ -10,27 +10,27 @@ import numpy as np
 import pytest
 import rs274
 
-from artefact.body.limits import Limits
-from artefact.body.standard_file import read_standard
-from artefact.brief.project_file import read_project
-from artefact.compare import comparison
-from artefact.place.placement import PlacementOptions
-from artefact.worth import ball_choice
-from artefact.worth.touch_choice import TouchOptions
-from artefact.worth.touch_criterion import CRITERIA, CriterionOptions
-from cad_out.verify.conformity import FACE_LIMIT
+from matstd.artefact.body.limits import Limits
+from matstd.artefact.body.standard_file import read_standard
+from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.compare import comparison
+from matstd.artefact.place.placement import PlacementOptions
+from matstd.artefact.worth import ball_choice
+from matstd.artefact.worth.touch_choice import TouchOptions
+from matstd.artefact.worth.touch_criterion import CRITERIA, CriterionOptions
+from matstd.cad_out.verify.conformity import FACE_LIMIT
 from matstd.cli import main
+from matstd.probe_paths.control.interpreter import read_program
+from matstd.probe_paths.emit.program import make_programs
+from matstd.probe_paths.language.dialect_file import read_dialect
+from matstd.probe_paths.linuxcnc.replanned import shortened
+from matstd.report.pages import design_page
 from matstd.stages import design, study_run
 from matstd.stages.from_project import blank, placement_options, probe_reach
-from probe_paths.control.interpreter import read_program
-from probe_paths.emit.program import make_programs
-from probe_paths.language.dialect_file import read_dialect
-from probe_paths.linuxcnc.replanned import shortened
-from report.pages import design_page
-from twin.errors import BadFile
-from twin.files.machine_file import read_machine
-from twin.files.run_file import read_run
-from twin.units import UM, URAD
+from matstd.twin.errors import BadFile
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.files.run_file import read_run
+from matstd.twin.units import UM, URAD
 
 NEXT_TO_NONE = "0.01"
 """Noise of a simulation, µm: without any, repeated touches would count as copied rows."""

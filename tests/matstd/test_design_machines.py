@@ -6,16 +6,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.body.limits import check
-from artefact.brief.project_file import Project, read_project
-from artefact.worth import ball_choice
+from matstd.artefact.body.limits import check
+from matstd.artefact.brief.project_file import Project, read_project
+from matstd.artefact.worth import ball_choice
+from matstd.probe_paths.campaign.order_study import orders
+from matstd.probe_paths.emit.program import make_programs
+from matstd.report.plots.plan_pictures import write_order_picture
+from matstd.sensitivity.first_order.workspace import Workspace
 from matstd.stages import design as design
 from matstd.stages.from_project import blank, placement_options, probe_reach
 from matstd.stages.reach import PICTURE, check_reach
-from probe_paths.campaign.order_study import orders
-from probe_paths.emit.program import make_programs
-from report.plots.plan_pictures import write_order_picture
-from sensitivity.first_order.workspace import Workspace
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 MACHINES = {

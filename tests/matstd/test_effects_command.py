@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-import twin.library.catalogue as library
+import matstd.twin.library.catalogue as library
 from matstd.cli import main
 
 
@@ -62,7 +62,7 @@ def test_unknown_kind_is_one_line(capsys) -> None:
 def test_own_effects_stand_in_the_table(capsys, tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text(
-        "from twin.model import Kind\n"
+        "from matstd.twin.model import Kind\n"
         "MINE = Kind('hose', '', 'EYZ = a X^2', 'a: µm', '5 µm', 'ours',\n"
         "            lambda chain, arguments: None, lambda touches: [])\n",
         encoding="utf-8",

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from matstd.cli import main
-from twin.errors import DesignError
-from twin.files import results_folder
+from matstd.twin.errors import DesignError
+from matstd.twin.files import results_folder
 
 
 def test_whole(tmp_path: Path) -> None:
@@ -66,7 +66,7 @@ def test_a_report_alone_is_not_overwritten(tmp_path: Path) -> None:
 
 WORKS = """
 import sys, time
-from twin.files import results_folder
+from matstd.twin.files import results_folder
 with results_folder(sys.argv[1]) as work:
     (work / "half.txt").write_text("half")
     print("works", flush=True)
@@ -104,8 +104,8 @@ def test_what_a_killed_run_left_goes_at_the_next_start(tmp_path: Path) -> None:
 RACES = """
 import sys, time
 from pathlib import Path
-from twin.errors import DesignError
-from twin.files import results_folder, refuse_to_overwrite, write_whole
+from matstd.twin.errors import DesignError
+from matstd.twin.files import results_folder, refuse_to_overwrite, write_whole
 kind, out, mine, force = sys.argv[1], Path(sys.argv[2]), sys.argv[3], sys.argv[4] == "force"
 try:
     if kind == "folder":

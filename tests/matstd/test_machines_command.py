@@ -7,11 +7,11 @@ import pytest
 
 from matstd.cli import main
 from matstd.commands.machine.machines import names, text
-from twin.files.error_file import read_errors
-from twin.files.machine_file import read_machine
-from twin.model.model import Model
-from twin.record.touches import at_poses
-from twin.units import UM
+from matstd.twin.files.error_file import read_errors
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.model.model import Model
+from matstd.twin.record.touches import at_poses
+from matstd.twin.units import UM
 
 
 def written(name, folder):

@@ -15,10 +15,10 @@ import numpy as np
 import pytest
 from simulator_case import simulate_case
 
-from diagnosis.files.model_file import read_model
 from matstd.cli import main
-from twin.files.run_file import read_run
-from twin.units import UM
+from matstd.diagnosis.files.model_file import read_model
+from matstd.twin.files.run_file import read_run
+from matstd.twin.units import UM
 
 BAD = 2
 SAME_U = 0.1
@@ -165,9 +165,9 @@ def test_a_full_disk_is_one_line(folder, tmp_path, capsys, monkeypatch) -> None:
     def full(figure: object, path: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("report.style.sheet.save", full)
-    monkeypatch.setattr("report.plots.residual_pictures.save", full)
-    monkeypatch.setattr("report.plots.spatial_pictures.save", full)
+    monkeypatch.setattr("matstd.report.style.sheet.save", full)
+    monkeypatch.setattr("matstd.report.plots.residual_pictures.save", full)
+    monkeypatch.setattr("matstd.report.plots.spatial_pictures.save", full)
     words = ["compare", str(folder / "run.csv"), "-o", str(tmp_path / "o")]
     assert main(words) == BAD
     told = capsys.readouterr().err
@@ -215,8 +215,8 @@ def test_json_and_words_name_a_region_alike(folder, tmp_path, capsys) -> None:
 LATE = '''"""Fails at one value of its inner parameter, which is not among those tried first."""
 from dataclasses import dataclass, replace
 import numpy as np
-from twin.model import Inner, Parameter, Term, Where
-from twin.model import Kind
+from matstd.twin.model import Inner, Parameter, Term, Where
+from matstd.twin.model import Kind
 
 @dataclass(frozen=True)
 class Late:
@@ -251,7 +251,7 @@ LATE = Kind("late", "", "f", "u", "t", "s", lambda c, a: Late(), lambda t: (Late
 def test_a_users_formula_that_fails_is_a_line_of_his_file(
     folder, tmp_path, capsys, monkeypatch, old, new, expected
 ) -> None:
-    from twin.library import catalogue as library
+    from matstd.twin.library import catalogue as library
 
     monkeypatch.setattr(library, "_REGISTER", dict(library._REGISTER))
     (tmp_path / "late.py").write_text(LATE.replace(old, new) if old else LATE, encoding="utf-8")

@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 
-from artefact.brief.project_file import read_project
-from artefact.reach.touchable import ProbeReach
-from artefact.worth.touch_criterion import random_touches
+from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.reach.touchable import ProbeReach
+from matstd.artefact.worth.touch_criterion import random_touches
 from matstd.cli import main
 from matstd.commands.machine.new import TEMPLATES, template
 from matstd.stages.from_project import probe_reach
-from twin.files.machine_file import read_machine
-from twin.files.run_file import read_run
-from twin.library.catalogue import load_user_effects, parse_effect
-from twin.library.trial import try_effect
-from twin.units import UM
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.files.run_file import read_run
+from matstd.twin.library.catalogue import load_user_effects, parse_effect
+from matstd.twin.library.trial import try_effect
+from matstd.twin.units import UM
 
 
 def written(kind, folder):

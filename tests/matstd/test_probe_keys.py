@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from artefact.brief.project_file import read_project
+from matstd.artefact.brief.project_file import read_project
+from matstd.probe_paths.plan.probe import Probe
 from matstd.stages.from_project import probe, probe_reach
-from probe_paths.plan.probe import Probe
-from twin.errors import BadFile
+from matstd.twin.errors import BadFile
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hsm600u.toml"
 LENGTH = "length_mm = 160.0"

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.brief.project_file import Project, read_project
-from artefact.reach.face_of_table import standing_remarks, table_face
-from artefact.reach.touchable import Requests
-from artefact.reach.within_reach import ANGLE, places_on, reach_of
+from matstd.artefact.brief.project_file import Project, read_project
+from matstd.artefact.reach.face_of_table import standing_remarks, table_face
+from matstd.artefact.reach.touchable import Requests
+from matstd.artefact.reach.within_reach import ANGLE, places_on, reach_of
 from matstd.cli import main
 from matstd.commands.standard.design import NO_ROOM, REFUSED, refusals
 from matstd.stages import space
@@ -18,9 +18,9 @@ from matstd.stages.from_project import blank, probe_reach
 from matstd.stages.reach import _to_rise, check_reach
 from matstd.stages.seat import check_seat
 from matstd.stages.space import check_space
-from twin.errors import BadFile, NotBuildable, NotReachable
-from twin.frames import fixed_xyz, pose
-from twin.units import DEG
+from matstd.twin.errors import BadFile, NotBuildable, NotReachable
+from matstd.twin.frames import fixed_xyz, pose
+from matstd.twin.units import DEG
 
 MACHINES = Path(__file__).parents[2] / "examples" / "machines"
 

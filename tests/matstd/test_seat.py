@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 import trimesh
 
-from artefact.brief import Project, read_project
-from artefact.brief.workshop_tables import BodyTable, TableTable
+from matstd.artefact.brief import Project, read_project
+from matstd.artefact.brief.workshop_tables import BodyTable, TableTable
 from matstd.cli import main
 from matstd.stages.seat import check_seat
-from twin.errors import BadFile
-from twin.frames import pose, rotation
-from twin.record import Setup
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import pose, rotation
+from matstd.twin.record import Setup
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ALL = sorted([EXAMPLES / "hsm600u.toml", *(EXAMPLES / "machines").glob("*[!e].toml")])

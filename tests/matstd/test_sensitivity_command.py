@@ -29,7 +29,7 @@ def add(project, text):
 def test_a_study_stands_in_a_folder_with_its_precision(project, tmp_path, capsys, monkeypatch):
     """Without its maps, which `tests/sensitivity/test_study.py` and `tests/report` draw."""
     monkeypatch.setattr("matstd.stages.study_run.draw_maps", lambda *_: [])
-    monkeypatch.setattr("report.pages.study_page.draw_study_volumes", lambda *_: [])
+    monkeypatch.setattr("matstd.report.pages.study_page.draw_study_volumes", lambda *_: [])
     add(project, '\n[[errors.groups]]\nnames = ["EXX", "-EYX"]\ncorrelation = 0.5\n')
     add(project, '[errors.shapes]\nEXX = { shapes = ["parabolic"] }\n')
     out = tmp_path / "out"

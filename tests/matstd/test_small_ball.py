@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.body.datum import DatumSphere
-from artefact.body.standard import Standard
-from artefact.brief.project_file import read_project
-from artefact.worth.touch_choice import each_at, sphere_grid
+from matstd.artefact.body.datum import DatumSphere
+from matstd.artefact.body.standard import Standard
+from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.worth.touch_choice import each_at, sphere_grid
+from matstd.probe_paths.plan.planner import plan_touches
 from matstd.stages.from_project import blank, plan_options, probe, probe_reach
-from probe_paths.plan.planner import plan_touches
 
 PROJECT = Path(__file__).parents[2] / "examples" / "machines" / "vertical.toml"
 

@@ -11,7 +11,7 @@ import pytest
 BEGIN = """
 import sys, time
 from concurrent.futures import ThreadPoolExecutor
-from twin.files import results_folder
+from matstd.twin.files import results_folder
 from matstd.stop import clean_stop
 import numpy as np
 with clean_stop():

@@ -9,19 +9,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.body.known import Known
-from artefact.body.standard import Standard
-from artefact.body.standard_file import read_standard, write_standard
-from artefact.brief.task_file import Task
-from artefact.certify.task_places import curvature, like_task
+from matstd.artefact.body.known import Known
+from matstd.artefact.body.standard import Standard
+from matstd.artefact.body.standard_file import read_standard, write_standard
+from matstd.artefact.brief.task_file import Task
+from matstd.artefact.certify.task_places import curvature, like_task
 from matstd.cli import main
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.simulation import visits
-from twin.errors import DesignError
-from twin.files.run_file import read_run
-from twin.files.run_writer import write_run
-from twin.frames import pose, rotation
-from twin.units import DEG, UM
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.simulation import visits
+from matstd.twin.errors import DesignError
+from matstd.twin.files.run_file import read_run
+from matstd.twin.files.run_writer import write_run
+from matstd.twin.frames import pose, rotation
+from matstd.twin.units import DEG, UM
 
 MACHINE = Path(__file__).parents[2] / "tests" / "golden" / "make_programs.py"
 HIGH = 5.0
@@ -118,7 +118,7 @@ def test_a_page_tells_the_same(place: Path) -> None:
 
 def test_a_task_chooses_places(place: Path) -> None:
     run = read_run(place / "v0.csv")
-    from artefact.body.standard_file import read_standard
+    from matstd.artefact.body.standard_file import read_standard
 
     standard = read_standard(place / "standard.toml")
     t = run.touches
@@ -196,7 +196,7 @@ def test_where_hardly_anything_was_touched(
 
 def test_a_run_of_another_standard(place: Path) -> None:
     run = read_run(place / "v0.csv")
-    from artefact.body.standard_file import read_standard
+    from matstd.artefact.body.standard_file import read_standard
 
     other = replace(run.touches, feature=np.full(len(run), "PAD9"))
     with pytest.raises(DesignError, match="PAD9"):

@@ -7,19 +7,19 @@ import pytest
 import trimesh
 from formats import write_examples
 
-from artefact.body.datum import DatumSphere
-from artefact.body.standard import STEEL, Base, Standard
-from artefact.brief.project_file import read_project
-from artefact.brief.workshop_tables import probe_models
-from artefact.reach.mesh_cover import MOST_BOXES, covering_solids
-from artefact.reach.touchable import ProbeReach, Requests
-from artefact.reach.workshop import Solid, Workshop, still_frames
+from matstd.artefact.body.datum import DatumSphere
+from matstd.artefact.body.standard import STEEL, Base, Standard
+from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.brief.workshop_tables import probe_models
+from matstd.artefact.reach.mesh_cover import MOST_BOXES, covering_solids
+from matstd.artefact.reach.touchable import ProbeReach, Requests
+from matstd.artefact.reach.workshop import Solid, Workshop, still_frames
 from matstd.stages.from_project import dialect, feeds, plan_options, probe, probe_reach, workshop
-from twin.errors import BadFile, DesignError
-from twin.frames import apply, inverse, pose, rotation
-from twin.machine.kinematics import table_to_tool
-from twin.record.touches import Setup
-from twin.units import DEG
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.frames import apply, inverse, pose, rotation
+from matstd.twin.machine.kinematics import table_to_tool
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import DEG
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

@@ -1,6 +1,6 @@
 """Beams by virtual work: integrals over the beam, and forces at its far end that hold it there.
 
-No stiffness matrix and no closed form of a deflection: shares nothing with `twin.elastic`.
+No stiffness matrix and no closed form of a deflection: shares nothing with `matstd.twin.elastic`.
 """
 
 import numpy as np

@@ -11,12 +11,12 @@ import pinocchio as pin
 import pytest
 from made_up import ARM, arm_poses
 
-from twin.effects.joint_sag import joint_sag
-from twin.machine.chain import Axis, Chain, Link, make_chain
-from twin.machine.contribution import Contribution
-from twin.machine.kinematics import exact_tip, reach, table_to_tool
-from twin.model.effect import contribution
-from twin.units import DEG, NM
+from matstd.twin.effects.joint_sag import joint_sag
+from matstd.twin.machine.chain import Axis, Chain, Link, make_chain
+from matstd.twin.machine.contribution import Contribution
+from matstd.twin.machine.kinematics import exact_tip, reach, table_to_tool
+from matstd.twin.model.effect import contribution
+from matstd.twin.units import DEG, NM
 
 LENGTH = 160.0
 TRAVEL = {name: Axis(range=(-400.0, 400.0)) for name in "XYZ"}

@@ -13,14 +13,14 @@ from simulator_experiment import MACHINES, random_experiment
 from simulator_machine import read_machine, tip
 from simulator_surface import foot, random_pads, surface_point
 
-from twin.files.machine_file import read_machine as read_chain
-from twin.library.catalogue import parse_effect
-from twin.machine.contribution import Contribution
-from twin.machine.kinematics import exact_tip
-from twin.machine.kinematics import tip as twin_tip
-from twin.machine.symbols import Family
-from twin.model.model import columns
-from twin.units import NM, UM, URAD
+from matstd.twin.files.machine_file import read_machine as read_chain
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.machine.contribution import Contribution
+from matstd.twin.machine.kinematics import exact_tip
+from matstd.twin.machine.kinematics import tip as twin_tip
+from matstd.twin.machine.symbols import Family
+from matstd.twin.model.model import columns
+from matstd.twin.units import NM, UM, URAD
 
 VOLUMETRIC = 0.02 * UM
 """Agreement asked of `matstd volumetric` at errors of 50 um and 100 urad."""

@@ -6,11 +6,11 @@ from types import ModuleType
 
 import pytest
 
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.control.interpreter import interpret
-from probe_paths.control.steps import ReadProgram
-from probe_paths.emit.program import ProgramSet
-from probe_paths.plan.touch_plan import TouchPlan
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.control.steps import ReadProgram
+from matstd.probe_paths.emit.program import ProgramSet
+from matstd.probe_paths.plan.touch_plan import TouchPlan
 
 GOLDEN = Path(__file__).parents[1] / "golden"
 

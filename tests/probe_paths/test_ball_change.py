@@ -7,21 +7,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.body import write_standard
+from matstd.artefact.body import write_standard
 from matstd.cli import main
-from probe_paths.campaign.ball_change import ball_changes, check_changes
-from probe_paths.campaign.collisions import check_moves
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.virtual_run import run_program
-from probe_paths.control.interpreter import interpret
-from probe_paths.control.log import read_log
-from probe_paths.emit.program import make_ball
-from probe_paths.locate.ball_plan import plan_ball
-from probe_paths.plan.order import home_readings
-from report.words.probe_words import ball_lines
-from twin.errors import BadFile, DesignError, NotReachable
-from twin.frames import pose
-from twin.units import NM, UM
+from matstd.probe_paths.campaign.ball_change import ball_changes, check_changes
+from matstd.probe_paths.campaign.collisions import check_moves
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.control.log import read_log
+from matstd.probe_paths.emit.program import make_ball
+from matstd.probe_paths.locate.ball_plan import plan_ball
+from matstd.probe_paths.plan.order import home_readings
+from matstd.report.words.probe_words import ball_lines
+from matstd.twin.errors import BadFile, DesignError, NotReachable
+from matstd.twin.frames import pose
+from matstd.twin.units import NM, UM
 
 
 @pytest.fixture(scope="module")

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from probe_paths.control.clock import Clock, step_times
-from probe_paths.control.steps import Move, ProbeStep
+from matstd.probe_paths.control.clock import Clock, step_times
+from matstd.probe_paths.control.steps import Move, ProbeStep
 
 CLOCK = Clock(
     rapid=300.0,

@@ -7,21 +7,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.reach.workshop import Workshop
-from probe_paths.campaign.collisions import SMALLEST_GAP, check_moves
-from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.virtual_run import run_program
-from probe_paths.control.interpreter import interpret
-from probe_paths.control.log import read_log
-from probe_paths.control.steps import Move
-from probe_paths.plan.clearance import ToolClearance
-from probe_paths.plan.probe import Probe
-from probe_paths.plan.strokes import Stage
-from twin.errors import BadFile
-from twin.frames import apply, inverse
-from twin.machine.kinematics import tip
-from twin.record.touches import Setup
-from twin.units import UM
+from matstd.artefact.reach.workshop import Workshop
+from matstd.probe_paths.campaign.collisions import SMALLEST_GAP, check_moves
+from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.control.log import read_log
+from matstd.probe_paths.control.steps import Move
+from matstd.probe_paths.plan.clearance import ToolClearance
+from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.strokes import Stage
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import apply, inverse
+from matstd.twin.machine.kinematics import tip
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import UM
 
 HAND = 0.02
 """A gap by hand, mm."""

@@ -7,16 +7,16 @@ import shutil
 import numpy as np
 import pytest
 
-from artefact.body.standard_file import write_standard
+from matstd.artefact.body.standard_file import write_standard
 from matstd.cli import main
-from probe_paths.campaign.evaluation import evaluate
-from probe_paths.control.log import read_log
-from probe_paths.emit.program import make_programs
-from probe_paths.linuxcnc import session as session_module
-from probe_paths.plan.planner import plan_touches
-from probe_paths.plan.probe import Probe
-from probe_paths.plan.touch_plan import PlanOptions
-from twin.units import UM
+from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.probe_paths.control.log import read_log
+from matstd.probe_paths.emit.program import make_programs
+from matstd.probe_paths.linuxcnc import session as session_module
+from matstd.probe_paths.plan.planner import plan_touches
+from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.touch_plan import PlanOptions
+from matstd.twin.units import UM
 
 LINUXCNC = shutil.which("linuxcnc")
 LATCH = 0.2 * UM

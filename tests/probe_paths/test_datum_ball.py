@@ -7,25 +7,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.brief.project_file import read_project
-from artefact.reach.datum_ball import DatumBall
-from artefact.reach.workshop import Workshop
+from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.reach.datum_ball import DatumBall
+from matstd.artefact.reach.workshop import Workshop
+from matstd.probe_paths.campaign.ball_change import ball_changes, effective_radii
+from matstd.probe_paths.campaign.collisions import check_moves
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.control.log import read_log
+from matstd.probe_paths.control.steps import Move
+from matstd.probe_paths.emit.program import make_ball, make_programs
+from matstd.probe_paths.linuxcnc.replanned import shortened
+from matstd.probe_paths.locate.again import planned_again
+from matstd.probe_paths.locate.ball_plan import plan_ball
+from matstd.report.words.probe_words import ball_lines
 from matstd.stages.from_project import workshop
-from probe_paths.campaign.ball_change import ball_changes, effective_radii
-from probe_paths.campaign.collisions import check_moves
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.virtual_run import run_program
-from probe_paths.control.interpreter import interpret
-from probe_paths.control.log import read_log
-from probe_paths.control.steps import Move
-from probe_paths.emit.program import make_ball, make_programs
-from probe_paths.linuxcnc.replanned import shortened
-from probe_paths.locate.again import planned_again
-from probe_paths.locate.ball_plan import plan_ball
-from report.words.probe_words import ball_lines
-from twin.errors import BadFile, DesignError
-from twin.frames import pose, rotation
-from twin.units import NM, UM
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.frames import pose, rotation
+from matstd.twin.units import NM, UM
 
 BALL = DatumBall(x=118.0, y=20.0, z=70.0, radius=12.5, stem=5.0, low=0.0, u=0.25 * UM)
 EXAMPLES = Path(__file__).parents[2] / "examples"

@@ -7,12 +7,12 @@ import pytest
 from formats import examples
 
 from matstd.cli import main
-from probe_paths.control.interpreter import interpret
-from probe_paths.emit.program import make_programs
-from probe_paths.emit.writer import Feeds
-from probe_paths.language.dialect import Dialect
-from probe_paths.language.dialect_file import known_controls, read_dialect
-from twin.errors import BadFile, DesignError
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.emit.program import make_programs
+from matstd.probe_paths.emit.writer import Feeds
+from matstd.probe_paths.language.dialect import Dialect
+from matstd.probe_paths.language.dialect_file import known_controls, read_dialect
+from matstd.twin.errors import BadFile, DesignError
 
 ROOT = Path(__file__).parents[2]
 

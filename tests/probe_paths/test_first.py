@@ -7,21 +7,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.body import write_standard
+from matstd.artefact.body import write_standard
 from matstd.cli import main
-from probe_paths.campaign.ball_change import read_heights
-from probe_paths.campaign.collisions import check_moves
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.virtual_run import run_program
-from probe_paths.control.interpreter import interpret
-from probe_paths.control.log import read_log
-from probe_paths.control.steps import ProbeStep
-from probe_paths.emit.program import make_first
-from probe_paths.language.dialect_file import read_dialect
-from probe_paths.locate.ball_plan import plan_ball
-from twin.errors import BadFile, DesignError, NotReachable
-from twin.frames import pose
-from twin.units import NM
+from matstd.probe_paths.campaign.ball_change import read_heights
+from matstd.probe_paths.campaign.collisions import check_moves
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.control.log import read_log
+from matstd.probe_paths.control.steps import ProbeStep
+from matstd.probe_paths.emit.program import make_first
+from matstd.probe_paths.language.dialect_file import read_dialect
+from matstd.probe_paths.locate.ball_plan import plan_ball
+from matstd.twin.errors import BadFile, DesignError, NotReachable
+from matstd.twin.frames import pose
+from matstd.twin.units import NM
 
 HARMLESS = {"M127"}
 """Without it a turn home may go the shorter way, above everything."""

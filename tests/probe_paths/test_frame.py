@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from probe_paths.plan.frame import ProgramFrame
-from probe_paths.plan.probe import Probe
-from twin.units import DEG
+from matstd.probe_paths.plan.frame import ProgramFrame
+from matstd.probe_paths.plan.probe import Probe
+from matstd.twin.units import DEG
 
 ROUNDING = 1e-12
 

@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 import rs274
 
-from probe_paths.campaign.collisions import check_moves
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.virtual_run import run_programs
-from probe_paths.control.interpreter import interpret
-from probe_paths.control.log import read_log
-from probe_paths.control.steps import Halt, Move, Print, ProbeStep
-from probe_paths.emit.program import make_dry_run
-from probe_paths.language import gcode
-from probe_paths.language.dialect_file import read_dialect
-from probe_paths.language.languages import read_blocks
-from twin.errors import BadFile
-from twin.units import NM, UM
+from matstd.probe_paths.campaign.collisions import check_moves
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.probe_paths.campaign.virtual_run import run_programs
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.control.log import read_log
+from matstd.probe_paths.control.steps import Halt, Move, Print, ProbeStep
+from matstd.probe_paths.emit.program import make_dry_run
+from matstd.probe_paths.language import gcode
+from matstd.probe_paths.language.dialect_file import read_dialect
+from matstd.probe_paths.language.languages import read_blocks
+from matstd.twin.errors import BadFile
+from matstd.twin.units import NM, UM
 
 LAST_DIGIT = 2e-4
 NUMBER = re.compile(r"[+-]\d+\.\d+")

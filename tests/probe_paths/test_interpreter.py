@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from probe_paths.control.interpreter import interpret, read_program, stated_probe
-from probe_paths.control.steps import Halt, Move, Print, ProbeStep
-from probe_paths.plan.probe import Probe
-from twin.errors import BadFile
-from twin.frames import apply, turn
-from twin.machine.kinematics import linear_directions, tip
-from twin.units import DEG
+from matstd.probe_paths.control.interpreter import interpret, read_program, stated_probe
+from matstd.probe_paths.control.steps import Halt, Move, Print, ProbeStep
+from matstd.probe_paths.plan.probe import Probe
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import apply, turn
+from matstd.twin.machine.kinematics import linear_directions, tip
+from matstd.twin.units import DEG
 
 ROUNDING = 1e-4
 """Four decimals of three coordinates, mm, with room for the fourth of the vector."""

@@ -1,16 +1,16 @@
 import numpy as np
 import pytest
 
-from probe_paths.language import klartext as k
-from probe_paths.language.blocks import Kind
-from probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
-from probe_paths.language.language import Datum, Touch
-from probe_paths.language.languages import read_blocks
-from probe_paths.plan.heading import Heading, parse_heading, rounded_setup
-from probe_paths.plan.probe import Probe
-from twin.errors import BadFile, DesignError
-from twin.frames import pose, rotation
-from twin.record.touches import Setup
+from matstd.probe_paths.language import klartext as k
+from matstd.probe_paths.language.blocks import Kind
+from matstd.probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
+from matstd.probe_paths.language.language import Datum, Touch
+from matstd.probe_paths.language.languages import read_blocks
+from matstd.probe_paths.plan.heading import Heading, parse_heading, rounded_setup
+from matstd.probe_paths.plan.probe import Probe
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.frames import pose, rotation
+from matstd.twin.record.touches import Setup
 
 ROUNDING = 1e-6
 """Six decimals of millimetres and degrees in a heading."""

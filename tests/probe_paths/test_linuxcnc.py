@@ -12,25 +12,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.virtual_run import run_program
-from probe_paths.control.interpreter import interpret
-from probe_paths.control.log import read_log
-from probe_paths.control.steps import ProbeStep
-from probe_paths.emit.program import make_programs
-from probe_paths.language.dialect_file import read_dialect
-from probe_paths.linuxcnc import session as session_module
-from probe_paths.linuxcnc.latch import latch_error, latch_u
-from probe_paths.linuxcnc.machine_config import machine_files
-from probe_paths.linuxcnc.replanned import shortened
-from probe_paths.linuxcnc.session import _answer, _listening, installed, run_on_linuxcnc
-from probe_paths.linuxcnc.twin_contact import TwinContact
-from probe_paths.plan.probe import Probe
-from twin.effects.backlash import Backlash
-from twin.errors import DesignError
-from twin.frames import pose, rotation
-from twin.model.effect import contribution
-from twin.units import DEG, NM, UM
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.control.log import read_log
+from matstd.probe_paths.control.steps import ProbeStep
+from matstd.probe_paths.emit.program import make_programs
+from matstd.probe_paths.language.dialect_file import read_dialect
+from matstd.probe_paths.linuxcnc import session as session_module
+from matstd.probe_paths.linuxcnc.latch import latch_error, latch_u
+from matstd.probe_paths.linuxcnc.machine_config import machine_files
+from matstd.probe_paths.linuxcnc.replanned import shortened
+from matstd.probe_paths.linuxcnc.session import _answer, _listening, installed, run_on_linuxcnc
+from matstd.probe_paths.linuxcnc.twin_contact import TwinContact
+from matstd.probe_paths.plan.probe import Probe
+from matstd.twin.effects.backlash import Backlash
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import pose, rotation
+from matstd.twin.model.effect import contribution
+from matstd.twin.units import DEG, NM, UM
 
 LATCH = 0.2 * UM
 """12 mm/min in one period of 1 ms."""

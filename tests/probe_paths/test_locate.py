@@ -8,28 +8,28 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.body import Base, contact, write_standard
+from matstd.artefact.body import Base, contact, write_standard
 from matstd.cli import main
 from matstd.commands.probing.replan import feeds_of
-from probe_paths.campaign.collisions import check_moves
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.evaluation import ball_centres
-from probe_paths.campaign.simulation import simulate_search
-from probe_paths.campaign.virtual_run import run_program
-from probe_paths.control.interpreter import interpret, read_program
-from probe_paths.control.log import read_log
-from probe_paths.emit.program import make_programs, make_search
-from probe_paths.emit.writer import Feeds
-from probe_paths.locate.find import find_standard
-from probe_paths.locate.relief import Relief
-from probe_paths.locate.search_plan import plan_search
-from probe_paths.locate.spread import Spread
-from probe_paths.plan.clearance import ToolClearance
-from probe_paths.plan.probe import Probe
-from twin.errors import BadFile, NotEnoughData, NotReachable
-from twin.frames import fixed_xyz, pose
-from twin.record.touches import Setup
-from twin.units import DEG, UM
+from matstd.probe_paths.campaign.collisions import check_moves
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.evaluation import ball_centres
+from matstd.probe_paths.campaign.simulation import simulate_search
+from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.control.interpreter import interpret, read_program
+from matstd.probe_paths.control.log import read_log
+from matstd.probe_paths.emit.program import make_programs, make_search
+from matstd.probe_paths.emit.writer import Feeds
+from matstd.probe_paths.locate.find import find_standard
+from matstd.probe_paths.locate.relief import Relief
+from matstd.probe_paths.locate.search_plan import plan_search
+from matstd.probe_paths.locate.spread import Spread
+from matstd.probe_paths.plan.clearance import ToolClearance
+from matstd.probe_paths.plan.probe import Probe
+from matstd.twin.errors import BadFile, NotEnoughData, NotReachable
+from matstd.twin.frames import fixed_xyz, pose
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import DEG, UM
 
 MACHINE = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"
 

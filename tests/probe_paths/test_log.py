@@ -7,21 +7,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.body.known import Known
-from probe_paths.campaign.contact_solver import FIRST_MORNING, VirtualMachine
-from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.virtual_run import run_programs
-from probe_paths.control.log import read_log
-from probe_paths.language.dialect import Dialect
-from probe_paths.language.masks import MaskLine, parse_mask
-from twin.effects.geometric import ComponentError
-from twin.errors import BadFile, DesignError, NotEnoughData
-from twin.files.run_file import read_run
-from twin.files.run_writer import write_run
-from twin.frames import pose, rotation
-from twin.model.effect import contribution
-from twin.record.touches import computed_deviation
-from twin.units import NM, UM, URAD
+from matstd.artefact.body.known import Known
+from matstd.probe_paths.campaign.contact_solver import FIRST_MORNING, VirtualMachine
+from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.probe_paths.campaign.virtual_run import run_programs
+from matstd.probe_paths.control.log import read_log
+from matstd.probe_paths.language.dialect import Dialect
+from matstd.probe_paths.language.masks import MaskLine, parse_mask
+from matstd.twin.effects.geometric import ComponentError
+from matstd.twin.errors import BadFile, DesignError, NotEnoughData
+from matstd.twin.files.run_file import read_run
+from matstd.twin.files.run_writer import write_run
+from matstd.twin.frames import pose, rotation
+from matstd.twin.model.effect import contribution
+from matstd.twin.record.touches import computed_deviation
+from matstd.twin.units import NM, UM, URAD
 
 PRINTED = 1e-6
 """Six decimals of a log, mm; a deviation adds three of them and those of a foot point."""

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.virtual_run import run_programs
-from probe_paths.control.log import UNDATED, read_log
-from twin.errors import BadFile
-from twin.frames import pose
-from twin.units import NM, UM
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.probe_paths.campaign.virtual_run import run_programs
+from matstd.probe_paths.control.log import UNDATED, read_log
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import pose
+from matstd.twin.units import NM, UM
 
 U = 1.0 * UM
 HEAD = 13
@@ -329,11 +329,11 @@ def test_a_sphere_beside_its_calibrated_place_is_said(golden, small, chain):
     """0.3 mm, of which the set-up takes up some; a standard in order has no such remark."""
     from pathlib import Path
 
-    from probe_paths.control.interpreter import interpret
-    from probe_paths.emit.program import make_programs
-    from probe_paths.plan.planner import plan_touches
-    from probe_paths.plan.probe import Probe
-    from probe_paths.plan.touch_plan import PlanOptions
+    from matstd.probe_paths.control.interpreter import interpret
+    from matstd.probe_paths.emit.program import make_programs
+    from matstd.probe_paths.plan.planner import plan_touches
+    from matstd.probe_paths.plan.probe import Probe
+    from matstd.probe_paths.plan.touch_plan import PlanOptions
 
     wanted = golden.requests(small, each=6)
     options = PlanOptions(tolerated=len(wanted))

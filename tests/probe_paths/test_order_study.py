@@ -6,14 +6,14 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from artefact.reach.touchable import Requests
-from probe_paths.campaign.duration import probing_time
-from probe_paths.campaign.order_study import _sd_beside, _short_way, _shortest, orders
-from probe_paths.plan.probe import Probe
-from probe_paths.plan.touch_plan import PlanOptions
-from twin.library.ordinary import ordinary_model
-from twin.record.touches import Setup
-from twin.units import MINUTE, UM
+from matstd.artefact.reach.touchable import Requests
+from matstd.probe_paths.campaign.duration import probing_time
+from matstd.probe_paths.campaign.order_study import _sd_beside, _short_way, _shortest, orders
+from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.touch_plan import PlanOptions
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import MINUTE, UM
 
 END_OF_A_FILE = 10.0
 """Turning home and back, s."""

@@ -7,21 +7,27 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from artefact.body.datum import STEM_CLEARANCE, DatumSphere
-from artefact.reach.touchable import Requests
-from artefact.reach.workshop import Workshop
-from probe_paths.plan import planner
-from probe_paths.plan.clearance import solid_hull, swing_height, top_height
-from probe_paths.plan.order import LONGEST_TURN, nearest_neighbours, short_order, visits, waypoints
-from probe_paths.plan.planner import plan_touches
-from probe_paths.plan.probe import Probe
-from probe_paths.plan.touch_plan import PlanOptions, requests_at
-from twin.errors import DesignError, NotReachable, ShapeMismatch
-from twin.frames import apply, fixed_xyz
-from twin.frames import pose as at_pose
-from twin.machine.kinematics import table_to_tool, tip
-from twin.record.touches import Setup
-from twin.units import DEG
+from matstd.artefact.body.datum import STEM_CLEARANCE, DatumSphere
+from matstd.artefact.reach.touchable import Requests
+from matstd.artefact.reach.workshop import Workshop
+from matstd.probe_paths.plan import planner
+from matstd.probe_paths.plan.clearance import solid_hull, swing_height, top_height
+from matstd.probe_paths.plan.order import (
+    LONGEST_TURN,
+    nearest_neighbours,
+    short_order,
+    visits,
+    waypoints,
+)
+from matstd.probe_paths.plan.planner import plan_touches
+from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.touch_plan import PlanOptions, requests_at
+from matstd.twin.errors import DesignError, NotReachable, ShapeMismatch
+from matstd.twin.frames import apply, fixed_xyz
+from matstd.twin.frames import pose as at_pose
+from matstd.twin.machine.kinematics import table_to_tool, tip
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import DEG
 
 ROUNDING = 1e-9
 """Plain arithmetic on millimetres, mm."""

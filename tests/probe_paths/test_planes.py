@@ -9,24 +9,24 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from artefact.brief.project_file import read_project
+from matstd.artefact.brief.project_file import read_project
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.probe_paths.campaign.virtual_run import run_programs
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.control.log import read_log
+from matstd.probe_paths.control.steps import Move, ProbeStep
+from matstd.probe_paths.emit.program import make_dry_run, make_programs
+from matstd.probe_paths.language.dialect import Dialect
+from matstd.probe_paths.language.dialect_file import read_dialect
+from matstd.probe_paths.plan.frame import ProgramFrame
+from matstd.probe_paths.plan.probe import Probe
 from matstd.stages.from_project import dialect as words_of
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.virtual_run import run_programs
-from probe_paths.control.interpreter import interpret
-from probe_paths.control.log import read_log
-from probe_paths.control.steps import Move, ProbeStep
-from probe_paths.emit.program import make_dry_run, make_programs
-from probe_paths.language.dialect import Dialect
-from probe_paths.language.dialect_file import read_dialect
-from probe_paths.plan.frame import ProgramFrame
-from probe_paths.plan.probe import Probe
-from twin.effects.geometric import component
-from twin.errors import BadFile, DesignError
-from twin.files.machine_file import read_machine
-from twin.machine.kinematics import table_to_tool
-from twin.model import contribution
+from matstd.twin.effects.geometric import component
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.machine.kinematics import table_to_tool
+from matstd.twin.model import contribution
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "golden"))

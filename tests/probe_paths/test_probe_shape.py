@@ -11,23 +11,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.reach.touchable import ProbeReach
-from artefact.reach.workshop import Solid, Workshop, round_table
-from probe_paths.campaign.collisions import check_moves
-from probe_paths.control.interpreter import interpret
-from probe_paths.control.steps import Move, ProbeStep
-from probe_paths.emit.program import make_programs
-from probe_paths.emit.writer import Feeds
-from probe_paths.plan.clearance import ToolClearance, solid_hull, swing_height, top_height
-from probe_paths.plan.heading import Heading, parse_heading
-from probe_paths.plan.planner import plan_touches
-from probe_paths.plan.probe import NOSE_HEIGHT, Probe
-from probe_paths.plan.touch_plan import PlanOptions
-from twin.errors import BadFile
-from twin.frames import apply, turn
-from twin.machine.kinematics import linear_directions, table_to_tool, tip
-from twin.record.touches import Setup, linear_approach
-from twin.units import DEG
+from matstd.artefact.reach.touchable import ProbeReach
+from matstd.artefact.reach.workshop import Solid, Workshop, round_table
+from matstd.probe_paths.campaign.collisions import check_moves
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.control.steps import Move, ProbeStep
+from matstd.probe_paths.emit.program import make_programs
+from matstd.probe_paths.emit.writer import Feeds
+from matstd.probe_paths.plan.clearance import ToolClearance, solid_hull, swing_height, top_height
+from matstd.probe_paths.plan.heading import Heading, parse_heading
+from matstd.probe_paths.plan.planner import plan_touches
+from matstd.probe_paths.plan.probe import NOSE_HEIGHT, Probe
+from matstd.probe_paths.plan.touch_plan import PlanOptions
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import apply, turn
+from matstd.twin.machine.kinematics import linear_directions, table_to_tool, tip
+from matstd.twin.record.touches import Setup, linear_approach
+from matstd.twin.units import DEG
 
 WIDE = Probe(stack=((40.0, 1.5), (160.0, 31.0)), nose_radius=50.0)
 """A common one: stem of 3 x 40 mm, body of 62 mm, spindle nose of 100 mm."""

@@ -7,23 +7,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from probe_paths.campaign.collisions import check_moves
-from probe_paths.control.clock import Clock
-from probe_paths.control.interpreter import interpret
-from probe_paths.control.steps import Move
-from probe_paths.emit.program import make_dry_run, make_programs
-from probe_paths.emit.writer import Feeds, visit_title
-from probe_paths.language.blocks import Kind
-from probe_paths.language.dialect import Dialect
-from probe_paths.language.languages import read_blocks
-from probe_paths.language.text import MAX_LINE
-from probe_paths.plan.planner import plan_touches
-from probe_paths.plan.probe import Probe
-from probe_paths.plan.touch_plan import PlanOptions, requests_at
-from twin.errors import BadFile, DesignError
-from twin.machine.chain import Axis, make_chain
-from twin.record.touches import Setup
-from twin.units import DEG
+from matstd.probe_paths.campaign.collisions import check_moves
+from matstd.probe_paths.control.clock import Clock
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.control.steps import Move
+from matstd.probe_paths.emit.program import make_dry_run, make_programs
+from matstd.probe_paths.emit.writer import Feeds, visit_title
+from matstd.probe_paths.language.blocks import Kind
+from matstd.probe_paths.language.dialect import Dialect
+from matstd.probe_paths.language.languages import read_blocks
+from matstd.probe_paths.language.text import MAX_LINE
+from matstd.probe_paths.plan.planner import plan_touches
+from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.touch_plan import PlanOptions, requests_at
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.record.touches import Setup
+from matstd.twin.units import DEG
 
 LAST_DIGIT = 2e-4
 """Two units of the fourth decimal: what another processor may round otherwise, mm or degrees."""

@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from artefact.body.sag import Sag, weight_directions
-from artefact.body.standard import Material
-from artefact.body.standard_file import read_standard, write_standard
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.simulation import simulate
-from twin.errors import BadFile
-from twin.frames import fixed_xyz, pose
-from twin.machine.chain import Axis, make_chain
-from twin.units import DEG, NM, UM
+from matstd.artefact.body.sag import Sag, weight_directions
+from matstd.artefact.body.standard import Material
+from matstd.artefact.body.standard_file import read_standard, write_standard
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.probe_paths.campaign.simulation import simulate
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import fixed_xyz, pose
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.units import DEG, NM, UM
 
 TRAVEL = {n: Axis(range=(-400.0, 400.0)) for n in "XYZ"}
 TURNS = {n: Axis((-7.0, 7.0), (0.0, 0.0, 0.0)) for n in "BC"}

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from probe_paths.plan.separation import EXACT, Hulls, Sweeps, gaps
+from matstd.probe_paths.plan.separation import EXACT, Hulls, Sweeps, gaps
 
 SIGNS = np.array([[a, b, c] for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)])
 SHORT = 1e-6

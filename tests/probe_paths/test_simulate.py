@@ -10,18 +10,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.body.standard_file import write_standard
-from diagnosis.fit.identification import fit_run
+from matstd.artefact.body.standard_file import write_standard
 from matstd.cli import main
-from probe_paths.campaign.contact_solver import FIRST_MORNING
-from probe_paths.emit.program import make_programs
-from probe_paths.plan.planner import plan_touches
-from probe_paths.plan.probe import Probe
-from probe_paths.plan.touch_plan import PlanOptions
-from twin.files.run_file import read_run
-from twin.model.model import Model
-from twin.record.touches import Body
-from twin.units import NM, UM
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.probe_paths.campaign.contact_solver import FIRST_MORNING
+from matstd.probe_paths.emit.program import make_programs
+from matstd.probe_paths.plan.planner import plan_touches
+from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.touch_plan import PlanOptions
+from matstd.twin.files.run_file import read_run
+from matstd.twin.model.model import Model
+from matstd.twin.record.touches import Body
+from matstd.twin.units import NM, UM
 
 MACHINE = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"
 """The golden programs' machine has the same travels and pivots."""

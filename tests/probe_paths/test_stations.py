@@ -9,28 +9,28 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from artefact.brief.project_file import read_project
-from artefact.reach.workshop import Solid, Workshop, round_table
-from diagnosis.fit.identification import fit_run
+from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.reach.workshop import Solid, Workshop, round_table
 from matstd.commands.probing.replan import _by_probe, _of_one_setup
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.virtual_run import run_programs
-from probe_paths.control.interpreter import read_program
-from probe_paths.control.log import read_log
-from probe_paths.language.dialect import Dialect
-from probe_paths.plan.planner import plan_touches
-from probe_paths.plan.probe import Probe
-from probe_paths.plan.touch_plan import PlanOptions
-from probe_paths.stations.planned import Clamping, _reposed, plan_campaign
-from probe_paths.stations.programmed import all_programs, make_stations, with_tool
-from twin.effects.setup_error import setup_errors
-from twin.errors import BadFile, DesignError, NotReachable
-from twin.files.run_file import read_run
-from twin.files.run_writer import write_run
-from twin.frames import pose, rotation
-from twin.model import Model
-from twin.record.touches import Setup
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.probe_paths.campaign.virtual_run import run_programs
+from matstd.probe_paths.control.interpreter import read_program
+from matstd.probe_paths.control.log import read_log
+from matstd.probe_paths.language.dialect import Dialect
+from matstd.probe_paths.plan.planner import plan_touches
+from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.touch_plan import PlanOptions
+from matstd.probe_paths.stations.planned import Clamping, _reposed, plan_campaign
+from matstd.probe_paths.stations.programmed import all_programs, make_stations, with_tool
+from matstd.twin.effects.setup_error import setup_errors
+from matstd.twin.errors import BadFile, DesignError, NotReachable
+from matstd.twin.files.run_file import read_run
+from matstd.twin.files.run_writer import write_run
+from matstd.twin.frames import pose, rotation
+from matstd.twin.model import Model
+from matstd.twin.record.touches import Setup
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "golden"))
 import make_programs as golden

@@ -8,19 +8,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.brief.project_file import read_project
+from matstd.artefact.brief.project_file import read_project
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.probe_paths.campaign.virtual_run import run_programs
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.control.log import read_log
+from matstd.probe_paths.emit.program import make_programs
+from matstd.probe_paths.language.dialect import Dialect
+from matstd.probe_paths.plan.heading import Sensor
 from matstd.stages.from_project import dialect as words_of
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.evaluation import evaluate
-from probe_paths.campaign.virtual_run import run_programs
-from probe_paths.control.interpreter import interpret
-from probe_paths.control.log import read_log
-from probe_paths.emit.program import make_programs
-from probe_paths.language.dialect import Dialect
-from probe_paths.plan.heading import Sensor
-from twin.errors import BadFile
-from twin.files.run_file import read_run
-from twin.files.run_writer import write_run
+from matstd.twin.errors import BadFile
+from matstd.twin.files.run_file import read_run
+from matstd.twin.files.run_writer import write_run
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "tests" / "golden"))

@@ -7,25 +7,25 @@ import pytest
 from scipy.interpolate import BSpline
 from scipy.optimize import brentq, minimize
 
-from artefact.body.patch import Meeting
-from artefact.reach.workshop import Workshop, round_table
-from probe_paths.campaign.contact_solver import VirtualMachine
-from probe_paths.campaign.virtual_run import Outcome, run_program, run_programs
-from probe_paths.control.interpreter import interpret
-from probe_paths.emit.program import make_programs
-from probe_paths.plan.planner import plan_touches
-from probe_paths.plan.probe import Probe
-from probe_paths.plan.touch_plan import PlanOptions, requests_at
-from twin.effects.geometric import ComponentError
-from twin.effects.location import LocationError
-from twin.errors import DesignError, NotReachable
-from twin.frames import apply, inverse, pose, rotation, turn
-from twin.machine.contribution import Contribution
-from twin.machine.kinematics import exact_tip, table_to_tool, tip
-from twin.model.effect import contribution
-from twin.model.model import Model
-from twin.record.touches import Setup, Touches, at_poses
-from twin.units import DEG, NM, UM, URAD
+from matstd.artefact.body.patch import Meeting
+from matstd.artefact.reach.workshop import Workshop, round_table
+from matstd.probe_paths.campaign.contact_solver import VirtualMachine
+from matstd.probe_paths.campaign.virtual_run import Outcome, run_program, run_programs
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.emit.program import make_programs
+from matstd.probe_paths.plan.planner import plan_touches
+from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.touch_plan import PlanOptions, requests_at
+from matstd.twin.effects.geometric import ComponentError
+from matstd.twin.effects.location import LocationError
+from matstd.twin.errors import DesignError, NotReachable
+from matstd.twin.frames import apply, inverse, pose, rotation, turn
+from matstd.twin.machine.contribution import Contribution
+from matstd.twin.machine.kinematics import exact_tip, table_to_tool, tip
+from matstd.twin.model.effect import contribution
+from matstd.twin.model.model import Model
+from matstd.twin.record.touches import Setup, Touches, at_poses
+from matstd.twin.units import DEG, NM, UM, URAD
 
 HARDLY_CURVED = 0.002 * UM
 """Some µm along a face of 30 mm radius or more turn its normal by 1e-4."""

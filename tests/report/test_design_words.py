@@ -5,9 +5,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from report.words.design_words import AT_20, best_rival, design_lines, verdict_of_design
-from twin.machine import Chain
-from twin.units import UM
+from matstd.report.words.design_words import AT_20, best_rival, design_lines, verdict_of_design
+from matstd.twin.machine import Chain
+from matstd.twin.units import UM
 
 
 def placement(own: float, spheres: float, block: float = 9.0, scatter: float = 0.1):

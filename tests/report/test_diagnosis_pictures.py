@@ -7,36 +7,36 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from diagnosis.answer.comparison import compare
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.answer.verdict import Verdict
-from diagnosis.residual.mean_displacements import has_poses, pose_vectors
-from diagnosis.residual.partial_residuals import partial, roughness
-from diagnosis.residual.ranked_variables import binned, rank_variables, standardised
-from report.numbers import with_uncertainty
-from report.pages.compare_page import write_compare_page
-from report.pages.diagnosis_page import write_diagnosis_page
-from report.pages.page import p_value
-from report.plots.effect_pictures import (
+from matstd.diagnosis.answer.comparison import compare
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer.verdict import Verdict
+from matstd.diagnosis.residual.mean_displacements import has_poses, pose_vectors
+from matstd.diagnosis.residual.partial_residuals import partial, roughness
+from matstd.diagnosis.residual.ranked_variables import binned, rank_variables, standardised
+from matstd.report.numbers import with_uncertainty
+from matstd.report.pages.compare_page import write_compare_page
+from matstd.report.pages.diagnosis_page import write_diagnosis_page
+from matstd.report.pages.page import p_value
+from matstd.report.plots.effect_pictures import (
     draw_rivals,
     shown_partial,
 )
-from report.plots.pattern_pictures import draw_pattern
-from report.plots.spatial_pictures import (
+from matstd.report.plots.pattern_pictures import draw_pattern
+from matstd.report.plots.spatial_pictures import (
     draw_on_standard,
     is_spread,
 )
-from report.words.diagnosis_words import (
+from matstd.report.words.diagnosis_words import (
     named_value,
     region_words,
     structure_words,
     verdict_sentence,
 )
-from twin.effects.backlash import KIND as BACKLASH
-from twin.effects.periodic import KIND as PERIODIC
-from twin.library.ordinary import ordinary_model
-from twin.thermal.thermal_lag import KIND as LAG
-from twin.units import HOUR, NM, UM
+from matstd.twin.effects.backlash import KIND as BACKLASH
+from matstd.twin.effects.periodic import KIND as PERIODIC
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.thermal.thermal_lag import KIND as LAG
+from matstd.twin.units import HOUR, NM, UM
 
 ROUNDING = 1e-9
 SAME = 1e-6  # of quantities of order one, after a second solution of the same equations

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cad_out.details.detail_list import details_of
-from report.drawing.drawing import Issuer, draw_sheet, write_drawing
-from report.drawing.sections import draw_screw
-from report.drawing.sheet import HEIGHT, WIDTH, Sheet, View
-from report.drawing.views import draw_from
+from matstd.cad_out.details.detail_list import details_of
+from matstd.report.drawing.drawing import Issuer, draw_sheet, write_drawing
+from matstd.report.drawing.sections import draw_screw
+from matstd.report.drawing.sheet import HEIGHT, WIDTH, Sheet, View
+from matstd.report.drawing.views import draw_from
 
 ISSUER = Issuer("A. Müller", "Workshop & Co", 6.2)
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from artefact.body.standard import Material
-from cad_out.making.cutting import Cutting
-from cad_out.making.hints import FaceHint
-from cad_out.making.making_file import Making
-from cad_out.making.stiffness import Stiffness
-from report.pages.design_page import _making
-from twin.units import DEG
+from matstd.artefact.body.standard import Material
+from matstd.cad_out.making.cutting import Cutting
+from matstd.cad_out.making.hints import FaceHint
+from matstd.cad_out.making.making_file import Making
+from matstd.cad_out.making.stiffness import Stiffness
+from matstd.report.pages.design_page import _making
+from matstd.twin.units import DEG
 
 
 def made(mode, sag, out_of_reach=()):

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import pytest
 from made_up import made_up
 
-from report.effects.naming import (
+from matstd.report.effects.naming import (
     class_words,
     effect_cell,
     effect_words,
@@ -13,7 +13,7 @@ from report.effects.naming import (
     rival_words,
     words_of_name,
 )
-from twin.library.catalogue import parse_effect
+from matstd.twin.library.catalogue import parse_effect
 
 LAGS = ["thermal-lag(EZZ)", "thermal-lag(EZY)", "thermal-lag(EZX)", "thermal-lag(EZB)"]
 

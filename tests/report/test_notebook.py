@@ -9,18 +9,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from diagnosis.answer.comparison import compare
-from diagnosis.answer.run_diagnosis import diagnose
-from report.words.diagnosis_words import comparison_sentence, verdict_sentence
-from sensitivity.first_order.workspace import Workspace
-from sensitivity.population.sampling import Population
-from sensitivity.study.machine_study import run_study
-from sensitivity.study.study_file import write_study
-from twin import display
-from twin.errors import MissingLibrary
-from twin.files.run_file import read_run
-from twin.library.ordinary import ordinary_model
-from twin.units import UM
+from matstd.diagnosis.answer.comparison import compare
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.report.words.diagnosis_words import comparison_sentence, verdict_sentence
+from matstd.sensitivity.first_order.workspace import Workspace
+from matstd.sensitivity.population.sampling import Population
+from matstd.sensitivity.study.machine_study import run_study
+from matstd.sensitivity.study.study_file import write_study
+from matstd.twin import display
+from matstd.twin.errors import MissingLibrary
+from matstd.twin.files.run_file import read_run
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.units import UM
 
 RUN = Path(__file__).parents[2] / "examples" / "hidden_effect" / "warm_up.csv"
 

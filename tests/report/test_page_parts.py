@@ -7,12 +7,12 @@ from pathlib import Path
 import openpyxl
 import pytest
 
-from diagnosis.choice.prediction import Choice, ChoiceRule
-from report.pages import pdf
-from report.pages.page import with_contents
-from report.pages.pdf import printer, write_pdf
-from report.pages.tables import page_tables, plain, value, write_tables
-from twin.errors import DesignError, MissingLibrary
+from matstd.diagnosis.choice.prediction import Choice, ChoiceRule
+from matstd.report.pages import pdf
+from matstd.report.pages.page import with_contents
+from matstd.report.pages.pdf import printer, write_pdf
+from matstd.report.pages.tables import page_tables, plain, value, write_tables
+from matstd.twin.errors import DesignError, MissingLibrary
 
 TEMPLATES = Path(pdf.__file__).parent / "templates"
 PAGE = """<h2>What is <code>left</code></h2>

@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from probe_paths.control.interpreter import interpret
-from probe_paths.language.dialect import Dialect
-from report.scenes.bodies import TOOL, drawn_bodies
-from report.scenes.playback import PLAYBACK, key_frames, poses, write_playback
-from twin.files import read_machine
-from twin.frames import apply, inverse
-from twin.machine.kinematics import carriers, table_to_tool
-from twin.units import DEG
+from matstd.probe_paths.control.interpreter import interpret
+from matstd.probe_paths.language.dialect import Dialect
+from matstd.report.scenes.bodies import TOOL, drawn_bodies
+from matstd.report.scenes.playback import PLAYBACK, key_frames, poses, write_playback
+from matstd.twin.files import read_machine
+from matstd.twin.frames import apply, inverse
+from matstd.twin.machine.kinematics import carriers, table_to_tool
+from matstd.twin.units import DEG
 
 ROOT = Path(__file__).parents[2]
 GRAIN = 0.05

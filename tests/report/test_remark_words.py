@@ -4,8 +4,8 @@ from typing import get_args
 
 import pytest
 
-from diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake
-from diagnosis.remarks.run_remarks import (
+from matstd.diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake
+from matstd.diagnosis.remarks.run_remarks import (
     FewPoses,
     JointsStood,
     NoiseMisstated,
@@ -13,8 +13,8 @@ from diagnosis.remarks.run_remarks import (
     Remark,
     SearchEnded,
 )
-from report.words.remark_words import _SENTENCES, remark_sentence
-from twin.units import UM
+from matstd.report.words.remark_words import _SENTENCES, remark_sentence
+from matstd.twin.units import UM
 
 
 def test_every_remark_has_its_sentence() -> None:

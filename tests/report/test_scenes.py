@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from cad_out.build.process import Ending
-from report.scenes.standard_scene import draw_standard
-from report.scenes.volume_scene import PIXELS, Scene, composed, draw_volumes, eye
-from twin.errors import DesignError, MissingLibrary, ShapeMismatch
+from matstd.cad_out.build.process import Ending
+from matstd.report.scenes.standard_scene import draw_standard
+from matstd.report.scenes.volume_scene import PIXELS, Scene, composed, draw_volumes, eye
+from matstd.twin.errors import DesignError, MissingLibrary, ShapeMismatch
 
 READINGS = (
     np.linspace(-150.0, 150.0, 5),
@@ -123,7 +123,7 @@ def test_what_cannot_be_drawn_is_refused(tmp_path):
 def test_a_renderer_that_fails_names_the_package_and_nothing_is_written(tmp_path, monkeypatch):
     """As it fails without OpenGL, which a test below takes away."""
     failed = Ending(1, "", "libEGL warning")
-    monkeypatch.setattr("report.scenes.renderer.run_apart", lambda *_, **__: failed)
+    monkeypatch.setattr("matstd.report.scenes.renderer.run_apart", lambda *_, **__: failed)
     with pytest.raises(MissingLibrary, match="apt-get install libegl1") as caught:
         draw_volumes({tmp_path / "a.png": [scene()]})
     assert "\n" not in str(caught.value)

@@ -7,18 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from artefact.body import Meeting, contact
-from probe_paths.campaign.tolerance import STEPS_MM, setup_tolerance
-from probe_paths.emit.writer import Feeds
-from probe_paths.language.dialect import Dialect
-from probe_paths.locate.beside import companions
-from probe_paths.locate.spread import Spread
-from probe_paths.stations.programmed import Station
-from report.pages.setup_page import PAGE, PICTURE, write_setup_page
-from report.pages.tables import page_tables
-from twin.frames import apply, inverse, pose, turn
-from twin.machine.kinematics import linear_directions, tip
-from twin.units import DEG
+from matstd.artefact.body import Meeting, contact
+from matstd.probe_paths.campaign.tolerance import STEPS_MM, setup_tolerance
+from matstd.probe_paths.emit.writer import Feeds
+from matstd.probe_paths.language.dialect import Dialect
+from matstd.probe_paths.locate.beside import companions
+from matstd.probe_paths.locate.spread import Spread
+from matstd.probe_paths.stations.programmed import Station
+from matstd.report.pages.setup_page import PAGE, PICTURE, write_setup_page
+from matstd.report.pages.tables import page_tables
+from matstd.twin.frames import apply, inverse, pose, turn
+from matstd.twin.machine.kinematics import linear_directions, tip
+from matstd.twin.units import DEG
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "make_programs.py"
 

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cad_out.build.process import Ending
-from report.pages.study_page import (
+from matstd.cad_out.build.process import Ending
+from matstd.report.pages.study_page import (
     ERROR_3D,
     S_3D,
     draw_study_volumes,
@@ -15,16 +15,16 @@ from report.pages.study_page import (
     sensitivity_scenes,
     write_study_page,
 )
-from report.style import figure, save
-from report.words.sensitivity_words import sampling_words
-from sensitivity.first_order.workspace import Workspace
-from sensitivity.population.sampling import Population
-from sensitivity.study.machine_study import run_study
-from twin.files.machine_file import read_machine
-from twin.frames import apply
-from twin.machine.chain import Axis, make_chain
-from twin.machine.kinematics import tip
-from twin.units import DEG, UM
+from matstd.report.style import figure, save
+from matstd.report.words.sensitivity_words import sampling_words
+from matstd.sensitivity.first_order.workspace import Workspace
+from matstd.sensitivity.population.sampling import Population
+from matstd.sensitivity.study.machine_study import run_study
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.frames import apply
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.machine.kinematics import tip
+from matstd.twin.units import DEG, UM
 
 NM = 1e-6  # mm
 
@@ -107,7 +107,7 @@ def test_the_page_holds_every_map_once_and_the_regions_in_words(study, tmp_path)
 
 def test_without_opengl_the_page_is_written_with_a_remark(study, tmp_path, monkeypatch):
     failed = Ending(1, "", "libEGL warning")  # as in `test_scenes`, without OpenGL indeed
-    monkeypatch.setattr("report.scenes.renderer.run_apart", lambda *_, **__: failed)
+    monkeypatch.setattr("matstd.report.scenes.renderer.run_apart", lambda *_, **__: failed)
     (remark,) = write_study_page(study, tmp_path, [])
     assert "apt-get install libegl1" in remark
     page = (tmp_path / "report.html").read_text(encoding="utf-8")

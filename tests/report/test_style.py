@@ -4,8 +4,8 @@ import re
 
 import numpy as np
 
-from report.style.colours import series
-from report.style.labels import robust_limit
+from matstd.report.style.colours import series
+from matstd.report.style.labels import robust_limit
 
 
 def test_no_colour_comes_twice() -> None:

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from report.maps import study_maps
-from report.style import nothing as nothing_to_draw
-from sensitivity.first_order.workspace import Workspace
-from sensitivity.population.sampling import Population
-from sensitivity.study.machine_study import run_study
-from sensitivity.study.study_file import write_study
-from twin.errors import NotReachable
-from twin.machine.ranges import DEFAULT_RANGES, Ranges
+from matstd.report.maps import study_maps
+from matstd.report.style import nothing as nothing_to_draw
+from matstd.sensitivity.first_order.workspace import Workspace
+from matstd.sensitivity.population.sampling import Population
+from matstd.sensitivity.study.machine_study import run_study
+from matstd.sensitivity.study.study_file import write_study
+from matstd.twin.errors import NotReachable
+from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges
 
 
 @pytest.mark.filterwarnings("error")

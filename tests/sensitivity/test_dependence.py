@@ -3,15 +3,21 @@
 import numpy as np
 import pytest
 
-from sensitivity.first_order.indices import covariance, rms, variance_parts
-from sensitivity.first_order.workspace import latin_hypercube
-from sensitivity.montecarlo.batches import first_order
-from sensitivity.population.dependence import Dependence, Group, amplitude, grouped, product_moment
-from sensitivity.population.distributions import Distributions, Mix
-from sensitivity.population.sampling import Population, coefficients, draw, drawn_errors
-from twin.effects.geometric import ComponentError
-from twin.errors import DesignError
-from twin.machine.ranges import DEFAULT_RANGES, Ranges
+from matstd.sensitivity.first_order.indices import covariance, rms, variance_parts
+from matstd.sensitivity.first_order.workspace import latin_hypercube
+from matstd.sensitivity.montecarlo.batches import first_order
+from matstd.sensitivity.population.dependence import (
+    Dependence,
+    Group,
+    amplitude,
+    grouped,
+    product_moment,
+)
+from matstd.sensitivity.population.distributions import Distributions, Mix
+from matstd.sensitivity.population.sampling import Population, coefficients, draw, drawn_errors
+from matstd.twin.effects.geometric import ComponentError
+from matstd.twin.errors import DesignError
+from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges
 
 LENGTH = 160.0
 NAMES = ("EXX", "EYX", "EC0Y")

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from sensitivity.first_order.workspace import latin_hypercube
-from sensitivity.montecarlo.kernels import compiled
-from sensitivity.montecarlo.lengths import BINS, count_lengths
-from sensitivity.montecarlo.random_machines import volumetric
-from sensitivity.population.sampling import Population
-from twin.units import UM
+from matstd.sensitivity.first_order.workspace import latin_hypercube
+from matstd.sensitivity.montecarlo.kernels import compiled
+from matstd.sensitivity.montecarlo.lengths import BINS, count_lengths
+from matstd.sensitivity.montecarlo.random_machines import volumetric
+from matstd.sensitivity.population.sampling import Population
+from matstd.twin.units import UM
 
 LENGTH = 160.0
 SINGLE = 1e-6
@@ -61,7 +61,7 @@ def test_poses_that_are_equally_bad_all_count(use_compiled):
 def test_lots_of_machines_change_nothing(task, monkeypatch):
     G, theta, width, _ = task
     whole = count_lengths(G, theta, width, worst=(70, 4))
-    monkeypatch.setattr("sensitivity.montecarlo.lengths._KEPT", 1)
+    monkeypatch.setattr("matstd.sensitivity.montecarlo.lengths._KEPT", 1)
     cut = count_lengths(G, theta, width, worst=(70, 4))
     for name in ("sum", "squares", "histogram", "worst"):
         np.testing.assert_array_equal(getattr(cut, name), getattr(whole, name), err_msg=name)

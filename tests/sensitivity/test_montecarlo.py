@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from sensitivity.first_order.indices import covariance, rms, variance_shares
-from sensitivity.first_order.workspace import latin_hypercube
-from sensitivity.montecarlo.exact import exact_check
-from sensitivity.montecarlo.random_machines import volumetric
-from sensitivity.population.distributions import Distributions
-from sensitivity.population.sampling import Population, coefficients, drawn_in_chunks
-from twin.errors import DesignError
-from twin.machine.ranges import DEFAULT_RANGES, Ranges
-from twin.record.touches import at_poses
-from twin.units import UM
+from matstd.sensitivity.first_order.indices import covariance, rms, variance_shares
+from matstd.sensitivity.first_order.workspace import latin_hypercube
+from matstd.sensitivity.montecarlo.exact import exact_check
+from matstd.sensitivity.montecarlo.random_machines import volumetric
+from matstd.sensitivity.population.distributions import Distributions
+from matstd.sensitivity.population.sampling import Population, coefficients, drawn_in_chunks
+from matstd.twin.errors import DesignError
+from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges
+from matstd.twin.record.touches import at_poses
+from matstd.twin.units import UM
 
 LENGTH = 160.0
 SINGLE = 1e-6
@@ -61,7 +61,7 @@ def test_statistics_are_those_of_plain_numpy(chain, poses):
 def test_blocks_change_nothing(chain, poses, monkeypatch):
     population = Population(chain)
     whole = volumetric(population, poses, LENGTH, 700, np.random.default_rng(1))
-    monkeypatch.setattr("sensitivity.montecarlo.lengths._POSES_A_BLOCK", 7)
+    monkeypatch.setattr("matstd.sensitivity.montecarlo.lengths._POSES_A_BLOCK", 7)
     cut = volumetric(population, poses, LENGTH, 700, np.random.default_rng(1))
     np.testing.assert_allclose(cut.mean, whole.mean, rtol=SINGLE)
     np.testing.assert_allclose(cut.quantile, whole.quantile, rtol=1e-9)

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.stats import chi
 
-from sensitivity.first_order.indices import covariance, mean_squares
-from sensitivity.first_order.jacobians import jacobian
-from sensitivity.first_order.normal_lengths import LEVELS, normal_length, principal
-from sensitivity.first_order.workspace import latin_hypercube
-from sensitivity.montecarlo.random_machines import volumetric
-from sensitivity.population.sampling import Population
+from matstd.sensitivity.first_order.indices import covariance, mean_squares
+from matstd.sensitivity.first_order.jacobians import jacobian
+from matstd.sensitivity.first_order.normal_lengths import LEVELS, normal_length, principal
+from matstd.sensitivity.first_order.workspace import latin_hypercube
+from matstd.sensitivity.montecarlo.random_machines import volumetric
+from matstd.sensitivity.population.sampling import Population
 
 TABLE = 2e-4
 """Interpolation of the table may be off by so much of the value."""

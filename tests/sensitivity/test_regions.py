@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from machines import LENGTH
 
-from report.maps.regions_picture import draw_regions
-from report.words.sensitivity_words import dominant_words, place_words
-from sensitivity.first_order.workspace import Workspace
-from sensitivity.population.sampling import Population
-from sensitivity.shares.workspace_regions import region_totals, regions
-from twin.machine.chain import Axis, make_chain
-from twin.machine.kinematics import tip
-from twin.machine.ranges import DEFAULT_RANGES, Ranges
-from twin.units import DEG, UM
+from matstd.report.maps.regions_picture import draw_regions
+from matstd.report.words.sensitivity_words import dominant_words, place_words
+from matstd.sensitivity.first_order.workspace import Workspace
+from matstd.sensitivity.population.sampling import Population
+from matstd.sensitivity.shares.workspace_regions import region_totals, regions
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.machine.kinematics import tip
+from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges
+from matstd.twin.units import DEG, UM
 
 
 @pytest.fixture(scope="module")

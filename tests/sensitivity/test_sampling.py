@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from sensitivity.first_order.workspace import latin_hypercube
-from sensitivity.population.distributions import Distributions, Mix
-from sensitivity.population.sampling import (
+from matstd.sensitivity.first_order.workspace import latin_hypercube
+from matstd.sensitivity.population.distributions import Distributions, Mix
+from matstd.sensitivity.population.sampling import (
     DRAWS_A_CHILD,
     Population,
     coefficients,
@@ -13,14 +13,14 @@ from sensitivity.population.sampling import (
     drawn_errors,
     drawn_in_chunks,
 )
-from twin.effects.geometric import ComponentError
-from twin.effects.location import LocationError
-from twin.errors import DesignError
-from twin.files.error_file import errors_toml, read_errors
-from twin.library.ordinary import ordinary_model
-from twin.machine.ranges import Ranges
-from twin.model.effect import contribution
-from twin.record.touches import at_poses
+from matstd.twin.effects.geometric import ComponentError
+from matstd.twin.effects.location import LocationError
+from matstd.twin.errors import DesignError
+from matstd.twin.files.error_file import errors_toml, read_errors
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.machine.ranges import Ranges
+from matstd.twin.model.effect import contribution
+from matstd.twin.record.touches import at_poses
 
 MANY = Distributions(periods=(1, 2, 3))
 

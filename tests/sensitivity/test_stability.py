@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from report.words.sensitivity_words import sampling_words, stability_words
-from sensitivity.montecarlo.random_machines import volumetric
-from sensitivity.montecarlo.stability import Stabiliser, Stability, numerical_tolerance
-from sensitivity.population.distributions import Distributions
-from sensitivity.population.sampling import Population
-from twin.errors import DesignError
-from twin.machine.ranges import DEFAULT_RANGES, Ranges
-from twin.units import UM
+from matstd.report.words.sensitivity_words import sampling_words, stability_words
+from matstd.sensitivity.montecarlo.random_machines import volumetric
+from matstd.sensitivity.montecarlo.stability import Stabiliser, Stability, numerical_tolerance
+from matstd.sensitivity.population.distributions import Distributions
+from matstd.sensitivity.population.sampling import Population
+from matstd.twin.errors import DesignError
+from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges
+from matstd.twin.units import UM
 
 LENGTH = 160.0
 EVEN = 3**0.5 * UM

@@ -5,14 +5,14 @@ import csv
 import numpy as np
 import pytest
 
-from report.maps.study_maps import draw_maps
-from report.words.sensitivity_words import sampling_words
-from sensitivity.first_order.workspace import Workspace
-from sensitivity.population.sampling import Population
-from sensitivity.study.machine_study import run_study, section_pairs
-from sensitivity.study.study_file import write_study
-from twin.machine.chain import Axis, make_chain
-from twin.units import DEG, UM
+from matstd.report.maps.study_maps import draw_maps
+from matstd.report.words.sensitivity_words import sampling_words
+from matstd.sensitivity.first_order.workspace import Workspace
+from matstd.sensitivity.population.sampling import Population
+from matstd.sensitivity.study.machine_study import run_study, section_pairs
+from matstd.sensitivity.study.study_file import write_study
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.units import DEG, UM
 
 
 @pytest.fixture(scope="module")

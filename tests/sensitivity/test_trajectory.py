@@ -7,19 +7,24 @@ import pytest
 from simulator_machine import read_machine as second_model
 from simulator_machine import tip as second_tip
 
-from report.maps.trajectory_pictures import axis_effect_picture, statistics_picture
-from report.words.sensitivity_words import sampling_words
-from sensitivity.first_order.workspace import Workspace
-from sensitivity.montecarlo.random_machines import volumetric
-from sensitivity.population.distributions import Distributions
-from sensitivity.population.sampling import Population
-from sensitivity.study.trajectory import along_path, axis_effect, axis_errors, paper_trajectory
-from twin.effects.geometric import component
-from twin.effects.location import LocationError
-from twin.errors import DesignError, OutsideTravel, UnknownAxis
-from twin.files.machine_file import read_machine
-from twin.machine.chain import Axis, make_chain
-from twin.units import DEG, NM, UM, URAD
+from matstd.report.maps.trajectory_pictures import axis_effect_picture, statistics_picture
+from matstd.report.words.sensitivity_words import sampling_words
+from matstd.sensitivity.first_order.workspace import Workspace
+from matstd.sensitivity.montecarlo.random_machines import volumetric
+from matstd.sensitivity.population.distributions import Distributions
+from matstd.sensitivity.population.sampling import Population
+from matstd.sensitivity.study.trajectory import (
+    along_path,
+    axis_effect,
+    axis_errors,
+    paper_trajectory,
+)
+from matstd.twin.effects.geometric import component
+from matstd.twin.effects.location import LocationError
+from matstd.twin.errors import DesignError, OutsideTravel, UnknownAxis
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.units import DEG, NM, UM, URAD
 
 LENGTH = 160.0
 SECOND_ORDER = 5e-6

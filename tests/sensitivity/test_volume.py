@@ -4,17 +4,17 @@ import numpy as np
 import pytest
 from machines import LENGTH
 
-from report.maps.rotary_picture import draw_rotary
-from sensitivity.first_order.workspace import Workspace
-from sensitivity.population.sampling import Population
-from sensitivity.study.machine_study import run_study
-from sensitivity.study.points_of_table import level, points_over_rotary
-from sensitivity.study.volume_map import has_volume, volume
-from twin.errors import NotReachable
-from twin.frames import apply
-from twin.machine.chain import Axis, make_chain
-from twin.machine.kinematics import tip
-from twin.units import DEG, UM
+from matstd.report.maps.rotary_picture import draw_rotary
+from matstd.sensitivity.first_order.workspace import Workspace
+from matstd.sensitivity.population.sampling import Population
+from matstd.sensitivity.study.machine_study import run_study
+from matstd.sensitivity.study.points_of_table import level, points_over_rotary
+from matstd.sensitivity.study.volume_map import has_volume, volume
+from matstd.twin.errors import NotReachable
+from matstd.twin.frames import apply
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.machine.kinematics import tip
+from matstd.twin.units import DEG, UM
 
 NM = 1e-6  # mm
 
@@ -57,7 +57,7 @@ def test_a_volume_holds_its_values_in_the_order_of_the_readings(tilted, chain):
 
 
 def test_the_error_without_sampling_is_that_of_drawn_machines(workspace, chain, tilted):
-    from sensitivity.montecarlo.random_machines import volumetric
+    from matstd.sensitivity.montecarlo.random_machines import volumetric
 
     population = Population(chain)
     sampled = volumetric(population, tilted.q, LENGTH, 2000, np.random.default_rng(1)).p95

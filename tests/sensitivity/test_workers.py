@@ -11,12 +11,12 @@ from os import _exit
 import numpy as np
 import pytest
 
-from sensitivity.first_order.workspace import latin_hypercube
-from sensitivity.montecarlo.dask_cluster import cluster
-from sensitivity.montecarlo.random_machines import volumetric
-from sensitivity.montecarlo.workers import in_order
-from sensitivity.population.sampling import Population
-from twin.errors import DesignError
+from matstd.sensitivity.first_order.workspace import latin_hypercube
+from matstd.sensitivity.montecarlo.dask_cluster import cluster
+from matstd.sensitivity.montecarlo.random_machines import volumetric
+from matstd.sensitivity.montecarlo.workers import in_order
+from matstd.sensitivity.population.sampling import Population
+from matstd.twin.errors import DesignError
 
 LENGTH, DRAWS = 160.0, 53_000  # five batches and a part of one
 START = 30.0  # s, for the processes of a cluster on a busy machine

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from sensitivity.first_order.workspace import Workspace, grid, latin_hypercube, section
-from twin.errors import DesignError, NotReachable, OutsideTravel, UnknownAxis
-from twin.machine.kinematics import tip
-from twin.units import DEG
+from matstd.sensitivity.first_order.workspace import Workspace, grid, latin_hypercube, section
+from matstd.twin.errors import DesignError, NotReachable, OutsideTravel, UnknownAxis
+from matstd.twin.machine.kinematics import tip
+from matstd.twin.units import DEG
 
 LENGTH = 160.0
 VOLUME = ((-100.0, -100.0, 20.0), (100.0, 100.0, 150.0))

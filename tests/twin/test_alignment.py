@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from simulator_case import simulate_case
 
-from diagnosis.fit.identification import fit_run
-from twin.files.run_file import read_run
-from twin.library.ordinary import ordinary_model
-from twin.record.alignment import aligned
-from twin.units import UM
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.twin.files.run_file import read_run
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.record.alignment import aligned
+from matstd.twin.units import UM
 
 AWAY, ABOUT_Z = np.array([1.0, -1.0, 0.3]), np.array([0.0, 0.0, 1.0])
 

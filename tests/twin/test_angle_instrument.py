@@ -5,27 +5,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.fit.identification import fit_run
-from diagnosis.geometry.learnt import geometry_rows
-from diagnosis.remarks import HarmonicsAlike, remarks
-from diagnosis.residual.partial_residuals import partial
 from matstd.console import say
-from report.words import remark_sentence, verdict_sentence
-from twin.effects.periodic import Harmonic
-from twin.files.run_file import read_run
-from twin.files.run_writer import run_text
-from twin.foreign.axis_run import one_axis_machine, positioning_run
-from twin.foreign.machine_draft import machine_text
-from twin.foreign.positioning import PositioningTest, read_positioning
-from twin.library.catalogue import parse_effect
-from twin.library.ordinary import ordinary_model
-from twin.machine.chain import Axis, make_chain
-from twin.model.model import Model
-from twin.record.instrument import Instrument
-from twin.sheets.sheet import read_sheet
-from twin.units import DEG, UM, URAD
-from twin.words import deviations_in
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.geometry.learnt import geometry_rows
+from matstd.diagnosis.remarks import HarmonicsAlike, remarks
+from matstd.diagnosis.residual.partial_residuals import partial
+from matstd.report.words import remark_sentence, verdict_sentence
+from matstd.twin.effects.periodic import Harmonic
+from matstd.twin.files.run_file import read_run
+from matstd.twin.files.run_writer import run_text
+from matstd.twin.foreign.axis_run import one_axis_machine, positioning_run
+from matstd.twin.foreign.machine_draft import machine_text
+from matstd.twin.foreign.positioning import PositioningTest, read_positioning
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.model.model import Model
+from matstd.twin.record.instrument import Instrument
+from matstd.twin.sheets.sheet import read_sheet
+from matstd.twin.units import DEG, UM, URAD
+from matstd.twin.words import deviations_in
 
 ARCSEC = DEG / 3600.0
 

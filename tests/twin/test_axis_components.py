@@ -3,20 +3,20 @@
 import numpy as np
 import pytest
 
-from diagnosis.fit.identification import fit_run
-from diagnosis.geometry.learnt import geometry_rows
 from matstd.cli import main
-from twin.effects import backlash
-from twin.effects.position_table import propose
-from twin.files import read_run
-from twin.foreign.axis_run import one_axis_machine, positioning_run
-from twin.foreign.positioning import read_positioning
-from twin.library.catalogue import parse_effect
-from twin.library.ordinary import ordinary_model
-from twin.machine.chain import Axis, make_chain
-from twin.model.model import Model
-from twin.sheets.sheet import read_sheet
-from twin.units import UM, URAD
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.geometry.learnt import geometry_rows
+from matstd.twin.effects import backlash
+from matstd.twin.effects.position_table import propose
+from matstd.twin.files import read_run
+from matstd.twin.foreign.axis_run import one_axis_machine, positioning_run
+from matstd.twin.foreign.positioning import read_positioning
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.model.model import Model
+from matstd.twin.sheets.sheet import read_sheet
+from matstd.twin.units import UM, URAD
 
 POSITIONS = np.arange(0.0, 601.0, 50.0)
 

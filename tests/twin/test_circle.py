@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from diagnosis.answer.run_diagnosis import diagnose
 from matstd.cli import main
-from twin.errors import BadFile, DesignError
-from twin.files.machine_file import read_machine
-from twin.files.run_file import read_run
-from twin.foreign.circle import circle_machine, circle_run, read_circle
-from twin.library.catalogue import parse_effect
-from twin.model.model import columns
-from twin.sheets.sheet import read_sheet
-from twin.units import DEG, UM, URAD
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.files.run_file import read_run
+from matstd.twin.foreign.circle import circle_machine, circle_run, read_circle
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.model.model import columns
+from matstd.twin.sheets.sheet import read_sheet
+from matstd.twin.units import DEG, UM, URAD
 
 RADIUS, FEED = 100.0, 2000.0
 BAD = 2

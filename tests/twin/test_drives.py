@@ -7,17 +7,17 @@ import pytest
 from made_up import gauge_touches
 from scipy.integrate import solve_ivp
 
-from twin.effects.once_more import Again
-from twin.errors import BadFile, UnknownEffect
-from twin.files.run_file import read_run
-from twin.files.run_writer import write_run
-from twin.library.catalogue import parse_effect, proposals
-from twin.model.model import columns
-from twin.record.copies import without_copies
-from twin.record.run import Run
-from twin.record.touches import Touches
-from twin.thermal.thermal_field import LAGS, ThermalField, field
-from twin.units import UM
+from matstd.twin.effects.once_more import Again
+from matstd.twin.errors import BadFile, UnknownEffect
+from matstd.twin.files.run_file import read_run
+from matstd.twin.files.run_writer import write_run
+from matstd.twin.library.catalogue import parse_effect, proposals
+from matstd.twin.model.model import columns
+from matstd.twin.record.copies import without_copies
+from matstd.twin.record.run import Run
+from matstd.twin.record.touches import Touches
+from matstd.twin.thermal.thermal_field import LAGS, ThermalField, field
+from matstd.twin.units import UM
 
 N = 60
 INTEGRATED = 1e-6

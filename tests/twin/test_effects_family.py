@@ -7,15 +7,15 @@ import numpy as np
 import pytest
 from made_up import MACHINES, arm_poses, made_up
 
-from twin.library.catalogue import parse_effect, proposals
-from twin.library.ordinary import ordinary_model
-from twin.machine.contribution import Contribution
-from twin.model.effect import Effect, Tunable, contribution
-from twin.model.model import Model, columns
-from twin.record.instrument import Instrument
-from twin.thermal.drive_columns import first_order_lag
-from twin.thermal.thermal_field import field
-from twin.units import NM
+from matstd.twin.library.catalogue import parse_effect, proposals
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.machine.contribution import Contribution
+from matstd.twin.model.effect import Effect, Tunable, contribution
+from matstd.twin.model.model import Model, columns
+from matstd.twin.record.instrument import Instrument
+from matstd.twin.thermal.drive_columns import first_order_lag
+from matstd.twin.thermal.thermal_field import field
+from matstd.twin.units import NM
 
 SECOND_ORDER = 60 * NM
 """What products of two errors of 50 um and 100 urad on arms below 1 m may come to."""
@@ -85,7 +85,7 @@ def every(label: str) -> list[Effect]:
 
 
 def test_the_made_up_runs_have_every_kind_of_effect() -> None:
-    from twin.library.catalogue import kinds
+    from matstd.twin.library.catalogue import kinds
 
     assert {e.kind for _, e in ALL} == {k.word for k in kinds()}
     assert len({e.name for e in every("hsm600u")}) == len(every("hsm600u"))

@@ -8,14 +8,14 @@ outward normal n reads dev = -n . (motion of the tip) + n . (shift of the standa
 import numpy as np
 import pytest
 
-from twin.effects.joint_sag import KIND as JOINT_SAG
-from twin.errors import UnknownEffect
-from twin.library.catalogue import parse_effect
-from twin.machine.chain import Axis, make_chain
-from twin.model.effect import Tunable
-from twin.model.model import columns
-from twin.record.touches import Setup, Touches
-from twin.units import DEG, NM, UM, URAD
+from matstd.twin.effects.joint_sag import KIND as JOINT_SAG
+from matstd.twin.errors import UnknownEffect
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.model.effect import Tunable
+from matstd.twin.model.model import columns
+from matstd.twin.record.touches import Setup, Touches
+from matstd.twin.units import DEG, NM, UM, URAD
 
 HSM = make_chain(
     "hsm600u",

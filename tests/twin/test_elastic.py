@@ -4,16 +4,16 @@ import numpy as np
 import pytest
 from beam_by_work import flexibility
 
-from twin.elastic.beam import SUPPORTS, bending
-from twin.elastic.body import GRAVITY
-from twin.elastic.section import material, section
-from twin.errors import UnknownEffect
-from twin.library.catalogue import parse_effect
-from twin.library.sized_effect import parse_sized_effect
-from twin.machine.chain import Axis, make_chain
-from twin.model.model import Model
-from twin.record.touches import at_poses
-from twin.units import UM
+from matstd.twin.elastic.beam import SUPPORTS, bending
+from matstd.twin.elastic.body import GRAVITY
+from matstd.twin.elastic.section import material, section
+from matstd.twin.errors import UnknownEffect
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library.sized_effect import parse_sized_effect
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.model.model import Model
+from matstd.twin.record.touches import at_poses
+from matstd.twin.units import UM
 
 EI, GA = 2.1e5 * 8.0e6, 8.0e4 * 5.0e3
 

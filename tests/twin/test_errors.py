@@ -4,7 +4,7 @@ import pickle
 
 import pytest
 
-from twin.errors import BadFile, BadValue, DesignError, UnknownAxis, UnknownSymbol
+from matstd.twin.errors import BadFile, BadValue, DesignError, UnknownAxis, UnknownSymbol
 
 EVERY = [
     DesignError("no", reason=1),

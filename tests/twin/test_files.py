@@ -5,14 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin.effects.geometric import ComponentError
-from twin.errors import BadFile, DesignError
-from twin.files.error_file import errors_toml, read_errors
-from twin.files.machine_file import read_machine
-from twin.files.pose_file import read_poses
-from twin.files.whole import write_whole
-from twin.machine.chain import Axis, make_chain
-from twin.units import DEG, UM, URAD
+from matstd.twin.effects.geometric import ComponentError
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.files.error_file import errors_toml, read_errors
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.files.pose_file import read_poses
+from matstd.twin.files.whole import write_whole
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.units import DEG, UM, URAD
 
 MACHINE = """format = "machine/1"
 name = "test"

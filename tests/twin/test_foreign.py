@@ -7,23 +7,23 @@ import numpy as np
 import openpyxl
 import pytest
 
-from diagnosis.answer.run_diagnosis import diagnose
-from diagnosis.fit.describe import Role
-from diagnosis.fit.identification import fit_run
 from matstd.cli import main
-from twin.errors import BadFile
-from twin.files.run_file import read_run
-from twin.foreign.axis_run import one_axis_machine, positioning_run
-from twin.foreign.circle import read_circle
-from twin.foreign.points import linear_machine, points_run, read_points
-from twin.foreign.positioning import PositioningTest, read_positioning
-from twin.foreign.serial_arm import arm_from_dh
-from twin.library.catalogue import parse_effect
-from twin.library.ordinary import ordinary_model
-from twin.record.copies import without_copies
-from twin.record.touches import at_poses
-from twin.sheets.sheet import bare, read_sheet, unit_of_column
-from twin.units import DEG, UM, URAD
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.fit.describe import Role
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.twin.errors import BadFile
+from matstd.twin.files.run_file import read_run
+from matstd.twin.foreign.axis_run import one_axis_machine, positioning_run
+from matstd.twin.foreign.circle import read_circle
+from matstd.twin.foreign.points import linear_machine, points_run, read_points
+from matstd.twin.foreign.positioning import PositioningTest, read_positioning
+from matstd.twin.foreign.serial_arm import arm_from_dh
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.record.copies import without_copies
+from matstd.twin.record.touches import at_poses
+from matstd.twin.sheets.sheet import bare, read_sheet, unit_of_column
+from matstd.twin.units import DEG, UM, URAD
 
 BAD = 2
 TARGETS = np.array([0.0, 25.0, 50.0, 75.0, 100.0])

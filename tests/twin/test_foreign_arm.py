@@ -5,18 +5,18 @@ import re
 import numpy as np
 import pytest
 
-from diagnosis.fit.identification import fit_run
 from matstd.cli import main
-from twin.errors import BadFile, DesignError, NotEnoughData
-from twin.files.machine_file import read_machine
-from twin.files.run_file import read_run
-from twin.files.run_writer import write_run
-from twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
-from twin.frames import apply
-from twin.library.ordinary import ordinary_model
-from twin.machine.kinematics import table_to_tool
-from twin.sheets.sheet import read_sheet
-from twin.units import DEG, NM, UM
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.twin.errors import BadFile, DesignError, NotEnoughData
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.files.run_file import read_run
+from matstd.twin.files.run_writer import write_run
+from matstd.twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
+from matstd.twin.frames import apply
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.machine.kinematics import table_to_tool
+from matstd.twin.sheets.sheet import read_sheet
+from matstd.twin.units import DEG, NM, UM
 
 BAD = 2
 UR5 = """a,alpha,d,theta offset

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from twin.errors import BadFile
-from twin.foreign.acceptance import positioning_figures
-from twin.foreign.axis_log import approaches
-from twin.foreign.positioning import read_positioning
-from twin.sheets.sheet import read_sheet
-from twin.units import UM
+from matstd.twin.errors import BadFile
+from matstd.twin.foreign.acceptance import positioning_figures
+from matstd.twin.foreign.axis_log import approaches
+from matstd.twin.foreign.positioning import read_positioning
+from matstd.twin.sheets.sheet import read_sheet
+from matstd.twin.units import UM
 
 PARTS = """# test of X
 

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin.errors import BadFile
-from twin.foreign.positioning import read_positioning
-from twin.foreign.serial_arm import arm_from_dh
-from twin.sheets.sheet import read_sheet
+from matstd.twin.errors import BadFile
+from matstd.twin.foreign.positioning import read_positioning
+from matstd.twin.foreign.serial_arm import arm_from_dh
+from matstd.twin.sheets.sheet import read_sheet
 
 
 def sheet(folder: Path, text: str):

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from twin.errors import BadFile
-from twin.foreign.points import read_points
-from twin.sheets.sheet import read_sheet
+from matstd.twin.errors import BadFile
+from matstd.twin.foreign.points import read_points
+from matstd.twin.sheets.sheet import read_sheet
 
 HEADS = {
     "v1": ("xmin,xmax,ymin,ymax,radius,spacing,xnum,ynum", "-20,20.1,5,45.1,-1,20,3,3"),

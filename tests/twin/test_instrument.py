@@ -4,11 +4,11 @@ from dataclasses import replace
 
 import pytest
 
-from twin.errors import BadFile
-from twin.files.run_file import read_run
-from twin.files.run_writer import run_text
-from twin.library.catalogue import proposals
-from twin.record.instrument import Instrument
+from matstd.twin.errors import BadFile
+from matstd.twin.files.run_file import read_run
+from matstd.twin.files.run_writer import run_text
+from matstd.twin.library.catalogue import proposals
+from matstd.twin.record.instrument import Instrument
 
 OF_A_BALL = {
     "probe-lobing",

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from twin.errors import DesignError
-from twin.library.catalogue import parse_effect
-from twin.model.model import columns
-from twin.record.instrument import Instrument
-from twin.record.several_runs import joined
-from twin.units import NM
+from matstd.twin.errors import DesignError
+from matstd.twin.library.catalogue import parse_effect
+from matstd.twin.model.model import columns
+from matstd.twin.record.instrument import Instrument
+from matstd.twin.record.several_runs import joined
+from matstd.twin.units import NM
 
 
 @pytest.fixture(scope="module")

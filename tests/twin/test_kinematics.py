@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from twin.errors import NotReachable, ShapeMismatch
-from twin.frames import (
+from matstd.twin.errors import NotReachable, ShapeMismatch
+from matstd.twin.frames import (
     apply,
     fixed_xyz,
     fixed_xyz_angles,
@@ -16,11 +16,11 @@ from twin.frames import (
     skew,
     turned_about,
 )
-from twin.machine.chain import Axis, Chain, make_chain
-from twin.machine.contribution import Contribution
-from twin.machine.kinematics import exact_tip, inverse_linear, reach, table_to_tool, tip
-from twin.machine.symbols import Family
-from twin.units import DEG, NM
+from matstd.twin.machine.chain import Axis, Chain, make_chain
+from matstd.twin.machine.contribution import Contribution
+from matstd.twin.machine.kinematics import exact_tip, inverse_linear, reach, table_to_tool, tip
+from matstd.twin.machine.symbols import Family
+from matstd.twin.units import DEG, NM
 
 RELATIVE = 1e-6
 """Central differences of step 1e-4 rad leave h^2/6 = 2e-9 of the third derivative, and 1e-9 of

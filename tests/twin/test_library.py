@@ -6,13 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import twin.library.catalogue as library
-from twin.effects.backlash import KIND as BACKLASH
-from twin.errors import BadFile, DesignError, UnknownAxis, UnknownEffect, UnknownSymbol
-from twin.machine.chain import Axis, make_chain
-from twin.model.kind import Kind
-from twin.record.touches import at_poses
-from twin.units import DEG
+import matstd.twin.library.catalogue as library
+from matstd.twin.effects.backlash import KIND as BACKLASH
+from matstd.twin.errors import BadFile, DesignError, UnknownAxis, UnknownEffect, UnknownSymbol
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.model.kind import Kind
+from matstd.twin.record.touches import at_poses
+from matstd.twin.units import DEG
 
 CHAIN = make_chain(
     "hsm600u",
@@ -151,9 +151,9 @@ USERS = '''
 """A hose that drags at the ram: an effect of our own."""
 from dataclasses import dataclass
 
-from twin.model import Parameter, Term, Where
-from twin.model import Kind
-from twin.units import UM
+from matstd.twin.model import Parameter, Term, Where
+from matstd.twin.model import Kind
+from matstd.twin.units import UM
 
 
 @dataclass(frozen=True)
@@ -230,7 +230,7 @@ def test_an_installed_effect_is_a_users_file_too(own_register, monkeypatch, tmp_
 
 
 def test_entry_points_add_effects(own_register, monkeypatch) -> None:
-    found = _points("twin.effects.backlash:KIND")
+    found = _points("matstd.twin.effects.backlash:KIND")
     monkeypatch.setattr(library, "entry_points", lambda group: found.select(group=group))
     assert library.load_installed_effects() == (BACKLASH,)
 
@@ -238,7 +238,7 @@ def test_entry_points_add_effects(own_register, monkeypatch) -> None:
 @pytest.mark.parametrize(
     ("value", "message"),
     [
-        ("twin.effects.backlash:Backlash", "expected a Kind"),
+        ("matstd.twin.effects.backlash:Backlash", "expected a Kind"),
         ("twin.effects.nothing:KIND", "No module named 'twin.effects.nothing'"),
     ],
 )
@@ -251,3 +251,9 @@ def test_faulty_entry_points_are_named(own_register, monkeypatch, value, message
 def test_unknown_axes_are_told_with_what_there_is() -> None:
     with pytest.raises(UnknownAxis, match="this machine has C, B, X, Y, Z, C1"):
         CHAIN.axis_index("A")
+
+
+def test_a_file_with_the_rooms_former_names_is_refused_with_the_new(tmp_path) -> None:
+    (tmp_path / "own.py").write_text("from twin.none import Kind\n", encoding="utf-8")
+    with pytest.raises(BadFile, match=r"line 1: found .*, expected .* matstd\.twin\.none"):
+        library.load_user_effects(tmp_path / "own.py")

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from twin.errors import BadFile
-from twin.files.run_file import read_run
-from twin.foreign.mapping_file import mapped_run
-from twin.sheets.clock import seconds
-from twin.sheets.sheet import read_sheet
-from twin.units import UM
+from matstd.twin.errors import BadFile
+from matstd.twin.files.run_file import read_run
+from matstd.twin.foreign.mapping_file import mapped_run
+from matstd.twin.sheets.clock import seconds
+from matstd.twin.sheets.sheet import read_sheet
+from matstd.twin.units import UM
 
 MACHINE = """format = "machine/1"
 name = "mill"

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from twin.errors import BadFile
-from twin.files.error_file import read_errors
-from twin.files.machine_file import read_machine
-from twin.files.run_file import read_run
+from matstd.twin.errors import BadFile
+from matstd.twin.files.error_file import read_errors
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.files.run_file import read_run
 
 MACHINE = """format = "machine/1"
 name = "small"

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from twin.machine import Axis, Contribution, exact_tip, make_chain, moved_point, tip
-from twin.units import NM
+from matstd.twin.machine import Axis, Contribution, exact_tip, make_chain, moved_point, tip
+from matstd.twin.units import NM
 
 POSES, LENGTH = 40, 160.0
 TRAVEL, TURN = Axis(range=(-400.0, 400.0)), (-3.0, 3.0)

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from twin.errors import DesignError
-from twin.foreign.other_frame import in_measured_frame, in_nominal_frame, measured_frames
-from twin.foreign.point_list import PointList
-from twin.foreign.points import linear_machine, points_run
-from twin.record.touches import computed_deviation
-from twin.units import UM
+from matstd.twin.errors import DesignError
+from matstd.twin.foreign.other_frame import in_measured_frame, in_nominal_frame, measured_frames
+from matstd.twin.foreign.point_list import PointList
+from matstd.twin.foreign.points import linear_machine, points_run
+from matstd.twin.record.touches import computed_deviation
+from matstd.twin.units import UM
 
 TURN, AWAY = 2.3, np.array([512.0, -81.0, 33.0])
 N = 24

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from twin.errors import BadFile
-from twin.files.run_file import read_run
-from twin.foreign.points import read_points
-from twin.sheets.sheet import read_sheet
-from twin.units import UM
+from matstd.twin.errors import BadFile
+from matstd.twin.files.run_file import read_run
+from matstd.twin.foreign.points import read_points
+from matstd.twin.sheets.sheet import read_sheet
+from matstd.twin.units import UM
 
 CHARACTERISTICS = """planid\tpartnb\tid\ttype\tidsymbol\tactual\tnominal\tuppertol\tdeviation
 4711\t1\tX-Wert_Bohrung_01\tcartesian\tx\t19.971\t20.000\t0.05\t-0.029

@@ -6,15 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin.effects.artefact import ArtefactExpansion
-from twin.effects.setup_error import setup_errors
-from twin.errors import BadFile
-from twin.files.run_file import read_run
-from twin.files.run_writer import write_run
-from twin.model.model import columns
-from twin.record.several_runs import joined
-from twin.record.touches import computed_deviation
-from twin.units import NM, UM
+from matstd.twin.effects.artefact import ArtefactExpansion
+from matstd.twin.effects.setup_error import setup_errors
+from matstd.twin.errors import BadFile
+from matstd.twin.files.run_file import read_run
+from matstd.twin.files.run_writer import write_run
+from matstd.twin.model.model import columns
+from matstd.twin.record.several_runs import joined
+from matstd.twin.record.touches import computed_deviation
+from matstd.twin.units import NM, UM
 
 MACHINE = """format = "machine/1"
 name = "test"

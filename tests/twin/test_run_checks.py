@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin.errors import BadFile
-from twin.files.run_file import read_run
-from twin.units import UM
+from matstd.twin.errors import BadFile
+from matstd.twin.files.run_file import read_run
+from matstd.twin.units import UM
 
 MACHINE = """format = "machine/1"
 name = "test"

@@ -5,12 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin.errors import BadFile
-from twin.files.run_file import read_run
-from twin.files.run_writer import write_run
-from twin.machine.contribution import Where
-from twin.record.touches import computed_deviation
-from twin.units import NM, UM, URAD
+from matstd.twin.errors import BadFile
+from matstd.twin.files.run_file import read_run
+from matstd.twin.files.run_writer import write_run
+from matstd.twin.machine.contribution import Where
+from matstd.twin.record.touches import computed_deviation
+from matstd.twin.units import NM, UM, URAD
 
 MACHINE = """format = "machine/1"
 name = "test"

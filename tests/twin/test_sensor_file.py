@@ -6,12 +6,12 @@ from datetime import datetime
 import numpy as np
 import pytest
 
-from twin.errors import BadFile
-from twin.files.machine_file import read_machine
-from twin.files.sensor_file import read_sensors
-from twin.machine.chain import Chain
-from twin.record.run import Run
-from twin.record.touches import at_poses
+from matstd.twin.errors import BadFile
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.files.sensor_file import read_sensors
+from matstd.twin.machine.chain import Chain
+from matstd.twin.record.run import Run
+from matstd.twin.record.touches import at_poses
 
 BEGIN = datetime(2031, 5, 6, 23, 59, 0)
 TEXT = """clock,T_ram_degC,T_room_degC

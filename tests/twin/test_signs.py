@@ -20,14 +20,14 @@ import numpy as np
 import pytest
 from machines import HSM600U
 
-from twin.effects.geometric import ComponentError
-from twin.effects.location import LocationError
-from twin.machine.chain import Axis, Chain, make_chain
-from twin.machine.kinematics import tip
-from twin.machine.symbols import Family
-from twin.model.model import Model
-from twin.record.touches import at_poses
-from twin.units import DEG, NM, UM, URAD
+from matstd.twin.effects.geometric import ComponentError
+from matstd.twin.effects.location import LocationError
+from matstd.twin.machine.chain import Axis, Chain, make_chain
+from matstd.twin.machine.kinematics import tip
+from matstd.twin.machine.symbols import Family
+from matstd.twin.model.model import Model
+from matstd.twin.record.touches import at_poses
+from matstd.twin.units import DEG, NM, UM, URAD
 
 LENGTH = 160.0
 SIZE_UM, SIZE_URAD = 1.0, 10.0

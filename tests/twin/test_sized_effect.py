@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin.errors import DesignError
-from twin.files.machine_file import read_machine
-from twin.library.sized_effect import parse_sized_effect, parse_sizes
-from twin.units import DEG
+from matstd.twin.errors import DesignError
+from matstd.twin.files.machine_file import read_machine
+from matstd.twin.library.sized_effect import parse_sized_effect, parse_sizes
+from matstd.twin.units import DEG
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 

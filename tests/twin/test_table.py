@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin.errors import BadFile
-from twin.files import table
-from twin.files.table import CsvTable
+from matstd.twin.errors import BadFile
+from matstd.twin.files import table
+from matstd.twin.files.table import CsvTable
 
 ROWS = 5000
 """More than two of the blocks in which numbers are converted."""

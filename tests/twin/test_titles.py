@@ -3,9 +3,9 @@
 import pytest
 from made_up import MACHINES, made_up
 
-from twin.library.catalogue import find_kinds, kinds, parse_effect, proposals, title_of
-from twin.machine.symbols import parse_symbol
-from twin.model.effect import Titled
+from matstd.twin.library.catalogue import find_kinds, kinds, parse_effect, proposals, title_of
+from matstd.twin.machine.symbols import parse_symbol
+from matstd.twin.model.effect import Titled
 
 
 @pytest.mark.parametrize(

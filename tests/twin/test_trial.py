@@ -6,19 +6,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from twin.errors import BadFile, UnknownEffect
-from twin.library import catalogue as library
-from twin.library.trial import try_kind, users_lines
-from twin.machine.chain import Axis, make_chain
-from twin.record.touches import at_poses
+from matstd.twin.errors import BadFile, UnknownEffect
+from matstd.twin.library import catalogue as library
+from matstd.twin.library.trial import try_kind, users_lines
+from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.record.touches import at_poses
 
 FILE = '''from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.model import Inner, Parameter, Term, Where
-from twin.model import Kind
-from twin.units import UM
+from matstd.twin.model import Inner, Parameter, Term, Where
+from matstd.twin.model import Kind
+from matstd.twin.units import UM
 
 
 @dataclass(frozen=True)
@@ -283,9 +283,9 @@ def test_the_effect_of_the_guide_is_one(own_register, tmp_path: Path) -> None:
     code = guide.read_text(encoding="utf-8").split("```python\n")[1].split("```")[0]
     path = tmp_path / "own.py"
     imports = """from dataclasses import dataclass
-from twin.model import Parameter, Term, Where
-from twin.model import Kind
-from twin.units import UM
+from matstd.twin.model import Parameter, Term, Where
+from matstd.twin.model import Kind
+from matstd.twin.units import UM
 """
     path.write_text(imports + code, encoding="utf-8")
     (kind,) = library.load_user_effects(path)

@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.frames import Array
-from twin.machine import Chain
-from twin.model import (
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.model import (
     Effect,
     Inner,
     Kind,
@@ -21,8 +21,8 @@ from twin.model import (
     sensor_record,
     sensors,
 )
-from twin.record import Touches
-from twin.units import UM, URAD
+from matstd.twin.record import Touches
+from matstd.twin.units import UM, URAD
 
 HOUR = 3600.0
 """Drift is told per hour, s."""

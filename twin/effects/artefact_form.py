@@ -6,11 +6,11 @@ from functools import cached_property
 
 import numpy as np
 
-from twin.frames import Array
-from twin.machine import Chain
-from twin.model import Kind, Parameter, Term, Title, Where, check_count
-from twin.record import Touches
-from twin.units import UM
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.model import Kind, Parameter, Term, Title, Where, check_count
+from matstd.twin.record import Touches
+from matstd.twin.units import UM
 
 FORM_DEGREE = 5
 """Of the polynomial over a patch, 21 coefficients: waves down to the size of the patch."""

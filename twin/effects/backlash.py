@@ -5,9 +5,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.frames import Array
-from twin.machine import LETTERS, Chain, Family, Symbol
-from twin.model import (
+from matstd.twin.frames import Array
+from matstd.twin.machine import LETTERS, Chain, Family, Symbol
+from matstd.twin.model import (
     Kind,
     Parameter,
     Term,
@@ -18,8 +18,8 @@ from twin.model import (
     component_symbol,
     moving_axes,
 )
-from twin.record import Touches
-from twin.units import UM, URAD
+from matstd.twin.record import Touches
+from matstd.twin.units import UM, URAD
 
 UNFELT = 1e-6
 """Share of what is felt most below which a component is not felt at all."""

@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial.legendre import legvander
 
-from twin.frames import Array
-from twin.machine import Chain, Family, Symbol
-from twin.model import (
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Family, Symbol
+from matstd.twin.model import (
     Kind,
     Parameter,
     Term,
@@ -20,8 +20,8 @@ from twin.model import (
     moving_axes,
     refusal,
 )
-from twin.record import Touches
-from twin.units import UM, URAD
+from matstd.twin.record import Touches
+from matstd.twin.units import UM, URAD
 
 DEGREES = ("1", "2", "3", "4")
 """Of a coupling: more bends no guide, and no run tells."""

@@ -7,8 +7,8 @@ from functools import cached_property
 
 import numpy as np
 
-from twin.machine import SHAPES, Chain, Family, Ranges, ShapeName, Symbol, shape
-from twin.model import (
+from matstd.twin.machine import SHAPES, Chain, Family, Ranges, ShapeName, Symbol, shape
+from matstd.twin.model import (
     Effect,
     Kind,
     Parameter,
@@ -19,8 +19,8 @@ from twin.model import (
     moving_axes,
     refusal,
 )
-from twin.record import Touches
-from twin.units import DEG
+from matstd.twin.record import Touches
+from matstd.twin.units import DEG
 
 HIGHEST = 12
 """Degree beyond which a name is a slip: what varies faster is `periodic`."""
@@ -35,7 +35,7 @@ class ComponentError:
     """One component error of an axis in one of the distributions of the D-MT paper.
 
     ``E(q) = a f(q)`` with f the constant, linear, parabolic or sinusoidal shape of unit peak
-    amplitude (`twin.machine.shapes`).
+    amplitude (`matstd.twin.machine.shapes`).
 
     Attributes:
         symbol: Which component of which axis.

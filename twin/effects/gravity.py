@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.machine import Chain, Family, Symbol
-from twin.model import (
+from matstd.twin.machine import Chain, Family, Symbol
+from matstd.twin.model import (
     Effect,
     Kind,
     Parameter,
@@ -18,8 +18,8 @@ from twin.model import (
     moving_axes,
     refusal,
 )
-from twin.record import Touches
-from twin.units import UM, URAD
+from matstd.twin.record import Touches
+from matstd.twin.units import UM, URAD
 
 
 @dataclass(frozen=True)

@@ -12,11 +12,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from twin.frames import Array, apply, turn
-from twin.machine import Chain, Link, table_to_tool
-from twin.model import Kind, Parameter, Term, Title, Where, check_count, refusal
-from twin.record import Touches
-from twin.units import URAD
+from matstd.twin.frames import Array, apply, turn
+from matstd.twin.machine import Chain, Link, table_to_tool
+from matstd.twin.model import Kind, Parameter, Term, Title, Where, check_count, refusal
+from matstd.twin.record import Touches
+from matstd.twin.units import URAD
 
 SAME = 1e-6
 """Points closer than this (mm) with every axis at zero are one."""

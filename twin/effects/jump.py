@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.machine import Chain, Symbol
-from twin.model import (
+from matstd.twin.machine import Chain, Symbol
+from matstd.twin.model import (
     Inner,
     Kind,
     Parameter,
@@ -19,8 +19,8 @@ from twin.model import (
     check_count,
     component_symbol,
 )
-from twin.record import Touches
-from twin.units import UM, URAD
+from matstd.twin.record import Touches
+from matstd.twin.units import UM, URAD
 
 ON_EACH_SIDE = 6
 """Readings before a jump and behind it: fewer are accidents."""

@@ -6,18 +6,18 @@ from functools import cached_property
 
 import numpy as np
 
-from twin.machine import Chain, Family, Ranges, Symbol
-from twin.model import Kind, Parameter, Term, Title, Where, check_count, refusal
-from twin.record import Touches
+from matstd.twin.machine import Chain, Family, Ranges, Symbol
+from matstd.twin.model import Kind, Parameter, Term, Title, Where, check_count, refusal
+from matstd.twin.record import Touches
 
 
 @dataclass(frozen=True)
 class LocationError:
     """A constant displacement of an axis's line, of its zero, of the workpiece or of the tool.
 
-    The chain knows how it reaches the tip (`twin.machine.kinematics.place_as_twist`): a squareness
-    turns the direction of travel of a linear axis, `EX0C`, `EA0C` displace and tilt a rotary axis's
-    line, `EX0X`, `EC0C` add to a reading.
+    The chain knows how it reaches the tip (`matstd.twin.machine.kinematics.place_as_twist`): a
+    squareness turns the direction of travel of a linear axis, `EX0C`, `EA0C` displace and tilt a
+    rotary axis's line, `EX0X`, `EC0C` add to a reading.
 
     Attributes:
         symbol: Which one.

@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from twin.model import Effect, Inner, Parameter, Term, Title, Titled, Tunable
-from twin.record import Touches
+from matstd.twin.model import Effect, Inner, Parameter, Term, Title, Titled, Tunable
+from matstd.twin.record import Touches
 
 MARK = "#"
 """Between the name of an effect and which time it stands in the model."""

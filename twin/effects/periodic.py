@@ -6,9 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from twin.frames import Array
-from twin.machine import Chain, Family, Symbol
-from twin.model import (
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Family, Symbol
+from matstd.twin.model import (
     Inner,
     Kind,
     Parameter,
@@ -19,8 +19,8 @@ from twin.model import (
     moving_axes,
     refusal,
 )
-from twin.record import Touches
-from twin.units import UM, URAD
+from matstd.twin.record import Touches
+from matstd.twin.units import UM, URAD
 
 SHORTEST, LONGEST = 1.0, 50.0
 """Periods that are scanned on a linear axis, mm, if nothing else is known; closer readings are

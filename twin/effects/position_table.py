@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.effects.backlash import measured_component
-from twin.frames import Array
-from twin.machine import Chain, Family, Symbol
-from twin.model import (
+from matstd.twin.effects.backlash import measured_component
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Family, Symbol
+from matstd.twin.model import (
     Inner,
     Kind,
     Parameter,
@@ -24,8 +24,8 @@ from twin.model import (
     moving_axes,
     refusal,
 )
-from twin.record import Touches
-from twin.units import UM, URAD
+from matstd.twin.record import Touches
+from matstd.twin.units import UM, URAD
 
 ORDER = 20
 """Half waves over the travel: as fine as 20 targets show; what repeats faster is `periodic`."""

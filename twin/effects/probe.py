@@ -6,10 +6,10 @@ from functools import partial
 
 import numpy as np
 
-from twin.frames import Array
-from twin.model import Effect, Inner, Kind, Parameter, Term, Title, Where
-from twin.record import Touches
-from twin.units import UM
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, Inner, Kind, Parameter, Term, Title, Where
+from matstd.twin.record import Touches
+from matstd.twin.units import UM
 
 
 def normal_in_tool(touches: Touches) -> Array:

@@ -5,10 +5,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.frames import Array
-from twin.machine import Chain
-from twin.model import Kind, Parameter, Term, Title, Where, check_count, checked_axis, moving_axes
-from twin.record import IntArray, Labels, Touches
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.model import (
+    Kind,
+    Parameter,
+    Term,
+    Title,
+    Where,
+    check_count,
+    checked_axis,
+    moving_axes,
+)
+from matstd.twin.record import IntArray, Labels, Touches
 
 STATED = "v{axis}_mm_s"
 """Column of the user's own (`V_vX_mm_s`) that states the speed of an axis, mm/s."""

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.frames import Array
-from twin.model import Parameter, Term, Where
-from twin.record import Body, Touches
-from twin.units import T_REF, UM
+from matstd.twin.frames import Array
+from matstd.twin.model import Parameter, Term, Where
+from matstd.twin.record import Body, Touches
+from matstd.twin.units import T_REF, UM
 
 SHIFT_SD = 1000.0 * UM
 TURN_SD = 5e-3

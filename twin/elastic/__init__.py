@@ -4,11 +4,11 @@ One kind a file, as in `effects`; `section` and `beam` are the mechanics. Weight
 a material, so a `beam` is stated by the user and never proposed.
 """
 
-from twin.elastic.beam import SUPPORTS, Plane, along, bending
-from twin.elastic.body import Body
-from twin.elastic.doubts import short_beams
-from twin.elastic.section import MATERIALS, Material, Section, material
-from twin.elastic.tool_point import ToolPointStiffness
+from matstd.twin.elastic.beam import SUPPORTS, Plane, along, bending
+from matstd.twin.elastic.body import Body
+from matstd.twin.elastic.doubts import short_beams
+from matstd.twin.elastic.section import MATERIALS, Material, Section, material
+from matstd.twin.elastic.tool_point import ToolPointStiffness
 
 __all__ = [
     "MATERIALS",

@@ -11,7 +11,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from twin.frames import Array
+from matstd.twin.frames import Array
 
 Support = Literal["cantilever", "supported", "clamped"]
 SUPPORTS: tuple[Support, ...] = ("cantilever", "supported", "clamped")

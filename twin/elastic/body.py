@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.elastic.beam import SUPPORTS, Plane, Support, along, bending
-from twin.elastic.section import MATERIALS, Material, Section, material, section
-from twin.errors import UnknownEffect
-from twin.frames import Array
-from twin.machine import Chain
-from twin.model import Kind, Parameter, Term, Title, Where, checked_linear, refusal
-from twin.record import Touches
+from matstd.twin.elastic.beam import SUPPORTS, Plane, Support, along, bending
+from matstd.twin.elastic.section import MATERIALS, Material, Section, material, section
+from matstd.twin.errors import UnknownEffect
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.model import Kind, Parameter, Term, Title, Where, checked_linear, refusal
+from matstd.twin.record import Touches
 
 GRAVITY = 9.80665
 """Standard acceleration, m/s2, N/kg."""

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Iterator
 
-from twin.elastic.body import SLENDER, Body
-from twin.machine import Chain
-from twin.model import Effect
+from matstd.twin.elastic.body import SLENDER, Body
+from matstd.twin.machine import Chain
+from matstd.twin.model import Effect
 
 
 def short_beams(chain: Chain, effects: Iterable[Effect]) -> Iterator[tuple[str, float]]:

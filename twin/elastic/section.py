@@ -10,7 +10,7 @@ import math
 import re
 from dataclasses import dataclass
 
-from twin.units import GPA, KG_M3
+from matstd.twin.units import GPA, KG_M3
 
 _NUMBER = r"(\d+(?:\.\d+)?)"
 _BOX = re.compile(rf"{_NUMBER}x{_NUMBER}(?:x{_NUMBER})?\Z")

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.errors import UnknownEffect
-from twin.frames import Array
-from twin.machine import Chain
-from twin.model import Kind, Parameter, Term, Title, Where, check_count, refusal
-from twin.record import Touches
-from twin.units import UM
+from matstd.twin.errors import UnknownEffect
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.model import Kind, Parameter, Term, Title, Where, check_count, refusal
+from matstd.twin.record import Touches
+from matstd.twin.units import UM
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.errors import UnknownEffect
-from twin.machine import Chain
-from twin.model import Kind, Parameter, Term, Title, Where, check_count, moving_axes
-from twin.record import Touches
-from twin.units import UM
+from matstd.twin.errors import UnknownEffect
+from matstd.twin.machine import Chain
+from matstd.twin.model import Kind, Parameter, Term, Title, Where, check_count, moving_axes
+from matstd.twin.record import Touches
+from matstd.twin.units import UM
 
 PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
 """Entries of the symmetric compliance: force along the second, motion along the first."""

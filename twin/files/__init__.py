@@ -4,15 +4,15 @@ Readers end in frozen records in base units, or in one `BadFile` that names file
 stood there and what was expected. Writers write whole files or none.
 """
 
-from twin.files.error_file import errors_toml, read_errors
-from twin.files.folder import results_folder
-from twin.files.machine_file import MachineTables, Pair, Vector, read_machine
-from twin.files.pose_file import read_poses, reading_columns
-from twin.files.run_file import SetupTable, read_run
-from twin.files.run_writer import write_run
-from twin.files.sensor_file import SensorRecord, read_sensors
-from twin.files.table import CsvTable
-from twin.files.toml import (
+from matstd.twin.files.error_file import errors_toml, read_errors
+from matstd.twin.files.folder import results_folder
+from matstd.twin.files.machine_file import MachineTables, Pair, Vector, read_machine
+from matstd.twin.files.pose_file import read_poses, reading_columns
+from matstd.twin.files.run_file import SetupTable, read_run
+from matstd.twin.files.run_writer import write_run
+from matstd.twin.files.sensor_file import SensorRecord, read_sensors
+from matstd.twin.files.table import CsvTable
+from matstd.twin.files.toml import (
     Table,
     check_format,
     checked,
@@ -20,7 +20,7 @@ from twin.files.toml import (
     read_any_text,
     read_text,
 )
-from twin.files.whole import (
+from matstd.twin.files.whole import (
     refuse_own_input,
     refuse_to_overwrite,
     write_whole,

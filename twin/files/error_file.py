@@ -6,13 +6,13 @@ from typing import Literal
 
 from pydantic import Field
 
-from twin.effects import ComponentError, LocationError
-from twin.errors import BadFile, UnknownSymbol
-from twin.files.toml import Table, check_format, checked, parse_toml, read_text
-from twin.frames import Array
-from twin.machine import Chain, Family, Symbol
-from twin.model import Effect
-from twin.units import DEG, UM, URAD
+from matstd.twin.effects import ComponentError, LocationError
+from matstd.twin.errors import BadFile, UnknownSymbol
+from matstd.twin.files.toml import Table, check_format, checked, parse_toml, read_text
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Family, Symbol
+from matstd.twin.model import Effect
+from matstd.twin.units import DEG, UM, URAD
 
 LARGEST = 1e6
 """An amplitude beyond this (µm or µrad: a metre, a radian) is a slip of units, not an error."""

@@ -8,9 +8,9 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
-from twin.errors import DesignError
-from twin.files.lock import in_turn, is_abandoned, locked
-from twin.files.whole import NOT_WRITABLE, free_name, written_meanwhile
+from matstd.twin.errors import DesignError
+from matstd.twin.files.lock import in_turn, is_abandoned, locked
+from matstd.twin.files.whole import NOT_WRITABLE, free_name, written_meanwhile
 
 WORKING: set[Path] = set()
 """Folders in which this process works; whoever ends it at once removes them."""

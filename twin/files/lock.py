@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
-from twin.errors import DesignError
+from matstd.twin.errors import DesignError
 
 _LOCK = "matstd.lock"
 _MARK = "matstd works here; this folder goes when it is done\n"

@@ -5,10 +5,10 @@ from typing import Annotated
 
 from pydantic import Field, Strict
 
-from twin.errors import BadFile, BadValue, UnknownAxis
-from twin.files.toml import Table, check_format, checked, parse_toml, read_text
-from twin.machine import Axis, Chain, make_chain
-from twin.units import DEG
+from matstd.twin.errors import BadFile, BadValue, UnknownAxis
+from matstd.twin.files.toml import Table, check_format, checked, parse_toml, read_text
+from matstd.twin.machine import Axis, Chain, make_chain
+from matstd.twin.units import DEG
 
 KILOMETRE = 1e6
 """In mm: nothing of a machine lies, and no axis travels, farther; degrees neither."""

@@ -6,13 +6,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.errors import BadFile
-from twin.files.table import CsvTable
-from twin.files.toml import read_text
-from twin.frames import Array
-from twin.machine import Chain
-from twin.record import IntArray
-from twin.units import DEG
+from matstd.twin.errors import BadFile
+from matstd.twin.files.table import CsvTable
+from matstd.twin.files.toml import read_text
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.record import IntArray
+from matstd.twin.units import DEG
 
 FARTHEST = 1e5
 """A length (mm) or an angle (degrees) beyond this is a slip, not a reading or a place."""

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.errors import BadFile
-from twin.files.pose_file import beyond_travel
-from twin.files.table import CsvTable
-from twin.frames import Array
-from twin.record import Instrument, IntArray, Run, computed_deviation, without_copies
-from twin.units import UM
+from matstd.twin.errors import BadFile
+from matstd.twin.files.pose_file import beyond_travel
+from matstd.twin.files.table import CsvTable
+from matstd.twin.frames import Array
+from matstd.twin.record import Instrument, IntArray, Run, computed_deviation, without_copies
+from matstd.twin.units import UM
 
 Mask = NDArray[np.bool_]
 

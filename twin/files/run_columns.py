@@ -7,13 +7,13 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.errors import BadFile
-from twin.files.pose_file import FARTHEST
-from twin.files.table import KELVIN, CsvTable
-from twin.frames import Array
-from twin.machine import Chain
-from twin.record import BODY, IntArray, Labels, Moved, Touches, implied_approach
-from twin.units import DEG, UM
+from matstd.twin.errors import BadFile
+from matstd.twin.files.pose_file import FARTHEST
+from matstd.twin.files.table import KELVIN, CsvTable
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.record import BODY, IntArray, Labels, Moved, Touches, implied_approach
+from matstd.twin.units import DEG, UM
 
 BoolArray = NDArray[np.bool_]
 

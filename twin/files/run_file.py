@@ -6,16 +6,16 @@ from pathlib import Path
 import numpy as np
 from pydantic import Field
 
-from twin.errors import BadFile, BadValue
-from twin.files import run_columns as columns
-from twin.files.machine_file import Coordinate, Vector, read_machine
-from twin.files.pose_file import FARTHEST, reading_columns, readings
-from twin.files.run_checks import checked_run, states_readings
-from twin.files.table import CsvTable
-from twin.files.toml import Table, check_format, checked, is_file, parse_toml, read_text
-from twin.frames import fixed_xyz, pose
-from twin.machine import Chain
-from twin.record import (
+from matstd.twin.errors import BadFile, BadValue
+from matstd.twin.files import run_columns as columns
+from matstd.twin.files.machine_file import Coordinate, Vector, read_machine
+from matstd.twin.files.pose_file import FARTHEST, reading_columns, readings
+from matstd.twin.files.run_checks import checked_run, states_readings
+from matstd.twin.files.table import CsvTable
+from matstd.twin.files.toml import Table, check_format, checked, is_file, parse_toml, read_text
+from matstd.twin.frames import fixed_xyz, pose
+from matstd.twin.machine import Chain
+from matstd.twin.record import (
     BODY,
     Instrument,
     IntArray,
@@ -28,7 +28,7 @@ from twin.record import (
     computed_deviation,
     with_body,
 )
-from twin.units import DEG, UM
+from matstd.twin.units import DEG, UM
 
 _OPTIONAL = (
     "feature",

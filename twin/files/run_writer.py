@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.errors import ShapeMismatch
-from twin.files.pose_file import reading_columns
-from twin.files.run_columns import FORCE, NORMAL, POINT, RADIUS, TARGET
-from twin.files.whole import write_whole
-from twin.frames import Array, fixed_xyz_angles
-from twin.record import BODY, Instrument, Run, Touches, implied_approach
-from twin.units import DEG, UM
+from matstd.twin.errors import ShapeMismatch
+from matstd.twin.files.pose_file import reading_columns
+from matstd.twin.files.run_columns import FORCE, NORMAL, POINT, RADIUS, TARGET
+from matstd.twin.files.whole import write_whole
+from matstd.twin.frames import Array, fixed_xyz_angles
+from matstd.twin.record import BODY, Instrument, Run, Touches, implied_approach
+from matstd.twin.units import DEG, UM
 
 
 def write_run(path: str | Path, run: Run, machine: str) -> None:

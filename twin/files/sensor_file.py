@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.errors import BadFile
-from twin.files.run_columns import temperatures
-from twin.files.table import CsvTable
-from twin.files.toml import read_text
-from twin.frames import Array
-from twin.record import Run, Touches
+from matstd.twin.errors import BadFile
+from matstd.twin.files.run_columns import temperatures
+from matstd.twin.files.table import CsvTable
+from matstd.twin.files.toml import read_text
+from matstd.twin.frames import Array
+from matstd.twin.record import Run, Touches
 
 EPOCH = datetime(2000, 1, 1)
 

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic_core import from_json
 
-from twin.errors import BadFile
-from twin.frames import Array
-from twin.words import did_you_mean
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
+from matstd.twin.words import did_you_mean
 
 LARGEST = 1e12
 """Whatever a column holds, a number beyond this is a slip."""

@@ -8,8 +8,8 @@ from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from twin.errors import BadFile
-from twin.words import did_you_mean
+from matstd.twin.errors import BadFile
+from matstd.twin.words import did_you_mean
 
 _NO_TEXT = {
     b"PK\x03\x04": "a zip archive, such as a workbook of Excel (save it as CSV)",

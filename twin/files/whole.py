@@ -8,8 +8,8 @@ from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
 
-from twin.errors import DesignError
-from twin.files.lock import in_turn
+from matstd.twin.errors import DesignError
+from matstd.twin.files.lock import in_turn
 
 NOT_WRITABLE = (
     errno.ENOSPC,

@@ -6,17 +6,17 @@ there, a machine whose travels are those of the data. The sign of a deviation is
 and said to the user: what a machine did wrong is the negative of what its controller sees.
 """
 
-from twin.foreign.acceptance import positioning_figures
-from twin.foreign.arm_mistakes import coupled, likely_mistake
-from twin.foreign.axis_run import one_axis_machine, positioning_run
-from twin.foreign.circle import circle_machine, circle_run, read_circle
-from twin.foreign.machine_draft import machine_text
-from twin.foreign.mapping_file import mapped_run
-from twin.foreign.other_frame import in_measured_frame, in_nominal_frame, measured_frames
-from twin.foreign.point_list import joined_points, misplaced
-from twin.foreign.points import linear_machine, points_run, read_points
-from twin.foreign.positioning import PositioningTest, read_positioning
-from twin.foreign.serial_arm import arm_from_dh, joint_readings, misfit, tracker_run
+from matstd.twin.foreign.acceptance import positioning_figures
+from matstd.twin.foreign.arm_mistakes import coupled, likely_mistake
+from matstd.twin.foreign.axis_run import one_axis_machine, positioning_run
+from matstd.twin.foreign.circle import circle_machine, circle_run, read_circle
+from matstd.twin.foreign.machine_draft import machine_text
+from matstd.twin.foreign.mapping_file import mapped_run
+from matstd.twin.foreign.other_frame import in_measured_frame, in_nominal_frame, measured_frames
+from matstd.twin.foreign.point_list import joined_points, misplaced
+from matstd.twin.foreign.points import linear_machine, points_run, read_points
+from matstd.twin.foreign.positioning import PositioningTest, read_positioning
+from matstd.twin.foreign.serial_arm import arm_from_dh, joint_readings, misfit, tracker_run
 
 __all__ = [
     "PositioningTest",

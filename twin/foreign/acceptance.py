@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.foreign.positioning import PositioningTest
-from twin.frames import Array
+from matstd.twin.foreign.positioning import PositioningTest
+from matstd.twin.frames import Array
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.machine import Chain
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
 
 ABSURD = 5.0
 """Deviations (mm rms) beyond what an arm as it comes from its maker shows (about 1 mm)."""

@@ -4,9 +4,9 @@ import re
 
 import numpy as np
 
-from twin.frames import Array
-from twin.record import IntArray
-from twin.sheets import SECONDS, Sheet, unit_of_column
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
+from matstd.twin.sheets import SECONDS, Sheet, unit_of_column
 
 _LOAD = re.compile(r"\AF_?([xyz])[\s_]*[\[(_]\s*N[\])]?\s*\Z", re.IGNORECASE)
 _OWN = re.compile(r"(.+?)[\s_]*[\[(]\s*([^\])]+?)\s*[\])]\s*\Z")

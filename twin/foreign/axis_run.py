@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from twin.foreign.positioning import PositioningTest
-from twin.frames import Array, pose
-from twin.machine import LETTERS, Axis, Chain, Link, make_chain, tip
-from twin.record import Instrument, Run, Setup, Touches
-from twin.thermal import CYCLE, PROGRESS
+from matstd.twin.foreign.positioning import PositioningTest
+from matstd.twin.frames import Array, pose
+from matstd.twin.machine import LETTERS, Axis, Chain, Link, make_chain, tip
+from matstd.twin.record import Instrument, Run, Setup, Touches
+from matstd.twin.thermal import CYCLE, PROGRESS
 
 ARM = 1000.0
 """Arm (mm) by which the angle is told as a length: 1 µrad is 1 µm."""

@@ -14,13 +14,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.errors import BadFile, DesignError
-from twin.foreign.axis_log import strokes
-from twin.frames import Array, apply
-from twin.machine import Axis, Chain, linear_directions, make_chain, table_to_tool
-from twin.record import Instrument, IntArray, Labels, Run, Setup, Touches
-from twin.sheets import ANGLES, MM, Sheet, bare, unit_of_column
-from twin.units import MINUTE
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.foreign.axis_log import strokes
+from matstd.twin.frames import Array, apply
+from matstd.twin.machine import Axis, Chain, linear_directions, make_chain, table_to_tool
+from matstd.twin.record import Instrument, IntArray, Labels, Run, Setup, Touches
+from matstd.twin.sheets import ANGLES, MM, Sheet, bare, unit_of_column
+from matstd.twin.units import MINUTE
 
 BETWEEN = 10.0
 """Pause (s) between two runs of which nobody says how long it was."""

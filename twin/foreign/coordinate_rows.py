@@ -8,8 +8,8 @@ import re
 from collections.abc import Sequence
 from itertools import pairwise
 
-from twin.errors import BadFile
-from twin.sheets import Sheet, bare
+from matstd.twin.errors import BadFile
+from matstd.twin.sheets import Sheet, bare
 
 _VALUE = re.compile(r"(value|wert|valeur|reading|result|ergebnis)\Z", re.IGNORECASE)
 """Names of a column of what was measured, where none says so more plainly."""

@@ -4,8 +4,8 @@ import re
 
 import numpy as np
 
-from twin.record import IntArray
-from twin.sheets import Sheet
+from matstd.twin.record import IntArray
+from matstd.twin.sheets import Sheet
 
 DOWN = re.compile(
     r"down|\bdn\b|dwn|↓|-|−|\bneg|\brev|\bb(ack|wd|kw)|rück|ruck|zur|\bret", re.IGNORECASE

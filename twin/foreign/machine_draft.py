@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from twin.frames import Array
-from twin.machine import Chain
-from twin.units import DEG, UM
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.units import DEG, UM
 
 USUAL = (1.0 * UM, 15e-6)
 """What an axis has that is nothing unusual: so much, and so much of its travel. It is the size of

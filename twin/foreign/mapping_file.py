@@ -9,10 +9,10 @@ from typing import Any, Literal
 import numpy as np
 from pydantic import Field
 
-from twin.errors import BadFile
-from twin.files import Table, check_format, checked, parse_toml, read_text
-from twin.frames import Array
-from twin.sheets import ANGLES, Sheet, clock_times, has_clock, unit_of_column
+from matstd.twin.errors import BadFile
+from matstd.twin.files import Table, check_format, checked, parse_toml, read_text
+from matstd.twin.frames import Array
+from matstd.twin.sheets import ANGLES, Sheet, clock_times, has_clock, unit_of_column
 
 
 class ColumnTable(Table):

@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.errors import DesignError
-from twin.foreign.point_list import PointList
-from twin.frames import Array, apply, inverse
+from matstd.twin.errors import DesignError
+from matstd.twin.foreign.point_list import PointList
+from matstd.twin.frames import Array, apply, inverse
 
 SHIFT = 1.0
 """Displacement (mm) from which a list is taken for one in another frame; a smaller one is found

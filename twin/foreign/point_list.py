@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from twin.frames import Array
-from twin.record import IntArray, Labels
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray, Labels
 
 NEARER = 2.0
 """So many times nearer to the place of another than to its own a point is called misplaced."""

@@ -15,15 +15,19 @@ from typing import Literal
 
 import numpy as np
 
-from twin.errors import BadFile
-from twin.foreign.coordinate_rows import letters_of_rows, nominal_and_measured, points_of_rows
-from twin.foreign.directions import signs
-from twin.foreign.other_frame import OtherFrame, places
-from twin.foreign.point_list import PointList
-from twin.frames import Array
-from twin.machine import Axis, Chain, inverse_linear, linear_directions, make_chain, tip
-from twin.record import Instrument, Run, Setup, Touches
-from twin.sheets import MM, Sheet, bare, unit_of_column
+from matstd.twin.errors import BadFile
+from matstd.twin.foreign.coordinate_rows import (
+    letters_of_rows,
+    nominal_and_measured,
+    points_of_rows,
+)
+from matstd.twin.foreign.directions import signs
+from matstd.twin.foreign.other_frame import OtherFrame, places
+from matstd.twin.foreign.point_list import PointList
+from matstd.twin.frames import Array
+from matstd.twin.machine import Axis, Chain, inverse_linear, linear_directions, make_chain, tip
+from matstd.twin.record import Instrument, Run, Setup, Touches
+from matstd.twin.sheets import MM, Sheet, bare, unit_of_column
 
 Meaning = Literal["part", "standard"]
 """Who made a list: see the module."""

@@ -15,12 +15,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from twin.errors import BadFile
-from twin.foreign.axis_log import approaches, strokes, temperatures
-from twin.foreign.directions import DOWN, UP, signs
-from twin.frames import Array
-from twin.record import IntArray
-from twin.sheets import ANGLES, MM, Sheet, bare, seconds, unit_of_column
+from matstd.twin.errors import BadFile
+from matstd.twin.foreign.axis_log import approaches, strokes, temperatures
+from matstd.twin.foreign.directions import DOWN, UP, signs
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
+from matstd.twin.sheets import ANGLES, MM, Sheet, bare, seconds, unit_of_column
 
 ALL_BUT = 0.1
 """Slope over the targets, off from 1 by less, of positions: no axis is wrong by a tenth."""

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.errors import BadFile
-from twin.frames import Array, apply, inverse
-from twin.record import rigid_motion
-from twin.sheets import MM, Sheet, bare, unit_of_column
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.record import rigid_motion
+from matstd.twin.sheets import MM, Sheet, bare, unit_of_column
 
 _LETTER = re.compile(r"(?<![a-z])([xyz])(?![a-z])", re.IGNORECASE)
 _MEASURED = re.compile(r"meas|act|ist\b|track|refl|laser", re.IGNORECASE)

@@ -12,19 +12,19 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.errors import BadFile, DesignError, NotEnoughData
-from twin.foreign.axis_log import loads, own_columns, temperatures
-from twin.foreign.reflectors import Placement, placed, reflector_places
-from twin.frames import Array, pose, rotation
-from twin.machine import Axis, Chain, make_chain, table_to_tool
-from twin.record import (
+from matstd.twin.errors import BadFile, DesignError, NotEnoughData
+from matstd.twin.foreign.axis_log import loads, own_columns, temperatures
+from matstd.twin.foreign.reflectors import Placement, placed, reflector_places
+from matstd.twin.frames import Array, pose, rotation
+from matstd.twin.machine import Axis, Chain, make_chain, table_to_tool
+from matstd.twin.record import (
     Instrument,
     Run,
     Setup,
     Touches,
     computed_deviation,
 )
-from twin.sheets import ANGLES, MM, Sheet, bare, seconds, unit_of_column
+from matstd.twin.sheets import ANGLES, MM, Sheet, bare, seconds, unit_of_column
 
 _JOINT = re.compile(
     r"(?:\A|[^a-z])(?:j|joint|axis|achse|gelenk|q|theta|a)[\s_.]*(\d)", re.IGNORECASE

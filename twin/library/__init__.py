@@ -4,7 +4,7 @@ In: names such as `backlash(X)`, users' Python files, touches. Out: effects, and
 that make sense for some touches.
 """
 
-from twin.library.catalogue import (
+from matstd.twin.library.catalogue import (
     Kind,
     find_kinds,
     is_visible,
@@ -18,9 +18,9 @@ from twin.library.catalogue import (
     title_of,
     users_files,
 )
-from twin.library.ordinary import ordinary_model
-from twin.library.sized_effect import SizedEffect, parse_sized_effect, parse_sizes
-from twin.library.trial import try_effect, try_kind, users_fault, users_lines
+from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.library.sized_effect import SizedEffect, parse_sized_effect, parse_sizes
+from matstd.twin.library.trial import try_effect, try_kind, users_fault, users_lines
 
 __all__ = [
     "Kind",

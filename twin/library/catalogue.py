@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.effects import (
+from matstd.twin.effects import (
     MARK,
     Again,
     artefact,
@@ -31,13 +31,13 @@ from twin.effects import (
     probe,
     servo_lag,
 )
-from twin.elastic import body, stiffness, tool_point
-from twin.errors import BadFile, DesignError, UnknownEffect
-from twin.library.trial import users_fault
-from twin.machine import Chain
-from twin.model import Effect, Kind, Title, Titled, columns, is_tunable
-from twin.record import Touches
-from twin.thermal import (
+from matstd.twin.elastic import body, stiffness, tool_point
+from matstd.twin.errors import BadFile, DesignError, UnknownEffect
+from matstd.twin.library.trial import users_fault
+from matstd.twin.machine import Chain
+from matstd.twin.model import Effect, Kind, Title, Titled, columns, is_tunable
+from matstd.twin.record import Touches
+from matstd.twin.thermal import (
     axis_warming,
     column_bending,
     follows,
@@ -45,8 +45,8 @@ from twin.thermal import (
     thermal_field,
     thermal_lag,
 )
-from twin.units import NM
-from twin.words import listed, nearest
+from matstd.twin.units import NM
+from matstd.twin.words import listed, nearest
 
 __all__ = [
     "ENTRY_POINT_GROUP",
@@ -248,7 +248,10 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
         found = f"{(cause.text or '').strip()!r} ({cause.msg})"
         raise BadFile(path, f"line {cause.lineno}", found, "Python") from cause
     except (Exception, SystemExit) as cause:  # whatever is wrong is one line about that file
-        raise users_fault(cause, path, "file", "a Python file that runs") from cause
+        expected = "a Python file that runs"
+        if isinstance(cause, ModuleNotFoundError) and str(cause.name).startswith("twin"):
+            expected = f"the name that is installed, matstd.{cause.name}"
+        raise users_fault(cause, path, "file", expected) from cause
     own = {id(k): k for k in vars(module).values() if isinstance(k, Kind)}
     if not own:
         raise BadFile(path, "file", "no Kind", "at least one twin.Kind at its top level")

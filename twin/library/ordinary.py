@@ -2,9 +2,9 @@
 
 import math
 
-from twin.effects import ComponentError, LocationError
-from twin.machine import Chain, Family, Ranges, Symbol
-from twin.model import Effect, Model
+from matstd.twin.effects import ComponentError, LocationError
+from matstd.twin.machine import Chain, Family, Ranges, Symbol
+from matstd.twin.model import Effect, Model
 
 
 def component_errors(chain: Chain, symbol: Symbol, sd: float) -> list[Effect]:

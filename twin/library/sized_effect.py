@@ -7,15 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.library.catalogue import parse_effect, users_files
-from twin.library.trial import try_effect
-from twin.machine import Chain
-from twin.model import Effect, Tunable
-from twin.record import Touches, at_poses
-from twin.units import DAY, DEG, HOUR, MINUTE, NM, UM, URAD
-from twin.words import listed
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.library.catalogue import parse_effect, users_files
+from matstd.twin.library.trial import try_effect
+from matstd.twin.machine import Chain
+from matstd.twin.model import Effect, Tunable
+from matstd.twin.record import Touches, at_poses
+from matstd.twin.units import DAY, DEG, HOUR, MINUTE, NM, UM, URAD
+from matstd.twin.words import listed
 
 _SIZE = re.compile(r"([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(.*)\Z")
 _BASES = ("mm", "s", "K", "N")

@@ -16,10 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from twin.errors import BadFile, DesignError
-from twin.frames import Array
-from twin.model import Effect, Inner, Kind, Parameter, Term, Tunable, Where
-from twin.record import Touches
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect, Inner, Kind, Parameter, Term, Tunable, Where
+from matstd.twin.record import Touches
 
 _PARTS = {"twist": 6, "place": 6, "shift": 3, "bias": 1}
 """Parts of a contribution with the number of their components."""

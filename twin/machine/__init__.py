@@ -5,9 +5,9 @@ exact and to first order in every error. A new shape over a reading goes to `sha
 errors to `ranges`; signs and letters are defined in `symbols` and nowhere else.
 """
 
-from twin.machine.chain import Axis, Chain, Link, make_chain
-from twin.machine.contribution import Contribution, Where
-from twin.machine.kinematics import (
+from matstd.twin.machine.chain import Axis, Chain, Link, make_chain
+from matstd.twin.machine.contribution import Contribution, Where
+from matstd.twin.machine.kinematics import (
     Reach,
     checked_readings,
     exact_tip,
@@ -17,9 +17,9 @@ from twin.machine.kinematics import (
     table_to_tool,
     tip,
 )
-from twin.machine.ranges import DEFAULT_RANGES, Ranges, error_class
-from twin.machine.shapes import SHAPES, ShapeName, shape, sine_argument
-from twin.machine.symbols import LETTERS, Family, Symbol, parse_symbol
+from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges, error_class
+from matstd.twin.machine.shapes import SHAPES, ShapeName, shape, sine_argument
+from matstd.twin.machine.symbols import LETTERS, Family, Symbol, parse_symbol
 
 __all__ = [
     "DEFAULT_RANGES",

@@ -7,12 +7,12 @@ from typing import Literal
 
 import numpy as np
 
-from twin.errors import BadValue, UnknownAxis, UnknownSymbol
-from twin.frames import Array
-from twin.machine.contribution import Where
-from twin.machine.notation import parse_notation
-from twin.machine.symbols import ALONG, Family, Symbol, parse_symbol
-from twin.units import DEG
+from matstd.twin.errors import BadValue, UnknownAxis, UnknownSymbol
+from matstd.twin.frames import Array
+from matstd.twin.machine.contribution import Where
+from matstd.twin.machine.notation import parse_notation
+from matstd.twin.machine.symbols import ALONG, Family, Symbol, parse_symbol
+from matstd.twin.units import DEG
 
 Kind = Literal["linear", "rotary", "fixed"]
 

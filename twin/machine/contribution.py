@@ -4,7 +4,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from twin.frames import Array
+from matstd.twin.frames import Array
 
 Part = Literal["twist", "place", "shift", "bias"]
 

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from twin.errors import NotReachable, ShapeMismatch
-from twin.frames import Array, apply, inverse, pose, rotation, turned_about
-from twin.machine.chain import Chain, Link
-from twin.machine.contribution import Contribution, Where
-from twin.machine.moved_point import moved_tip, tip_in_tool
+from matstd.twin.errors import NotReachable, ShapeMismatch
+from matstd.twin.frames import Array, apply, inverse, pose, rotation, turned_about
+from matstd.twin.machine.chain import Chain, Link
+from matstd.twin.machine.contribution import Contribution, Where
+from matstd.twin.machine.moved_point import moved_tip, tip_in_tool
 
 
 class Reach(NamedTuple):

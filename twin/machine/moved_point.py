@@ -4,10 +4,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from twin.compute import blocks
-from twin.frames import Array
-from twin.machine.chain import Chain, Link
-from twin.machine.contribution import Contribution
+from matstd.twin.compute import blocks
+from matstd.twin.frames import Array
+from matstd.twin.machine.chain import Chain, Link
+from matstd.twin.machine.contribution import Contribution
 
 _POSES_A_BLOCK = 5000
 """Poses moved at once: the vectors of a block stay in the first caches (8192 take 1.3 times as long

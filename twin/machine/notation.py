@@ -2,7 +2,7 @@
 
 import re
 
-from twin.errors import BadValue
+from matstd.twin.errors import BadValue
 
 _TOKEN = re.compile(r"([XYZUVWABCS]\d?)('?)\Z")
 

@@ -4,9 +4,9 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from twin.machine.chain import Chain
-from twin.machine.symbols import Family, Symbol
-from twin.units import UM, URAD
+from matstd.twin.machine.chain import Chain
+from matstd.twin.machine.symbols import Family, Symbol
+from matstd.twin.units import UM, URAD
 
 DEFAULT_RANGES: Mapping[str, tuple[float, float]] = {
     "linear_translation": (50 * UM, 100 * UM),

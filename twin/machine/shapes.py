@@ -4,8 +4,8 @@ from typing import Literal
 
 import numpy as np
 
-from twin.frames import Array
-from twin.machine.chain import Link
+from matstd.twin.frames import Array
+from matstd.twin.machine.chain import Link
 
 ShapeName = Literal["constant", "linear", "parabolic", "sinusoidal"]
 SHAPES: tuple[ShapeName, ...] = ("constant", "linear", "parabolic", "sinusoidal")

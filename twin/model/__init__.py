@@ -5,8 +5,8 @@ adds terms up, to first order and exactly. `Kind` is a word of the library with 
 of it.
 """
 
-from twin.machine import Where
-from twin.model.effect import (
+from matstd.twin.machine import Where
+from matstd.twin.model.effect import (
     Acts,
     Effect,
     Inner,
@@ -19,7 +19,7 @@ from twin.model.effect import (
     inner_values,
     is_tunable,
 )
-from twin.model.kind import (
+from matstd.twin.model.kind import (
     Kind,
     check_count,
     checked_axis,
@@ -32,7 +32,7 @@ from twin.model.kind import (
     sensors,
     varies,
 )
-from twin.model.model import Model, columns
+from matstd.twin.model.model import Model, columns
 
 __all__ = [
     "Acts",

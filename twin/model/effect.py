@@ -5,9 +5,9 @@ from typing import Literal, NamedTuple, Protocol, TypeGuard, runtime_checkable
 
 import numpy as np
 
-from twin.frames import Array
-from twin.machine import Contribution, Where
-from twin.record import Touches
+from matstd.twin.frames import Array
+from matstd.twin.machine import Contribution, Where
+from matstd.twin.record import Touches
 
 Acts = Literal["smoothly", "with a period", "at an instant"]
 """How deviations depend on an inner parameter."""

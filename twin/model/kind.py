@@ -7,12 +7,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from twin.errors import UnknownEffect
-from twin.frames import Array
-from twin.machine import Chain, Family, Symbol
-from twin.model.effect import Effect
-from twin.record import Touches
-from twin.words import did_you_mean
+from matstd.twin.errors import UnknownEffect
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Family, Symbol
+from matstd.twin.model.effect import Effect
+from matstd.twin.record import Touches
+from matstd.twin.words import did_you_mean
 
 
 @dataclass(frozen=True)

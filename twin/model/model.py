@@ -6,10 +6,10 @@ from functools import cached_property
 
 import numpy as np
 
-from twin.frames import Array, apply, inverse
-from twin.machine import Chain, Contribution, exact_tip, tip
-from twin.model.effect import Effect, Parameter, contribution
-from twin.record import Touches
+from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.machine import Chain, Contribution, exact_tip, tip
+from matstd.twin.model.effect import Effect, Parameter, contribution
+from matstd.twin.record import Touches
 
 
 @dataclass(frozen=True, eq=False)

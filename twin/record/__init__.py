@@ -4,14 +4,14 @@
 units. A new quantity that is recorded at every touch becomes a field of it; `Run` adds deviations.
 """
 
-from twin.record.alignment import Moved, aligned, rigid_motion
-from twin.record.body import BODY, StatedBody, with_body
-from twin.record.commanded import with_commanded
-from twin.record.copies import without_copies
-from twin.record.instrument import Instrument
-from twin.record.run import Run
-from twin.record.several_runs import joined
-from twin.record.touches import (
+from matstd.twin.record.alignment import Moved, aligned, rigid_motion
+from matstd.twin.record.body import BODY, StatedBody, with_body
+from matstd.twin.record.commanded import with_commanded
+from matstd.twin.record.copies import without_copies
+from matstd.twin.record.instrument import Instrument
+from matstd.twin.record.run import Run
+from matstd.twin.record.several_runs import joined
+from matstd.twin.record.touches import (
     Body,
     IntArray,
     Labels,

@@ -13,10 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.frames import Array, apply, pose
-from twin.machine import tip
-from twin.record.run import Run
-from twin.record.touches import Touches, computed_deviation
+from matstd.twin.frames import Array, apply, pose
+from matstd.twin.machine import tip
+from matstd.twin.record.run import Run
+from matstd.twin.record.touches import Touches, computed_deviation
 
 SHIFT = 0.3
 """Displacement (mm) from which a set-up is moved: lever arms off by so much turn 50 µrad of a

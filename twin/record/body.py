@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.errors import BadValue
-from twin.frames import Array
-from twin.record.run import Run
-from twin.record.touches import Body
-from twin.units import T_REF
+from matstd.twin.errors import BadValue
+from matstd.twin.frames import Array
+from matstd.twin.record.run import Run
+from matstd.twin.record.touches import Body
+from matstd.twin.units import T_REF
 
 BODY = "body"
 """Name of the sensor that sits on the standard: column `T_body_degC`."""

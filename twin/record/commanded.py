@@ -9,10 +9,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from twin.frames import Array
-from twin.machine import linear_directions
-from twin.record.run import Run
-from twin.record.touches import Touches, computed_deviation
+from matstd.twin.frames import Array
+from matstd.twin.machine import linear_directions
+from matstd.twin.record.run import Run
+from matstd.twin.record.touches import Touches, computed_deviation
 
 FAR_MOVED = 2000.0
 """Range of an axis over usual deviations from which its readings stay as they are: noise is then

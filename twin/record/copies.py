@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.record.run import Run
-from twin.units import NM
+from matstd.twin.record.run import Run
+from matstd.twin.units import NM
 
 BoolArray = NDArray[np.bool_]
 

@@ -6,10 +6,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.display import Shown
-from twin.errors import ShapeMismatch
-from twin.frames import Array
-from twin.record.touches import IntArray, Labels, Touches
+from matstd.twin.display import Shown
+from matstd.twin.errors import ShapeMismatch
+from matstd.twin.frames import Array
+from matstd.twin.record.touches import IntArray, Labels, Touches
 
 
 @dataclass(frozen=True, eq=False, repr=False)

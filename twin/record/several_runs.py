@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from twin.errors import DesignError
-from twin.frames import Array
-from twin.record.copies import without_copies
-from twin.record.run import Run
-from twin.record.touches import MAPS, PER_TOUCH, Setup, Touches
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.record.copies import without_copies
+from matstd.twin.record.run import Run
+from matstd.twin.record.touches import MAPS, PER_TOUCH, Setup, Touches
 
 PAUSE = 3600.0
 """Between one run and the next, s: bodies and noise have forgotten; every run counts its own time

@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from twin.errors import ShapeMismatch
-from twin.frames import Array, apply, inverse, turn
-from twin.machine import (
+from matstd.twin.errors import ShapeMismatch
+from matstd.twin.frames import Array, apply, inverse, turn
+from matstd.twin.machine import (
     Chain,
     Reach,
     Where,
@@ -19,8 +19,8 @@ from twin.machine import (
     table_to_tool,
     tip,
 )
-from twin.record.instrument import Instrument
-from twin.units import T_REF
+from matstd.twin.record.instrument import Instrument
+from matstd.twin.units import T_REF
 
 IntArray = NDArray[np.int64]
 Labels = NDArray[np.str_]

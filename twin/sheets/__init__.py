@@ -1,11 +1,11 @@
 """Tables of others as they come: workbooks, text, logs, height maps, with units and clocks.
 
 Nothing is known here of machines: a `Sheet` has columns of text and numbers, the units that stand
-behind their names, and the line of every row; what they mean is said in `twin.foreign`.
+behind their names, and the line of every row; what they mean is said in `matstd.twin.foreign`.
 """
 
-from twin.sheets.clock import clock_times, has_clock, seconds
-from twin.sheets.sheet import (
+from matstd.twin.sheets.clock import clock_times, has_clock, seconds
+from matstd.twin.sheets.sheet import (
     ANGLES,
     MM,
     SECONDS,

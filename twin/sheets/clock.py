@@ -5,10 +5,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from twin.errors import BadFile
-from twin.frames import Array
-from twin.sheets.sheet import Sheet, unit_of_time
-from twin.units import DAY, HOUR, MINUTE
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
+from matstd.twin.sheets.sheet import Sheet, unit_of_time
+from matstd.twin.units import DAY, HOUR, MINUTE
 
 _CLOCK = re.compile(
     r"(?:(?P<date>\d{1,4}[-./]\d{1,2}[-./]\d{1,4})[T ,]+)?"

@@ -9,7 +9,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from twin.errors import BadFile
+from matstd.twin.errors import BadFile
 
 _REPRAP = re.compile(r"\W*RepRapFirmware height map file", re.IGNORECASE)
 _MESH = re.compile(r"(?:#\*#\s*)?\[bed_mesh\s+([^\]]+)\]\s*\Z")

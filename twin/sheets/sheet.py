@@ -14,13 +14,13 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.errors import BadFile
-from twin.files import read_any_text
-from twin.frames import Array
-from twin.sheets.blanks import by_blanks
-from twin.sheets.channel_log import by_channels
-from twin.sheets.height_map import by_heights
-from twin.sheets.several_tables import fullest_table
+from matstd.twin.errors import BadFile
+from matstd.twin.files import read_any_text
+from matstd.twin.frames import Array
+from matstd.twin.sheets.blanks import by_blanks
+from matstd.twin.sheets.channel_log import by_channels
+from matstd.twin.sheets.height_map import by_heights
+from matstd.twin.sheets.several_tables import fullest_table
 
 WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 """Endings of files that are read as workbooks."""

@@ -4,10 +4,10 @@ A *drive* is a column of the run that something may follow: a temperature, the s
 a column of the user's own. One kind a file, as in `effects`; `drives` says what drives a run has.
 """
 
-from twin.thermal.drive_columns import CYCLE, PROGRESS, SPINDLE, drives, is_speed
-from twin.thermal.follows import Follows, ThermalStatic, follower
-from twin.thermal.thermal_field import LETTERS, ThermalField, field
-from twin.thermal.thermal_lag import ThermalLag
+from matstd.twin.thermal.drive_columns import CYCLE, PROGRESS, SPINDLE, drives, is_speed
+from matstd.twin.thermal.follows import Follows, ThermalStatic, follower
+from matstd.twin.thermal.thermal_field import LETTERS, ThermalField, field
+from matstd.twin.thermal.thermal_lag import ThermalLag
 
 __all__ = [
     "CYCLE",

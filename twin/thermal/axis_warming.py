@@ -5,9 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.frames import Array
-from twin.machine import Chain
-from twin.model import (
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.model import (
     Inner,
     Kind,
     Parameter,
@@ -19,10 +19,10 @@ from twin.model import (
     moving_axes,
     refusal,
 )
-from twin.record import Touches
-from twin.thermal.drive_columns import OWN, PROGRESS, is_own, own_column
-from twin.thermal.thermal_lag import LONGEST, SHORTEST, STEPS
-from twin.units import MINUTE, UM
+from matstd.twin.record import Touches
+from matstd.twin.thermal.drive_columns import OWN, PROGRESS, is_own, own_column
+from matstd.twin.thermal.thermal_lag import LONGEST, SHORTEST, STEPS
+from matstd.twin.units import MINUTE, UM
 
 FASTEST, SLOWEST = 0.3, 1.0
 """Time constants that are scanned without times: in cycles, and in lengths of the test. What is

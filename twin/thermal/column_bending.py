@@ -6,8 +6,8 @@ from itertools import combinations
 
 import numpy as np
 
-from twin.machine import Chain
-from twin.model import (
+from matstd.twin.machine import Chain
+from matstd.twin.model import (
     Kind,
     Parameter,
     Term,
@@ -20,8 +20,8 @@ from twin.model import (
     sensor_record,
     sensors,
 )
-from twin.record import Touches
-from twin.units import URAD
+from matstd.twin.record import Touches
+from matstd.twin.units import URAD
 
 
 @dataclass(frozen=True)

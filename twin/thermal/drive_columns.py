@@ -9,12 +9,12 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from twin.errors import UnknownEffect
-from twin.frames import Array
-from twin.model import Inner, sensor_record, sensors, varies
-from twin.record import Touches
-from twin.units import T_REF
-from twin.words import did_you_mean
+from matstd.twin.errors import UnknownEffect
+from matstd.twin.frames import Array
+from matstd.twin.model import Inner, sensor_record, sensors, varies
+from matstd.twin.record import Touches
+from matstd.twin.units import T_REF
+from matstd.twin.words import did_you_mean
 
 SPINDLE = "spindle_rpm"
 """The drive that is no sensor: the spindle speed of the run file."""

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from twin.machine import Chain, Symbol
-from twin.model import (
+from matstd.twin.machine import Chain, Symbol
+from matstd.twin.model import (
     Effect,
     Inner,
     Kind,
@@ -17,8 +17,8 @@ from twin.model import (
     moved_components,
     sensors,
 )
-from twin.record import Touches
-from twin.thermal.drive_columns import (
+from matstd.twin.record import Touches
+from matstd.twin.thermal.drive_columns import (
     CYCLE,
     OWN,
     PROGRESS,
@@ -28,7 +28,7 @@ from twin.thermal.drive_columns import (
     step_inner,
     step_of,
 )
-from twin.units import UM, URAD
+from matstd.twin.units import UM, URAD
 
 
 @dataclass(frozen=True)

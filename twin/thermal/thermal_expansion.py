@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from twin.machine import Chain
-from twin.model import (
+from matstd.twin.machine import Chain
+from matstd.twin.model import (
     Kind,
     Parameter,
     Term,
@@ -16,8 +16,8 @@ from twin.model import (
     sensor_record,
     sensors,
 )
-from twin.record import Touches
-from twin.units import T_REF
+from matstd.twin.record import Touches
+from matstd.twin.units import T_REF
 
 
 @dataclass(frozen=True)

@@ -9,10 +9,10 @@ mean of both.
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from twin.machine import Chain
-from twin.model import Inner, Kind, Parameter, Term, Title, Where, moving_axes, refusal
-from twin.record import Touches
-from twin.thermal.drive_columns import (
+from matstd.twin.machine import Chain
+from matstd.twin.model import Inner, Kind, Parameter, Term, Title, Where, moving_axes, refusal
+from matstd.twin.record import Touches
+from matstd.twin.thermal.drive_columns import (
     OWN,
     amplitude_unit,
     driven,
@@ -22,7 +22,7 @@ from twin.thermal.drive_columns import (
     step_inner,
     step_of,
 )
-from twin.units import MINUTE, UM, URAD
+from matstd.twin.units import MINUTE, UM, URAD
 
 USAGE = "thermal-field(axis,drive,...)"
 

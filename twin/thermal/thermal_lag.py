@@ -6,9 +6,9 @@ from functools import cached_property
 
 import numpy as np
 
-from twin.frames import Array
-from twin.machine import Chain, Symbol
-from twin.model import (
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Symbol
+from matstd.twin.model import (
     Inner,
     Kind,
     Parameter,
@@ -19,8 +19,8 @@ from twin.model import (
     moved_components,
     refusal,
 )
-from twin.record import Touches
-from twin.thermal.drive_columns import (
+from matstd.twin.record import Touches
+from matstd.twin.thermal.drive_columns import (
     SPINDLE,
     amplitude_unit,
     driven,
@@ -29,7 +29,7 @@ from twin.thermal.drive_columns import (
     step_inner,
     step_of,
 )
-from twin.units import MINUTE, UM, URAD
+from matstd.twin.units import MINUTE, UM, URAD
 
 SHORTEST, LONGEST = 2.0 * MINUTE, 360.0 * MINUTE
 """Time constants that are scanned, s: a spindle nose 10 to 40 min, a column hours."""

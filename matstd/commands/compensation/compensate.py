@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.commands.compensation.options import add_program, add_state
-from twin.errors import DesignError
+from matstd.twin.errors import DesignError
 
 if TYPE_CHECKING:
-    from compensation.tables import Played
     from matstd.commands.compensation.job import Job
+    from matstd.compensation.tables import Played
 
 OURS = ("*/*", "report.html", "tables.xlsx", "tables/*.csv", "pictures/*.png", "compensation.json")
 """Results that not every compensation leaves."""
@@ -73,18 +73,18 @@ def _program(args: argparse.Namespace, job: Job) -> int:
     """A compensated program, its points as a table, its picture."""
     from dataclasses import replace
 
-    from compensation.part_programs import Frame, read_loads, read_part_program
-    from compensation.programs import (
+    from matstd.commands.compensation.job import by_tool
+    from matstd.compensation.part_programs import Frame, read_loads, read_part_program
+    from matstd.compensation.programs import (
         TOLERANCE,
         compensated,
         write_program_result,
         write_trajectory,
     )
-    from matstd.commands.compensation.job import by_tool
     from matstd.console import say
-    from report.compensation import draw_program, program_lines
-    from twin.files import refuse_to_overwrite, write_whole
-    from twin.units import UM
+    from matstd.report.compensation import draw_program, program_lines
+    from matstd.twin.files import refuse_to_overwrite, write_whole
+    from matstd.twin.units import UM
 
     output = Path(args.output)
     beside = [output.with_suffix(ending) for ending in (".csv", ".png", ".json")]
@@ -115,7 +115,7 @@ def _program(args: argparse.Namespace, job: Job) -> int:
 
 def _tables(args: argparse.Namespace, job: Job) -> int:
     """Tables of every control, read back and played."""
-    from compensation.tables import (
+    from matstd.compensation.tables import (
         FORMATS,
         Harmful,
         play_tables,
@@ -124,8 +124,8 @@ def _tables(args: argparse.Namespace, job: Job) -> int:
         write_tables,
     )
     from matstd.progress import stages
-    from report.compensation import write_compensation_page
-    from twin.files import results_folder
+    from matstd.report.compensation import write_compensation_page
+    from matstd.twin.files import results_folder
 
     names = _controls(args.control) or list(FORMATS)
     opposite = _controls(args.opposite)
@@ -154,7 +154,7 @@ def _tables(args: argparse.Namespace, job: Job) -> int:
 
 
 def _controls(names: list[str]) -> list[str]:
-    from compensation.tables import FORMATS
+    from matstd.compensation.tables import FORMATS
 
     for name in names:
         if name not in FORMATS:
@@ -165,7 +165,7 @@ def _controls(names: list[str]) -> list[str]:
 def _report(args: argparse.Namespace, done: list[Played], harmful: list[str]) -> None:
     """Every control in a line, what it cannot hold in another, then the tables not written."""
     from matstd.console import say
-    from report.compensation import table_lines
+    from matstd.report.compensation import table_lines
 
     for played in done:
         for line, is_first in table_lines(played):

@@ -7,11 +7,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.commands.compensation.options import add_program, add_state
-from twin.errors import DesignError
+from matstd.twin.errors import DesignError
 
 if TYPE_CHECKING:
     from matstd.commands.compensation.job import Job
-    from twin.record import Touches
+    from matstd.twin.record import Touches
 
 OURS = ("contributions.csv", "contributions.png")
 """Results."""
@@ -34,12 +34,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the table and the picture; the folder appears whole or not at all."""
-    from compensation.field import contributions, deviation
-    from compensation.programs import write_shares
     from matstd.commands.compensation.job import read_job
+    from matstd.compensation.field import contributions, deviation
+    from matstd.compensation.programs import write_shares
     from matstd.console import say
-    from report.compensation import draw_shares_along, share_lines
-    from twin.files import results_folder
+    from matstd.report.compensation import draw_shares_along, share_lines
+    from matstd.twin.files import results_folder
 
     if (args.program is None) == (args.poses is None):
         raise DesignError("expected one of --program FILE and --poses POSES.csv")
@@ -60,10 +60,10 @@ def _poses(args: argparse.Namespace, job: Job) -> Touches:
     """Poses that the program passes, or those of the file."""
     from dataclasses import replace
 
-    from compensation.part_programs import Frame, read_loads, read_part_program
-    from compensation.programs import passed
     from matstd.commands.compensation.job import by_tool
-    from twin.files import read_poses
+    from matstd.compensation.part_programs import Frame, read_loads, read_part_program
+    from matstd.compensation.programs import passed
+    from matstd.twin.files import read_poses
 
     if args.program is not None:
         frame = Frame(job.errors.chain, job.datum)

@@ -8,21 +8,21 @@ from pathlib import Path
 
 import numpy as np
 
-from compensation.field import Datum, MachineErrors, State, datum_of, workspace
-from compensation.tables import Header, hashed, header_of
-from diagnosis.drift import DriftLaw
-from diagnosis.files import read_model
-from diagnosis.remarks import ShortBeam
+from matstd.compensation.field import Datum, MachineErrors, State, datum_of, workspace
+from matstd.compensation.tables import Header, hashed, header_of
 from matstd.console import say_each
+from matstd.diagnosis.drift import DriftLaw
+from matstd.diagnosis.files import read_model
+from matstd.diagnosis.remarks import ShortBeam
 from matstd.options import load_effects
-from report.words import remark_sentence
-from twin.elastic import short_beams
-from twin.errors import DesignError, UnknownEffect
-from twin.files import parse_toml, read_errors, read_machine, read_text
-from twin.frames import Array
-from twin.library import parse_effect, parse_sized_effect
-from twin.machine import Chain
-from twin.units import DEG, MINUTE
+from matstd.report.words import remark_sentence
+from matstd.twin.elastic import short_beams
+from matstd.twin.errors import DesignError, UnknownEffect
+from matstd.twin.files import parse_toml, read_errors, read_machine, read_text
+from matstd.twin.frames import Array
+from matstd.twin.library import parse_effect, parse_sized_effect
+from matstd.twin.machine import Chain
+from matstd.twin.units import DEG, MINUTE
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from matstd.commands.compensation.options import add_state
 
 if TYPE_CHECKING:
-    from compensation.service import OutputLimits, Service
     from matstd.commands.compensation.job import Job
+    from matstd.compensation.service import OutputLimits, Service
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,10 +44,10 @@ def run(args: argparse.Namespace) -> int:
     import asyncio
     import logging
 
-    from compensation.service import OutputLimits, Service, serve
     from matstd.commands.compensation.job import read_job
+    from matstd.compensation.service import OutputLimits, Service, serve
     from matstd.console import say
-    from twin.units import UM
+    from matstd.twin.units import UM
 
     limits = OutputLimits(args.most * UM, args.rate * UM, args.patience, args.hold)
     job = read_job(args)
@@ -68,14 +68,14 @@ def _on_linuxcnc(ini: str, job: Job, limits: OutputLimits) -> int:
     import asyncio
     from pathlib import Path
 
-    from compensation.linuxcnc import (
+    from matstd.compensation.linuxcnc import (
         HAL_FILE,
         SOCKET,
         Control,
         serve_linuxcnc,
         write_control_files,
     )
-    from compensation.service import Service
+    from matstd.compensation.service import Service
     from matstd.console import say
 
     control = Control(Path(ini))
@@ -94,8 +94,8 @@ def _on_linuxcnc(ini: str, job: Job, limits: OutputLimits) -> int:
 
 
 def _corrected(service: Service) -> str:
-    from twin.units import NM
-    from twin.words import listed
+    from matstd.twin.units import NM
+    from matstd.twin.words import listed
 
     correction, sensors = service.correction, service.sensors
     follows = f", following {listed(list(sensors))}" if sensors else ""

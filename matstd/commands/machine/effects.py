@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from twin.library import Kind
+    from matstd.twin.library import Kind
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,8 +28,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Print the table, the kinds that words may mean, or the whole story of one kind."""
     from matstd import console as words
-    from twin.errors import UnknownEffect
-    from twin.library import find_kinds, kinds
+    from matstd.twin.errors import UnknownEffect
+    from matstd.twin.library import find_kinds, kinds
 
     load_effects(args.effects)
     console = words.console()

@@ -26,8 +26,8 @@ def text(name: str, errors: bool = False) -> str:
     Raises:
         DesignError: No such machine, with those that are.
     """
-    from twin.errors import DesignError
-    from twin.words import did_you_mean
+    from matstd.twin.errors import DesignError
+    from matstd.twin.words import did_you_mean
 
     if name not in names():
         available = ", ".join(names())

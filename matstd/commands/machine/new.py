@@ -41,7 +41,7 @@ def run(args: argparse.Namespace) -> int:
         print(template(args.kind), end="")
         return 0
     from matstd.console import say
-    from twin.files import refuse_to_overwrite, write_whole
+    from matstd.twin.files import refuse_to_overwrite, write_whole
 
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)

@@ -19,10 +19,16 @@ def run(args: argparse.Namespace) -> int:
 
     from matstd.console import say_assumed
     from matstd.progress import stages, table_blocks
-    from twin.files import read_errors, read_machine, read_poses, refuse_to_overwrite, written_whole
-    from twin.model import Model
-    from twin.record import at_poses
-    from twin.units import UM
+    from matstd.twin.files import (
+        read_errors,
+        read_machine,
+        read_poses,
+        refuse_to_overwrite,
+        written_whole,
+    )
+    from matstd.twin.model import Model
+    from matstd.twin.record import at_poses
+    from matstd.twin.units import UM
 
     refuse_to_overwrite(args.output, args.force)
     chain = read_machine(args.machine)

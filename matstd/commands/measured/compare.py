@@ -15,12 +15,12 @@ from matstd.options import (
     model_file,
     print_report,
 )
-from twin.files import results_folder
+from matstd.twin.files import results_folder
 
 if TYPE_CHECKING:
-    from diagnosis.answer import Comparison
-    from diagnosis.files import SavedModel
-    from twin.record import Run
+    from matstd.diagnosis.answer import Comparison
+    from matstd.diagnosis.files import SavedModel
+    from matstd.twin.record import Run
 
 CLEAR = 2.0
 """Standard uncertainties from which a region is off on average, and does not merely scatter."""
@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Compare; the folder appears whole or not at all."""
     from matstd.inputs import read_inputs, with_pitches
-    from twin.words import deviations_in
+    from matstd.twin.words import deviations_in
 
     run, saved = read_inputs(
         [args.run_file], model_file(args), args.effects, "so the agreement is optimistic"
@@ -52,11 +52,11 @@ def _compared(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> i
     """The comparison as files and in words."""
     import numpy as np
 
-    from diagnosis.answer import compare
-    from diagnosis.files import write_comparison, write_residuals
+    from matstd.diagnosis.answer import compare
+    from matstd.diagnosis.files import write_comparison, write_residuals
     from matstd.progress import stages, turns
-    from report.words import remark_sentence, structure_words
-    from twin.record import without_copies
+    from matstd.report.words import remark_sentence, structure_words
+    from matstd.twin.record import without_copies
 
     model = saved.model if saved else first_model(args, run.touches.chain)
     printed_by = asked_printer(args)
@@ -77,7 +77,7 @@ def _compared(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> i
         write_residuals(folder / "residuals.csv", found)
         arm = "" if saved else write_found_arm(folder, found.fit, Path(args.run_file).name)
         if not args.no_report:
-            from report.pages import write_compare_page
+            from matstd.report.pages import write_compare_page
 
             show("report", 0, 1)
             title = Path(args.run_file).name
@@ -91,9 +91,9 @@ def _compared(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> i
 def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None, arm: str) -> None:
     """The comparison in words, beside what the model promised, or what it was learnt with."""
     from matstd.console import say
-    from report.geometry import console_lines
-    from report.numbers import signed
-    from report.words import (
+    from matstd.report.geometry import console_lines
+    from matstd.report.numbers import signed
+    from matstd.report.words import (
         comparison_sentence,
         learnt_lines,
         microns,
@@ -101,7 +101,7 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None,
         region_words,
         remark_sentence,
     )
-    from twin.units import UM
+    from matstd.twin.units import UM
 
     say(comparison_sentence(found), style="bold")
     if found.learnt is not None and saved is not None:

@@ -15,14 +15,14 @@ from matstd.options import (
     model_file,
     print_report,
 )
-from twin.files import results_folder
+from matstd.twin.files import results_folder
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from diagnosis.answer import Diagnosis, Step
-    from diagnosis.files import SavedModel
-    from twin.record import Run
+    from matstd.diagnosis.answer import Diagnosis, Step
+    from matstd.diagnosis.files import SavedModel
+    from matstd.twin.record import Run
 
 OURS = ("next_measurement_*.csv", FOUND, "pictures/*.png", *REPORT_FILES)
 """Results that not every diagnosis leaves."""
@@ -67,7 +67,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Diagnose; the folder appears whole or not at all."""
     from matstd.inputs import read_inputs, with_pitches
-    from twin.words import deviations_in
+    from matstd.twin.words import deviations_in
 
     same = "so that its estimates are made anew: no touch counts twice"
     run, saved = read_inputs(args.run_files, model_file(args), args.effects, same, args.hold_out)
@@ -88,7 +88,7 @@ def _made(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> int:
         _write(args, result, saved, folder)
         found = write_found_arm(folder, result.fit, _title(args))
         if not args.no_report:
-            from report.pages import write_diagnosis_page
+            from matstd.report.pages import write_diagnosis_page
 
             show("report", 0, 1)
             title = _title(args)
@@ -111,7 +111,7 @@ def _diagnosed(
     """The diagnosis, from the model file or from the ordinary model."""
     import numpy as np
 
-    from diagnosis.answer import diagnose
+    from matstd.diagnosis.answer import diagnose
     from matstd.inputs import candidates, is_learnt_from, named_effects
 
     start = saved.model if saved else first_model(args, run.touches.chain)
@@ -126,11 +126,11 @@ def _write(
     args: argparse.Namespace, result: Diagnosis, saved: SavedModel | None, folder: Path
 ) -> None:
     """Result, model and plans as files."""
-    from diagnosis.files import plan_text, write_diagnosis, write_model
+    from matstd.diagnosis.files import plan_text, write_diagnosis, write_model
     from matstd.inputs import is_learnt_from
-    from report.words import remark_sentence
-    from twin.files import write_whole
-    from twin.versions import versions
+    from matstd.report.words import remark_sentence
+    from matstd.twin.files import write_whole
+    from matstd.twin.versions import versions
 
     sentences = [remark_sentence(r) for r in result.remarks]
     write_diagnosis(folder / "diagnosis.json", result, sentences)
@@ -150,10 +150,10 @@ def _tell(args: argparse.Namespace, result: Diagnosis, found: str) -> None:
     from rich.table import Column, Table
 
     from matstd.console import console, say
-    from report.effects import plan_words, rival_words
-    from report.geometry import console_lines
-    from report.words import remark_sentence, scanned_sentence, verdict_sentence
-    from twin.words import in_own_unit
+    from matstd.report.effects import plan_words, rival_words
+    from matstd.report.geometry import console_lines
+    from matstd.report.words import remark_sentence, scanned_sentence, verdict_sentence
+    from matstd.twin.words import in_own_unit
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
     right = ("p", "fitted µm", "held out µm", "chi²/dof")
@@ -191,10 +191,10 @@ def _row(step: Step) -> tuple[str, ...]:
     """One step of the table: what was added, how large it is, and how far the error fell."""
     from rich.markup import escape
 
-    from report.effects import effect_cell
-    from report.numbers import digits
-    from report.words import values
-    from twin.units import UM
+    from matstd.report.effects import effect_cell
+    from matstd.report.numbers import digits
+    from matstd.report.words import values
+    from matstd.twin.units import UM
 
     first = enumerate(values(step)[:2])
     return (

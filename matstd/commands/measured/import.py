@@ -10,9 +10,9 @@ from matstd.options import add_output, seen_from
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from twin.machine import Chain
-    from twin.record import Run
-    from twin.sheets import Sheet
+    from matstd.twin.machine import Chain
+    from matstd.twin.record import Run
+    from matstd.twin.sheets import Sheet
 
 _SIGN = {
     "positioning": "a deviation (actual - target) is the axis's own error; in the run it stands as "
@@ -149,9 +149,9 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from matstd.console import say
-    from twin.errors import DesignError
-    from twin.files import refuse_to_overwrite
-    from twin.sheets import read_sheet
+    from matstd.twin.errors import DesignError
+    from matstd.twin.files import refuse_to_overwrite
+    from matstd.twin.sheets import read_sheet
 
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)
@@ -178,9 +178,9 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
     from pathlib import Path
 
     from matstd.console import say, say_each
-    from twin.errors import BadFile
-    from twin.files import read_machine, read_run, write_whole
-    from twin.foreign import mapped_run
+    from matstd.twin.errors import BadFile
+    from matstd.twin.files import read_machine, read_run, write_whole
+    from matstd.twin.foreign import mapped_run
 
     text, left_out = mapped_run(sheet, args.map)
     with tempfile.TemporaryDirectory() as folder:
@@ -203,8 +203,8 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
 
 def _named_machine(args: argparse.Namespace, text: str, output: Path) -> Chain:
     """The machine that the head of a mapping file names, seen from the run file."""
-    from twin.errors import BadFile
-    from twin.files import parse_toml, read_machine
+    from matstd.twin.errors import BadFile
+    from matstd.twin.files import parse_toml, read_machine
 
     head = "\n".join(ln.removeprefix("# ") for ln in text.splitlines() if ln.startswith("#"))
     named = parse_toml(head, args.map).get("machine")
@@ -221,9 +221,9 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
 
     from matstd.commands.measured.kinds import arm, circle, points, positioning
     from matstd.console import say
-    from twin.files import refuse_to_overwrite, write_run, write_whole
-    from twin.foreign import machine_text
-    from twin.units import UM
+    from matstd.twin.files import refuse_to_overwrite, write_run, write_whole
+    from matstd.twin.foreign import machine_text
+    from matstd.twin.units import UM
 
     meaning = next(m for m in _SIGN if getattr(args, m))
     if args.positioning or args.component:
@@ -259,8 +259,8 @@ def _in_order(args: argparse.Namespace, run: Run) -> Run:
 
     import numpy as np
 
-    from twin.errors import DesignError
-    from twin.units import DAY
+    from matstd.twin.errors import DesignError
+    from matstd.twin.units import DAY
 
     if not 0.0 < args.in_order <= DAY:
         raise DesignError(f"--in-order {args.in_order:g}: expected seconds from 0 to {DAY:g}")

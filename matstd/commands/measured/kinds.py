@@ -8,19 +8,19 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import argparse
 
-    from twin.foreign import PositioningTest
-    from twin.frames import Array
-    from twin.machine import Chain
-    from twin.record import Run
-    from twin.sheets import Sheet
+    from matstd.twin.foreign import PositioningTest
+    from matstd.twin.frames import Array
+    from matstd.twin.machine import Chain
+    from matstd.twin.record import Run
+    from matstd.twin.sheets import Sheet
 
 
 def positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """A positioning test as a run."""
-    from twin.errors import DesignError
-    from twin.files import read_machine
-    from twin.foreign import one_axis_machine, positioning_run, read_positioning
-    from twin.units import UM, URAD
+    from matstd.twin.errors import DesignError
+    from matstd.twin.files import read_machine
+    from matstd.twin.foreign import one_axis_machine, positioning_run, read_positioning
+    from matstd.twin.units import UM, URAD
 
     name = args.component or ""
     axis = name[-1:] if name else args.positioning
@@ -40,8 +40,8 @@ def _say_positioning(test: PositioningTest) -> None:
     import numpy as np
 
     from matstd.console import say
-    from twin.foreign import positioning_figures
-    from twin.units import DEG, UM, URAD
+    from matstd.twin.foreign import positioning_figures
+    from matstd.twin.units import DEG, UM, URAD
 
     turns = test.axis in "ABC"
     low, high = (v / (DEG if turns else 1.0) for v in (test.target.min(), test.target.max()))
@@ -72,7 +72,7 @@ def _say_component(test: PositioningTest) -> None:
     import numpy as np
 
     from matstd.console import say
-    from twin.units import UM, URAD
+    from matstd.twin.units import UM, URAD
 
     targets, of = np.unique(np.round(test.target, 6), return_inverse=True)
     mean = np.bincount(of.ravel(), test.deviation) / np.bincount(of.ravel())
@@ -89,10 +89,10 @@ def _say_component(test: PositioningTest) -> None:
 def circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """A circular test as a run."""
     from matstd.console import say
-    from twin.errors import DesignError
-    from twin.files import read_machine
-    from twin.foreign import circle_machine, circle_run, read_circle
-    from twin.units import UM
+    from matstd.twin.errors import DesignError
+    from matstd.twin.files import read_machine
+    from matstd.twin.foreign import circle_machine, circle_run, read_circle
+    from matstd.twin.units import UM
 
     plane = args.circle.upper()
     if plane not in ("XY", "YZ", "ZX", "YX", "ZY", "XZ"):
@@ -122,9 +122,9 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     import numpy as np
 
     from matstd.console import say
-    from twin.errors import DesignError
-    from twin.files import read_machine
-    from twin.foreign import (
+    from matstd.twin.errors import DesignError
+    from matstd.twin.files import read_machine
+    from matstd.twin.foreign import (
         arm_from_dh,
         coupled,
         joint_readings,
@@ -132,8 +132,8 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         misfit,
         tracker_run,
     )
-    from twin.sheets import read_sheet
-    from twin.units import UM
+    from matstd.twin.sheets import read_sheet
+    from matstd.twin.units import UM
 
     if bool(args.machine) == bool(args.dh):
         given = "both given" if args.dh else "neither given"
@@ -181,8 +181,8 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
 def points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tuple[Run, Chain]:
     """A list of points as a run."""
     from matstd.console import say
-    from twin.files import read_machine
-    from twin.foreign import (
+    from matstd.twin.files import read_machine
+    from matstd.twin.foreign import (
         in_measured_frame,
         in_nominal_frame,
         joined_points,
@@ -192,7 +192,7 @@ def points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tuple
         points_run,
         read_points,
     )
-    from twin.units import DEG, UM
+    from matstd.twin.units import DEG, UM
 
     lists = [read_points(sheet, args.unit) for sheet in sheets]
     points = joined_points(lists, [sheet.path.stem for sheet in sheets])
@@ -221,7 +221,7 @@ def points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tuple
 
 def _uncertainty(args: argparse.Namespace, name: str, unit: float) -> float:
     """The stated uncertainty of one reading; raises DesignError where none is stated."""
-    from twin.errors import DesignError
+    from matstd.twin.errors import DesignError
 
     stated = getattr(args, name)
     option = f"--{name.replace('_', '-')}"

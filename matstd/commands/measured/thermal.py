@@ -7,13 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.options import add_output
-from twin.errors import DesignError
+from matstd.twin.errors import DesignError
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from diagnosis.drift import DriftRecord, Judged, Kept
+    from matstd.diagnosis.drift import DriftRecord, Judged, Kept
 
 OURS = ("report.html", "tables.xlsx", "tables/*.csv", "pictures/*.png", "thermal.json", "drift.csv")
 """Results that not every run leaves."""
@@ -101,11 +101,18 @@ def _compare(args: argparse.Namespace) -> int:
     """Laws beside one another, the chosen one with its file and page."""
     import numpy as np
 
-    from diagnosis.drift import chosen, judge, offered, read_beams, write_drift, write_prediction
     from matstd.console import say, say_each
+    from matstd.diagnosis.drift import (
+        chosen,
+        judge,
+        offered,
+        read_beams,
+        write_drift,
+        write_prediction,
+    )
     from matstd.progress import stages
-    from report.drift import drift_lines, write_drift_page
-    from twin.files import results_folder
+    from matstd.report.drift import drift_lines, write_drift_page
+    from matstd.twin.files import results_folder
 
     record, train, held = _record(args)
     beams = read_beams(args.beams, record) if args.beams else ()
@@ -143,8 +150,8 @@ def _record(args: argparse.Namespace) -> tuple[DriftRecord, NDArray[np.int64], N
 
     import numpy as np
 
-    from diagnosis.drift import check_alike, joined, lead, read_log, varying
-    from report.drift import clock_line
+    from matstd.diagnosis.drift import check_alike, joined, lead, read_log, varying
+    from matstd.report.drift import clock_line
 
     paths = [*args.logs, *args.held_out]
     records = [read_log(path, args.step_min * 60.0) for path in paths]
@@ -187,8 +194,8 @@ def _probings(
     """What probing the drift in held-out hours leaves, as a sentence."""
     import numpy as np
 
-    from diagnosis.drift import kept
-    from report.drift import kept_line
+    from matstd.diagnosis.drift import kept
+    from matstd.report.drift import kept_line
 
     if args.probe_every is None:
         return []
@@ -207,11 +214,11 @@ def _predict(args: argparse.Namespace) -> int:
 
     import numpy as np
 
-    from diagnosis.drift import read_law, read_log, write_prediction
     from matstd.console import say, say_each
-    from report.drift import draw_drift, law_title
-    from twin.errors import BadFile
-    from twin.files import results_folder
+    from matstd.diagnosis.drift import read_law, read_log, write_prediction
+    from matstd.report.drift import draw_drift, law_title
+    from matstd.twin.errors import BadFile
+    from matstd.twin.files import results_folder
 
     saved = read_law(args.law)
     record = read_log(args.logs[0], saved.step, needs_displacement=False)
@@ -250,7 +257,7 @@ def _with_probings(args: argparse.Namespace, record: DriftRecord, judged: Judged
     """The prediction with the probings of a file."""
     from dataclasses import replace
 
-    from diagnosis.drift import kept, read_probed
+    from matstd.diagnosis.drift import kept, read_probed
 
     rows, values, u = read_probed(args.probed, record)
     displacement = record.displacement.copy()

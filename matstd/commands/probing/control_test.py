@@ -12,7 +12,7 @@ from matstd.options import add_output, seen_from
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from probe_paths.emit import ProgramSet
+    from matstd.probe_paths.emit import ProgramSet
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,12 +36,12 @@ def run(args: argparse.Namespace) -> int:
 
     import numpy as np
 
-    from artefact.body import read_standard
+    from matstd.artefact.body import read_standard
     from matstd.console import say, say_each
-    from probe_paths.language import read_dialect
-    from probe_paths.linuxcnc import installed, rehearse
-    from twin.files import write_run
-    from twin.units import MINUTE, UM
+    from matstd.probe_paths.language import read_dialect
+    from matstd.probe_paths.linuxcnc import installed, rehearse
+    from matstd.twin.files import write_run
+    from matstd.twin.units import MINUTE, UM
 
     checked_noise(args)
     user = installed(args.user)
@@ -82,7 +82,7 @@ def _output_folder(args: argparse.Namespace) -> Path:
     """The folder, which is there and holds nothing that nobody asked to replace."""
     from pathlib import Path
 
-    from twin.errors import DesignError
+    from matstd.twin.errors import DesignError
 
     out = Path(args.output)
     if out.exists() and not out.is_dir():

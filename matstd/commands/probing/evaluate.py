@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from matstd.options import add_body, add_output, body_stated, seen_from, with_size
 
 if TYPE_CHECKING:
-    from probe_paths.control import LogPart
-    from twin.machine import Chain
+    from matstd.probe_paths.control import LogPart
+    from matstd.twin.machine import Chain
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -63,20 +63,20 @@ def run(args: argparse.Namespace) -> int:
 
     import numpy as np
 
-    from artefact.body import read_standard
+    from matstd.artefact.body import read_standard
     from matstd.console import say, say_assumed, say_each
-    from probe_paths.campaign import (
+    from matstd.probe_paths.campaign import (
         ball_changes,
         check_changes,
         effective_radii,
         evaluate,
         read_heights,
     )
-    from probe_paths.control import read_log
-    from probe_paths.language import Dialect
-    from report.words import ball_lines
-    from twin.files import read_machine, read_sensors, refuse_to_overwrite, write_run
-    from twin.units import UM
+    from matstd.probe_paths.control import read_log
+    from matstd.probe_paths.language import Dialect
+    from matstd.report.words import ball_lines
+    from matstd.twin.files import read_machine, read_sensors, refuse_to_overwrite, write_run
+    from matstd.twin.units import UM
 
     _check_numbers(args)
     refuse_to_overwrite(args.output, args.force)
@@ -125,9 +125,9 @@ def _check_programs(args: argparse.Namespace, parts: list[LogPart], chain: Chain
     """Compare the logs with the programs that wrote them, where these are at hand."""
     from pathlib import Path
 
-    from probe_paths.campaign import check_as_programmed
-    from probe_paths.control import read_program
-    from twin.errors import DesignError
+    from matstd.probe_paths.campaign import check_as_programmed
+    from matstd.probe_paths.control import read_program
+    from matstd.twin.errors import DesignError
 
     beside = Path(args.standard).parent / "programs"
     folder = beside if args.programs is None else Path(args.programs)
@@ -141,7 +141,7 @@ def _check_programs(args: argparse.Namespace, parts: list[LogPart], chain: Chain
 
 def _check_numbers(args: argparse.Namespace) -> None:
     """Refuse an uncertainty or a limit that means nothing; raises DesignError."""
-    from twin.errors import DesignError
+    from matstd.twin.errors import DesignError
 
     if not 1e-3 <= args.u_um <= 1000.0:
         raise DesignError(f"--u-um {args.u_um:g}: expected an uncertainty from 0.001 to 1000 µm")

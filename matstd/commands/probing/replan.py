@@ -17,15 +17,15 @@ from matstd.options import (
 )
 
 if TYPE_CHECKING:
-    from artefact.body import Standard
-    from artefact.reach import DatumBall
-    from probe_paths.control import LogPart, ReadProgram
-    from probe_paths.emit import Feeds
-    from probe_paths.language import Dialect
-    from probe_paths.locate import Spread
-    from probe_paths.stations import Station
-    from twin.machine import Chain
-    from twin.record import Setup
+    from matstd.artefact.body import Standard
+    from matstd.artefact.reach import DatumBall
+    from matstd.probe_paths.control import LogPart, ReadProgram
+    from matstd.probe_paths.emit import Feeds
+    from matstd.probe_paths.language import Dialect
+    from matstd.probe_paths.locate import Spread
+    from matstd.probe_paths.stations import Station
+    from matstd.twin.machine import Chain
+    from matstd.twin.record import Setup
 
 SEED = 0
 """Of the places that are tried first: the same log gives the same programs."""
@@ -61,14 +61,14 @@ def run(args: argparse.Namespace) -> int:
     """Find the place, plan, write programs and set-up sheet; the folder appears whole or not."""
     import shutil
 
-    from artefact.body import read_standard
+    from matstd.artefact.body import read_standard
     from matstd.console import say, say_each
+    from matstd.probe_paths.control import read_log, read_program
+    from matstd.probe_paths.locate import Spread
+    from matstd.probe_paths.stations import all_programs
     from matstd.stages.sheets import write_sheets
-    from probe_paths.control import read_log, read_program
-    from probe_paths.locate import Spread
-    from probe_paths.stations import all_programs
-    from twin.files import read_machine, results_folder
-    from twin.units import DEG
+    from matstd.twin.files import read_machine, results_folder
+    from matstd.twin.units import DEG
 
     printed_by, design = asked_printer(args), Path(args.design)
     made_for = spread_of(design)
@@ -107,7 +107,7 @@ def _of_one_setup(
     Raises:
         DesignError: Logs of several set-ups, or of one that no program has.
     """
-    from twin.errors import DesignError
+    from matstd.twin.errors import DesignError
 
     logged = list(dict.fromkeys(part.heading.setup.name for part in parts))
     names = list(dict.fromkeys(program.heading.setup.name for program in programs))
@@ -128,9 +128,9 @@ def _stations(
     control: str | None,
 ) -> list[Station]:
     """The programs of every probe, planned again for where the standard stands."""
-    from probe_paths.emit import make_programs
-    from probe_paths.locate import planned_again
-    from probe_paths.stations import Station
+    from matstd.probe_paths.emit import make_programs
+    from matstd.probe_paths.locate import planned_again
+    from matstd.probe_paths.stations import Station
 
     out = []
     for words, mine in _by_probe(programs, control).items():
@@ -141,7 +141,7 @@ def _stations(
 
 def _ball_of(program: ReadProgram, words: Dialect, chain: Chain) -> DatumBall | None:
     """The ball on the table, as the program that touches it states it."""
-    from probe_paths.control import BALL, read_program
+    from matstd.probe_paths.control import BALL, read_program
 
     file = program.path.parent.parent / SHEET / f"{program.name.rpartition('_')[0]}_{BALL}.H"
     return read_program(file, chain, dialect=words).heading.ball if file.exists() else None
@@ -163,7 +163,7 @@ def _by_probe(programs: list[ReadProgram], control: str | None) -> dict[Dialect,
 
 def programs_of(design: Path) -> list[Path]:
     """Programs of a design in the order in which they are run; raises BadFile for none."""
-    from twin.errors import BadFile
+    from matstd.twin.errors import BadFile
 
     folder = design / "programs"
     found = [p for p in folder.glob("*") if p.suffix.lower() in (".h", ".ngc")]
@@ -174,9 +174,9 @@ def programs_of(design: Path) -> list[Path]:
 
 def spread_of(design: Path) -> Spread:
     """Within which the search of a design finds the standard, as its program states."""
-    from probe_paths.emit import SEARCH
-    from probe_paths.locate import Spread
-    from twin.units import DEG
+    from matstd.probe_paths.emit import SEARCH
+    from matstd.probe_paths.locate import Spread
+    from matstd.twin.units import DEG
 
     for program in sorted((design / SHEET).glob(f"*_{SEARCH}.*")):
         text = program.read_text(encoding="ascii", errors="replace")
@@ -192,10 +192,10 @@ def _place(
     import numpy as np
 
     from matstd.console import say
-    from probe_paths.campaign import ball_centres, checked_parts, evaluate
-    from probe_paths.emit import SEARCH
-    from probe_paths.locate import find_standard
-    from report.words import located_lines
+    from matstd.probe_paths.campaign import ball_centres, checked_parts, evaluate
+    from matstd.probe_paths.emit import SEARCH
+    from matstd.probe_paths.locate import find_standard
+    from matstd.report.words import located_lines
 
     believed = parts[0].heading.setup
     is_search = [part.program.endswith(SEARCH) for part in parts]
@@ -222,7 +222,7 @@ def _dialect(control: str | None, program: Path) -> Dialect:
     """Words of the control, with tool, preset and folder of a program that was made for it."""
     from dataclasses import replace
 
-    from probe_paths.language import language_of, read_dialect
+    from matstd.probe_paths.language import language_of, read_dialect
 
     name = control or ("linuxcnc" if language_of(program).ENDING != ".H" else "itnc530")
     dialect, text = read_dialect(name), program.read_text(encoding="ascii", errors="replace")
@@ -244,9 +244,9 @@ def feeds_of(programs: list[ReadProgram], chain: Chain) -> Feeds:
 
     import numpy as np
 
-    from probe_paths.control import Move, ProbeStep
-    from probe_paths.emit import Feeds
-    from twin.units import DEG, MINUTE
+    from matstd.probe_paths.control import Move, ProbeStep
+    from matstd.probe_paths.emit import Feeds
+    from matstd.twin.units import DEG, MINUTE
 
     rotary = [chain.axis_index(a) for a in chain.rotary_axes]
     feeds = Feeds(probing=programs[0].touches[0].feed * MINUTE)

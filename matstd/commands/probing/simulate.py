@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 
     import numpy as np
 
-    from artefact.body import Standard
-    from probe_paths.campaign import VirtualMachine
-    from probe_paths.control import ReadProgram
-    from probe_paths.language import Dialect
-    from twin.files import SensorRecord
+    from matstd.artefact.body import Standard
+    from matstd.probe_paths.campaign import VirtualMachine
+    from matstd.probe_paths.control import ReadProgram
+    from matstd.probe_paths.language import Dialect
+    from matstd.twin.files import SensorRecord
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -67,15 +67,15 @@ def run(args: argparse.Namespace) -> int:
     """Write the run file; a touch without contact stops the program and writes nothing."""
     import numpy as np
 
-    from artefact.body import read_standard
+    from matstd.artefact.body import read_standard
     from matstd.console import say, say_assumed, say_each
+    from matstd.probe_paths.campaign import SMALLEST_U, ball_changes, effective_radii, simulate
+    from matstd.probe_paths.control import read_program, stated_probe
+    from matstd.probe_paths.language import read_dialect
     from matstd.progress import stages
-    from probe_paths.campaign import SMALLEST_U, ball_changes, effective_radii, simulate
-    from probe_paths.control import read_program, stated_probe
-    from probe_paths.language import read_dialect
-    from report.words import ball_lines
-    from twin.files import read_sensors, refuse_to_overwrite, write_run, write_whole
-    from twin.units import UM
+    from matstd.report.words import ball_lines
+    from matstd.twin.files import read_sensors, refuse_to_overwrite, write_run, write_whole
+    from matstd.twin.units import UM
 
     checked_noise(args)
     refuse_to_overwrite(args.output, args.force)
@@ -120,8 +120,8 @@ def _piece(args: argparse.Namespace, believed: Standard) -> Standard:
         BadFile: The calibration of another standard than the design that is believed of it.
         DesignError: The uncertainty of a temperature that is not stated.
     """
-    from artefact.body import read_standard
-    from twin.errors import BadFile, DesignError
+    from matstd.artefact.body import read_standard
+    from matstd.twin.errors import BadFile, DesignError
 
     if args.body_degC is None and args.body_u_K is not None:
         raise DesignError(f"--body-u-K {args.body_u_K:g}: expected --body-degC as well")
@@ -145,9 +145,9 @@ def _search(
 ) -> int:
     """Write the log of a program that measures nothing and leaves no run file."""
     from matstd.console import say
-    from probe_paths.campaign import simulate_search
-    from twin.errors import DesignError
-    from twin.files import write_whole
+    from matstd.probe_paths.campaign import simulate_search
+    from matstd.twin.errors import DesignError
+    from matstd.twin.files import write_whole
 
     if not args.logs or len(args.programs) > 1:
         raise DesignError(
@@ -196,7 +196,7 @@ def add_planted(parser: argparse.ArgumentParser) -> None:
 
 def checked_noise(args: argparse.Namespace) -> None:
     """Refuse noise and seed that mean nothing; raises DesignError."""
-    from twin.errors import DesignError
+    from matstd.twin.errors import DesignError
 
     if not 0.0 <= args.noise_um < 1000.0 or args.seed < 0:
         raise DesignError(
@@ -223,12 +223,12 @@ def virtual_machine(
     """
     import numpy as np
 
-    from probe_paths.campaign import FIRST_MORNING, VirtualMachine, effects_over_record
-    from sensitivity.population import Population, drawn_errors
-    from twin.files import read_errors, read_machine
-    from twin.frames import fixed_xyz, pose
-    from twin.library import parse_sized_effect, parse_sizes
-    from twin.units import UM
+    from matstd.probe_paths.campaign import FIRST_MORNING, VirtualMachine, effects_over_record
+    from matstd.sensitivity.population import Population, drawn_errors
+    from matstd.twin.files import read_errors, read_machine
+    from matstd.twin.frames import fixed_xyz, pose
+    from matstd.twin.library import parse_sized_effect, parse_sizes
+    from matstd.twin.units import UM
 
     chain = read_machine(machine_file)
     load_effects(args.effects)

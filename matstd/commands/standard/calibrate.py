@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from matstd.options import add_output
 
 if TYPE_CHECKING:
-    from artefact.body import Standard
-    from artefact.certify import Calibrated
+    from matstd.artefact.body import Standard
+    from matstd.artefact.certify import Calibrated
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -56,14 +56,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the calibrated standard, or the program, whole or not at all."""
-    from artefact.body import read_standard, write_standard
-    from artefact.certify import calibrated, dmis_program, read_cmm_points
-    from cad_out.details import datum_touches, engraved_on
+    from matstd.artefact.body import read_standard, write_standard
+    from matstd.artefact.certify import calibrated, dmis_program, read_cmm_points
+    from matstd.cad_out.details import datum_touches, engraved_on
     from matstd.console import say, say_each
-    from report.task import calibration_lines, verdict_lines
-    from twin.errors import DesignError
-    from twin.files import refuse_to_overwrite, write_whole
-    from twin.units import UM
+    from matstd.report.task import calibration_lines, verdict_lines
+    from matstd.twin.errors import DesignError
+    from matstd.twin.files import refuse_to_overwrite, write_whole
+    from matstd.twin.units import UM
 
     refuse_to_overwrite(args.output, args.force)
     nominal = read_standard(args.standard)
@@ -90,7 +90,7 @@ def run(args: argparse.Namespace) -> int:
     found = calibrated(nominal, points, args.u_um * UM, args.u_feature_um * UM)
     found = _judged(args, nominal, found)
     if args.cad:
-        from cad_out.verify import export_standard
+        from matstd.cad_out.verify import export_standard
 
         export_standard(found.standard, args.cad)
     write_standard(args.output, found.standard)
@@ -104,12 +104,12 @@ def _judged(args: argparse.Namespace, nominal: Standard, found: Calibrated) -> C
     """Show what conforms to the drawing; refuse what does not unless it is accepted."""
     from rich.table import Column, Table
 
-    from artefact.certify import Allowed, judged
-    from cad_out.details import CALIBRATED
+    from matstd.artefact.certify import Allowed, judged
+    from matstd.cad_out.details import CALIBRATED
     from matstd.console import console
-    from report.task import refusal_sentence, verdict_rows
-    from twin.errors import NotConforming
-    from twin.units import UM
+    from matstd.report.task import refusal_sentence, verdict_rows
+    from matstd.twin.errors import NotConforming
+    from matstd.twin.units import UM
 
     allowed = Allowed(CALIBRATED, args.u_feature_um * UM, args.body_u_K)
     found, causes = judged(nominal, found, allowed)

@@ -21,8 +21,8 @@ from matstd.options import (
 from matstd.workers import add_scheduler
 
 if TYPE_CHECKING:
-    from artefact.brief import Project
-    from twin.errors import DesignError
+    from matstd.artefact.brief import Project
+    from matstd.twin.errors import DesignError
 
 REFUSED = "reach-refused.png"
 """Picture of what the machine reaches, all that a refused run leaves in its folder."""
@@ -63,14 +63,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
-    from artefact.brief import read_project
-    from artefact.reach import standing_remarks
+    from matstd.artefact.brief import read_project
+    from matstd.artefact.reach import standing_remarks
     from matstd.console import say, say_assumed, say_each
+    from matstd.report.task import modulus_words, task_lines
+    from matstd.report.words import design_lines, proof_line
     from matstd.stages.from_project import dialects, feeds
+    from matstd.twin.files import results_folder
     from matstd.workers import connected
-    from report.task import modulus_words, task_lines
-    from report.words import design_lines, proof_line
-    from twin.files import results_folder
 
     project, printed_by = read_project(args.project), asked_printer(args)
     if args.control:  # a file is seen from where the user stands, not from the project
@@ -86,9 +86,9 @@ def run(args: argparse.Namespace) -> int:
         refusals(project, folder, args.output),
     ):
         from matstd.progress import stages
+        from matstd.report.pages import write_design_page
         from matstd.stages.design import design
         from matstd.stages.sheets import write_sheets
-        from report.pages import write_design_page
 
         with stages() as progress, connected(args.scheduler) as workers:
             made = design(project, folder, progress, workers)
@@ -127,7 +127,7 @@ def refusals(project: Project, folder: Path, out: str) -> Iterator[None]:
         out: Where a picture goes of what stops it.
     """
     from matstd.stages import reach, space
-    from twin.errors import NotBuildable, NotReachable
+    from matstd.twin.errors import NotBuildable, NotReachable
 
     try:
         yield
@@ -154,7 +154,7 @@ def _left(picture: Path, there: Path, shows: str) -> str:
 
 def _what_helps(error: DesignError) -> str:
     """Changes that were tried and would do, or keys of the project file, the likeliest first."""
-    from artefact.brief import FEWEST_PATCHES
+    from matstd.artefact.brief import FEWEST_PATCHES
 
     if error.facts.keys() & {"conformity", "exit_code"}:
         return "change seed: the fault is the tool's own, not the project's"

@@ -37,8 +37,8 @@ def run(args: argparse.Namespace) -> int:
     """Write S as a table, or a study as a folder."""
     from pathlib import Path
 
-    from twin.errors import BadFile, DesignError
-    from twin.files import parse_toml, read_text
+    from matstd.twin.errors import BadFile, DesignError
+    from matstd.twin.files import parse_toml, read_text
 
     path = Path(args.source)
     if parse_toml(read_text(path), path).get("format") == "project/1":
@@ -55,9 +55,9 @@ def _table(args: argparse.Namespace) -> int:
     """One column a parameter: µm/µm, or µm/µrad for an angular one."""
     from matstd.console import say_assumed
     from matstd.progress import stages, table_blocks
-    from sensitivity.first_order import sensitivity
-    from twin.files import read_machine, read_poses, refuse_to_overwrite, write_whole
-    from twin.units import UM, URAD
+    from matstd.sensitivity.first_order import sensitivity
+    from matstd.twin.files import read_machine, read_poses, refuse_to_overwrite, write_whole
+    from matstd.twin.units import UM, URAD
 
     refuse_to_overwrite(args.output, args.force)
     chain = read_machine(args.source)
@@ -76,10 +76,10 @@ def _table(args: argparse.Namespace) -> int:
 
 def _study(args: argparse.Namespace) -> int:
     """Data, pictures and page of a study; the folder appears whole or not at all."""
-    from artefact.brief import read_project
+    from matstd.artefact.brief import read_project
     from matstd.console import say_assumed, say_each
+    from matstd.twin.files import results_folder
     from matstd.workers import connected
-    from twin.files import results_folder
 
     project, printed_by = read_project(args.source, _settings(args)), asked_printer(args)
     say_assumed(project.chain)

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from matstd.options import add_effects, add_output, load_effects
 
 if TYPE_CHECKING:
-    from diagnosis.fit import Prior
-    from twin.model import Model
+    from matstd.diagnosis.fit import Prior
+    from matstd.twin.model import Model
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -37,18 +37,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Evaluate; the result is written whole or not at all."""
-    from artefact.body import read_standard
-    from artefact.brief import Task, read_task
-    from artefact.certify import check_places
-    from artefact.worth import Calibration
-    from diagnosis.files import check_machine, read_model, write_uncertainty
+    from matstd.artefact.body import read_standard
+    from matstd.artefact.brief import Task, read_task
+    from matstd.artefact.certify import check_places
+    from matstd.artefact.worth import Calibration
     from matstd.console import say, say_each
+    from matstd.diagnosis.files import check_machine, read_model, write_uncertainty
     from matstd.inputs import is_learnt_from
+    from matstd.report.pages import write_uncertainty_page
+    from matstd.report.task import measured_sentence, task_lines
+    from matstd.report.words import remark_sentence
     from matstd.stages.budgets import PLAIN, budgets
-    from report.pages import write_uncertainty_page
-    from report.task import measured_sentence, task_lines
-    from report.words import remark_sentence
-    from twin.files import read_run, refuse_to_overwrite
+    from matstd.twin.files import read_run, refuse_to_overwrite
 
     refuse_to_overwrite(args.output, args.force)
     if args.page:
@@ -92,7 +92,7 @@ def run(args: argparse.Namespace) -> int:
 
 def check_visits(files: list[str], prints: list[str]) -> None:
     """Refuse one measurement that is given twice; raises DesignError."""
-    from twin.errors import DesignError
+    from matstd.twin.errors import DesignError
 
     for k, print_ in enumerate(prints):
         if print_ in prints[:k]:
