@@ -13,7 +13,7 @@ FOUND = "machine_found.toml"
 def write_found_arm(folder: Path, fit: "Fit", title: str) -> str:
     """Write it, and say what it is good for; nothing, and "", where the machine is no arm."""
     from matstd.diagnosis.geometry import found_arm
-    from matstd.report.words import microns
+    from matstd.report.numbers import microns
     from matstd.twin.files import write_whole
     from matstd.twin.foreign import machine_text
 

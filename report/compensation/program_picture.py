@@ -1,13 +1,17 @@
 """The picture of a compensated program: nominal, actual and compensated path, and its errors."""
 
-from pathlib import Path
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from matstd.compensation.programs import Compensated
-from matstd.report.style import BLUE, FAINT, INK, RED, figure, plain, save
+from matstd.report.style import BLUE, FAINT, INK, RED, figure, plain
 from matstd.twin.units import MINUTE, UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SHOWN = 0.06
 """Of the path's size, as which its largest deviation is drawn."""
@@ -16,11 +20,10 @@ POINTS = 6000
 """Points that are drawn at most."""
 
 
-def draw_program(path: str | Path, done: Compensated) -> None:
+def draw_program(done: Compensated) -> Figure:
     """Draw the path in its widest plane, deviations exaggerated, and their size over time.
 
     Args:
-        path: PNG.
         done: The program and its compensation.
     """
     rows = np.unique(np.linspace(0, len(done.q) - 1, min(len(done.q), POINTS)).astype(int))
@@ -48,7 +51,7 @@ def draw_program(path: str | Path, done: Compensated) -> None:
     right.legend(fontsize=8, frameon=False)
     for ax in (left, right):
         plain(ax)
-    save(drawn, path)
+    return drawn
 
 
 def _path(ax: Any, done: Compensated, rows: np.ndarray) -> None:

@@ -1,13 +1,18 @@
 """Pictures of what compensation leaves: over the workspace, and error by error."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from matstd.compensation.field import Left, Result
-from matstd.report.style import INK, NEUTRAL, SOFT, figure, nothing, plain, save, series
+from matstd.report.style import INK, NEUTRAL, SOFT, figure, nothing, plain, series
 from matstd.twin.units import UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 BARS = 16
 """Errors that are drawn at most."""
@@ -16,11 +21,10 @@ LEAST = 1e-3
 """µm: a logarithmic scale begins there, at a nanometre."""
 
 
-def draw_errors_left(path: str | Path, results: Mapping[str, Result]) -> None:
+def draw_errors_left(results: Mapping[str, Result]) -> Figure:
     """Share of the workspace whose error is smaller: before, and after every compensation.
 
     Args:
-        path: PNG.
         results: By title; all of the same machine and datum.
     """
     drawn = figure(3.6)
@@ -38,7 +42,7 @@ def draw_errors_left(path: str | Path, results: Mapping[str, Result]) -> None:
     ax.set_ylabel("share of poses below")
     ax.legend(fontsize=8, frameon=False, loc="upper left")
     plain(ax)
-    save(drawn, path)
+    return drawn
 
 
 def _curve(ax: object, size: np.ndarray, label: str | None, colour: str, style: str) -> None:
@@ -47,17 +51,15 @@ def _curve(ax: object, size: np.ndarray, label: str | None, colour: str, style: 
     ax.plot(x, y, style, color=colour, lw=1.4, label=label)  # type: ignore[attr-defined]
 
 
-def draw_shares(path: str | Path, left: Sequence[Left]) -> None:
+def draw_shares(left: Sequence[Left]) -> Figure:
     """What one compensation leaves of every error, beside what it was.
 
     Args:
-        path: PNG.
         left: Of one compensation, the largest first.
     """
     shown = [item for item in left[:BARS] if item.before > 0.0]
     if not shown:
-        save(nothing("nothing is left"), path)
-        return
+        return nothing("No error remains.")
     drawn = figure(0.9 + 0.24 * len(shown))
     ax = drawn.subplots()
     y = np.arange(len(shown))[::-1]
@@ -72,4 +74,4 @@ def draw_shares(path: str | Path, left: Sequence[Left]) -> None:
     ax.set_xlabel("µm, rms over the workspace")
     ax.legend(fontsize=8, frameon=False)
     plain(ax, "x")
-    save(drawn, path)
+    return drawn

@@ -1,8 +1,9 @@
 """Pictures of what was found: the error falling, rival explanations, and each effect by itself."""
 
+from __future__ import annotations
+
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from matstd.diagnosis.fit import MIN_POSES, Fit
 from matstd.diagnosis.regression import BoolArray
 from matstd.diagnosis.residual import Partial, Seen, binned, partial
 from matstd.report.effects import effect_cell, effect_title
-from matstd.report.numbers import noun, shown
+from matstd.report.numbers import microns, noun, shown
 from matstd.report.plots.residual_pictures import kept
 from matstd.report.style import (
     BLUE,
@@ -25,14 +26,15 @@ from matstd.report.style import (
     axis_of,
     figure,
     plain,
-    save,
     series,
 )
-from matstd.report.words import microns
 from matstd.twin.frames import Array
 from matstd.twin.library import parse_effect
 from matstd.twin.model import Effect
 from matstd.twin.units import UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MOST_BARS = 14
 """Rivals or candidates that get a bar."""
@@ -50,11 +52,10 @@ RATIO = 12.0
 """Between the largest and the smallest error of a fall, from which its scale is logarithmic."""
 
 
-def draw_fall(path: str | Path, diagnosis: Diagnosis) -> None:
+def draw_fall(diagnosis: Diagnosis) -> Figure:
     """Error of fitted and of held-out touches, step by step, against the noise.
 
     Args:
-        path: PNG.
         diagnosis: With one step or more.
     """
     steps = diagnosis.steps
@@ -88,7 +89,7 @@ def draw_fall(path: str | Path, diagnosis: Diagnosis) -> None:
     ax.set_ylabel("root mean square error in µm")
     plain(ax, "y")
     drawn.legend(fontsize=8.5, frameon=False, loc="outside upper center", ncols=4)
-    save(drawn, path)
+    return drawn
 
 
 def _held_words(diagnosis: Diagnosis) -> str:
@@ -141,13 +142,12 @@ def _noise_lines(ax: Any, fit: Fit, u: float) -> None:
         ax.axhline(found, color=INK, lw=1.1, ls="--", label=f"scatter left, {microns(found * UM)}")
 
 
-def draw_candidates(path: str | Path, diagnosis: Diagnosis) -> None:
+def draw_candidates(diagnosis: Diagnosis) -> Figure:
     """Evidence of library effects, each by itself added to the starting model.
 
     Those that belong to a found effect, or cannot be told from it, bear its colour.
 
     Args:
-        path: PNG.
         diagnosis: With at least one candidate.
     """
     shown = [c for c in diagnosis.candidates if np.isfinite(c.log_odds)][:MOST_BARS]
@@ -166,7 +166,7 @@ def draw_candidates(path: str | Path, diagnosis: Diagnosis) -> None:
     ax.set_ylim(-0.7, len(shown) - 0.3)
     plain(ax, "x")
     _class_legend(drawn, diagnosis)
-    save(drawn, path)
+    return drawn
 
 
 def _classes(diagnosis: Diagnosis) -> list[tuple[Effect, tuple[str, ...], str]]:
@@ -203,11 +203,10 @@ def _class_legend(drawn: Any, diagnosis: Diagnosis) -> None:
         )
 
 
-def draw_rivals(path: str | Path, confusion: ConfusionClass, colour: str = BLUE) -> None:
+def draw_rivals(confusion: ConfusionClass, colour: str = BLUE) -> Figure:
     """A found effect against everything that explains the same touches, by its odds.
 
     Args:
-        path: PNG.
         confusion: The class of the effect.
         colour: Of what cannot be told apart.
     """
@@ -233,14 +232,13 @@ def draw_rivals(path: str | Path, confusion: ConfusionClass, colour: str = BLUE)
     ax.margins(x=0.12)
     ax.set_ylim(-0.7, len(names) - 0.3)
     plain(ax, "x")
-    save(drawn, path)
+    return drawn
 
 
-def draw_effect(path: str | Path, fit: Fit, effect: Effect, colour: str = BLUE) -> None:
+def draw_effect(fit: Fit, effect: Effect, colour: str = BLUE) -> Figure:
     """One effect as the run shows it: its course, the touches it explains, and what is left.
 
     Args:
-        path: PNG.
         fit: The model with everything in it.
         effect: As it stands in the fit.
         colour: Of its course.
@@ -265,7 +263,7 @@ def draw_effect(path: str | Path, fit: Fit, effect: Effect, colour: str = BLUE) 
     right.set_ylim(0.5 * (low - high), 0.5 * (high - low))  # about zero, as large a scale
     left.set_ylabel(quantity)
     left.legend(fontsize=8, frameon=False)
-    save(drawn, path)
+    return drawn
 
 
 def shown_partial(found: Partial) -> tuple[Partial, str, str]:

@@ -1,16 +1,20 @@
 """Picture of the form of one patch of the standard, as the touches show it."""
 
-from pathlib import Path
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.regression import BoolArray
-from matstd.report.style import DIVERGING, INK, figure, plain, robust_limit, save
+from matstd.report.style import DIVERGING, INK, figure, plain, robust_limit
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, columns
 from matstd.twin.units import UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 LEVELS = 15
 
@@ -20,11 +24,10 @@ def is_form(fit: Fit, effect: Effect) -> bool:
     return effect.kind == "artefact-form" and int(_on_patch(fit, effect).sum()) > 3
 
 
-def draw_form(path: str | Path, fit: Fit, effect: Effect) -> None:
+def draw_form(fit: Fit, effect: Effect) -> Figure:
     """Form of a patch: touches on the fitted form, and what is left of them.
 
     Args:
-        path: PNG.
         fit: The model with the effect in it.
         effect: The form of one feature, as it stands in the fit.
     """
@@ -52,7 +55,7 @@ def draw_form(path: str | Path, fit: Fit, effect: Effect) -> None:
     axes[0].set_ylabel("across the patch in mm")
     bar = drawn.colorbar(marks, ax=list(axes), pad=0.02, shrink=0.9, extend="both")
     bar.set_label("deviation along the normal, µm", fontsize=8.5)
-    save(drawn, path)
+    return drawn
 
 
 def _on_patch(fit: Fit, effect: Effect) -> BoolArray:

@@ -1,21 +1,24 @@
 """Pictures of a plan: where the standard is touched, and how the table turns meanwhile."""
 
-from pathlib import Path
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, FreeformPatch
 from matstd.probe_paths.plan import TouchPlan
-from matstd.report.style import BLUE, INK, RED, SOFT, figure, plain, save
+from matstd.report.style import BLUE, INK, RED, SOFT, figure, plain
 from matstd.twin.units import DEG
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def write_touches_picture(path: str | Path, plan: TouchPlan) -> None:
+
+def draw_touches(plan: TouchPlan) -> Figure:
     """Touched points on the standard seen from above and from the side, coloured by feature kind.
 
     Args:
-        path: PNG.
         plan: What is touched.
     """
     drawn = figure(4.4)
@@ -48,7 +51,7 @@ def write_touches_picture(path: str | Path, plan: TouchPlan) -> None:
     top.set_title("from above", loc="left")
     side.set_title("from the side", loc="left")
     side.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, frameon=False)
-    save(drawn, path)
+    return drawn
 
 
 def _outlines(ax: Any, plan: TouchPlan, i: int, j: int) -> None:
@@ -84,11 +87,10 @@ def _outlines(ax: Any, plan: TouchPlan, i: int, j: int) -> None:
         )
 
 
-def write_order_picture(path: str | Path, plan: TouchPlan) -> None:
+def draw_order(plan: TouchPlan) -> Figure:
     """Rotary readings over the sequence of touches, with the side of every approach.
 
     Args:
-        path: PNG.
         plan: In the order of execution.
     """
     axes = plan.chain.rotary_axes
@@ -121,4 +123,4 @@ def write_order_picture(path: str | Path, plan: TouchPlan) -> None:
         panels[0].legend(
             loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, frameon=False
         )
-    save(drawn, path)
+    return drawn

@@ -1,21 +1,24 @@
 """Picture of the proof: volumetric error before and after, pose by pose."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from matstd.diagnosis.answer import Proof
-from matstd.report.style import BLUE, RED, SOFT, figure, plain, save, series
+from matstd.report.style import BLUE, RED, SOFT, figure, plain, series
 from matstd.twin.units import UM
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def write_proof_picture(path: str | Path, proofs: Sequence[Proof]) -> None:
+
+def draw_proof(proofs: Sequence[Proof]) -> Figure:
     """Distributions of |error| before and after, and after against its stated uncertainty.
 
     Args:
-        path: PNG.
         proofs: One a simulated machine.
     """
     drawn = figure(4.0)
@@ -50,7 +53,7 @@ def write_proof_picture(path: str | Path, proofs: Sequence[Proof]) -> None:
     left.set_title(f"{len(proofs)} random machine{'s' * (len(proofs) > 1)}", loc="left")
     _uncertainty(right, proofs)
     plain(left)
-    save(drawn, path)
+    return drawn
 
 
 def _uncertainty(ax: Any, proofs: Sequence[Proof]) -> None:

@@ -1,8 +1,9 @@
 """Pictures of a residual as a sample: over every variable, and against the normal distribution."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,11 +20,13 @@ from matstd.report.style import (
     figure,
     plain,
     robust_limit,
-    save,
 )
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 from matstd.twin.units import UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MOST_DRAWN = 4000
 """Touches that are drawn as points; means are always over all."""
@@ -36,7 +39,7 @@ def kept(n: int) -> IntArray:
     return np.unique(np.linspace(0, n - 1, min(n, MOST_DRAWN)).astype(int))
 
 
-def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[RankedVariable]) -> None:
+def draw_over_variables(fit: Fit, panels: Sequence[RankedVariable]) -> Figure:
     """Residual against variables: small multiples with one scale.
 
     Grey points are touches, blue ones means with their standard errors; the right-hand scale is in
@@ -44,7 +47,6 @@ def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[RankedVaria
     errors are red.
 
     Args:
-        path: PNG.
         panels: Some of `rank_variables(fit)`.
     """
     rows = fit.used
@@ -68,7 +70,7 @@ def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[RankedVaria
         row[0].set_ylabel("residual in µm", fontsize=8.5)
     last = [row[min(COLUMNS, len(panels) - k * COLUMNS) - 1] for k, row in enumerate(axes)]
     _normalised_scale(last, fit)
-    save(drawn, path)
+    return drawn
 
 
 def _panel(ax: Any, values: Array, r: Array, weight: Array, limit: float) -> None:
@@ -104,11 +106,10 @@ def _normalised_scale(axes: list[Any], fit: Fit) -> None:
         right.spines["right"].set_color(LINE)
 
 
-def draw_normal_plot(path: str | Path, fit: Fit, z: Array | None = None) -> None:
+def draw_normal_plot(fit: Fit, z: Array | None = None) -> Figure:
     """Histogram and normal plot of residuals in units of their uncertainty, outliers by line.
 
     Args:
-        path: PNG.
         z: Residuals over their standard uncertainty, (N,); None for `standardised(fit)`.
     """
     z = standardised(fit) if z is None else z
@@ -118,7 +119,7 @@ def draw_normal_plot(path: str | Path, fit: Fit, z: Array | None = None) -> None
     _normal_plot(right, fit, z)
     for ax in (left, right):
         plain(ax)
-    save(drawn, path)
+    return drawn
 
 
 def _histogram(ax: Any, z: Array, factor: float) -> None:

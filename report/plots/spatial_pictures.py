@@ -1,7 +1,8 @@
 """Pictures of a residual in space: on the standard, and table pose by table pose."""
 
-from pathlib import Path
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,11 +21,13 @@ from matstd.report.style import (
     figure,
     plain,
     robust_limit,
-    save,
 )
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 from matstd.twin.units import DEG, UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 EXTENT = 1.0
 """Touched points closer together than this (mm) are a place, not a standard."""
@@ -41,11 +44,10 @@ def is_spread(touches: Touches) -> bool:
     return bool(np.sort(np.ptp(touches.point, axis=0))[1] > EXTENT)
 
 
-def draw_on_standard(path: str | Path, fits: tuple[tuple[str, Fit], ...]) -> None:
+def draw_on_standard(fits: tuple[tuple[str, Fit], ...]) -> Figure:
     """Touched points of the standard in space, coloured by residual on one common scale.
 
     Args:
-        path: PNG.
         fits: One model, seen in space and from above; or two models of the same run with a title
             each, such as before and after. What lies in a plane is seen from above alone.
     """
@@ -69,7 +71,7 @@ def draw_on_standard(path: str | Path, fits: tuple[tuple[str, Fit], ...]) -> Non
     if any(f.gross.rows.any() for _, f in fits):
         handles = drawn.axes[0].get_legend_handles_labels()
         drawn.legend(*handles, loc="lower left", fontsize=8.5, frameon=False)
-    save(drawn, path)
+    return drawn
 
 
 def _from_above(
@@ -153,11 +155,10 @@ def _few_ticks() -> Any:
     return MaxNLocator(5)
 
 
-def draw_pose_arrows(path: str | Path, fit: Fit) -> None:
+def draw_pose_arrows(fit: Fit) -> Figure:
     """Mean residual vector of every table pose: an arrow at its rotary readings, and in order.
 
     Args:
-        path: PNG.
         fit: A fit of which `has_poses` is true.
     """
     rows, vectors, spread = pose_vectors(fit)
@@ -181,7 +182,7 @@ def draw_pose_arrows(path: str | Path, fit: Fit) -> None:
     right.set_ylabel("mean residual in machine directions, µm")
     right.legend(fontsize=8, frameon=False, ncols=3)
     plain(right)
-    save(drawn, path)
+    return drawn
 
 
 def _where(touches: Touches, rows: IntArray) -> tuple[Array, Array, str, str]:
