@@ -19,6 +19,7 @@ from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.regression import BoolArray
 from matstd.diagnosis.residual.patterns import variables
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
 
 CHANCE = 1e-3
 """Probability that noise is said to have a region."""
@@ -186,13 +187,12 @@ def _judged(
     if p >= CHANCE:
         return None
     r = fit.residual[seen]
-    rms = float(np.sqrt(np.mean(r**2)))
     u = float(np.sqrt(np.sum(noise[seen] ** 2)) / len(r))
     return Region(
         conditions=_tightest(conditions),
         rows=rows,
         mean=float(r.mean()),
-        rms=rms,
+        rms=rms(r),
         p_value=p,
         u=u,
     )
