@@ -30,6 +30,8 @@ ALLOWED = BELOW | {
 """Which rooms a room may import."""
 VOCABULARY = {
     "twin.units",
+    "twin.numbers",
+    "twin.text",
     "twin.frames",
     "twin.errors",
     "twin.words",

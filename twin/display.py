@@ -4,8 +4,6 @@ Words and pictures are made in `report`, which lies above every result. It is lo
 when somebody asks to see one, so nothing below imports it.
 """
 
-import csv
-import io
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from importlib import import_module
@@ -15,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from matstd.twin.errors import MissingLibrary
+from matstd.twin.text import csv_text
 
 _MADE_BY = "matstd.report.pages.notebook"
 
@@ -49,14 +48,11 @@ class Tabular(Shown, ABC):
             The text.
         """
         table = self.columns()
-        out = io.StringIO()
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(table)
-        for row in zip(*table.values(), strict=True):
-            writer.writerow([self.cell(value) for value in row])
+        rows = zip(*table.values(), strict=True)
+        text = csv_text(table, ([self.cell(value) for value in row] for row in rows))
         if path is not None:
-            import_module("matstd.twin.files").write_whole(path, out.getvalue())
-        return out.getvalue()
+            import_module("matstd.twin.files").write_whole(path, text)
+        return text
 
     def cell(self, value: Any) -> str:
         """One value as text."""

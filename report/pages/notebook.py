@@ -26,6 +26,7 @@ from matstd.report.words import comparison_sentence, microns, study_words, verdi
 from matstd.sensitivity.shares import regions
 from matstd.sensitivity.study import Study
 from matstd.twin.display import Tabular
+from matstd.twin.numbers import rms
 from matstd.twin.record import Run
 
 _ROWS = 10  # of a table that are shown; the rest is told
@@ -39,7 +40,7 @@ def text(result: object) -> str:
 
 @text.register
 def _run(run: Run) -> str:
-    size = float(np.sqrt(np.mean(run.deviation**2)))
+    size = rms(run.deviation)
     poses = len(np.unique(run.touches.pose))
     return (
         f"{len(run)} touches at {poses} table poses of {run.touches.chain.name}, "
