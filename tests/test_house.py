@@ -15,9 +15,10 @@ import pytest
 ROOT = Path(__file__).parents[1]
 BELOW = {
     "twin": set(),
+    "importers": {"twin"},
     "sensitivity": {"twin"},
     "information": {"twin"},
-    "artefact": {"twin", "sensitivity", "information"},
+    "artefact": {"twin", "importers", "sensitivity", "information"},
     "diagnosis": {"twin", "information"},
     "cad_out": {"twin", "artefact"},
     "probe_paths": {"twin", "artefact"},
@@ -62,7 +63,7 @@ CARDS = {"formula", "units", "typical", "source", "summary"}
 EXCUSED = {
     "twin/files/run_columns.py": "remarks of a reader on single lines, like its refusals",
     "twin/files/run_checks.py": "kinds of unit mistakes, put into one line of refusal",
-    "twin/foreign/machine_draft.py": "comments of a machine file that is written",
+    "importers/files/machine_draft.py": "comments of a machine file that is written",
     "probe_paths/plan/planner.py": "reason of a refusal, as the reach has it",
     "probe_paths/control/log_clock.py": "remarks of a reader on single lines, like its refusals",
     "probe_paths/campaign/as_programmed.py": "refusals that name what stood in a log",
