@@ -9,6 +9,7 @@ from matstd.compensation.field.inverse import Datum, played
 from matstd.compensation.field.machine_errors import Corrects, MachineErrors, deviation
 from matstd.twin.frames import Array, skew
 from matstd.twin.machine import Chain
+from matstd.twin.numbers import rms, rms_length
 from matstd.twin.record import Touches
 
 POSES = 256
@@ -89,22 +90,17 @@ class Result:
     @property
     def u_rms(self) -> float:
         """What the uncertainty of the model adds to the rms, mm."""
-        return float(np.sqrt(np.mean(self.u**2)))
+        return rms(self.u)
 
     @property
     def expected_before(self) -> float:
         """Rms to expect without it: of the model and what it does not know, mm."""
-        return float(np.hypot(rms(self.before), self.u_rms))
+        return float(np.hypot(rms_length(self.before), self.u_rms))
 
     @property
     def expected(self) -> float:
         """Rms to expect with it: what is left and what the model does not know, mm."""
-        return float(np.hypot(rms(self.after), self.u_rms))
-
-
-def rms(vectors: Array) -> float:
-    """Root mean square length of vectors (N, 3)."""
-    return float(np.sqrt(np.mean(np.einsum("ni,ni->n", vectors, vectors))))
+        return float(np.hypot(rms_length(self.after), self.u_rms))
 
 
 def relative_columns(errors: MachineErrors, touches: Touches, datum: Datum) -> Array:
@@ -169,11 +165,11 @@ def _left(errors: MachineErrors, columns: Array, unheld: Array) -> tuple[Left, .
     for name in errors.groups:
         rows = errors.parameter_rows(name)
         field, spread = unheld[:, :, rows] @ theta[rows], unheld[:, :, rows] @ errors.root[rows]
-        size = rms(field)
+        size = rms_length(field)
         u = float(np.sqrt(np.mean(np.einsum("nik,nik->n", spread, spread))))
         if size > u:  # along the field where there is one, over all of it where there is none
             slope = np.einsum("ni,nik->k", field, spread) / (size * len(field))
             u = float(np.linalg.norm(slope))
-        before = rms(columns[:, :, rows] @ theta[rows])
+        before = rms_length(columns[:, :, rows] @ theta[rows])
         out.append(Left(name=name, before=before, rms=size, u=u))
     return tuple(sorted(out, key=lambda item: -item.rms))

@@ -10,9 +10,9 @@ from matstd.options import add_output, seen_from
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from matstd.importers.sheets import Sheet
     from matstd.twin.machine import Chain
     from matstd.twin.record import Run
-    from matstd.twin.sheets import Sheet
 
 _SIGN = {
     "positioning": "a deviation (actual - target) is the axis's own error; in the run it stands as "
@@ -172,9 +172,9 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from matstd.console import say
+    from matstd.importers.sheets import read_sheet
     from matstd.twin.errors import DesignError
     from matstd.twin.files import refuse_to_overwrite
-    from matstd.twin.sheets import read_sheet
 
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)
@@ -201,9 +201,9 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
     from pathlib import Path
 
     from matstd.console import say, say_each
+    from matstd.importers import mapped_run
     from matstd.twin.errors import BadFile
     from matstd.twin.files import read_machine, read_run, write_whole
-    from matstd.twin.foreign import mapped_run
 
     text, left_out = mapped_run(sheet, args.map)
     with tempfile.TemporaryDirectory() as folder:
@@ -244,8 +244,8 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
 
     from matstd.commands.measured.kinds import arm, circle, points, positioning
     from matstd.console import say
+    from matstd.importers import machine_text
     from matstd.twin.files import refuse_to_overwrite, write_run, write_whole
-    from matstd.twin.foreign import machine_text
     from matstd.twin.units import UM
 
     meaning = next(m for m in _SIGN if getattr(args, m))
