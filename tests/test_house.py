@@ -32,6 +32,7 @@ VOCABULARY = {
     "twin.units",
     "twin.numbers",
     "twin.text",
+    "twin.sampling",
     "twin.frames",
     "twin.errors",
     "twin.words",
