@@ -46,7 +46,7 @@ HEAVY = {"build123d", "OCP", "pyvista", "vtk", "matplotlib", "trimesh", "manifol
 DRAWING = {"matplotlib", "pyvista", "vtk"}
 # The kernel's own files name forty of its classes each; they are imported inside functions only.
 KERNEL = {
-    f"cad_out/build/{name}.py"
+    f"cad_out/kernel/{name}.py"
     for name in (
         ["assembly", "exchange", "faces", "letters", "pmi", "primitives", "reader", "solid", "xcaf"]
     )

@@ -12,10 +12,10 @@ import volume_by_hand
 
 from matstd import cad_out
 from matstd.artefact.body.datum import DatumSphere
-from matstd.cad_out.build import kernel
-from matstd.cad_out.build.process import Ending, run_apart
-from matstd.cad_out.build.settled import with_units_of_density
 from matstd.cad_out.details.detail_list import details_of
+from matstd.cad_out.kernel import kernel
+from matstd.cad_out.kernel.process import Ending, run_apart
+from matstd.cad_out.kernel.settled import with_units_of_density
 from matstd.cad_out.meshes.mesh import (
     chord_errors,
     is_watertight,
@@ -98,7 +98,7 @@ def test_poles_and_knots_in_the_file_are_those_of_the_design(upright, built):
 
 
 def test_the_header_says_where_the_file_comes_from(upright, built):
-    from matstd.cad_out.build.exchange import in_ascii
+    from matstd.cad_out.kernel.exchange import in_ascii
 
     place, _, _ = built
     header = re.sub(r"\s*\n\s*", "", (place / "standard.step").read_text().split("ENDSEC;")[0])
