@@ -12,6 +12,7 @@ from matstd.cli import COMMANDS
 ROOT = Path(__file__).parents[1]
 ROOMS = (
     "twin",
+    "importers",
     "sensitivity",
     "information",
     "artefact",

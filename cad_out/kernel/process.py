@@ -13,10 +13,10 @@ REFUSAL = "refusal.txt"
 """File in the shared folder that holds the reason of a refusal."""
 
 _CALL = """\
-import pathlib, {module}, twin.errors
+import pathlib, {module}, matstd.twin.errors
 try:
     {module}.{task}{arguments}
-except twin.errors.DesignError as refusal:
+except matstd.twin.errors.DesignError as refusal:
     pathlib.Path({refusal!r}).write_text(str(refusal), encoding="utf-8")
 """
 

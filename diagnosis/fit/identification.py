@@ -25,7 +25,7 @@ from matstd.diagnosis.regression import (
     solve,
     whitener,
 )
-from matstd.twin.display import Shown
+from matstd.twin.display import Displayed
 from matstd.twin.effects import Free, placing_errors, setup_errors
 from matstd.twin.errors import NotEnoughData
 from matstd.twin.frames import Array
@@ -50,7 +50,7 @@ MIN_TOUCHES = 8
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Fit(Shown):
+class Fit(Displayed):
     """A model fitted to a run.
 
     Parameters stand in the order: effects of the model, set-ups, tangents of inner parameters.

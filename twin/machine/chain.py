@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from matstd.twin.display import Displayed
 from matstd.twin.errors import BadValue, UnknownAxis, UnknownSymbol
 from matstd.twin.frames import Array
 from matstd.twin.machine.contribution import Where
@@ -96,8 +97,8 @@ class Axis:
     expected: float | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Chain:
+@dataclass(frozen=True, eq=False, repr=False)
+class Chain(Displayed):
     """A machine: its links in chain order from workpiece to tool, and the place of its table.
 
     Attributes:

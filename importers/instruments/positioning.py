@@ -1,0 +1,333 @@
+"""Tests of one axis (ISO 230-2, ISO 230-1): targets, cycles, both directions of approach.
+
+The instrument (laser interferometer, autocollimator, encoder) says by how much the axis really
+moved: ``actual - target``, tool relative to workpiece, which is the component error of the axis. A
+controller that believes in the nominal machine sees the surface outside its place by the negative
+of that along the direction of motion; a deviation in the file therefore gets the other sign here.
+
+Reference:
+    ISO 230-2:2014, clauses 3 and 5 (terms, target positions, cycles).
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from matstd.importers.instruments.axis_log import approaches, strokes, temperatures
+from matstd.importers.instruments.directions import DOWN, UP, signs
+from matstd.importers.sheets import ANGLES, MM, Sheet, bare, seconds, unit_of_column
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
+
+ALL_BUT = 0.1
+"""Slope over the targets, off from 1 by less, of positions: no axis is wrong by a tenth."""
+
+_TARGET = re.compile(
+    r"target|tgt|soll|nominal|command|set ?p(oin)?t|position|cible|consigne|\bp_?i\b",
+    re.IGNORECASE,
+)
+_ACTUAL = re.compile(r"actual|measured|ist\b|\bist|réel|mesur", re.IGNORECASE)
+_REFERENCE = re.compile(r"reference\Z|\bref(_pos)?\Z", re.IGNORECASE)
+"""The better instrument, in tables of two; a `reference position` is a target to others."""
+_DEVIATION = re.compile(r"dev|error|abweich|fehler|écart|erreur|\bx_?ij\b", re.IGNORECASE)
+_ASIDE = re.compile(
+    r"straight|gerad|rectitud|pitch|yaw|roll\b|angle|tilt|winkel|neig|nick|gier|roulis|tangage|"
+    r"lacet|\be[a-cx-z][x-z]\b",
+    re.IGNORECASE,
+)
+"""Names of columns of straightness and angular errors."""
+_CYCLE = re.compile(r"cycle|run|zyklus|lauf|\bj\b", re.IGNORECASE)
+_DIRECTION = re.compile(r"dir|richtung|approach|anfahr", re.IGNORECASE)
+_WAY_OUT = re.compile(r"\b(up|forward|fwd|vorwärts|hin)\b", re.IGNORECASE)
+_WAY_BACK = re.compile(r"\b(down|backward|bwd|reverse|rückwärts|zurück)\b", re.IGNORECASE)
+_TIME = re.compile(r"time|zeit|clock|heure|\btemps", re.IGNORECASE)
+_NUMBER = re.compile(r"\d+")
+_ALONE = re.compile(
+    r"(up|down|fwd|bwd|rev|forward|backward|reverse|vor|rück|zurück|hin|aller|retour|pos|neg|[-+↑↓])"
+    r"(wards?|wärts)?\Z",
+    re.IGNORECASE,
+)
+"""A direction alone, where there is one cycle."""
+_LONGEST = 9  # digits of the number of a cycle
+
+
+@dataclass(frozen=True, eq=False)
+class PositioningTest:
+    """Readings of a positioning test, one entry a reading.
+
+    Attributes:
+        axis: Letter of the axis.
+        target: Commanded position, (N,), mm or rad.
+        deviation: Actual minus target, (N,), mm or rad.
+        cycle: Number of the cycle, (N,).
+        direction: 1 where the target was reached with a growing reading, -1 else, 0 unknown.
+        line: Line of the file, (N,).
+        time: Since the start of a log, (N,), s; zeros of a table.
+        temperature: By sensor, each (N,), degC; of a log.
+        is_by_order: Whether directions are those in which the rows follow each other.
+        component: Component error that was measured, such as EYX; "" of positioning.
+    """
+
+    axis: str
+    target: Array
+    deviation: Array
+    cycle: IntArray
+    direction: IntArray
+    line: IntArray
+    time: Array = field(default_factory=lambda: np.zeros(0))
+    temperature: Mapping[str, Array] = field(default_factory=dict)
+    is_by_order: bool = False
+    component: str = ""
+
+    @property
+    def is_own(self) -> bool:
+        """Whether it is how far the axis went, not how it leads aside or tilts."""
+        return _is_own(self.axis, self.component)
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether deviations are angles."""
+        return _is_angle(self.axis, self.component)
+
+
+def _is_own(axis: str, component: str) -> bool:
+    return component in ("", f"E{axis}{axis}")
+
+
+def _is_angle(axis: str, component: str) -> bool:
+    return (axis if _is_own(axis, component) else component[1]) in "ABC"
+
+
+def read_positioning(
+    sheet: Sheet,
+    axis: str,
+    unit: str | None = None,
+    named: tuple[str, str] = ("", ""),
+    component: str = "",
+) -> PositioningTest:
+    """A positioning test from a table.
+
+    Two layouts are understood: a row a reading (columns target, cycle, direction, and deviation or
+    actual position), and a row a target with a column a cycle and direction (`1 up`, `1 down`, or
+    the cycle in one header row and the direction in the next). With a column of times the first is
+    a log: cycles are its strokes, directions those of its motion. Without columns of directions or
+    cycles the order of the rows tells them.
+
+    Args:
+        axis: Letter of the axis, which says whether it turns (A B C).
+        unit: Of deviations whose column names none.
+        named: Names of the columns of targets and of actual positions, where the words of the
+            header do not tell, as in a log of two encoders; empty for those that do.
+        component: Component error that was measured, such as EYX or EBX; "" for positioning.
+
+    Raises:
+        BadFile: No column of targets or deviations, a unit that is not stated.
+    """
+    sheet = _upright(sheet)
+    names = [bare(c) for c in sheet.columns]
+    target = _only(names, _TARGET, without=(_ACTUAL, _DEVIATION))
+    target = sheet.column(named[0]) if named[0] else target
+    if target is None:
+        expected = "a column of targets, or its name by --target (and --actual)"
+        raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", expected)
+    is_own = _is_own(axis, component)
+    base = ANGLES if axis in "ABC" else MM
+    factor = base[_unit(sheet, target, base, "deg" if axis in "ABC" else "mm")]
+    at = sheet.numbers(target) * factor
+    base = ANGLES if _is_angle(axis, component) else MM
+    values, actual = _read_columns(sheet, names, target, named[1], is_own)
+    if values is None and actual is None:
+        return replace(_wide(sheet, axis, target, at, unit, base), component=component)
+    cycle, direction = _only(names, _CYCLE), _only(names, _DIRECTION)
+    clock = _only(names, _TIME)
+    if values is not None:
+        deviation = sheet.numbers(values) * base[_unit(sheet, values, base, unit)]
+    else:
+        assert actual is not None
+        deviation = sheet.numbers(actual) * base[_unit(sheet, actual, base, unit)] - at
+    n = len(sheet)
+    time = np.zeros(n)
+    if clock is not None:
+        time = seconds(sheet, clock)
+        sign, stroke = strokes(_held(at))
+    else:
+        sign, stroke = approaches(_held(at))
+        parted = _ways_of_parts(sheet)
+        sign = parted if np.any(parted) else sign
+    return _present(
+        sheet,
+        PositioningTest(
+            axis=axis,
+            target=at,
+            deviation=deviation,
+            cycle=_whole(sheet, cycle) if cycle is not None else stroke,
+            direction=signs(sheet, direction) if direction is not None else sign,
+            line=np.array(sheet.lines),
+            time=time,
+            temperature=temperatures(sheet) if clock is not None else {},
+            is_by_order=direction is None and bool(np.any(sign < 0)),
+            component=component,
+        ),
+    )
+
+
+def _read_columns(
+    sheet: Sheet, names: list[str], target: int, named: str, is_own: bool
+) -> tuple[int | None, int | None]:
+    """Columns of deviations and of actual positions; of a component there are deviations alone."""
+    values, actual = _only(names, _DEVIATION), _only(names, _ACTUAL)
+    if is_own and named:
+        return None, sheet.column(named)
+    if is_own:
+        neither = values is None and actual is None
+        return values, _only(names, _REFERENCE) if neither else actual
+    aside = [i for i, name in enumerate(names) if _ASIDE.search(name) and i != target]
+    values = next(iter(aside), actual) if values is None else values
+    values = None if len(aside) > 1 else values  # a column a run
+    return sheet.column(named) if named else values, None
+
+
+def _held(at: Array) -> Array:
+    """Targets with those that are missing taken for the last one before them, or the first."""
+    there = np.isfinite(at)
+    last = np.maximum.accumulate(np.where(there, np.arange(len(at)), np.argmax(there)))
+    held: Array = at[last]
+    return held
+
+
+def _upright(sheet: Sheet) -> Sheet:
+    """The table with a row a target, where it has a column a target: `Target [mm], 0, 100, 200`."""
+    first = str(sheet.cells[0][0]) if len(sheet) else ""
+    if not _TARGET.search(bare(first)) or not all(isinstance(r[0], str) for r in sheet.cells):
+        return sheet
+    sheet.used.update(range(len(sheet.columns)))
+    columns = list(zip(*sheet.cells, strict=True))
+    return replace(
+        sheet,
+        columns=tuple(str(name) for name in columns[0]),
+        cells=tuple(columns[1:]),
+        lines=(sheet.lines[0],) * (len(columns) - 1),
+        above=("",) * (len(columns) - 1),
+        used=set(),
+    )
+
+
+def _wide(
+    sheet: Sheet, axis: str, target: int, at: Array, unit: str | None, base: dict[str, float]
+) -> PositioningTest:
+    """A row a target, a column a cycle and direction."""
+    parts, signs = [], {}
+    parted = _ways_of_parts(sheet)
+    for i, name in enumerate(sheet.columns):
+        number = _NUMBER.search(name)
+        digits = number.group(0) if number else "1" if _ALONE.match(bare(name)) else ""
+        if i == target or not digits:
+            continue
+        if len(digits) > _LONGEST:
+            raise BadFile(sheet.path, "header", f"column {name[:40]!r}", "the number of a cycle")
+        rest = bare(name).replace(digits, "", 1)
+        sign = 1 if UP.search(rest) else -1 if DOWN.search(rest) else 0
+        values = _deviations(sheet, i, target, at, unit, base)
+        whole = np.ones(len(sheet), dtype=np.int64)
+        ways = sign * whole if sign else parted
+        parts.append((at, values, int(digits) * whole, ways, sheet.lines))
+        signs[name] = sign
+    if not parts:
+        expected = "a column of deviations, or a column a cycle and direction (1 up, 1 down, ...)"
+        raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", expected)
+    unsaid = next((name for name, sign in signs.items() if sign == 0), None)
+    if unsaid is not None and any(signs.values()):
+        expected = "up or down (fwd, bwd, +, -) in its name, as in others"
+        raise BadFile(sheet.path, "header", f"column {unsaid!r}", expected)
+    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
+    return _present(
+        sheet,
+        PositioningTest(
+            axis=axis,
+            target=columns[0],
+            deviation=columns[1],
+            cycle=columns[2],
+            direction=columns[3],
+            line=columns[4],
+        ),
+    )
+
+
+def _ways_of_parts(sheet: Sheet) -> IntArray:
+    """Signs of directions as the words above the parts of a table say, 0 where they do not."""
+    ways = [1 if _WAY_OUT.search(a) else -1 if _WAY_BACK.search(a) else 0 for a in sheet.above]
+    both = {1, -1} <= set(ways)
+    return np.array(ways if both else np.zeros(len(sheet)), dtype=np.int64)
+
+
+def _deviations(
+    sheet: Sheet, column: int, target: int, at: Array, unit: str | None, base: dict[str, float]
+) -> Array:
+    """Deviations of one column, which may hold actual positions: those grow as the targets do."""
+    known = unit_of_column(sheet.columns[column]) or unit
+    if known is None and _is_position(sheet.numbers(column), sheet.numbers(target)):
+        known = unit_of_column(sheet.columns[target]) or ("mm" if base is MM else "deg")
+    if known is None or known not in base:
+        known = _unit(sheet, column, base, unit)
+    values = sheet.numbers(column) * base[known]
+    return values - at if _is_position(values, at) else values
+
+
+def _is_position(values: Array, at: Array) -> bool:
+    """Whether values are positions: they grow as the targets do, as no deviation does."""
+    rows = np.isfinite(values) & np.isfinite(at)
+    if rows.sum() < 2 or not np.ptp(at[rows]) > 0.0:
+        return False
+    slope = np.polyfit(at[rows] - at[rows].mean(), values[rows], 1)[0]
+    return abs(float(slope) - 1.0) < ALL_BUT
+
+
+def _present(sheet: Sheet, test: PositioningTest) -> PositioningTest:
+    """Without readings that are not there."""
+    rows = np.isfinite(test.target) & np.isfinite(test.deviation)
+    if not rows.any():
+        raise BadFile(sheet.path, "table", "no row with a target and a reading", "one or more")
+    return replace(
+        test,
+        target=test.target[rows],
+        deviation=test.deviation[rows],
+        cycle=test.cycle[rows],
+        direction=test.direction[rows],
+        line=test.line[rows],
+        time=test.time[rows] if len(test.time) else np.zeros(int(rows.sum())),
+        temperature={name: values[rows] for name, values in test.temperature.items()},
+    )
+
+
+def _only(
+    names: list[str], pattern: re.Pattern[str], without: tuple[re.Pattern[str], ...] = ()
+) -> int | None:
+    """The first column whose name a pattern finds and others do not."""
+    found = (i for i, n in enumerate(names) if pattern.search(n))
+    return next((i for i in found if not any(w.search(names[i]) for w in without)), None)
+
+
+def _unit(sheet: Sheet, column: int, base: dict[str, float], otherwise: str | None) -> str:
+    """Unit of a column; raises BadFile where none is known."""
+    unit = unit_of_column(sheet.columns[column]) or otherwise
+    if unit is None or unit not in base:
+        found = f"column {sheet.columns[column]!r} in {unit or 'an unknown unit'}"
+        expected = f"one of {', '.join(base)} behind the name, or --unit"
+        raise BadFile(sheet.path, "header", found, expected)
+    return unit
+
+
+def _listed(sheet: Sheet) -> str:
+    return ", ".join(repr(c) for c in sheet.columns)
+
+
+def _whole(sheet: Sheet, column: int) -> IntArray:
+    """Numbers of cycles."""
+    numbers = sheet.numbers(column)
+    odd = np.flatnonzero(~np.isfinite(numbers) | (numbers != np.round(numbers)))
+    if len(odd):
+        raise sheet.bad(int(odd[0]), column, f"{numbers[odd[0]]:g}", "the number of a cycle")
+    return numbers.astype(np.int64)
