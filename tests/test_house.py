@@ -33,6 +33,7 @@ VOCABULARY = {
     "twin.units",
     "twin.numbers",
     "twin.text",
+    "twin.sampling",
     "twin.frames",
     "twin.errors",
     "twin.words",
@@ -47,7 +48,7 @@ HEAVY = {"build123d", "OCP", "pyvista", "vtk", "matplotlib", "trimesh", "manifol
 DRAWING = {"matplotlib", "pyvista", "vtk"}
 # The kernel's own files name forty of its classes each; they are imported inside functions only.
 KERNEL = {
-    f"cad_out/build/{name}.py"
+    f"cad_out/kernel/{name}.py"
     for name in (
         ["assembly", "exchange", "faces", "letters", "pmi", "primitives", "reader", "solid", "xcaf"]
     )
