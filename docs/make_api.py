@@ -17,6 +17,7 @@ ROOMS = (
     "matstd.twin",
     "matstd.sensitivity",
     "matstd.information",
+    "matstd.nc",
     "matstd.artefact",
     "matstd.diagnosis",
     "matstd.cad_out",

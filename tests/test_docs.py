@@ -14,6 +14,7 @@ ROOMS = (
     "twin",
     "sensitivity",
     "information",
+    "nc",
     "artefact",
     "diagnosis",
     "cad_out",
