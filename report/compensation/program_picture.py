@@ -21,11 +21,7 @@ POINTS = 6000
 
 
 def draw_program(done: Compensated) -> Figure:
-    """Draw the path in its widest plane, deviations exaggerated, and their size over time.
-
-    Args:
-        done: The program and its compensation.
-    """
+    """Draw the path in its widest plane, deviations exaggerated, and their size over time."""
     rows = np.unique(np.linspace(0, len(done.q) - 1, min(len(done.q), POINTS)).astype(int))
     drawn = figure(4.2)
     left, right = drawn.subplots(1, 2)
@@ -41,10 +37,10 @@ def draw_program(done: Compensated) -> Figure:
     if done.is_cut:
         between = np.maximum(done.between[rows] / UM, 1e-3)
         right.plot(t, between, color=BLUE, lw=0.8, alpha=0.5, label="between line ends")
-        right.axhline(done.tolerance / UM, color=FAINT, lw=0.8, label="lines divided for")
+        right.axhline(done.tolerance / UM, color=FAINT, lw=0.8, label="tolerance of the division")
     if done.u.any():
         at = done.elapsed[done.u_at] / MINUTE
-        right.plot(at, done.u / UM, ":", color=INK, lw=1.2, label="not known by the model (u)")
+        right.plot(at, done.u / UM, ":", color=INK, lw=1.2, label="uncertainty of the model (u)")
     right.set_yscale("log")
     right.set_xlabel("time in min")
     right.set_ylabel("error of the tool point in µm")

@@ -3,13 +3,14 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from matstd.compensation.field import MachineErrors, Result, rms
+from matstd.compensation.field import MachineErrors, Result
 from matstd.compensation.tables import Header, Played
 from matstd.report.compensation.table_pictures import draw_errors_left, draw_shares
 from matstd.report.compensation.table_words import control_title, extent_of, result_sentence, small
 from matstd.report.numbers import digits, signed, with_uncertainty
 from matstd.report.pages import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.twin.machine import Chain
+from matstd.twin.numbers import rms_length
 from matstd.twin.units import DEG, UM
 
 PAGE, PICTURES = "report.html", "pictures"
@@ -80,13 +81,13 @@ def _key(first: Result, done: Sequence[Played]) -> list[KeyFigure]:
     )
     after = [
         KeyFigure(
-            f"{small(rms(p.result.after) / UM)} µm",
+            f"{small(rms_length(p.result.after) / UM)} µm",
             f"remaining with {control_title(p.format)}, rms; "
             f"expect {small(p.result.expected / UM, 2)} µm",
         )
         for p in done
     ]
-    return [KeyFigure(f"{digits(rms(first.before) / UM)} µm", before), known, *after]
+    return [KeyFigure(f"{digits(rms_length(first.before) / UM)} µm", before), known, *after]
 
 
 def _control(played: Played, chain: Chain) -> list[Section]:

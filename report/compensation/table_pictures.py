@@ -1,4 +1,4 @@
-"""Pictures of what compensation leaves: over the workspace, and error by error."""
+"""Pictures of the error after compensation: over the workspace, and error by error."""
 
 from __future__ import annotations
 
@@ -22,11 +22,7 @@ LEAST = 1e-3
 
 
 def draw_errors_left(results: Mapping[str, Result]) -> Figure:
-    """Share of the workspace whose error is smaller: before, and after every compensation.
-
-    Args:
-        results: By title; all of the same machine and datum.
-    """
+    """Share of the workspace whose error is smaller: before, and after every compensation."""
     drawn = figure(3.6)
     ax = drawn.subplots()
     first = next(iter(results.values()))
@@ -38,7 +34,7 @@ def draw_errors_left(results: Mapping[str, Result]) -> Figure:
             _curve(ax, np.hypot(after, result.u), None, series(k), ":")
     ax.set_xscale("log")
     ax.set_ylim(0.0, 1.0)
-    ax.set_xlabel("error of the tool point, µm (dotted: with what the model does not know)")
+    ax.set_xlabel("error of the tool point, µm (dotted: with the uncertainty of the model)")
     ax.set_ylabel("share of poses below")
     ax.legend(fontsize=8, frameon=False, loc="upper left")
     plain(ax)
@@ -52,11 +48,7 @@ def _curve(ax: object, size: np.ndarray, label: str | None, colour: str, style: 
 
 
 def draw_shares(left: Sequence[Left]) -> Figure:
-    """What one compensation leaves of every error, beside what it was.
-
-    Args:
-        left: Of one compensation, the largest first.
-    """
+    """Every error before and after one compensation."""
     shown = [item for item in left[:BARS] if item.before > 0.0]
     if not shown:
         return nothing("No error remains.")
@@ -64,7 +56,7 @@ def draw_shares(left: Sequence[Left]) -> Figure:
     ax = drawn.subplots()
     y = np.arange(len(shown))[::-1]
     ax.barh(y, [item.before / UM for item in shown], color=NEUTRAL, height=0.7, label="before")
-    ax.barh(y, [item.rms / UM for item in shown], color=series(0), height=0.4, label="left")
+    ax.barh(y, [item.rms / UM for item in shown], color=series(0), height=0.4, label="remaining")
     errors = [item.u / UM for item in shown]
     ax.errorbar(
         [item.rms / UM for item in shown], y, xerr=errors, fmt="none", ecolor=SOFT, capsize=2

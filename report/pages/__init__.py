@@ -1,4 +1,4 @@
-"""HTML pages, each in one file that loads nothing from anywhere.
+"""HTML pages, each in one file that loads nothing from anywhere; notebook displays of results.
 
 A page is a list of `Section`s (sentences, table, pictures) under a verdict and key figures;
 `write_page` renders every page in the same way and writes its tables as CSV and workbook.
@@ -8,6 +8,7 @@ from matstd.report.pages.compare_page import write_compare_page
 from matstd.report.pages.design_page import write_design_page
 from matstd.report.pages.design_result import Design, Proven
 from matstd.report.pages.diagnosis_page import write_diagnosis_page
+from matstd.report.pages.notebook import drawing
 from matstd.report.pages.page import write_page
 from matstd.report.pages.pdf import Printer, printer, write_pdf
 from matstd.report.pages.section import KeyFigure, Page, Picture, Section, Table
@@ -24,6 +25,7 @@ __all__ = [
     "Proven",
     "Section",
     "Table",
+    "drawing",
     "printer",
     "write_compare_page",
     "write_design_page",

@@ -95,7 +95,7 @@ def _key(found: Comparison) -> list[KeyFigure]:
     run, noise, worst = found.run, found.fit.noise, found.worst
     scatter = ""
     if noise.replicates is not None:
-        size = noise.replicates * float(np.sqrt(np.mean(run.u**2))) / UM
+        size = noise.replicates * stated_noise(run) / UM
         scatter = f"; {size:.2f} µm in {noise.replicates_dof} replicates"
     times = digits(abs(found.normalised[worst]), 2)
     return [

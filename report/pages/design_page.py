@@ -51,8 +51,8 @@ _SHARES = (
 )
 _CHECKED = (
     "The programs were read back as text and checked block by block, and exactly that text was run "
-    "on the twin. They have not been run on a machine or a programming station: carry out the "
-    "commissioning steps of the README first."
+    "on the twin. They have not been run on a machine or a programming station: follow the steps "
+    "of docs/controls.md before the first run."
 )
 _LIMITS = (
     "The proof covers rigid-body geometry only; `matstd diagnose` searches a real run for other "

@@ -26,19 +26,26 @@ def geometry_sections(touches: Touches, geometry: LearntGeometry) -> list[Sectio
     ]
     known = [line for line in geometry_lines(geometry) if line.is_determined]
     unknown = [line for line in geometry_lines(geometry) if not line.is_determined]
-    rows = [[n.name, n.value, n.at_ends, f"± {n.expected}", n.note] for n in known]
     has_before = any(row.before is not None for row in geometry.rows)
-    caption = _SPANS.format(before="; before → now" if has_before else "")
-    columns = ("quantity", "value", "over the travel", "expected", "")
+    quantities = Table.of(
+        known,
+        {
+            "quantity": lambda n: n.name,
+            "value": lambda n: n.value,
+            "over the travel": lambda n: n.at_ends,
+            "expected": lambda n: f"± {n.expected}",
+            "": lambda n: n.note,
+        },
+        _SPANS.format(before="; before → now" if has_before else ""),
+        lambda n: n.is_noted,
+    )
     ladder_caption = "Error of the models, from the set-ups alone to all effects"
     out = [
         Section(
             "Geometry of the machine",
             table=Table(("model", "fitted, µm", "held out, µm"), ladder, ladder_caption),
         ),
-        Section(
-            table=Table(columns, rows, caption, [i for i, n in enumerate(known) if n.is_noted])
-        ),
+        Section(table=quantities),
     ]
     if unknown:
         cells = [[line.name, line.note] for line in unknown]

@@ -131,36 +131,39 @@ def _degree(degree: Degree | None) -> str:
 
 
 def _single_errors(known: IdentifiabilityReport) -> list[Section]:
-    rows = [
-        [in_words(a.name, known.chain), _size(a.expected, a.unit), _size(a.u, a.unit)]
-        for a in known.alone
-    ]
-    columns = ("error", "expected, standard deviation", "remaining standard uncertainty")
-    fold = f"{len(rows)} errors whose variance the touches reduce at least tenfold"
+    table = Table.of(
+        known.alone,
+        {
+            "error": lambda a: in_words(a.name, known.chain),
+            "expected, standard deviation": lambda a: _size(a.expected, a.unit),
+            "remaining standard uncertainty": lambda a: _size(a.u, a.unit),
+        },
+    )
+    count = len(table.rows)
+    fold = f"{count} errors whose variance the touches reduce at least tenfold"
     return [
         Section("Individually known errors", is_part=True),
-        Section(fold=fold, is_unfolded=len(rows) <= _OPEN, table=Table(columns, rows)),
+        Section(fold=fold, is_unfolded=count <= _OPEN, table=table),
     ]
 
 
 def _combinations(known: IdentifiabilityReport) -> Table:
     names = [short(name) for name in known.model.names]
     units = [parameter.unit for _, parameter in known.model.parameters]
-    rows = [
-        [
-            _with_minus(combination_words(names, units, c.weights, c.importance)),
-            _size(c.u, c.unit),
-            digits(c.gain, 2),
-        ]
-        for c in known.combinations[:_COMBINATIONS]
-    ]
-    caption = (
-        f"The {len(rows)} most certain of {len(known.combinations)} combinations that the touches "
-        "determine better than the expected errors do, with unknown set-up and tool; scaled to the "
-        "first error"
+    shown_ones = known.combinations[:_COMBINATIONS]
+    return Table.of(
+        shown_ones,
+        {
+            "combination": lambda c: _with_minus(
+                combination_words(names, units, c.weights, c.importance)
+            ),
+            "standard uncertainty": lambda c: _size(c.u, c.unit),
+            "expected over remaining": lambda c: digits(c.gain, 2),
+        },
+        f"The {len(shown_ones)} most certain of {len(known.combinations)} combinations that the "
+        "touches determine better than the expected errors do, with unknown set-up and tool; "
+        "scaled to the first error",
     )
-    columns = ("combination", "standard uncertainty", "expected over remaining")
-    return Table(columns, rows, caption)
 
 
 def _by_cause(freedoms: Sequence[FreedomFamily], chain: Chain) -> Iterator[tuple[str, str, str]]:

@@ -49,28 +49,23 @@ def tried_sections(result: Diagnosis) -> list[Section]:
     out = [_choice(result)]
     if not result.candidates:
         return [*out, Section(sentences=["No effect of the library applies to these touches."])]
-    chain = result.run.touches.chain
-    rows = [
-        [
-            named(parse_effect(c.effect, chain)),
-            p_value(c.p_value),
-            f"{c.rms / UM:.3f}",
-            f"{c.test_rms / UM:.3f}",
-            f"{c.log_odds / math.log(10.0):.1f}",
-        ]
-        for c in result.candidates
-    ]
-    columns = ("effect", "probability by chance", "fitted, µm", "held out, µm")
-    count = len(result.detectable)
+    chain, count = result.run.touches.chain, len(result.detectable)
+    table = Table.of(
+        result.candidates,
+        {
+            "effect": lambda c: named(parse_effect(c.effect, chain)),
+            "probability by chance": lambda c: p_value(c.p_value),
+            "fitted, µm": lambda c: f"{c.rms / UM:.3f}",
+            "held out, µm": lambda c: f"{c.test_rms / UM:.3f}",
+            "log10 of the odds": lambda c: f"{c.log_odds / math.log(10.0):.1f}",
+        },
+    )
     words = f"{count} effects of the library apply to these touches. Each was added alone to the "
     picture = Picture(f"{PICTURES}/candidates.png", _EVIDENCE, draw_candidates(result))
     return [
         *out,
         Section(sentences=[f"{words}starting model:"], pictures=[picture]),
-        Section(
-            fold=f"The {len(rows)} best in numbers",
-            table=Table((*columns, "log10 of the odds"), rows),
-        ),
+        Section(fold=f"The {len(table.rows)} best in numbers", table=table),
     ]
 
 
@@ -83,17 +78,18 @@ def _choice(result: Diagnosis) -> Section:
         f"Ways of choosing the effects. Each was tested on {choice.blocks} blocks of touches, "
         "left out in turn; the choice was repeated without each block:"
     )
-    rows = [
-        [
-            rule.name,
-            ", ".join(named(s.effect) for s in rule.effects) or "none",
-            f"{rule.error / UM:.3f}",
-        ]
-        for rule in choice.rules
-    ]
-    columns = ("way", "its choice from all touches", "rms error of the blocks left out, µm")
-    best = [i for i, rule in enumerate(choice.rules) if rule is choice.best]
-    return Section(title, sentences=[words], table=Table(columns, rows, best=best))
+    table = Table.of(
+        choice.rules,
+        {
+            "way": lambda r: r.name,
+            "its choice from all touches": lambda r: (
+                ", ".join(named(s.effect) for s in r.effects) or "none"
+            ),
+            "rms error of the blocks left out, µm": lambda r: f"{r.error / UM:.3f}",
+        },
+        is_best=lambda r: r is choice.best,
+    )
+    return Section(title, sentences=[words], table=table)
 
 
 def rival_sections(result: Diagnosis) -> list[Section]:

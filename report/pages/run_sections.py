@@ -1,6 +1,6 @@
 """Sections that the pages of compare and diagnose share: residuals, regions, outliers, the run."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -108,23 +108,19 @@ def region_section(found: Sequence[Region], title: str = "") -> Section:
     if not found:
         words = "No region stands out: the residual is similar everywhere or changes its sign."
         return Section(title, sentences=[words])
-    rows = [
-        [
-            region_words(r.conditions),
-            str(int(r.rows.sum())),
-            signed(r.mean / UM, r.u / UM),
-            f"{r.rms / UM:.2f}",
-            p_value(r.p_value),
-        ]
-        for r in found
-    ]
+    cells: dict[str, Callable[[Region], str]] = {
+        "region": lambda r: region_words(r.conditions),
+        "touches": lambda r: str(int(r.rows.sum())),
+        "mean, µm": lambda r: signed(r.mean / UM, r.u / UM),
+        "rms, µm": lambda r: f"{r.rms / UM:.2f}",
+        "probability by chance": lambda r: p_value(r.p_value),
+    }
     caption = (
         "Regions whose mean residual differs from zero (± standard uncertainty) or whose residuals "
         "are larger than elsewhere. Each was found on half of the poses and tested on the other "
         "half, without the touches of the regions above it"
     )
-    columns = ("region", "touches", "mean, µm", "rms, µm", "probability by chance")
-    return Section(title, table=Table(columns, rows, caption))
+    return Section(title, table=Table.of(found, cells, caption))
 
 
 def dependence_section(result: Diagnosis, title: str = "") -> Section:
@@ -132,32 +128,29 @@ def dependence_section(result: Diagnosis, title: str = "") -> Section:
     found = result.depends_on
     if not found:
         return Section(title, sentences=["The residual depends on no recorded variable."])
-    rows = [
-        [f"`{d.variable}`", structure_words(d.structure), p_value(d.p_value)]
-        for d in found[:DEPENDENCES]
-    ]
-    caption = "Variables on which the residual depends beyond chance"
-    more = ", ".join(f"`{d.variable}`" for d in found[DEPENDENCES:])
-    return Section(
-        title,
-        table=Table(("variable", "pattern", "probability by chance"), rows, caption),
-        notes=[f"Also on {more}."] if more else [],
+    table = Table.of(
+        found[:DEPENDENCES],
+        {
+            "variable": lambda d: f"`{d.variable}`",
+            "pattern": lambda d: structure_words(d.structure),
+            "probability by chance": lambda d: p_value(d.p_value),
+        },
+        "Variables on which the residual depends beyond chance",
     )
+    more = ", ".join(f"`{d.variable}`" for d in found[DEPENDENCES:])
+    return Section(title, table=table, notes=[f"Also on {more}."] if more else [])
 
 
 def group_section(fold: str, groups: Sequence[GroupResidual]) -> Section:
     """Residuals of poses or features, folded."""
-    rows = [
-        [
-            g.name or "all",
-            str(g.touches),
-            f"{g.mean / UM:+.2f}",
-            f"{g.rms / UM:.2f}",
-            f"{g.normalised:.2f}",
-        ]
-        for g in groups
-    ]
-    return Section(fold=fold, table=Table(("", "touches", "mean, µm", "rms, µm", "rms in u"), rows))
+    cells: dict[str, Callable[[GroupResidual], str]] = {
+        "": lambda g: g.name or "all",
+        "touches": lambda g: str(g.touches),
+        "mean, µm": lambda g: f"{g.mean / UM:+.2f}",
+        "rms, µm": lambda g: f"{g.rms / UM:.2f}",
+        "rms in u": lambda g: f"{g.normalised:.2f}",
+    }
+    return Section(fold=fold, table=Table.of(groups, cells))
 
 
 def outlier_section(fit: Fit) -> Section:
@@ -167,31 +160,26 @@ def outlier_section(fit: Fit) -> Section:
     if not len(rows):
         return Section("Outliers", sentences=["No touch is an outlier."])
     t, was = fit.run.touches, "was" if len(rows) == 1 else "were"
-    cells = [
-        [
-            str(int(fit.run.line[i])),
-            str(t.feature[i]),
-            t.setups[t.setup[i]].name,
-            str(int(t.pose[i])),
-            f"{fit.residual[i] / UM:+.1f}",
-            digits(abs(fit.gross.score[i]), 2),
-        ]
-        for i in rows
-    ]
-    columns = ("line of the run file", "feature", "set-up", "pose")
+    cells: dict[str, Callable[[int], str]] = {
+        "line of the run file": lambda i: str(fit.run.line[i]),
+        "feature": lambda i: str(t.feature[i]),
+        "set-up": lambda i: t.setups[t.setup[i]].name,
+        "pose": lambda i: str(t.pose[i]),
+        "residual, µm": lambda i: f"{fit.residual[i] / UM:+.1f}",
+        "standard deviations": lambda i: digits(abs(fit.gross.score[i]), 2),
+    }
     words = (
         f"{plural(len(rows), 'touch')} with a residual far beyond the noise {was} left out of the "
         "estimates. The run file is unchanged. Inspect these touches, probe them again, or correct "
         "their lines."
     )
-    table = Table((*columns, "residual, µm", "standard deviations"), cells)
-    return Section("Outliers", sentences=[words], table=table)
+    return Section("Outliers", sentences=[words], table=Table.of(rows.tolist(), cells))
 
 
 def extent(touches: Touches) -> str:
     """`at 24 table poses in 2.1 h`, as far as the run has poses and times."""
     poses = len(np.unique(np.column_stack([touches.setup, touches.pose]), axis=0))
-    kind = "pose" if touches.chain.is_serial_arm else "table pose"
+    kind = "table pose" if touches.chain.turns_workpiece else "pose"
     at = f" at {plural(poses, kind)}" if touches.chain.rotary_axes else ""
     time = float(np.ptp(touches.time))
     return f"{at} in {span(time)}" if time > 0.0 else at

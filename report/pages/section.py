@@ -6,12 +6,14 @@ marks: `code` between backquotes, **bold**, the index of u_{cal}, and [words](ad
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+T = TypeVar("T")
 
 Heading = str | tuple[str, str]
 """Of a column; a pair is a group of columns and the one in it."""
@@ -47,6 +49,20 @@ class Table:
     rows: Sequence[Sequence[str]]
     caption: str = ""
     best: Collection[int] = ()
+
+    @classmethod
+    def of(
+        cls,
+        items: Iterable[T],
+        cells: Mapping[str, Callable[[T], str]],
+        caption: str = "",
+        is_best: Callable[[T], bool] = lambda _: False,
+    ) -> Table:
+        """A row for each item; every heading with the function that makes its cell."""
+        every = list(items)
+        rows = [[cell(item) for cell in cells.values()] for item in every]
+        best = [i for i, item in enumerate(every) if is_best(item)]
+        return cls(tuple(cells), rows, caption, best)
 
 
 @dataclass(frozen=True, slots=True)

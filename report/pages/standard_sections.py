@@ -11,7 +11,7 @@ from matstd.report.pages.section import Heading, Section, Table
 from matstd.report.task import modulus_words
 from matstd.twin.units import DEG, UM
 
-_FLAT = 10_000.0  # mm: a ball of 3 mm cannot tell such a face from a plane
+_FLAT = 10_000.0  # mm: a ball of 3 mm cannot distinguish such a face from a plane
 
 _PATCHES = (
     "Freeform faces, which test the model that was identified from the balls: position, curvature, "

@@ -1,12 +1,11 @@
 """The tables of a page as CSV files and as a workbook, beside it, in the units of the page."""
 
-import csv
-import io
 import re
 from pathlib import Path
 
 from matstd.report.pages.section import Page, Table
 from matstd.twin.files import write_whole, written_whole
+from matstd.twin.text import csv_text
 from matstd.twin.words import in_own_unit
 
 FOLDER, WORKBOOK = "tables", "tables.xlsx"
@@ -46,9 +45,8 @@ def write_tables(folder: Path, page: Page) -> list[Path]:
         slug = re.sub(r"[^a-z0-9]+", "-", unmarked(title).lower()).strip("-") or "table"
         name = f"{number:02d}-{slug}"
         out.append(folder / FOLDER / f"{name}.csv")
-        text = io.StringIO()
-        csv.writer(text, lineterminator="\n").writerows([*headings, *rows])
-        write_whole(out[-1], text.getvalue())
+        head, *others = [*headings, *rows]
+        write_whole(out[-1], csv_text(head, others))
         sheet = book.create_sheet(name[:_LONGEST])
         sheet.append([plain(table.caption)])
         for row in headings:

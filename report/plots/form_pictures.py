@@ -25,12 +25,7 @@ def is_form(fit: Fit, effect: Effect) -> bool:
 
 
 def draw_form(fit: Fit, effect: Effect) -> Figure:
-    """Form of a patch: touches on the fitted form, and what is left of them.
-
-    Args:
-        fit: The model with the effect in it.
-        effect: The form of one feature, as it stands in the fit.
-    """
+    """Form of a patch: touches on the fitted form, and their residuals."""
     rows = _on_patch(fit, effect)
     touches = fit.run.touches
     explained = (columns([effect], touches) @ fit.theta[fit.of_effect(effect.name)])[rows] / UM
@@ -44,7 +39,7 @@ def draw_form(fit: Fit, effect: Effect) -> Figure:
         levels = np.linspace(-limit, limit, LEVELS)
         axes[0].tricontourf(*place.T, explained, levels=levels, extend="both", alpha=0.75, **style)
     for ax, values, title in (
-        (axes[0], explained + left_over, "touches with the effect put back, on the fitted form"),
+        (axes[0], explained + left_over, "residual plus effect, on the fitted form"),
         (axes[1], left_over, "the same touches with the effect in the model"),
     ):
         marks = ax.scatter(*place.T, c=values, s=34.0, edgecolors=INK, linewidths=0.5, **style)

@@ -36,9 +36,9 @@ BINS = 24
 
 
 def draw_pattern(fit: Fit, found: Structure, rng: np.random.Generator) -> Figure | None:
-    """What a residual does over the variables of a pattern, and the same residual shuffled.
+    """A residual over the variables of a pattern, and the same residual shuffled.
 
-    The second half is what the first would look like if there were nothing but noise of this size.
+    The shuffled half shows what noise of this size would look like.
 
     Args:
         fit: The model whose residual it is.
@@ -67,7 +67,7 @@ def draw_pattern(fit: Fit, found: Structure, rng: np.random.Generator) -> Figure
         label = f"mean residual of {NEIGHBOURS} neighbours along {word}, µm"
         _maps(drawn, axes, x, [_map(x, values, weight) for values in both], label)
         axes[0].set_ylabel(names[1])
-    for ax, title in zip(axes, ("as measured", "shuffled: what chance makes"), strict=True):
+    for ax, title in zip(axes, ("as measured", "shuffled: pure chance"), strict=True):
         ax.set_xlabel(names[0])
         ax.set_title(title, fontsize=9.5, loc="left", color=INK)
         plain(ax)

@@ -16,11 +16,7 @@ if TYPE_CHECKING:
 
 
 def draw_touches(plan: TouchPlan) -> Figure:
-    """Touched points on the standard seen from above and from the side, coloured by feature kind.
-
-    Args:
-        plan: What is touched.
-    """
+    """Touched points on the standard from above and from the side, coloured by kind of feature."""
     drawn = figure(4.4)
     top, side = drawn.subplots(1, 2, width_ratios=(1.0, 1.25))
     for ax, (i, j) in ((top, (0, 1)), (side, (0, 2))):
@@ -88,11 +84,7 @@ def _outlines(ax: Any, plan: TouchPlan, i: int, j: int) -> None:
 
 
 def draw_order(plan: TouchPlan) -> Figure:
-    """Rotary readings over the sequence of touches, with the side of every approach.
-
-    Args:
-        plan: In the order of execution.
-    """
+    """Rotary readings over the sequence of touches, with the side of every approach."""
     axes = plan.chain.rotary_axes
     drawn = figure(1.0 + 1.5 * max(len(axes), 1))
     panels = np.atleast_1d(drawn.subplots(max(len(axes), 1), 1, sharex=True))

@@ -16,11 +16,7 @@ if TYPE_CHECKING:
 
 
 def draw_proof(proofs: Sequence[Proof]) -> Figure:
-    """Distributions of |error| before and after, and after against its stated uncertainty.
-
-    Args:
-        proofs: One a simulated machine.
-    """
+    """Distributions of |error| before and after, and after against its stated uncertainty."""
     drawn = figure(4.0)
     left, right = drawn.subplots(1, 2, width_ratios=(1.5, 1.0))
     edges = np.geomspace(0.05, 1000.0, 81)
@@ -67,6 +63,6 @@ def _uncertainty(ax: Any, proofs: Sequence[Proof]) -> None:
     ax.set_ylim(0.0, 101.0)
     ax.set_xlabel("unpredicted error over its stated standard uncertainty")
     ax.set_ylabel("poses in %")
-    ax.set_title("is the stated uncertainty honest?", loc="left")
+    ax.set_title("check of the stated uncertainty", loc="left")
     ax.legend(fontsize=8, loc="lower right", frameon=False)
     plain(ax)

@@ -45,9 +45,6 @@ def draw_over_variables(fit: Fit, panels: Sequence[RankedVariable]) -> Figure:
     Grey points are touches, blue ones means with their standard errors; the right-hand scale is in
     units of the stated uncertainty (the median one where rows differ). Means beyond three standard
     errors are red.
-
-    Args:
-        panels: Some of `rank_variables(fit)`.
     """
     rows = fit.used
     r, weight = fit.residual[rows] / UM, 1.0 / fit.run.u[rows] ** 2
@@ -127,7 +124,7 @@ def _histogram(ax: Any, z: Array, factor: float) -> None:
     edges = np.linspace(-edge, edge, 46)
     ax.hist(np.clip(z, -edge, edge), edges, color=BLUE, alpha=0.35, density=True)
     x = np.linspace(-edge, edge, 400)
-    for sd, style, word in ((1.0, "-", "noise as stated"), (factor, "--", "noise as found")):
+    for sd, style, word in ((1.0, "-", "stated noise"), (factor, "--", "estimated noise")):
         density = np.exp(-0.5 * (x / sd) ** 2) / (sd * np.sqrt(2.0 * np.pi))
         ax.plot(x, density, style, color=INK, lw=1.2, label=word)
     ax.set_xlabel("residual over its stated standard uncertainty")
@@ -153,7 +150,7 @@ def _normal_plot(ax: Any, fit: Fit, z: Array) -> None:
         ax.plot(expected[gross], at, "D", ms=5.0, color=RED, mfc="none", clip_on=False)
         _list_gross(ax, fit)
     ax.set_ylim(-edge, edge)
-    ax.set_xlabel("expected of a normal distribution")
+    ax.set_xlabel("expected for a normal distribution")
     ax.set_ylabel("residual over its stated standard uncertainty")
 
 

@@ -17,11 +17,7 @@ if TYPE_CHECKING:
 
 
 def draw_setup(plan: TouchPlan) -> Figure:
-    """Table, standard and clamps from above, and the probe from the side.
-
-    Args:
-        plan: What is set up.
-    """
+    """Table, standard and clamps from above, and the probe from the side."""
     drawn = figure(4.6)
     top, side = drawn.subplots(1, 2, width_ratios=(1.5, 1.0))
     T_face_table = inverse(table_face(plan.setup.T_table_artefact))

@@ -1,4 +1,4 @@
-"""Picture of a machine over several runs: what changed, and how well each run is known."""
+"""Picture of a machine over several runs: changes, and how well each run is predicted."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def draw_trend(trend: Trend, rows: Sequence[tuple[GeometryRow, Sequence[bool]]])
     for k, (label, values) in enumerate(errors.items()):
         shown = [np.nan if v is None else v / UM for v in values]
         axes.plot(range(len(names)), shown, "s-", color=series(k), lw=1.0, ms=4, label=label)
-    axes.set_title("plain error of what was left out", fontsize=9, color=INK)
+    axes.set_title("error of poses and runs left out", fontsize=9, color=INK)
     axes.set_ylabel("µm rms")
     axes.set_ylim(bottom=0.0)
     axes.legend(frameon=False, fontsize=8)

@@ -14,6 +14,7 @@ from matstd.artefact.place import Placement
 from matstd.diagnosis.answer import Proof
 from matstd.diagnosis.fit import Fit
 from matstd.report.numbers import digits, percent, um
+from matstd.twin.numbers import rms
 from matstd.twin.units import DEG
 from matstd.twin.words import listed
 
@@ -223,10 +224,7 @@ def comparison_remarks(placement: Placement) -> list[str]:
 def proof_line(number: int, in_workspace: Proof, in_volume: Proof, fit: Fit) -> str:
     """One simulated machine: the error that its model does not predict."""
     held_back = fit.test_rows
-    left, noise = (
-        float(np.sqrt(np.mean(v[held_back] ** 2))) if held_back.any() else 0.0
-        for v in (fit.residual, fit.run.u)
-    )
+    left, noise = (rms(v[held_back]) if held_back.any() else 0.0 for v in (fit.residual, fit.run.u))
     faces = f"; residual on the faces held out {um(left)} rms, noise {um(noise)}" if left else ""
     return (
         f"machine {number}: in your workspace {_after(in_workspace)}; "

@@ -21,6 +21,7 @@ from matstd.report.numbers import (
 )
 from matstd.report.words.remark_words import memory_words
 from matstd.twin.library import title_of
+from matstd.twin.numbers import rms
 from matstd.twin.record import Run
 from matstd.twin.units import DEG, UM
 from matstd.twin.words import listed
@@ -120,7 +121,7 @@ def sizes(step: Step, most: int) -> str:
 
 def stated_noise(run: Run) -> float:
     """Stated standard uncertainty of a touch, root mean square, mm."""
-    return float((run.u**2).mean() ** 0.5)
+    return rms(run.u)
 
 
 def noise_words(fit: Fit) -> str:
@@ -382,7 +383,7 @@ def promise_sentence(
         others: Effects of another run in the model, which the promise excludes.
     """
     word = "worse than promised" if found.rms > BROKEN * promised else "as good as promised"
-    expected = float(np.sqrt(np.mean(found.u[found.counted] ** 2)))
+    expected = rms(found.u[found.counted])
     elsewhere = ""
     if expected > BROKEN * promised:
         elsewhere = (
