@@ -5,12 +5,12 @@ to copy into a machine file, sentences on mistakes and changes.
 """
 
 from matstd.report.geometry.console_words import console_lines
-from matstd.report.geometry.copied_numbers import copy_lines, file_lines
+from matstd.report.geometry.copied_numbers import copy_lines
 from matstd.report.geometry.fault_words import fault_sentences
+from matstd.report.geometry.geometry_section import geometry_sections
 from matstd.report.geometry.geometry_words import (
     USUAL,
     estimate_words,
-    geometry_lines,
     quantity_name,
     shown_unit,
 )
@@ -23,8 +23,7 @@ __all__ = [
     "copy_lines",
     "estimate_words",
     "fault_sentences",
-    "file_lines",
-    "geometry_lines",
+    "geometry_sections",
     "quantity_name",
     "shown_unit",
 ]

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from matstd.diagnosis.answer import Detectable, Diagnosis, Plan, Step
 from matstd.diagnosis.fit import file_unit
 from matstd.report.effects import effect_title, plan_words
+from matstd.report.layout import Picture, Section, Table
 from matstd.report.numbers import digits, p_value, percent, unit_words
 from matstd.report.pages.run_sections import PICTURES
-from matstd.report.pages.section import Picture, Section, Table
 from matstd.report.plots import draw_candidates, draw_rivals
 from matstd.report.style import series
 from matstd.report.words import scanned_sentence
