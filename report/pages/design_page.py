@@ -178,7 +178,7 @@ def _opening(design: Design, folder: Path, remarks: Sequence[str]) -> Section:
         f"{design.programs.duration / 60.0:.0f} minutes. Chain `{chain.notation}`, "
         f"{len(chain.symbols)} error parameters."
     )
-    return Section(sentences=[words], warnings=[*remarks, *assumed])
+    return Section(sentences=[words], warnings=[*assumed, *remarks])
 
 
 def _poses(design: Design) -> int:
