@@ -13,9 +13,8 @@ from matstd.twin.fields import (
     read_axis,
     refusal,
 )
-from matstd.twin.frames import Array
 from matstd.twin.machine import LETTERS, Chain, Family, Symbol
-from matstd.twin.model import Declared, Kind, Title, Where
+from matstd.twin.model import Amounts, Declared, Kind, Title, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
@@ -70,7 +69,7 @@ class Backlash(Declared):
         """A twist of the axis."""
         return chain.twist_of(self._symbol)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """Half of the reversal to either side."""
         return (0.5 * touches.last_move(self.axis),)
 

@@ -18,7 +18,7 @@ from matstd.twin.fields import (
 )
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
-from matstd.twin.model import Declared, Kind, Parameter
+from matstd.twin.model import Amounts, Declared, Kind, Parameter
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
@@ -79,7 +79,7 @@ class Coupling(Declared):
         shares = [1.0 / (j * k) for j in own for k in other]
         return tuple(self.sized(w, share) for w, share in zip(self._words, shares, strict=True))
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """Products of a function of either reading."""
         own, other = (_factors(touches, a, self.degree) for a in (self.symbol.link, self.other))
         return [f * g for f in own for g in other]

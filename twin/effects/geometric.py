@@ -8,9 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from matstd.twin.fields import check_count, component_symbol, components_of, moving_axes, refusal
-from matstd.twin.frames import Array
 from matstd.twin.machine import SHAPES, Chain, Ranges, ShapeName, Symbol, shape
-from matstd.twin.model import Declared, Effect, Kind, Parameter
+from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG
 
@@ -63,7 +62,7 @@ class ComponentError(Declared):
         """The peak amplitude."""
         return (Parameter("amplitude", self.symbol.unit, self.sd),)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """The distribution at the readings."""
         q, link = touches.reading(self.symbol.link), touches.chain.link(self.symbol.link)
         return (shape(self.shape, q, link, self.periods, self.phase),)
@@ -119,7 +118,7 @@ class HigherOrder(Declared):
         unit, each = self.symbol.unit, [(word, k) for k in self.degrees for word in words]
         return tuple(Parameter(f"{word}{k}", unit, self.sd / k**1.5) for word, k in each)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """Chebyshev polynomials, or harmonics, of the reading."""
         q = touches.reading(self.symbol.link)
         if self.rotary:

@@ -16,9 +16,8 @@ from matstd.twin.fields import (
     read_axis,
     refusal,
 )
-from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Symbol
-from matstd.twin.model import Declared, Effect, Kind, Parameter
+from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
@@ -46,7 +45,7 @@ class RamSag(_Sag):
 
     called = "sag of {symbol.link} {symbol.motion}"
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """The cube of the overhang."""
         low, high = touches.chain.link(self.symbol.link).range
         overhang = (high - touches.reading(self.symbol.link)) / (high - low)
@@ -64,7 +63,7 @@ class TiltSag(_Sag):
 
     called = "sag of {symbol.link} under its own weight"
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """Two waves a turn."""
         return (np.sin(2.0 * touches.reading(self.symbol.link)),)
 
@@ -90,7 +89,7 @@ class OffCentreLoad(_Sag):
         """Components of the off-centre load in phase with the table and a quarter turn on."""
         return (self.sized("cos"), self.sized("sin"))
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """The tilt times either component of the load."""
         tilt, turn = np.sin(touches.reading(self.symbol.link)), touches.reading(self.table)
         return (tilt * np.cos(turn), tilt * np.sin(turn))

@@ -4,14 +4,13 @@ Stated by the user (`--add 'jump(EXX)'`) and never proposed: noise that remember
 some instant in every log, and three of four such logs got a false jump.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from matstd.twin.fields import ComponentSymbol, no_values
 from matstd.twin.frames import Array
-from matstd.twin.model import Declared, Kind, scanned
+from matstd.twin.model import Amounts, Declared, Kind, scanned
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
@@ -50,7 +49,7 @@ class Jump(Declared):
     kind, called = "jump", "jump of {symbol.link}, as of lost counts"
     usual = (10 * UM, 30 * URAD)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """One from the instant on."""
         return ((touches.time > self.instant).astype(float),)
 

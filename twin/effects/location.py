@@ -8,9 +8,8 @@ from typing import Self
 import numpy as np
 
 from matstd.twin.fields import AnySymbol, Refuse
-from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Ranges
-from matstd.twin.model import Declared, Kind, Parameter, Where
+from matstd.twin.model import Amounts, Declared, Kind, Parameter, Where
 from matstd.twin.record import Touches
 
 
@@ -49,7 +48,7 @@ class LocationError(Declared):
         """A displacement of the link."""
         return Where("place", chain.link_index(self.symbol.link), self.symbol.component)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """One everywhere."""
         return (np.ones(len(touches)),)
 

@@ -16,7 +16,7 @@ from matstd.twin.fields import (
 )
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
-from matstd.twin.model import Declared, Inner, Kind, Parameter, Wave, scanned
+from matstd.twin.model import Amounts, Declared, Inner, Kind, Parameter, Wave, scanned
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
@@ -92,7 +92,7 @@ class Periodic(_Repeating):
 
     period: float = scanned("mm", _periods, default=10.0, acts="with a period")
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """One sine."""
         return self._wave(touches, 2.0 * np.pi / self.period)
 
@@ -143,7 +143,7 @@ class Overtones(Periodic):
         orders = range(1, self.order + 1)
         return tuple(self.sized(f"{word}{k}", k**-1.5) for k in orders for word in ("sin", "cos"))
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """Sine and cosine of every k, by rising k."""
         turn = 2.0 * np.pi / self.period * touches.reading(self.symbol.link)
         return [f(k * turn) for k in range(1, self.order + 1) for f in (np.sin, np.cos)]
@@ -189,7 +189,7 @@ class Harmonic(_Repeating):
         """Whether it is the rotation of the axis about itself."""
         return self.symbol.component == chain.link(self.symbol.link).own_component
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """Waves over the turn."""
         return self._wave(touches, self.harmonic)
 

@@ -16,7 +16,7 @@ from matstd.twin.effects.backlash import measured_component
 from matstd.twin.fields import Argument, ComponentSymbol, Refuse, moving_axes
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Symbol
-from matstd.twin.model import Declared, Effect, Kind, Parameter, Title, scanned
+from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter, Title, scanned
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
@@ -109,7 +109,7 @@ class PositionTable(Declared):
         turned = [self.sized(f"reversal {p.name}", 0.5) for p in mean]
         return (*mean, self.sized("reversal"), *turned)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """The curves; of two then half of their difference to either side."""
         mean = self._curves(touches)
         half = 0.5 * touches.last_move(self.symbol.link)

@@ -1,12 +1,11 @@
 """What a touch probe adds of its own: lobes, its effective radius, a stylus that bends."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from matstd.twin.frames import Array
-from matstd.twin.model import Declared, Kind, Parameter, scanned
+from matstd.twin.model import Amounts, Declared, Kind, Parameter, scanned
 from matstd.twin.record import Touches
 from matstd.twin.units import UM
 
@@ -34,7 +33,7 @@ class ProbeLobing(Declared):
     kind, called, carrier, acts_on = "probe-lobing", "lobes of the probe", "probe", "bias"
     parameters = (Parameter("cos", "mm", 3 * UM), Parameter("sin", "mm", 3 * UM))
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """Cosine and sine, in proportion to how far the stylus is deflected sideways."""
         n = normal_in_tool(touches)
         sideways = np.hypot(n[:, 0], n[:, 1])
@@ -54,7 +53,7 @@ class ProbeRadius(Declared):
     stated_number = "radius"
     parameters = (Parameter("amplitude", "mm", 5 * UM),)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """One everywhere."""
         return (np.ones(len(touches)),)
 
@@ -70,7 +69,7 @@ class StylusBending(Declared):
     kind, called, carrier, acts_on = "stylus-bending", "bending of the stylus", "probe", "bias"
     parameters = (Parameter("amplitude", "mm", 5 * UM),)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """One at a touch square to the stylus."""
         n = normal_in_tool(touches)
         return (n[:, 0] ** 2 + n[:, 1] ** 2,)

@@ -1,13 +1,13 @@
 """Servo lag of an axis on a path: while it moves it stands where it was told to be a little ago."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from matstd.twin.fields import AxisName, moving_linear_axes
 from matstd.twin.frames import Array
-from matstd.twin.model import Declared, Kind, Parameter
+from matstd.twin.model import Amounts, Declared, Kind, Parameter
 from matstd.twin.record import IntArray, Labels, Touches
 
 STATED = "v{axis}_mm_s"
@@ -39,7 +39,7 @@ class ServoLag(Declared):
     kind, called = "servo-lag", "servo lag of {axis} beside the other axes"
     parameters = (Parameter("lag", "s", 3e-4),)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """Against the motion."""
         return (-speed(touches, self.axis),)
 

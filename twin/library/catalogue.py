@@ -8,6 +8,7 @@ import importlib.util
 import inspect
 import os
 import re
+import sys
 from collections.abc import Sequence
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -243,6 +244,7 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
         found = "nothing that Python can load" if os.path.isfile(path) else "no such file"
         raise BadFile(path, "file", found, "a .py file with a Kind in it")
     module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # where data classes look for the types of their fields
     try:
         spec.loader.exec_module(module)
     except SyntaxError as cause:
@@ -253,6 +255,8 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
         if isinstance(cause, ModuleNotFoundError) and str(cause.name).startswith("twin"):
             expected = f"the name that is installed, matstd.{cause.name}"
         raise users_fault(cause, path, "file", expected) from cause
+    finally:
+        del sys.modules[spec.name]
     own = {id(k): k for k in vars(module).values() if isinstance(k, Kind)}
     if not own:
         raise BadFile(path, "file", "no Kind", "at least one twin.Kind at its top level")

@@ -7,7 +7,7 @@ adds terms up, to first order and exactly. `Declared` writes most of an effect f
 
 from matstd.twin.fields import moving_axes, refusal, sensors
 from matstd.twin.machine import Where
-from matstd.twin.model.declared import Declared, scanned
+from matstd.twin.model.declared import Amounts, Declared, scanned
 from matstd.twin.model.effect import (
     Effect,
     Inner,
@@ -25,6 +25,7 @@ from matstd.twin.model.kind import Kind
 from matstd.twin.model.model import Model, columns
 
 __all__ = [
+    "Amounts",
     "Declared",
     "Effect",
     "Inner",

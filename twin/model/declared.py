@@ -17,17 +17,19 @@ Any attribute may be a property instead, and any method written out, where physi
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, replace
 from functools import cached_property
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self, get_type_hints
 
 import numpy as np
 
-from matstd.twin.errors import DesignError
 from matstd.twin.fields import Argument, Refuse
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Where
 from matstd.twin.model.effect import Acts, Inner, Parameter, Term, Title
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
+
+Amounts = Sequence[Array]
+"""What every parameter of an effect adds per unit, one number a touch, (N,) each."""
 
 Grid = Sequence[float] | Array | Callable[[Any, Touches], Array]
 """Values to scan, ascending; or what makes them of the effect and the touches."""
@@ -43,6 +45,7 @@ class _Scanned:
     grid: Grid
     continuous: bool
     acts: Acts
+    over: str
 
 
 def scanned(
@@ -51,6 +54,7 @@ def scanned(
     default: float | None = None,
     continuous: bool = True,
     acts: Acts = "smoothly",
+    over: str = "",
 ) -> Any:
     """A field that the formula depends on otherwise than as a factor: scanned, then refined.
 
@@ -60,10 +64,13 @@ def scanned(
         default: Value before a search; None for the middle of the grid.
         continuous: Whether values between those of the grid make sense.
         acts: As of `Inner`.
+        over: As of `Inner`: the axis over whose reading a period repeats.
     """
     if default is None:
         default = 0.0 if callable(grid) else float(grid[len(grid) // 2])
-    return field(default=default, metadata={_SCANNED: _Scanned(unit, grid, continuous, acts)})
+    return field(
+        default=default, metadata={_SCANNED: _Scanned(unit, grid, continuous, acts, over=over)}
+    )
 
 
 @dataclass(frozen=True)
@@ -135,7 +142,7 @@ class Declared:
         axis: str = vars(self)["axis"]
         return Where("twist", chain.link_index(axis), chain.link(axis).own_component)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """Per unit of each parameter at every touch, (N,) each."""
         raise NotImplementedError
 
@@ -150,7 +157,7 @@ class Declared:
         for name in self.tuning:
             one = layout_of(type(self)).scanned[name]
             grid = one.grid(self, touches) if callable(one.grid) else np.asarray(one.grid)
-            out.append(Inner(name, one.unit, grid, one.continuous, acts=one.acts))
+            out.append(Inner(name, one.unit, grid, one.continuous, acts=one.acts, over=one.over))
         return tuple(out)
 
     def tuned(self, *values: float) -> Self:
@@ -197,13 +204,9 @@ def layout_of(cls: type[Declared]) -> Layout:
     """The layout of a class, worked out once: names are asked for in every turn of a search."""
     if cls not in _LAYOUTS:
         arguments: dict[str, Argument] = {}
+        types = get_type_hints(cls, include_extras=True)
         for one in fields(cls):
-            if isinstance(one.type, str):
-                raise DesignError(
-                    f"{cls.__name__}.{one.name}: the annotation '{one.type}' is text, expected a "
-                    "type; leave out 'from __future__ import annotations'"
-                )
-            for note in getattr(one.type, "__metadata__", ()):
+            for note in getattr(types[one.name], "__metadata__", ()):
                 if isinstance(note, Argument):
                     arguments[one.name] = note
         named = [one for one in fields(cls) if one.name in arguments]

@@ -9,7 +9,7 @@ import numpy as np
 from matstd.twin.fields import Argument, LinearAxisName, Refuse, moving_linear_axes
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
-from matstd.twin.model import Declared, Inner, Kind, Parameter
+from matstd.twin.model import Amounts, Declared, Inner, Kind, Parameter
 from matstd.twin.record import Touches
 from matstd.twin.thermal.drive_columns import OWN, PROGRESS, is_own, own_column
 from matstd.twin.thermal.thermal_lag import LONGEST, SHORTEST, STEPS
@@ -53,7 +53,7 @@ class AxisWarming(Declared):
         """One cycle where the clock counts cycles."""
         return replace(self, tau=1.0) if self.clock else self
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """What has warmed, at either end."""
         low, high = touches.chain.link(self.axis).range
         s = (touches.reading(self.axis) - low) / (high - low)

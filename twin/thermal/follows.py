@@ -17,7 +17,7 @@ from matstd.twin.fields import (
 )
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Symbol
-from matstd.twin.model import Declared, Effect, Kind, Parameter, Title, scanned
+from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter, Title, scanned
 from matstd.twin.record import Touches
 from matstd.twin.thermal.drive_columns import (
     CYCLE,
@@ -61,7 +61,7 @@ class ThermalStatic(Declared):
         """The amplitude per kelvin."""
         return (self.sized("amplitude")._replace(unit=f"{self.symbol.unit}/K"),)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """Kelvins above 20 degC."""
         return (driven(touches, self.sensor, 0.0, self.name),)
 
@@ -103,7 +103,7 @@ class Follows(Declared):
         column = self.column.removesuffix("_1").replace("_", " ")
         return Title(f"{self.symbol.title} that follows {column}", self.symbol.link)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """The column in steps."""
         return (driven(touches, OWN + self.column, 0.0, self.name, self.step),)
 

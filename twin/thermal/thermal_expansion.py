@@ -1,11 +1,9 @@
 """Expansion of a scale or screw with a temperature."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from matstd.twin.fields import LinearAxisName, SensorName, sensor_record
-from matstd.twin.frames import Array
-from matstd.twin.model import Declared, Kind, Parameter
+from matstd.twin.model import Amounts, Declared, Kind, Parameter
 from matstd.twin.record import Touches
 from matstd.twin.units import T_REF
 
@@ -24,7 +22,7 @@ class ThermalExpansion(Declared):
     kind, called = "thermal-expansion", "expansion of the scale of {axis} with {sensor}"
     parameters = (Parameter("amplitude", "1/K", 20e-6),)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """Kelvins above 20 degC times the reading."""
         return ((sensor_record(touches, self.sensor) - T_REF) * touches.reading(self.axis),)
 

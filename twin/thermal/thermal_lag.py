@@ -10,7 +10,7 @@ import numpy as np
 from matstd.twin.fields import Argument, ComponentSymbol, Refuse, moved_components
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
-from matstd.twin.model import Declared, Kind, Parameter, Title, scanned
+from matstd.twin.model import Amounts, Declared, Kind, Parameter, Title, scanned
 from matstd.twin.record import Touches
 from matstd.twin.thermal.drive_columns import (
     SPINDLE,
@@ -85,7 +85,7 @@ class ThermalLag(Declared):
         whole = self.sized("amplitude")
         return (Parameter("amplitude", *amplitude_unit(self.drive, whole.unit, whole.sd)),)
 
-    def amounts(self, touches: Touches) -> Sequence[Array]:
+    def amounts(self, touches: Touches) -> Amounts:
         """What has followed."""
         return (self.response(touches),)
 
