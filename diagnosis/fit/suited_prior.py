@@ -117,7 +117,7 @@ def _gain(K: Array, k: Array, left: float, count: int, of: IntArray, more: float
 def _kind(effect: Effect, chain: Chain) -> str:
     """What an error of the ordinary model, or its change, does over its axis."""
     error = traits(original_of(effect) if traits(effect).since_run is not None else effect)
-    if error.ordinary_constant is not None and chain.is_serial_arm:
+    if error.ordinary_constant is not None:
         return "tilts" if error_class(chain, error.ordinary_constant) == "arm_tilt" else "stays"
     symbol = error.ordinary_component
     if symbol is None:

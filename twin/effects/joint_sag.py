@@ -32,8 +32,8 @@ DOWN = np.array([0.0, 0.0, -1.0])
 
 
 def _joint(text: str, chain: Chain, refuse: Refuse) -> str:
-    if text not in chain.arm_joints:
-        known = ", ".join(chain.arm_joints) or "none on this machine"
+    if text not in chain.tool_rotary_axes:
+        known = ", ".join(chain.tool_rotary_axes) or "none on this machine"
         raise refuse(f"a rotary axis that carries the tool: {known}")
     return text
 
@@ -116,7 +116,7 @@ def weights_behind(chain: Chain, joint: str) -> tuple[str, ...]:
     The point of the next joint has no lever if it lies on this joint's line; two at one place are
     one.
     """
-    joints = chain.arm_joints
+    joints = chain.tool_rotary_axes
     own = chain.link(joint)
     ends = [*(chain.link(j) for j in joints[joints.index(joint) :]), chain.links[-1]]
     places = []
@@ -129,12 +129,11 @@ def weights_behind(chain: Chain, joint: str) -> tuple[str, ...]:
 
 
 def propose(touches: Touches) -> Iterable[JointSag]:
-    """Every joint of a serial arm."""
-    if touches.chain.is_serial_arm:
-        for joint in touches.chain.arm_joints:
-            places = weights_behind(touches.chain, joint)
-            if places:
-                yield JointSag(joint, places)
+    """Every joint of an open chain."""
+    for joint in touches.chain.joints:
+        places = weights_behind(touches.chain, joint)
+        if places:
+            yield JointSag(joint, places)
 
 
 KIND = Kind.of(

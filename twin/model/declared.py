@@ -151,10 +151,15 @@ class Declared:
         where = self.where(touches.chain)
         return tuple(Term(k, where, amount) for k, amount in enumerate(self.amounts(touches)))
 
+    @property
+    def searched(self) -> Sequence[str]:
+        """The scanned fields that this effect depends on: all of them."""
+        return tuple(layout_of(type(self)).scanned)
+
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """The scanned fields, with the grids that these touches can support."""
         out = []
-        for name in self.tuning:
+        for name in self.searched:
             one = layout_of(type(self)).scanned[name]
             grid = one.grid(self, touches) if callable(one.grid) else np.asarray(one.grid)
             out.append(Inner(name, one.unit, grid, one.continuous, acts=one.acts, over=one.over))
@@ -162,12 +167,12 @@ class Declared:
 
     def tuned(self, *values: float) -> Self:
         """The same effect with these values of its scanned fields."""
-        return replace(self, **dict(zip(self.tuning, map(float, values), strict=True)))
+        return replace(self, **dict(zip(self.searched, map(float, values), strict=True)))
 
     @property
     def tuning(self) -> Mapping[str, float]:
         """Present values of the scanned fields, base units."""
-        return {name: getattr(self, name) for name in layout_of(type(self)).scanned}
+        return {name: getattr(self, name) for name in self.searched}
 
     def on(self, chain: Chain, refuse: Refuse) -> Self:
         """The effect on a machine: with the fields that follow from it.

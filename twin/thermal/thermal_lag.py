@@ -1,6 +1,6 @@
 """Any component error as a first-order lag: after switching on, or after any recorded drive."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated
@@ -96,9 +96,9 @@ class ThermalLag(Declared):
         return driven(touches, self.drive, self.tau, self.name, self.step)
 
     @property
-    def tuning(self) -> Mapping[str, float]:
-        """The time constant, s, and the step of an own column."""
-        return {"tau": self.tau, "step": self.step} if is_own(self.drive) else {"tau": self.tau}
+    def searched(self) -> Sequence[str]:
+        """The time constant, and the step of an own column."""
+        return ("tau", "step") if is_own(self.drive) else ("tau",)
 
 
 def propose(touches: Touches) -> Iterable[ThermalLag]:
