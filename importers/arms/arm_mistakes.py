@@ -1,11 +1,12 @@
 """What a table of joint readings and a description of the arm may disagree about.
 
 A tracker that stands anywhere and reflectors that sit anywhere are solved for with every mistake
-undone in turn: what makes absurd deviations ordinary is told, and never applied.
+undone in turn: what makes absurd deviations ordinary is reported, and never applied.
 """
 
 import re
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -25,8 +26,8 @@ _COUPLED = re.compile(r"J?(\d)\s*([+-])\s*J?(\d)\Z", re.IGNORECASE)
 def coupled(q: Array, how: str) -> Array:
     """Readings of joints one of which counts from another one's link, (N, J).
 
-    On arms with a parallel linkage, and in the readings of some controls without one, joint 3 is
-    told from the horizontal: its angle against link 2 is J3 + J2 (or J3 - J2).
+    On arms with a parallel linkage, and in the readings of some controls without one, joint 3
+    counts from the horizontal: its angle against link 2 is J3 + J2 (or J3 - J2).
 
     Args:
         q: Readings as they stand, (N, J), rad.
@@ -44,10 +45,25 @@ def coupled(q: Array, how: str) -> Array:
     return out
 
 
+@dataclass(frozen=True)
+class Mistake:
+    """What makes deviations ordinary that are absurd as a table and an arm stand.
+
+    Attributes:
+        words: What is wrong, as a condition.
+        stated: Deviations as the arm is described, mm rms.
+        left: Deviations with the mistake undone, mm rms.
+    """
+
+    words: str
+    stated: float
+    left: float
+
+
 def likely_mistake(
     q: Array, chain: Chain, other: Chain | None, left: Callable[[Chain, Array], float]
-) -> tuple[str, float] | None:
-    """The mistake that explains absurd deviations, and what it leaves, mm rms; None for none.
+) -> Mistake | None:
+    """The mistake that explains absurd deviations, None where they are not, or none does.
 
     Args:
         q: Readings, (N, J), rad.
@@ -58,16 +74,12 @@ def likely_mistake(
     stated = left(chain, q)
     if stated < ABSURD:
         return None
-    found = [(words, left(chain, readings)) for words, readings in _mistakes(q)]
+    found = [(left(chain, readings), words) for words, readings in _mistakes(q)]
     if other is not None:
-        found.append(
-            (
-                "its parameters are read in the other convention (with or without --modified)",
-                left(other, q),
-            )
-        )
-    words, best = min(found, key=lambda pair: pair[1])
-    return (words, best) if best < BETTER * stated else None
+        words = "its parameters are read in the other convention (with or without --modified)"
+        found.append((left(other, q), words))
+    best, words = min(found)
+    return Mistake(words, stated, best) if best < BETTER * stated else None
 
 
 def _mistakes(q: Array) -> Iterator[tuple[str, Array]]:

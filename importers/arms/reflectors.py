@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from matstd.importers.sheets import MM, Sheet, bare, unit_of_column
+from matstd.importers.sheets import MM, Sheet, bare
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.record import rigid_motion
@@ -65,10 +65,8 @@ def reflector_places(sheet: Sheet, joints: Sequence[str] = ()) -> tuple[Array, t
             "one column of measured x, y, z (or x1, x2 ...), the others renamed, or `measured` in "
             "its name",
         )
-    factors = {i: MM.get(unit_of_column(sheet.columns[i]) or "mm", 1.0) for c in chosen.values()
-               for i in c.values()}  # fmt: skip
     places = [
-        np.stack([sheet.numbers(c[letter]) * factors[c[letter]] for letter in "xyz"], axis=1)
+        np.stack([sheet.quantity(c[letter], MM, "mm") for letter in "xyz"], axis=1)
         for c in chosen.values()
     ]
     several = len(chosen) > 1

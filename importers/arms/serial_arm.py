@@ -8,6 +8,7 @@ at any size.
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,29 +18,26 @@ from matstd.importers.sheets import (
     ANGLES,
     MM,
     Sheet,
-    bare,
     loads,
     own_columns,
     seconds,
     temperatures,
-    unit_of_column,
 )
 from matstd.twin.errors import BadFile, DesignError, NotEnoughData
 from matstd.twin.frames import Array, pose, rotation
 from matstd.twin.machine import Axis, Chain, make_chain, table_to_tool
-from matstd.twin.record import (
-    Instrument,
-    Run,
-    Setup,
-    Touches,
-    computed_deviation,
-)
+from matstd.twin.record import Instrument, Run, Setup, at_poses, computed_deviation
 
 _JOINT = re.compile(
     r"(?:\A|[^a-z])(?:j|joint|axis|achse|gelenk|q|theta|a)[\s_.]*(\d)", re.IGNORECASE
 )
 _TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
-_DH = {"a": r"\Aa\b", "alpha": r"alpha|α", "d": r"\Ad\b", "theta": r"theta|offset|θ"}
+_DH = {
+    "a": re.compile(r"\Aa\b", re.IGNORECASE),
+    "alpha": re.compile(r"alpha|α", re.IGNORECASE),
+    "d": re.compile(r"\Ad\b", re.IGNORECASE),
+    "theta": re.compile(r"theta|offset|θ", re.IGNORECASE),
+}
 
 FEWEST = 6
 """Poses for the nine unknown numbers of tracker and reflector, three equations each, with some
@@ -98,22 +96,15 @@ def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tup
 
 def _dh_column(sheet: Sheet, name: str) -> Array:
     """One parameter of every joint, mm or rad."""
+    column = sheet.find(_DH[name])
+    if column is None:
+        raise sheet.lacking(f"a column {name} among {', '.join(_DH)}")
     is_angle = name in ("alpha", "theta")
-    for i, column in enumerate(sheet.columns):
-        if re.search(_DH[name], bare(column), re.IGNORECASE):
-            units = ANGLES if is_angle else MM
-            unit = unit_of_column(column) or ("deg" if is_angle else "mm")
-            values = sheet.numbers(i)
-            if not np.isfinite(values).all():
-                row = int(np.argmin(np.isfinite(values)))
-                raise sheet.bad(row, i, "nothing", "a number for every joint")
-            return values * units.get(unit, 1.0)
-    raise BadFile(
-        sheet.path,
-        "header",
-        f"columns {', '.join(map(repr, sheet.columns))}",
-        f"a column {name} among a, alpha, d, theta",
-    )
+    values = sheet.quantity(column, ANGLES if is_angle else MM, "deg" if is_angle else "mm")
+    if not np.isfinite(values).all():
+        row = int(np.argmin(np.isfinite(values)))
+        raise sheet.bad(row, column, "nothing", "a number for every joint")
+    return values
 
 
 def _names(lines: Sequence[Array]) -> list[str]:
@@ -158,11 +149,9 @@ def joint_readings(sheet: Sheet, axes: Sequence[str] = ()) -> tuple[Array, tuple
             raise BadFile(sheet.path, "header", twice, "every joint once")
     numbers = sorted(found)
     if not numbers or numbers != list(range(numbers[0], numbers[0] + len(numbers))):
-        listed = ", ".join(map(repr, sheet.columns))
-        raise BadFile(sheet.path, "header", f"columns {listed}", "columns j1, j2, j3 ... of joints")
-    units = {**ANGLES, **MM}
+        raise sheet.lacking("columns j1, j2, j3 ... of joints")
     columns = [found[k] for k in numbers]
-    q = [sheet.numbers(i) * units[unit_of_column(sheet.columns[i]) or "deg"] for i in columns]
+    q = [sheet.quantity(i, {**ANGLES, **MM}, "deg") for i in columns]
     return np.stack(q, axis=1), tuple(sheet.columns[i] for i in columns)
 
 
@@ -172,11 +161,10 @@ def _named_joints(sheet: Sheet, axes: Sequence[str]) -> dict[int, int]:
     Raises:
         BadFile: Two columns of one name.
     """
-    plain = [bare(c) for c in sheet.columns]
     found = {}
     for k, axis in enumerate(axes):
-        same = [i for i, name in enumerate(plain) if name == axis]
-        same = same or [i for i, name in enumerate(plain) if name.upper() == axis]
+        same = [i for i, name in enumerate(sheet.names) if name == axis]
+        same = same or [i for i, name in enumerate(sheet.names) if name.upper() == axis]
         if len(same) > 1:
             both = " and ".join(repr(sheet.columns[i]) for i in same[:2])
             raise BadFile(sheet.path, "header", both, f"one column of the readings of {axis}")
@@ -223,30 +211,20 @@ def tracker_run(
         )
     place, names, found = _placed(sheet, chain, q, u, reflector, joints)
     _check_placed(sheet, found, reflector is not None)
-    clock = next((i for i, c in enumerate(sheet.columns) if _TIME.search(c)), None)
-    time = np.zeros(len(q))
-    if clock is not None:
-        time = seconds(sheet, clock)
-    force, own = loads(sheet), own_columns(sheet)
-    there = _shots(q, place)
-    target = found.reflector
-    which, of = (np.repeat(k, 3) for k in np.nonzero(there))
+    clock, force = sheet.find(_TIME), loads(sheet)
+    time = np.zeros(len(q)) if clock is None else seconds(sheet, clock)
+    which, of = (np.repeat(k, 3) for k in np.nonzero(_shots(q, place)))
     n = len(which)
-    touches = Touches(
-        chain=chain,
-        q=q[which],
-        length=-target[of, 2],
-        offset=target[of, :2],
-        radius=np.zeros(n),
+    touches = replace(
+        at_poses(chain, q[which], -found.reflector[of, 2]),
+        offset=found.reflector[of, :2],
         point=place[which, of],
         normal=np.tile(np.eye(3), (n // 3, 1)),
         setups=(Setup("tracker", found.T_table_tracker),),
-        setup=np.zeros(n, dtype=np.int64),
         time=time[which],
-        approach=np.zeros((n, len(chain.axes))),
         temperature={name: values[which] for name, values in temperatures(sheet).items()},
         force=None if force is None else force[which],
-        value={name: values[which] for name, values in own.items()},
+        value={name: values[which] for name, values in own_columns(sheet).items()},
         feature=np.array(names)[of],
         pose=np.unique(which, return_inverse=True)[1],
         instrument=Instrument.TRACKER,
