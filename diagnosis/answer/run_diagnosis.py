@@ -54,6 +54,7 @@ from matstd.diagnosis.search import (
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.model import Effect, Model, moved_components
+from matstd.twin.numbers import rms
 from matstd.twin.record import Run, Touches, with_commanded, without_copies
 from matstd.twin.thermal import ThermalField
 
@@ -304,8 +305,8 @@ def _candidates(final: SearchState) -> tuple[Candidate, ...]:
                 effect=member.effect.name,
                 kind=member.effect.kind,
                 p_value=search.corrected(member.candidate, float(scores.p[variant])),
-                rms=float(np.sqrt(np.mean((effects.residual[:n] * u) ** 2))),
-                test_rms=float(np.sqrt(np.mean((effects.held_out.error * u) ** 2))),
+                rms=rms(effects.residual[:n] * u),
+                test_rms=rms(effects.held_out.error * u),
                 log_odds=float(effects.evidence - nothing.effects.evidence),
             )
         )

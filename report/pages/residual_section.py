@@ -18,6 +18,7 @@ from matstd.report.plots import (
 )
 from matstd.report.words import microns, region_words, stated_noise, structure_words
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
 from matstd.twin.record import Run, Touches
 from matstd.twin.units import UM
 
@@ -165,7 +166,7 @@ def setting(run: Run, fit: Fit) -> dict[str, Any]:
         "stated": microns(stated_noise(run)),
         "scatter": microns(stated_noise(run) * fit.noise.factor),
         "fingerprint": run.fingerprint,
-        "u_um": float(np.sqrt(np.mean(run.u**2))) / UM,
+        "u_um": rms(run.u) / UM,
         "parameters": len(fit.parameters),
         "held_out": int((run.split == "test").sum()),
     }

@@ -32,6 +32,7 @@ from matstd.report.words import microns
 from matstd.twin.frames import Array
 from matstd.twin.library import parse_effect
 from matstd.twin.model import Effect
+from matstd.twin.numbers import rms
 from matstd.twin.units import UM
 
 MOST_BARS = 14
@@ -63,7 +64,7 @@ def draw_fall(path: str | Path, diagnosis: Diagnosis) -> None:
     x = np.arange(len(steps))
     fitted = np.array([s.fit.rms for s in steps]) / UM
     held = np.array([s.fit.test_rms for s in steps]) / UM
-    u = float(np.sqrt(np.mean(diagnosis.run.u**2))) / UM
+    u = rms(diagnosis.run.u) / UM
     low, high = min(fitted.min(), held.min(), u), max(fitted.max(), held.max())
     _noise_lines(ax, diagnosis.fit, u)
     for y, colour, marker, word in (

@@ -11,7 +11,7 @@ from matstd.cli import main
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.fit.describe import Role
 from matstd.diagnosis.fit.identification import fit_run
-from matstd.importers.arms.serial_arm import arm_from_dh
+from matstd.importers.arms import arm_from_dh
 from matstd.importers.instruments.axis_run import one_axis_machine, positioning_run
 from matstd.importers.instruments.circle import read_circle
 from matstd.importers.instruments.positioning import PositioningTest, read_positioning

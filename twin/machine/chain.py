@@ -7,11 +7,13 @@ from typing import Literal
 
 import numpy as np
 
+from matstd.twin.display import Displayed
 from matstd.twin.errors import BadValue, UnknownAxis, UnknownSymbol
 from matstd.twin.frames import Array
 from matstd.twin.machine.contribution import Where
 from matstd.twin.machine.notation import parse_notation
 from matstd.twin.machine.symbols import ALONG, Family, Symbol, parse_symbol
+from matstd.twin.numbers import significant
 from matstd.twin.units import DEG
 
 Kind = Literal["linear", "rotary", "fixed"]
@@ -98,8 +100,8 @@ class Axis:
     expected: float | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Chain:
+@dataclass(frozen=True, eq=False, repr=False)
+class Chain(Displayed):
     """A machine: its links in chain order from workpiece to tool, and the place of its table.
 
     Attributes:
@@ -361,7 +363,7 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
         raise BadValue(f"axis.{name}.range", "nothing", "its smallest and largest reading")
     if not reach[0] < reach[1]:
         unit = 1.0 if kind == "linear" else DEG
-        found = [float(f"{end / unit:.12g}") for end in reach]
+        found = [significant(end / unit, 12) for end in reach]
         raise BadValue(f"axis.{name}.range", found, "the smaller reading first")
     own = np.eye(3)["XYZ".index(ALONG[name[0]])]
     direction = own if axis.direction is None else np.array(axis.direction, dtype=float)

@@ -4,13 +4,12 @@ A tracker that stands anywhere and reflectors that sit anywhere are solved for w
 undone in turn: what makes absurd deviations ordinary is reported, and never applied.
 """
 
-import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.twin.errors import DesignError
+from matstd.importers.arms.table import coupled
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 
@@ -20,34 +19,10 @@ ABSURD = 5.0
 BETTER = 0.2
 """Share of the deviations that may be left where a mistake explains them."""
 
-_COUPLED = re.compile(r"J?(\d)\s*([+-])\s*J?(\d)\Z", re.IGNORECASE)
-
-
-def coupled(q: Array, how: str) -> Array:
-    """Readings of joints one of which counts from another one's link, (N, J).
-
-    On arms with a parallel linkage, and in the readings of some controls without one, joint 3
-    counts from the horizontal: its angle against link 2 is J3 + J2 (or J3 - J2).
-
-    Args:
-        q: Readings as they stand, (N, J), rad.
-        how: `J3+J2`.
-
-    Raises:
-        DesignError: Joints that are not there.
-    """
-    match = _COUPLED.match(how.strip())
-    joint, other = (int(match[1]) - 1, int(match[3]) - 1) if match else (-1, -1)
-    if match is None or not (0 <= joint < q.shape[1] and 0 <= other < q.shape[1]):
-        raise DesignError(f"--coupled {how}: expected two of {q.shape[1]} joints such as J3+J2")
-    out = q.copy()
-    out[:, joint] += (1.0 if match[2] == "+" else -1.0) * q[:, other]
-    return out
-
 
 @dataclass(frozen=True)
 class Mistake:
-    """What makes deviations ordinary that are absurd as a table and an arm stand.
+    """What explains absurd deviations.
 
     Attributes:
         words: What is wrong, as a condition.
