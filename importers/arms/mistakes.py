@@ -5,7 +5,6 @@ undone in turn: what makes absurd deviations ordinary is reported, and never app
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -20,25 +19,10 @@ BETTER = 0.2
 """Share of the deviations that may be left where a mistake explains them."""
 
 
-@dataclass(frozen=True)
-class Mistake:
-    """What explains absurd deviations.
-
-    Attributes:
-        words: What is wrong, as a condition.
-        stated: Deviations as the arm is described, mm rms.
-        left: Deviations with the mistake undone, mm rms.
-    """
-
-    words: str
-    stated: float
-    left: float
-
-
 def likely_mistake(
     q: Array, chain: Chain, other: Chain | None, left: Callable[[Chain, Array], float]
-) -> Mistake | None:
-    """The mistake that explains absurd deviations, None where they are not, or none does.
+) -> tuple[str, float] | None:
+    """The mistake that explains absurd deviations, and what it leaves, mm rms; None for none.
 
     Args:
         q: Readings, (N, J), rad.
@@ -54,7 +38,7 @@ def likely_mistake(
         words = "its parameters are read in the other convention (with or without --modified)"
         found.append((left(other, q), words))
     best, words = min(found)
-    return Mistake(words, stated, best) if best < BETTER * stated else None
+    return (words, best) if best < BETTER * stated else None
 
 
 def _mistakes(q: Array) -> Iterator[tuple[str, Array]]:

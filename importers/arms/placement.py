@@ -163,10 +163,9 @@ def _directions(block: Array, preposition: str, letters: str) -> Iterator[str]:
     rank = int((s > TAKES_PART).sum())
     if rank == 3:
         yield f"{preposition} every direction"
-    elif rank == 2:
-        yield f"{preposition} every direction square to {_direction(U[:, 2], letters)}"
-    elif rank == 1:
-        yield f"{preposition} {_direction(U[:, 0], letters)}"
+    elif rank:
+        square = "every direction square to " if rank == 2 else ""
+        yield f"{preposition} {square}{_direction(U[:, 2 if rank == 2 else 0], letters)}"
 
 
 def _direction(n: Array, letters: str) -> str:
@@ -174,5 +173,5 @@ def _direction(n: Array, letters: str) -> str:
     largest = int(np.argmax(np.abs(n)))
     if abs(n[largest]) > 1.0 - 1e-4:
         return letters[largest]
-    n = n * np.sign(n[largest]) + 0.0
-    return f"({', '.join(f'{v:.2f}' for v in np.round(n, 2) + 0.0)})"
+    n = np.round(n * np.sign(n[largest]), 2) + 0.0
+    return f"({', '.join(f'{v:.2f}' for v in n)})"

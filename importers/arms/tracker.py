@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.importers.arms.dh import arm_from_dh
-from matstd.importers.arms.mistakes import Mistake, likely_mistake
+from matstd.importers.arms.mistakes import likely_mistake
 from matstd.importers.arms.placement import Placement, placed
 from matstd.importers.arms.table import ArmTable, coupled, read_arm
 from matstd.importers.sheets import Sheet, loads, own_columns, seconds, temperatures
@@ -31,13 +31,19 @@ class ArmImport:
 
     Attributes:
         joints: Columns of the readings, in the order of the programmed axes of the arm.
-        mistake: What its readings and its description may disagree about.
+        mistake: What its readings and its description may disagree about, and the deviations that
+            are left then, mm rms.
     """
 
     run: Run
     chain: Chain
     joints: tuple[str, ...]
-    mistake: Mistake | None
+    mistake: tuple[str, float] | None
+
+    @property
+    def rms(self) -> float:
+        """Deviations of the arm as it is described, mm."""
+        return float(np.sqrt(np.mean(self.run.deviation**2)))
 
     @property
     def reflectors(self) -> dict[str, Array]:
@@ -60,12 +66,11 @@ def import_arm(
     Args:
         sheet: Columns of joints and of x, y, z of reflectors.
         u: Standard uncertainty of one coordinate, mm.
-        machine: The arm, where it is known; its axes may name the columns of joints.
-        dh: Denavit and Hartenberg's parameters of the arm, where no machine is given.
+        machine: The arm; its axes may name the columns of joints.
+        dh: Denavit and Hartenberg's parameters in place of a machine.
         is_modified: Whether these are modified ones (Craig).
         couplings: Joints whose readings count from another link, `J3+J2`.
-        reflector: Its place, mm, in the tool frame, or with `dh` in the frame of the flange; found
-            where it is not stated.
+        reflector: Its place, mm, in the tool frame, or with `dh` in that of the flange, if known.
 
     Raises:
         DesignError: Both descriptions or none, readings and places of another arm.
@@ -94,9 +99,8 @@ def import_arm(
     except DesignError as refusal:
         if mistake is None:
             raise
-        raise DesignError(
-            f"{refusal}; {mistake.left:.4g} mm rms are left if {mistake.words}"
-        ) from refusal
+        words, rms = mistake
+        raise DesignError(f"{refusal}; {rms:.4g} mm rms are left if {words}") from refusal
     return ArmImport(run, chain, table.joints, mistake)
 
 

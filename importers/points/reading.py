@@ -22,6 +22,7 @@ from matstd.importers.points.coordinate_rows import (
 from matstd.importers.points.point_list import PointList
 from matstd.importers.sheets import MM, Sheet, signs
 from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
 
 Meaning = Literal["part", "standard"]
 """Who made a list: see the module."""
@@ -69,13 +70,16 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
     for i, letter in enumerate("xyz"):
         if ("approach", letter) in found:
             approach[:, i] = signs(sheet, found["approach", letter])
-        if ("nominal", letter) in found:
-            nominal[:, i] = sheet.quantity(found["nominal", letter], MM, unit or "mm")
+        at = found.get(("nominal", letter))
+        if at is not None:
+            nominal[:, i] = sheet.quantity(at, MM, unit or "mm")
         if ("measured", letter) in found:
             measured = sheet.quantity(found["measured", letter], MM, unit or "mm")
-            deviation[:, i] = measured - nominal[:, i]
+            deviation[:, i] = measured - np.nan_to_num(nominal[:, i])
         elif ("deviation", letter) in found:
             deviation[:, i] = sheet.quantity(found["deviation", letter], MM, unit)
+        if at is not None:
+            nominal[:, i] = _stated(sheet, at, nominal[:, i], deviation[:, i])
     if not np.isfinite(deviation).any() or not any(role == "nominal" for role, _ in found):
         raise sheet.lacking(
             "columns such as 'x nominal [mm]' and 'x measured [mm]', or a mapping file"
@@ -92,10 +96,10 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
 
 def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointList:
     """Points of a table with a row a coordinate."""
-    nominal, measured = (
-        sheet.quantity(c, MM, unit or "mm")
-        for c in nominal_and_measured(sheet, _NOMINAL, _MEASURED)
-    )
+    columns = nominal_and_measured(sheet, _NOMINAL, _MEASURED)
+    nominal, measured = (sheet.quantity(c, MM, unit or "mm") for c in columns)
+    is_point = np.array([letter != "" for letter in letters])
+    nominal = _stated(sheet, columns[0], nominal, np.where(is_point, measured, np.nan))
     setup = _texts(sheet, _SETUP, "a")
     label, points = points_of_rows(sheet, letters, _texts(sheet, _NAME, ""), setup)
     at, off = np.zeros((len(points), 3)), np.full((len(points), 3), np.nan)
@@ -112,6 +116,15 @@ def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointL
         line=np.array([sheet.lines[k] for k in first]),
         approach=np.zeros((len(points), 3), dtype=np.int64),
     )
+
+
+def _stated(sheet: Sheet, column: int, nominal: Array, found: Array) -> Array:
+    """Nominal coordinates, 0 where neither stands; raises BadFile where one was measured alone."""
+    alone = np.flatnonzero(np.isfinite(found) & ~np.isfinite(nominal))
+    if len(alone):
+        expected = "the nominal coordinate of what was measured"
+        raise sheet.bad(int(alone[0]), column, "nothing", expected)
+    return np.nan_to_num(nominal)
 
 
 def _roles(sheet: Sheet) -> dict[tuple[str, str], int]:

@@ -120,9 +120,10 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         say(f"- {name} at ({at}) mm of the tool frame, as {how}")
     say("- the tracker's frame is the set-up")
     if found.mistake is not None:
+        words, left = found.mistake
         say(
-            f"- the arm and its readings do not agree: {found.mistake.stated:.4g} mm rms are left "
-            f"as described; {found.mistake.left:.4g} mm rms are left if {found.mistake.words}"
+            f"- the arm and its readings do not agree: {found.rms:.4g} mm rms are left as "
+            f"described; {left:.4g} mm rms are left if {words}"
         )
     return found.run, found.chain
 
