@@ -125,6 +125,7 @@ def check_body(
     ball_mm: float,
     table_radius_mm: float,
     path: Path,
+    table_key: str = "limits.table_radius_mm",
 ) -> None:
     """Refuse a blank and limits that no standard can meet.
 
@@ -134,6 +135,8 @@ def check_body(
         material: Of the standard.
         ball_mm: Radius of the probe's ball.
         table_radius_mm: Of the table's face.
+        path: The project file.
+        table_key: Key that states the table.
 
     Raises:
         BadFile: The key and what it contradicts.
@@ -141,12 +144,19 @@ def check_body(
     sides, table = blank.base_mm, 2.0 * table_radius_mm
     if min(sides) < 160.0:
         raise BadFile(path, "blank.base_mm", list(sides), "160 mm or more either way")
+    if table < 160.0:
+        raise BadFile(
+            path,
+            table_key,
+            f"a table of {table:g} mm",
+            "160 mm or more: the smallest standard has a base of 160 mm",
+        )
     if max(sides) > table:
         raise BadFile(
             path,
             "blank.base_mm",
             list(sides),
-            f"a blank no larger than the table, {table:g} mm (limits.table_radius_mm)",
+            f"a blank no larger than the table, {table:g} mm ({table_key})",
         )
     if ball_mm > limits.min_concave_radius_mm:
         raise BadFile(
