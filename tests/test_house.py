@@ -18,11 +18,12 @@ BELOW = {
     "importers": {"twin"},
     "sensitivity": {"twin"},
     "information": {"twin"},
+    "nc": {"twin"},
     "artefact": {"twin", "importers", "sensitivity", "information"},
     "diagnosis": {"twin", "information"},
     "cad_out": {"twin", "artefact"},
-    "probe_paths": {"twin", "artefact"},
-    "compensation": {"twin", "diagnosis"},
+    "probe_paths": {"twin", "artefact", "nc"},
+    "compensation": {"twin", "diagnosis", "nc"},
 }
 ALLOWED = BELOW | {
     "report": set(BELOW),
@@ -33,6 +34,7 @@ VOCABULARY = {
     "twin.units",
     "twin.numbers",
     "twin.text",
+    "twin.sampling",
     "twin.frames",
     "twin.errors",
     "twin.words",
@@ -47,7 +49,7 @@ HEAVY = {"build123d", "OCP", "pyvista", "vtk", "matplotlib", "trimesh", "manifol
 DRAWING = {"matplotlib", "pyvista", "vtk"}
 # The kernel's own files name forty of its classes each; they are imported inside functions only.
 KERNEL = {
-    f"cad_out/build/{name}.py"
+    f"cad_out/kernel/{name}.py"
     for name in (
         ["assembly", "exchange", "faces", "letters", "pmi", "primitives", "reader", "solid", "xcaf"]
     )

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from matstd.artefact.body import BLEND, Standard
-from matstd.cad_out.build import FACES, FACTS, STEP, run_kernel
 from matstd.cad_out.details import BALL, Details, Screw, details_of
+from matstd.cad_out.kernel import FACES, FACTS, STEP, run_kernel
 from matstd.cad_out.meshes import (
     aspects,
     chord_errors,

@@ -11,6 +11,7 @@ from matstd.twin.frames import Array, skew
 from matstd.twin.machine import Chain
 from matstd.twin.numbers import rms, rms_length
 from matstd.twin.record import Touches
+from matstd.twin.sampling import even_points
 
 POSES = 256
 """Over which figures are taken: their rms is then known to some 4 %."""
@@ -18,9 +19,6 @@ POSES = 256
 
 def workspace(chain: Chain, limits: Mapping[str, tuple[float, float]], n: int = POSES) -> Array:
     """Readings evenly spread over the travels, without chance: a sequence of low discrepancy.
-
-    Point i is the fractional part of ``i alpha``, with alpha the powers of the inverse of the root
-    of ``x^(d+1) = x + 1`` in d dimensions.
 
     Args:
         chain: The machine.
@@ -30,16 +28,8 @@ def workspace(chain: Chain, limits: Mapping[str, tuple[float, float]], n: int = 
 
     Returns:
         Shape (n, A); spindles that no program turns stand at zero.
-
-    Reference:
-        M. Roberts, The unreasonable effectiveness of quasirandom sequences, 2018.
     """
-    d = len(chain.programmed_axes)
-    root = 2.0
-    for _ in range(40):
-        root = (1.0 + root) ** (1.0 / (d + 1))
-    alpha = root ** -np.arange(1.0, d + 1.0)
-    unit = np.mod(0.5 + np.arange(1, n + 1)[:, None] * alpha, 1.0)
+    unit = even_points(n, len(chain.programmed_axes))
     q = np.zeros((n, len(chain.axes)))
     for k, name in enumerate(chain.programmed_axes):
         low, high = limits.get(name, chain.link(name).range)

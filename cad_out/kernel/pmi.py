@@ -31,8 +31,8 @@ from OCP.XCAFDoc import (
     XCAFDoc_GeomTolerance,
 )
 
-from matstd.cad_out.build.xcaf import name_of, text
 from matstd.cad_out.details import CALIBRATED, DATUMS, Tolerance
+from matstd.cad_out.kernel.xcaf import name_of, text
 from matstd.twin.frames import Array
 
 _KINDS = {

@@ -26,8 +26,8 @@ from matstd.cad_out.meshes import (
 from matstd.twin.errors import NotBuildable
 
 if TYPE_CHECKING:
-    from matstd.cad_out.build.assembly import Product
-    from matstd.cad_out.build.solid import Solid
+    from matstd.cad_out.kernel.assembly import Product
+    from matstd.cad_out.kernel.solid import Solid
 
 STANDARD, STEP, MESH, FACTS = "standard.toml", "standard.step", "mesh.npz", "facts.json"
 FACES = "standard-faces.step"
@@ -48,8 +48,8 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
         author: For the header of the STEP file.
         organisation: The same.
     """
-    from matstd.cad_out.build.assembly import face_products, products_of, whole_name
-    from matstd.cad_out.build.exchange import Origin, write_step
+    from matstd.cad_out.kernel.assembly import face_products, products_of, whole_name
+    from matstd.cad_out.kernel.exchange import Origin, write_step
 
     place = Path(folder)
     standard = read_standard(place / STANDARD)
@@ -70,8 +70,8 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
 
 def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list[Piece]:
     """Triangles of every product, the screws as coarse as a picture needs."""
-    from matstd.cad_out.build.assembly import colour_of
-    from matstd.cad_out.build.reader import tessellate
+    from matstd.cad_out.kernel.assembly import colour_of
+    from matstd.cad_out.kernel.reader import tessellate
 
     balls, out = {sphere.name for sphere in standard.spheres}, []
     for product in products:
@@ -90,7 +90,7 @@ def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list
 
 def reread(folder: str) -> None:
     """Read the STEP file of a folder anew and write down what the kernel finds in it."""
-    from matstd.cad_out.build.reader import read_step
+    from matstd.cad_out.kernel.reader import read_step
 
     facts = asdict(read_step(Path(folder) / STEP))
     (Path(folder) / FACTS).write_text(json.dumps(facts), encoding="utf-8")
@@ -101,7 +101,7 @@ def _mesh(standard: Standard, solid: Solid, chord: float) -> tuple[Mesh, float]:
 
     Both are measured at other places than the triangulation looks at.
     """
-    from matstd.cad_out.build.reader import face_numbers, farthest_from_faces, triangulate
+    from matstd.cad_out.kernel.reader import face_numbers, farthest_from_faces, triangulate
 
     names = {number: name for name, number in face_numbers(solid.plain, solid.plain_faces).items()}
     balls = [ball_mesh(sphere, chord) for sphere in standard.spheres]

@@ -24,7 +24,8 @@ from OCP.TopoDS import TopoDS
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from scipy.interpolate import NdBSpline
 
-from matstd.cad_out.build.faces import (
+from matstd.cad_out.details import Tolerance
+from matstd.cad_out.kernel.faces import (
     area,
     edges_of,
     faces_of,
@@ -35,9 +36,8 @@ from matstd.cad_out.build.faces import (
     solids_of,
     volume,
 )
-from matstd.cad_out.build.pmi import notes_of_label, read_signs, read_tolerances
-from matstd.cad_out.build.xcaf import name_of, new_document, settings
-from matstd.cad_out.details import Tolerance
+from matstd.cad_out.kernel.pmi import notes_of_label, read_signs, read_tolerances
+from matstd.cad_out.kernel.xcaf import name_of, new_document, settings
 from matstd.cad_out.triangles import (
     Chart,
     Edge,

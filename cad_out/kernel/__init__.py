@@ -4,10 +4,9 @@ In: a folder with `standard.toml`. Out: STEP file, triangles and facts in the sa
 here loads the kernel at import; `run_apart` serves any library that may crash.
 """
 
-from matstd.cad_out.build.kernel import run_kernel
-from matstd.cad_out.build.part import as_part
-from matstd.cad_out.build.process import run_apart
-from matstd.cad_out.build.worker import FACES, FACTS, MESH, SCENES, STANDARD, STEP
+from matstd.cad_out.kernel.part import as_part
+from matstd.cad_out.kernel.process import run_apart, run_kernel
+from matstd.cad_out.kernel.worker import FACES, FACTS, MESH, SCENES, STANDARD, STEP
 
 __all__ = [
     "FACES",

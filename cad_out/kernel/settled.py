@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from matstd.twin.errors import NotBuildable
 
 if TYPE_CHECKING:
-    from matstd.cad_out.build.assembly import Product
+    from matstd.cad_out.kernel.assembly import Product
 
 _FIRST = "MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION("
 _ENTITY = re.compile(r"^#(\d+) = (.*?);$", re.S | re.M)

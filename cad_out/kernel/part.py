@@ -28,8 +28,8 @@ def as_part(standard: Standard) -> tuple[build123d.Solid, dict[str, build123d.Fa
     """
     from build123d import Face, Solid
 
-    from matstd.cad_out.build.solid import build_solid
     from matstd.cad_out.details import details_of
+    from matstd.cad_out.kernel.solid import build_solid
 
     built = build_solid(standard, details_of(standard))
     solid = Solid(built.shape)

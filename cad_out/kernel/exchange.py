@@ -16,15 +16,15 @@ from OCP.TopLoc import TopLoc_Location
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool, XCAFDoc_Volume
 from OCP.XSControl import XSControl_WorkSession
 
-from matstd.cad_out.build.assembly import Product, colour_of
-from matstd.cad_out.build.pmi import add_diameter, add_notes, add_tolerances, settle_drawing
-from matstd.cad_out.build.settled import (
+from matstd.cad_out.kernel.assembly import Product, colour_of
+from matstd.cad_out.kernel.pmi import add_diameter, add_notes, add_tolerances, settle_drawing
+from matstd.cad_out.kernel.settled import (
     with_descriptions,
     with_settled_order,
     with_units_of_density,
     without_runout_zones,
 )
-from matstd.cad_out.build.xcaf import new_document, set_name, settings, text
+from matstd.cad_out.kernel.xcaf import new_document, set_name, settings, text
 from matstd.twin.errors import NotBuildable
 from matstd.twin.versions import versions
 

@@ -1,4 +1,4 @@
-"""Work in a process of its own, for libraries whose faults end the process they run in."""
+"""Work in a process of its own: a crash of the CAD kernel becomes one clear error."""
 
 import os
 import signal
@@ -7,10 +7,10 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from matstd.twin.errors import DesignError, NotBuildable
+
 REFUSAL = "refusal.txt"
 """File in the shared folder that holds the reason of a refusal."""
-
-_ROOT = Path(__file__).resolve().parent.parent
 
 _CALL = """\
 import pathlib, {module}, matstd.twin.errors
@@ -77,11 +77,10 @@ def run_apart(
     call = _CALL.format(
         module=module, task=task, arguments=(str(folder), *arguments), refusal=str(refusal)
     )
-    path = os.pathsep.join(filter(None, [str(_ROOT), os.environ.get("PYTHONPATH")]))
     try:
         done = subprocess.run(
             [sys.executable, "-c", call],
-            env={**os.environ, "PYTHONPATH": path, **(environment or {})},
+            env={**os.environ, **(environment or {})},
             stdin=subprocess.DEVNULL,
             capture_output=True,
             encoding="utf-8",
@@ -94,3 +93,27 @@ def run_apart(
     reason = refusal.read_text(encoding="utf-8") if refusal.exists() else ""
     lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
     return Ending(done.returncode, reason, lines[-1] if lines else "")
+
+
+def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float = 400.0) -> None:
+    """Run one task of `matstd.cad_out.kernel.worker` in a process of its own.
+
+    Args:
+        task: Name of the function.
+        folder: Through which the two processes speak.
+        arguments: Further arguments of the function.
+        timeout: After which the process is stopped, s.
+
+    Raises:
+        NotBuildable: The task refuses; or the kernel crashes, fails or takes too long.
+        DesignError: The folder takes no more.
+    """
+    ending = run_apart("matstd.cad_out.kernel.worker", task, folder, *arguments, timeout=timeout)
+    if ending.refusal:
+        raise NotBuildable(ending.refusal)
+    if ending.last_line.startswith("OSError: "):  # it could not even write down why
+        raise DesignError(f"{folder.parent}: cannot be written ({ending.last_line[9:]})")
+    if not ending.is_good:
+        raise NotBuildable(
+            f"the CAD kernel {ending} (task '{task}'); nothing was written", exit_code=ending.code
+        )

@@ -12,9 +12,6 @@ from OCP.ShapeCustom import ShapeCustom
 from OCP.TopoDS import TopoDS_Shell
 
 from matstd.artefact.body import DatumSphere, Material, Standard
-from matstd.cad_out.build.faces import faces_of, solids_of, volume
-from matstd.cad_out.build.primitives import boolean, cone, point
-from matstd.cad_out.build.solid import Solid, build_solid
 from matstd.cad_out.details import (
     BALL,
     SCREW,
@@ -25,6 +22,9 @@ from matstd.cad_out.details import (
     notes_of,
     tolerances_of,
 )
+from matstd.cad_out.kernel.faces import faces_of, solids_of, volume
+from matstd.cad_out.kernel.primitives import boolean, cone, point
+from matstd.cad_out.kernel.solid import Solid, build_solid
 from matstd.twin.frames import Array
 
 COLOURS = {

@@ -21,8 +21,8 @@ from OCP.GC import GC_MakeArcOfCircle
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Circ, gp_Dir, gp_Pnt, gp_Vec
 
 from matstd.artefact.body import Base
-from matstd.cad_out.build.faces import solids_of
 from matstd.cad_out.details import Bore
+from matstd.cad_out.kernel.faces import solids_of
 from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array
 

@@ -16,7 +16,8 @@ from OCP.ShapeCustom import ShapeCustom
 from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
 
 from matstd.artefact.body import BLEND, Base, DatumSphere, FreeformPatch, MountingHole, Standard
-from matstd.cad_out.build.faces import (
+from matstd.cad_out.details import RELIEF, Details, Pad, Seat, Side, relief_profile
+from matstd.cad_out.kernel.faces import (
     Named,
     edges_of,
     ends_and_middle,
@@ -26,8 +27,8 @@ from matstd.cad_out.build.faces import (
     solids_of,
     volume,
 )
-from matstd.cad_out.build.letters import engraved
-from matstd.cad_out.build.primitives import (
+from matstd.cad_out.kernel.letters import engraved
+from matstd.cad_out.kernel.primitives import (
     boolean,
     box,
     cone,
@@ -37,7 +38,6 @@ from matstd.cad_out.build.primitives import (
     point,
     turned,
 )
-from matstd.cad_out.details import RELIEF, Details, Pad, Seat, Side, relief_profile
 from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array, apply
 

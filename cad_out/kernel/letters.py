@@ -24,9 +24,9 @@ from OCP.IntTools import IntTools_FClass2d
 from OCP.TopAbs import TopAbs_Orientation, TopAbs_State
 from OCP.TopoDS import TopoDS, TopoDS_Shell
 
-from matstd.cad_out.build.faces import edges_of, faces_of
-from matstd.cad_out.build.primitives import boolean, point
 from matstd.cad_out.details import CUTTER, DEPTH, DOT, Lettering
+from matstd.cad_out.kernel.faces import edges_of, faces_of
+from matstd.cad_out.kernel.primitives import boolean, point
 from matstd.twin.frames import Array, apply, turn
 
 _ON = 1e-6  # mm: a line of text lies in a face
