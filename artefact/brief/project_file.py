@@ -217,8 +217,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     assert probe.length_mm is not None
     room = _table_radius(table, path)
     check_material(table.material, path)
-    key = "limits.table_radius_mm" if table.workshop.table is None else "workshop.table"
-    check_body(table.blank, table.limits, table.material, probe.radius_mm, room, path, key)
+    check_body(table.blank, table.limits, table.material, probe.radius_mm, room, path)
     first, *others = _setups(table, path)
     return Project(
         path=path,

@@ -118,6 +118,9 @@ def check_material(material: MaterialTable, path: Path) -> None:
             )
 
 
+_TABLE_KEYS = "workshop.table or limits.table_radius_mm"
+
+
 def check_body(
     blank: BlankTable,
     limits: LimitsTable,
@@ -125,7 +128,6 @@ def check_body(
     ball_mm: float,
     table_radius_mm: float,
     path: Path,
-    table_key: str = "limits.table_radius_mm",
 ) -> None:
     """Refuse a blank and limits that no standard can meet.
 
@@ -135,8 +137,6 @@ def check_body(
         material: Of the standard.
         ball_mm: Radius of the probe's ball.
         table_radius_mm: Of the table's face.
-        path: The project file.
-        table_key: Key that states the table.
 
     Raises:
         BadFile: The key and what it contradicts.
@@ -145,18 +145,14 @@ def check_body(
     if min(sides) < 160.0:
         raise BadFile(path, "blank.base_mm", list(sides), "160 mm or more either way")
     if table < 160.0:
-        raise BadFile(
-            path,
-            table_key,
-            f"a table of {table:g} mm",
-            "160 mm or more: the smallest standard has a base of 160 mm",
-        )
+        expected = "160 mm or more, the smallest base of a standard"
+        raise BadFile(path, _TABLE_KEYS, f"a table of {table:g} mm", expected)
     if max(sides) > table:
         raise BadFile(
             path,
             "blank.base_mm",
             list(sides),
-            f"a blank no larger than the table, {table:g} mm ({table_key})",
+            f"a blank no larger than the table, {table:g} mm ({_TABLE_KEYS})",
         )
     if ball_mm > limits.min_concave_radius_mm:
         raise BadFile(
