@@ -1,6 +1,6 @@
-"""Virtual probing: a program run on the exact twin of a random machine, and what is learnt of it.
+"""Virtual probing: a program runs on the exact twin of a random machine, and a model is fitted.
 
-The true ball meets the true surface, the log is read back; the proof is at poses nobody probed.
+The true ball meets the true surface, the log is read back; the model is tested at other poses.
 """
 
 import tempfile

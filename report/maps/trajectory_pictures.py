@@ -11,9 +11,9 @@ from matstd.report.style import INK, figure, plain, reading_label, save, series
 from matstd.report.words import sampling_words
 from matstd.sensitivity.montecarlo import Volumetric
 from matstd.sensitivity.study import AlongPath, Study, Trajectory
-from matstd.twin.effects import ComponentError
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
+from matstd.twin.model import Effect, traits
 from matstd.twin.numbers import rms
 from matstd.twin.units import UM, URAD
 
@@ -115,12 +115,13 @@ def _words(effect: AlongPath) -> str:
     return ", ".join(parts) + (" and others" if len(effect.errors) > 8 else "")
 
 
-def _error_words(chain: Chain, effect: object, size: float) -> str:
-    symbol = getattr(effect, "symbol", None)
+def _error_words(chain: Chain, effect: Effect, size: float) -> str:
+    own = traits(effect)
+    symbol = own.symbol
     if symbol is None:
-        return str(getattr(effect, "name", effect))
+        return effect.name
     value = f"{size / URAD:.3g} µrad" if symbol.is_angular else f"{size / UM:.3g} µm"
-    shape = f", {effect.shape}" if isinstance(effect, ComponentError) else ""
+    shape = f", {own.distribution}" if own.distribution else ""
     return f"{symbol.name} ({value}{shape})"
 
 

@@ -150,7 +150,7 @@ def test_a_task_chooses_places(place: Path) -> None:
         ("slope_deg = [40.0, 10.0]", "smallest and largest"),
         ("[poses]\nZ_deg = [0.0, 1.0]", "rotary axes"),
         ("[poses]\nA_deg = [0.0, 1.0]", "expected rotary axes of trunnion: C, B"),
-        ("tolerance_um = -3.0", "greater than 0"),
+        ("tolerance_um = -3.0", "a number above 0"),
         ("sloop_deg = [0.0, 1.0]", "slope_deg"),
     ],
 )
