@@ -4,7 +4,6 @@ In: a `LearntGeometry`, `DescriptionFault`s, a `Trend`. Out: lines for tables an
 to copy into a machine file, sentences on mistakes and changes.
 """
 
-from matstd.report.geometry.console_words import console_lines
 from matstd.report.geometry.copied_numbers import copy_lines
 from matstd.report.geometry.fault_words import fault_sentences
 from matstd.report.geometry.geometry_section import geometry_sections
@@ -14,7 +13,7 @@ from matstd.report.geometry.geometry_words import (
     quantity_name,
     shown_unit,
 )
-from matstd.report.geometry.trend_words import change_sentences
+from matstd.report.geometry.trend_words import change_sentences, console_lines
 
 __all__ = [
     "USUAL",
