@@ -15,13 +15,15 @@ import pytest
 ROOT = Path(__file__).parents[1]
 BELOW = {
     "twin": set(),
+    "importers": {"twin"},
     "sensitivity": {"twin"},
     "information": {"twin"},
-    "artefact": {"twin", "sensitivity", "information"},
+    "nc": {"twin"},
+    "artefact": {"twin", "importers", "sensitivity", "information"},
     "diagnosis": {"twin", "information"},
     "cad_out": {"twin", "artefact"},
-    "probe_paths": {"twin", "artefact"},
-    "compensation": {"twin", "diagnosis"},
+    "probe_paths": {"twin", "artefact", "nc"},
+    "compensation": {"twin", "diagnosis", "nc"},
 }
 ALLOWED = BELOW | {
     "report": set(BELOW),
@@ -30,6 +32,9 @@ ALLOWED = BELOW | {
 """Which rooms a room may import."""
 VOCABULARY = {
     "twin.units",
+    "twin.numbers",
+    "twin.text",
+    "twin.sampling",
     "twin.frames",
     "twin.errors",
     "twin.words",
@@ -44,7 +49,7 @@ HEAVY = {"build123d", "OCP", "pyvista", "vtk", "matplotlib", "trimesh", "manifol
 DRAWING = {"matplotlib", "pyvista", "vtk"}
 # The kernel's own files name forty of its classes each; they are imported inside functions only.
 KERNEL = {
-    f"cad_out/build/{name}.py"
+    f"cad_out/kernel/{name}.py"
     for name in (
         ["assembly", "exchange", "faces", "letters", "pmi", "primitives", "reader", "solid", "xcaf"]
     )
@@ -60,7 +65,7 @@ CARDS = {"formula", "units", "typical", "source", "summary"}
 EXCUSED = {
     "twin/files/run_columns.py": "remarks of a reader on single lines, like its refusals",
     "twin/files/run_checks.py": "kinds of unit mistakes, put into one line of refusal",
-    "twin/foreign/machine_draft.py": "comments of a machine file that is written",
+    "importers/files/machine_draft.py": "comments of a machine file that is written",
     "probe_paths/plan/planner.py": "reason of a refusal, as the reach has it",
     "probe_paths/control/log_clock.py": "remarks of a reader on single lines, like its refusals",
     "probe_paths/campaign/as_programmed.py": "refusals that name what stood in a log",

@@ -6,8 +6,6 @@ tables and pictures when it is imported; `before_showing` names what shall happe
 result is shown, such as that import.
 """
 
-import csv
-import io
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sized
 from dataclasses import fields, is_dataclass
@@ -20,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from matstd.twin.errors import MissingLibrary
+from matstd.twin.text import csv_text
 
 MOST_LETTERS = 40
 """Letters of a value of a field that are shown; of a longer one its size or type."""
@@ -97,16 +96,13 @@ class Tabular(Displayed, ABC):
             The text.
         """
         table = self.columns()
-        out = io.StringIO()
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(table)
-        for row in zip(*table.values(), strict=True):
-            writer.writerow([self.cell(value) for value in row])
+        rows = zip(*table.values(), strict=True)
+        written = csv_text(table, ([self.cell(value) for value in row] for row in rows))
         if path is not None:
             from matstd.twin.files.whole import write_whole
 
-            write_whole(path, out.getvalue())
-        return out.getvalue()
+            write_whole(path, written)
+        return written
 
     def cell(self, value: Any) -> str:
         """One value as text."""

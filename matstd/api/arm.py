@@ -4,9 +4,9 @@ from pathlib import Path
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry import found_arm
+from matstd.importers import machine_text
 from matstd.report.words import microns
 from matstd.twin.files import write_whole
-from matstd.twin.foreign import machine_text
 
 FOUND = "machine_found.toml"
 """Machine file of a serial arm with the lines of all joints as found."""

@@ -31,6 +31,7 @@ from matstd.sensitivity.study import Study
 from matstd.twin.display import Displayed, Tabular, html, text
 from matstd.twin.machine import Chain
 from matstd.twin.model import Model
+from matstd.twin.numbers import rms
 from matstd.twin.record import Run
 
 _ROWS = 10  # of a table that are shown; of the others their number
@@ -38,7 +39,7 @@ _ROWS = 10  # of a table that are shown; of the others their number
 
 @text.register
 def _run(run: Run) -> str:
-    size = float(np.sqrt(np.mean(run.deviation**2)))
+    size = rms(run.deviation)
     poses = len(np.unique(run.touches.pose))
     return (
         f"{len(run)} touches at {poses} table poses of {run.touches.chain.name}, "

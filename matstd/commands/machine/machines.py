@@ -5,8 +5,12 @@ import argparse
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("name", nargs="?", metavar="NAME", help="print its machine file")
-    parser.add_argument("--errors", action="store_true", help="print its error file instead")
+    parser.add_argument(
+        "name", nargs="?", metavar="NAME", help="print the machine file of this machine"
+    )
+    parser.add_argument(
+        "--errors", action="store_true", help="print its error file instead of its machine file"
+    )
 
 
 def text(name: str, errors: bool = False) -> str:
