@@ -27,6 +27,7 @@ if TYPE_CHECKING:
         volumetric,
     )
     from matstd.api.probing import Evaluation, Simulation, evaluate, simulate, virtual_machine
+    from matstd.api.replanning import Replanned, replan
     from matstd.api.runs import read_run
     from matstd.api.standards import (
         Calibration,
@@ -62,6 +63,7 @@ _PLACES = {
         "volumetric",
     ),
     "api.probing": ("Evaluation", "Simulation", "evaluate", "simulate", "virtual_machine"),
+    "api.replanning": ("Replanned", "replan"),
     "api.runs": ("read_run",),
     "api.standards": (
         "Calibration",
@@ -108,6 +110,7 @@ __all__ = [
     "NotEnoughData",
     "ProgramOptions",
     "Project",
+    "Replanned",
     "Run",
     "SavedModel",
     "Simulation",
@@ -128,6 +131,7 @@ __all__ = [
     "read_run",
     "read_standard",
     "register_effects",
+    "replan",
     "sensitivities",
     "simulate",
     "uncertainty",

@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.commands.probing.replan import programs_of
 from matstd.commands.probing.simulate import add_planted, planted_machine
 from matstd.options import add_output
 
@@ -40,6 +39,7 @@ def run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from matstd.api.probing import save_run
+    from matstd.api.replanning import programs_of
     from matstd.artefact.body import read_standard
     from matstd.console import say, say_each
     from matstd.probe_paths.linuxcnc import installed, rehearse
