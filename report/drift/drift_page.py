@@ -7,12 +7,9 @@ from typing import Any
 import numpy as np
 
 from matstd.diagnosis.drift import (
-    ArxInputs,
     DriftRecord,
     IntArray,
     Judged,
-    LinearLaw,
-    arx_coefficients,
 )
 from matstd.report.drift.drift_pictures import draw_drift, draw_laws
 from matstd.report.drift.drift_words import law_title, law_words, together, units_word
@@ -77,7 +74,6 @@ def write_drift_page(
         has_noise=any(j.noisy is not None for j in judged),
         hold=[digits(v) for v in (together(hold, record), *(hold / record.size))],
         rows=[_row(j, record, j is best) for j in judged],
-        laws=[_equation(j, record) for j in judged if _is_arx(j)],
         probings=probings,
         drift=Picture("drift.png", "Measured, and the free run of the chosen law with ± 2 u."),
         laws_picture=Picture("laws.png", "A small error one step ahead is no evidence of a law."),
@@ -89,30 +85,9 @@ def _row(judged: Judged, record: DriftRecord, is_best: bool) -> dict[str, Any]:
     return {
         "title": law_title(judged.name),
         "is_best": is_best,
-        "pole": None if judged.pole is None else f"{judged.pole:.4f}",
         "cells": [
             digits(together(v, record)) for v in (judged.one_step, judged.left_out, judged.free_run)
         ],
         "noisy": "" if judged.noisy is None else digits(together(judged.noisy, record)),
         "components": [digits(v) for v in judged.free_run / record.size],
     }
-
-
-def _is_arx(judged: Judged) -> bool:
-    return isinstance(judged.law, LinearLaw) and isinstance(judged.law.inputs, ArxInputs)
-
-
-def _equation(judged: Judged, record: DriftRecord) -> dict[str, Any]:
-    """Coefficients of an ARX law, a row for each that multiplies something."""
-    law = judged.law
-    assert isinstance(law, LinearLaw)
-    assert isinstance(law.inputs, ArxInputs)
-    found = arx_coefficients(law, record.step)
-    past = [(f"a{i + 1}", [f"{a:.6f}"] * len(record.units)) for i, a in enumerate(found.a)]
-    rows = [("constant", [digits(v, 4) for v in found.constant / record.size]), *past]
-    for d, drive in enumerate(law.inputs.drives):
-        for k in range(law.inputs.order):
-            label = f"b of {drive} at t" + (f" - {k}" if k else "")
-            rows.append((label, [digits(v, 4) for v in found.b[d, k] / record.size]))
-    times = [span(tau, 2) for tau in law.inputs.time_constants]
-    return {"rows": rows, "times": times}
