@@ -18,6 +18,7 @@ ROOMS = (
     "matstd.importers",
     "matstd.sensitivity",
     "matstd.information",
+    "matstd.nc",
     "matstd.artefact",
     "matstd.diagnosis",
     "matstd.cad_out",

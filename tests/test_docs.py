@@ -15,6 +15,7 @@ ROOMS = (
     "importers",
     "sensitivity",
     "information",
+    "nc",
     "artefact",
     "diagnosis",
     "cad_out",

@@ -18,11 +18,12 @@ BELOW = {
     "importers": {"twin"},
     "sensitivity": {"twin"},
     "information": {"twin"},
+    "nc": {"twin"},
     "artefact": {"twin", "importers", "sensitivity", "information"},
     "diagnosis": {"twin", "information"},
     "cad_out": {"twin", "artefact"},
-    "probe_paths": {"twin", "artefact"},
-    "compensation": {"twin", "diagnosis"},
+    "probe_paths": {"twin", "artefact", "nc"},
+    "compensation": {"twin", "diagnosis", "nc"},
 }
 ALLOWED = BELOW | {
     "report": set(BELOW),

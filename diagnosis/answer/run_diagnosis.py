@@ -135,7 +135,7 @@ def _diagnosed(
     library = [e for e in library if e.name not in known]
     single = [e for e in library if not getattr(e, "is_shrunk", False)]
     task, final = found_in(task, added, single, progress)
-    if task.model.chain.is_serial_arm:  # whose lines bend like what it lacks
+    if task.model.chain.joints:  # errors of their lines bend like effects that are missing
         task = task.suited((*added, *final.effects))
     choice = chosen_by_prediction(task, added, final, library, progress)
     if choice is not None:

@@ -299,8 +299,7 @@ def _touches(fit: Fit) -> list[Remark]:
     if poses < MIN_POSES:
         turns = bool(t.chain.rotary_axes) and not t.instrument.reads_angle
         out.append(FewPoses(poses, turns))
-    joints = t.chain.arm_joints if t.chain.is_serial_arm else ()
-    stood = tuple(j for j in joints if np.ptp(t.reading(j)[fit.used]) < STANDS)
+    stood = tuple(j for j in t.chain.joints if np.ptp(t.reading(j)[fit.used]) < STANDS)
     if stood:
         out.append(JointsStood(stood))
     return out

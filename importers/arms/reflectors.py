@@ -153,7 +153,7 @@ class _Problem:
 
     def tracker(self, v: Array) -> Array:
         """What takes the table to the tracker, (4, 4)."""
-        return rigid_motion(self.believed(v), self.seen, np.eye(4), flat=0.0)
+        return rigid_motion(self.believed(v), self.seen, flat=0.0)
 
     def left(self, v: Array) -> Array:
         """What is left of the coordinates for reflectors (3 K,), (3 M,)."""

@@ -13,8 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from matstd.importers.arms.reflectors import Placement, placed, reflector_places
-from matstd.importers.instruments import loads, own_columns, temperatures
-from matstd.importers.sheets import ANGLES, MM, Sheet, bare, seconds, unit_of_column
+from matstd.importers.sheets import (
+    ANGLES,
+    MM,
+    Sheet,
+    bare,
+    loads,
+    own_columns,
+    seconds,
+    temperatures,
+    unit_of_column,
+)
 from matstd.twin.errors import BadFile, DesignError, NotEnoughData
 from matstd.twin.frames import Array, pose, rotation
 from matstd.twin.machine import Axis, Chain, make_chain, table_to_tool

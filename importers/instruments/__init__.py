@@ -1,23 +1,18 @@
 """Tests of single axes and of circles: readings of lasers, autocollimators, encoders, ball bars."""
 
-from matstd.importers.instruments.acceptance import positioning_figures
-from matstd.importers.instruments.axis_log import loads, own_columns, temperatures
+from matstd.importers.instruments.acceptance import component_range, positioning_figures
 from matstd.importers.instruments.axis_run import one_axis_machine, positioning_run
 from matstd.importers.instruments.circle import circle_machine, circle_run, read_circle
-from matstd.importers.instruments.directions import signs
 from matstd.importers.instruments.positioning import PositioningTest, read_positioning
 
 __all__ = [
     "PositioningTest",
     "circle_machine",
     "circle_run",
-    "loads",
+    "component_range",
     "one_axis_machine",
-    "own_columns",
     "positioning_figures",
     "positioning_run",
     "read_circle",
     "read_positioning",
-    "signs",
-    "temperatures",
 ]

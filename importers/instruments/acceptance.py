@@ -1,11 +1,10 @@
-"""Figures of a positioning test as its standard defines them, straight from the readings."""
+"""Figures of a test of one axis as its standard defines them, straight from the readings."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from matstd.importers.instruments.positioning import PositioningTest
-from matstd.twin.frames import Array
 
 
 @dataclass(frozen=True)
@@ -47,27 +46,33 @@ def positioning_figures(test: PositioningTest) -> PositioningFigures | None:
     """
     targets = np.round(test.target, 9)
     groups = [
-        (test.deviation[(targets == t) & (test.direction > 0)],
-         test.deviation[(targets == t) & (test.direction < 0)])
+        [test.deviation[(targets == t) & (test.direction * way > 0)] for way in (1, -1)]
         for t in np.unique(targets)
-    ]  # fmt: skip
-    pairs = [(u, d) for u, d in groups if len(u) >= 2 and len(d) >= 2]
+    ]
+    pairs = [(up, down) for up, down in groups if len(up) >= 2 and len(down) >= 2]
     if len(pairs) < 2:
         return None
-    mean = np.array([[u.mean(), d.mean()] for u, d in pairs])
-    s = np.array([[u.std(ddof=1), d.std(ddof=1)] for u, d in pairs])
+    mean = np.array([[up.mean(), down.mean()] for up, down in pairs])
+    s = np.array([[up.std(ddof=1), down.std(ddof=1)] for up, down in pairs])
     reversal = mean[:, 0] - mean[:, 1]
-    both = mean.mean(axis=1)
     repeatability = np.maximum(2.0 * s.sum(axis=1) + np.abs(reversal), 4.0 * s.max(axis=1))
     return PositioningFigures(
         reversal=float(reversal[np.argmax(np.abs(reversal))]),
         mean_reversal=float(reversal.mean()),
-        mean_range=_range(both, both),
-        systematic=_range(mean, mean),
+        mean_range=float(np.ptp(mean.mean(axis=1))),
+        systematic=float(np.ptp(mean)),
         repeatability=float(repeatability.max()),
-        accuracy=_range(mean - 2.0 * s, mean + 2.0 * s),
+        accuracy=float((mean + 2.0 * s).max() - (mean - 2.0 * s).min()),
     )
 
 
-def _range(low: Array, high: Array) -> float:
-    return float(high.max() - low.min())
+def component_range(test: PositioningTest) -> float:
+    """Peak to valley of the mean curve of a component error, mm or rad.
+
+    That of a straightness is about its line of least squares.
+    """
+    targets, of = np.unique(np.round(test.target, 6), return_inverse=True)
+    mean = np.bincount(of.ravel(), test.deviation) / np.bincount(of.ravel())
+    if not test.is_angle:
+        mean = mean - np.polyval(np.polyfit(targets, mean, 1), targets)
+    return float(np.ptp(mean))

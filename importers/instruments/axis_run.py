@@ -1,15 +1,17 @@
 """Runs of tests of one axis: where the instrument looked, and along which direction."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from matstd.importers.instruments.positioning import PositioningTest
 from matstd.twin.frames import Array, pose
 from matstd.twin.machine import LETTERS, Axis, Chain, Link, make_chain, tip
-from matstd.twin.record import Instrument, Run, Setup, Touches
+from matstd.twin.record import Instrument, Run, Setup, at_poses
 from matstd.twin.thermal import CYCLE, PROGRESS
 
 ARM = 1000.0
-"""Arm (mm) by which the angle is told as a length: 1 µrad is 1 µm."""
+"""Arm (mm) by which an angle is written as a length: 1 µrad is 1 µm."""
 
 ENOUGH_CYCLES = 4
 """Cycles from which one can be held out: of fewer it would be more than a quarter of the test."""
@@ -56,25 +58,21 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
     # what repeats at the targets is what the test is for: held out are cycles, if it has some
     cycles = np.unique(test.cycle, return_inverse=True)[1].reshape(-1)
     targets = np.unique(np.round(test.target, 9), return_inverse=True)[1].reshape(-1)
-    is_log = bool(np.any(test.time))  # which hardly ever reads the same twice
-    held_out = cycles if is_log or cycles.max(initial=0) + 1 >= ENOUGH_CYCLES else targets
-    touches = Touches(
-        chain=chain,
-        q=q,
-        length=-at[:, 2],
+    # a log hardly ever reads the same twice
+    held_out = cycles if test.is_log or cycles.max(initial=0) + 1 >= ENOUGH_CYCLES else targets
+    touches = replace(
+        at_poses(chain, q, -at[:, 2]),
         offset=at[:, :2],
-        radius=np.zeros(n),
         point=point - centre,
         normal=np.broadcast_to(motion, (n, 3)),
         setups=(Setup("a", pose(t=centre)),),
-        setup=np.zeros(n, dtype=np.int64),
-        time=test.time if len(test.time) else np.zeros(n),
+        time=np.zeros(n) if test.time is None else test.time,
         approach=approach,
         temperature=test.temperature,
         feature=np.array([f"cycle{c}" for c in test.cycle]),
         pose=held_out.astype(np.int64),
-        value=_progress(test) if not is_log and cycles.max() > 1 else {},
-        instrument=_instrument(test, is_log),
+        value=_progress(test) if not test.is_log and cycles.max() > 1 else {},
+        instrument=_instrument(test),
     )
     # one line of the file may hold many readings: the rows of the run are what messages name
     u_of_row = np.full(n, u * per_unit)
@@ -135,8 +133,8 @@ def _on_line(link: Link) -> tuple[Array, Array]:
     return point, point + ARM * aside / np.linalg.norm(aside)
 
 
-def _instrument(test: PositioningTest, is_log: bool) -> Instrument:
+def _instrument(test: PositioningTest) -> Instrument:
     """What measured: an angle, else the two encoders of a log, or a laser."""
     if test.is_angle:
         return Instrument.AUTOCOLLIMATOR
-    return Instrument.ENCODER if is_log else Instrument.LASER
+    return Instrument.ENCODER if test.is_log else Instrument.LASER

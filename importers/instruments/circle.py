@@ -10,16 +10,15 @@ Reference:
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from matstd.importers.instruments.axis_log import strokes
-from matstd.importers.sheets import ANGLES, MM, Sheet, bare, unit_of_column
+from matstd.importers.sheets import ANGLES, MM, Sheet, picked, stacked, strokes
 from matstd.twin.errors import BadFile, DesignError
-from matstd.twin.frames import Array, apply
-from matstd.twin.machine import Axis, Chain, linear_directions, make_chain, table_to_tool
-from matstd.twin.record import Instrument, IntArray, Labels, Run, Setup, Touches
+from matstd.twin.frames import Array
+from matstd.twin.machine import Axis, Chain, linear_directions, make_chain
+from matstd.twin.record import Instrument, IntArray, Labels, Run, Setup, at_poses
 from matstd.twin.units import MINUTE
 
 BETWEEN = 10.0
@@ -66,8 +65,8 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
 
     Places `X` and `Y` from the centre, as of a grid plate, may stand for angles and deviations.
 
-    Runs are told by a column of directions, by columns named for theirs (CCW, CW, G3, G2, gegen,
-    im Uhrzeigersinn), else by angles that rise or fall.
+    Runs are those of a column of directions, or of columns named for theirs (CCW, CW, G3, G2,
+    gegen, im Uhrzeigersinn), else of angles that rise or fall.
 
     Args:
         plane: `XY`, `ZX` ...: angles count from the first axis to the second.
@@ -78,71 +77,75 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
         BadFile: Neither angles and deviations nor two coordinates, a unit or a direction that is
             not stated.
     """
-    names = [bare(c) for c in sheet.columns]
-    at = next((i for i, n in enumerate(names) if _ANGLE.search(n)), None)
-    letters = [_named(names, letter) for letter in plane]
+    at = sheet.find(_ANGLE)
+    letters = [sheet.find(_letter(letter)) for letter in plane]
     if at is None and None not in letters:
         return _cartesian(sheet, plane, radius, [i for i in letters if i is not None])
     if at is None:
-        listed = ", ".join(map(repr, sheet.columns))
-        raise BadFile(
-            sheet.path, "header", f"columns {listed}", "a column of angles, or of both coordinates"
-        )
-    angle = sheet.numbers(at) * ANGLES.get(unit_of_column(sheet.columns[at]) or "deg", 1.0)
-    told = next((i for i, n in enumerate(names) if i != at and _is_told(sheet, i, n)), None)
-    values = [i for i, n in enumerate(names) if i not in (at, told) and _is_value(sheet, i, n)]
+        raise sheet.lacking("a column of angles, or of both coordinates")
+    angle = sheet.quantity(at, ANGLES, "deg")
+    others = [i for i in range(len(sheet.columns)) if i != at]
+    said = next((i for i in others if _says_sense(sheet, i)), None)
+    values = [i for i in others if i != said and _is_value(sheet, i)]
     if not values:
-        listed = ", ".join(map(repr, sheet.columns))
-        raise BadFile(sheet.path, "header", f"columns {listed}", "a column of radial deviations")
-    parts = [_column(sheet, plane, radius, unit, angle, i, told, len(values) > 1) for i in values]
-    rows = [np.isfinite(p.deviation) & np.isfinite(p.angle) for p in parts]
-    both = list(zip(parts, rows, strict=True))
-    return CircularTest(
-        plane=plane,
-        radius=radius,
-        angle=np.concatenate([p.angle[r] for p, r in both]),
-        deviation=np.concatenate([p.deviation[r] for p, r in both]),
-        sense=np.concatenate([p.sense[r] for p, r in both]),
-        run=np.concatenate([p.run[r] for p, r in both]),
-        line=np.concatenate([p.line[r] for p, r in both]),
-    )
+        raise sheet.lacking("a column of radial deviations")
+    parts = []
+    for i in values:
+        reading = sheet.quantity(i, MM, unit)
+        if abs(float(np.nanmean(reading)) - radius) < IS_RADIUS * radius:
+            reading = reading - radius
+        sense, run, order = _order(sheet, i, angle, said, len(values) > 1)
+        whole = CircularTest(
+            plane=plane,
+            radius=radius,
+            angle=angle,
+            deviation=reading,
+            sense=sense,
+            run=run,
+            line=np.array(sheet.lines),
+        )
+        parts.append(picked(whole, order[np.isfinite(reading + angle)[order]]))
+    return stacked(parts)
 
 
-def _named(names: Sequence[str], letter: str) -> int | None:
-    """Column of a coordinate, by its letter."""
-    pattern = re.compile(rf"(?<![a-z]){letter}(?![a-z])", re.IGNORECASE)
-    return next((i for i, n in enumerate(names) if pattern.search(n.replace("_", " "))), None)
+def _letter(letter: str) -> re.Pattern[str]:
+    """What finds the column of a coordinate."""
+    return re.compile(rf"(?<![a-zA-Z]){letter}(?![a-zA-Z])", re.IGNORECASE)
 
 
 def _cartesian(sheet: Sheet, plane: str, radius: float, columns: list[int]) -> CircularTest:
     """Places on the circle, as a grid plate or two scales read them."""
-    units = [unit_of_column(sheet.columns[i]) or "mm" for i in columns]
-    if odd := [u for u in units if u not in MM]:
-        raise BadFile(sheet.path, "header", odd[0], f"one of {', '.join(MM)}")
-    x, y = (sheet.numbers(i) * MM[u] for i, u in zip(columns, units, strict=True))
+    x, y = (sheet.quantity(i, MM, "mm") for i in columns)
     angle = np.arctan2(y, x)
-    sense, stroke = strokes(np.unwrap(angle))
-    sense[sense == 0] = sense[sense != 0][0] if sense.any() else 1
+    sense, run = _by_motion(angle)
     return CircularTest(
         plane=plane,
         radius=radius,
         angle=angle,
         deviation=np.hypot(x, y) - radius,
         sense=sense,
-        run=np.array([f"run{k}" for k in stroke]),
+        run=run,
         line=np.array(sheet.lines),
     )
 
 
-def _is_told(sheet: Sheet, column: int, name: str) -> bool:
-    """Whether a column says of every row which way round it was taken."""
+def _by_motion(angle: Array) -> tuple[IntArray, Labels]:
+    """Sense and name of the run of every row, by angles that rise or fall."""
+    sense, stroke = strokes(np.unwrap(angle))
+    sense[sense == 0] = sense[sense != 0][0] if sense.any() else 1
+    return sense, np.array([f"run{k}" for k in stroke])
+
+
+def _says_sense(sheet: Sheet, column: int) -> bool:
+    """Whether a column states for every row which way round it was taken."""
     words = {t for t in sheet.looked_at(column) if t}
-    return bool(_RUN.search(name)) and bool(words) and all(_sense(w) for w in words)
+    return bool(_RUN.search(sheet.names[column])) and bool(words) and all(map(_sense, words))
 
 
-def _is_value(sheet: Sheet, column: int, name: str) -> bool:
+def _is_value(sheet: Sheet, column: int) -> bool:
     """Whether a column holds deviations, or radii."""
     cells = [row[column] for row in sheet.cells if row[column] != ""]
+    name = sheet.names[column]
     is_number = bool(cells) and all(isinstance(c, float) for c in cells)
     return is_number and bool(_DEVIATION.search(name) or _sense(name))
 
@@ -154,51 +157,28 @@ def _sense(word: str) -> int:
     return 1 if _CCW.search(word) else -1 if _CW.search(word) else 0
 
 
-def _column(
-    sheet: Sheet,
-    plane: str,
-    radius: float,
-    unit: str | None,
-    angle: Array,
-    column: int,
-    told: int | None,
-    is_one_of_several: bool,
-) -> CircularTest:
-    """Readings of one column, in the order in which they were taken."""
-    name, n = sheet.columns[column], len(sheet)
-    values = sheet.numbers(column)
-    known = unit_of_column(name) or unit
-    if known not in MM:
-        found = f"column {name!r} without a unit of length"
-        raise BadFile(sheet.path, "header", found, f"one of {', '.join(MM)} behind it, or --unit")
-    values = values * MM[known]
-    if abs(float(np.nanmean(values)) - radius) < IS_RADIUS * radius:
-        values = values - radius
-    order = np.arange(n)
-    if told is not None:
-        sense = np.array([_sense(t) for t in sheet.text(told)], dtype=np.int64)
-        run = np.array(sheet.text(told))
-    elif _sense(bare(name)):
-        sense, run = np.full(n, _sense(bare(name))), np.full(n, bare(name))
-        rising = float(np.nanmedian(np.diff(angle))) > 0.0
+def _order(
+    sheet: Sheet, column: int, angle: Array, said: int | None, is_one_of_several: bool
+) -> tuple[IntArray, Labels, IntArray]:
+    """Sense and name of the run of every row, and the rows in the order in which they were taken.
+
+    Raises:
+        BadFile: One of several columns whose name does not state its direction.
+    """
+    n = len(sheet)
+    order, sense = np.arange(n), _sense(sheet.names[column])
+    if said is not None:
+        words = sheet.text(said)
+        return np.array([_sense(w) for w in words], dtype=np.int64), np.array(words), order
+    if sense:
+        is_rising = float(np.nanmedian(np.diff(angle))) > 0.0
         # a table over rising angles holds a clockwise run backwards
-        order = order if rising == (sense[0] > 0) else order[::-1]
-    elif is_one_of_several:
-        found = f"column {name!r}"
+        order = order if is_rising == (sense > 0) else order[::-1]
+        return np.full(n, sense), np.full(n, sheet.names[column]), order
+    if is_one_of_several:
+        found = f"column {sheet.columns[column]!r}"
         raise BadFile(sheet.path, "header", found, "CCW or CW in the names of several runs")
-    else:
-        sense, stroke = strokes(np.unwrap(angle))
-        sense[sense == 0] = sense[sense != 0][0] if sense.any() else 1
-        run = np.array([f"run{k}" for k in stroke])
-    return CircularTest(
-        plane=plane,
-        radius=radius,
-        angle=angle[order],
-        deviation=values[order],
-        sense=sense[order],
-        run=run[order],
-        line=np.array(sheet.lines)[order],
-    )
+    return *_by_motion(angle), order
 
 
 def circle_machine(plane: str, radius: float) -> Chain:
@@ -254,15 +234,10 @@ def circle_run(
     columns = [chain.linear_axes.index(letter) for letter in test.plane]
     normal = np.einsum("nij,nj->ni", D[:, :, columns], around)
     normal /= np.linalg.norm(normal, axis=1)[:, None]
-    touches = Touches(
-        chain=chain,
-        q=q,
-        length=np.zeros(n),
-        radius=np.zeros(n),
-        point=apply(table_to_tool(chain, q), np.zeros((n, 3))),
+    touches = replace(
+        at_poses(chain, q, 0.0),
         normal=normal,
         setups=(Setup("a"),),
-        setup=np.zeros(n, dtype=np.int64),
         time=_times(test, feed),
         approach=approach,
         feature=test.run,

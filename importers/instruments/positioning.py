@@ -15,9 +15,21 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from matstd.importers.instruments.axis_log import approaches, strokes, temperatures
-from matstd.importers.instruments.directions import DOWN, UP, signs
-from matstd.importers.sheets import ANGLES, MM, Sheet, bare, seconds, unit_of_column
+from matstd.importers.sheets import (
+    ANGLES,
+    MM,
+    Sheet,
+    approaches,
+    bare,
+    picked,
+    seconds,
+    sign_of,
+    signs,
+    stacked,
+    strokes,
+    temperatures,
+    unit_of_column,
+)
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
@@ -65,7 +77,7 @@ class PositioningTest:
         cycle: Number of the cycle, (N,).
         direction: 1 where the target was reached with a growing reading, -1 else, 0 unknown.
         line: Line of the file, (N,).
-        time: Since the start of a log, (N,), s; zeros of a table.
+        time: Since the start of a log, (N,), s; None of a table.
         temperature: By sensor, each (N,), degC; of a log.
         is_by_order: Whether directions are those in which the rows follow each other.
         component: Component error that was measured, such as EYX; "" of positioning.
@@ -77,7 +89,7 @@ class PositioningTest:
     cycle: IntArray
     direction: IntArray
     line: IntArray
-    time: Array = field(default_factory=lambda: np.zeros(0))
+    time: Array | None = None
     temperature: Mapping[str, Array] = field(default_factory=dict)
     is_by_order: bool = False
     component: str = ""
@@ -86,6 +98,11 @@ class PositioningTest:
     def is_own(self) -> bool:
         """Whether it is how far the axis went, not how it leads aside or tilts."""
         return _is_own(self.axis, self.component)
+
+    @property
+    def is_log(self) -> bool:
+        """Whether its readings have times."""
+        return self.time is not None and bool(np.any(self.time))
 
     @property
     def is_angle(self) -> bool:
@@ -114,80 +131,62 @@ def read_positioning(
     actual position), and a row a target with a column a cycle and direction (`1 up`, `1 down`, or
     the cycle in one header row and the direction in the next). With a column of times the first is
     a log: cycles are its strokes, directions those of its motion. Without columns of directions or
-    cycles the order of the rows tells them.
+    cycles the order of the rows gives them.
 
     Args:
         axis: Letter of the axis, which says whether it turns (A B C).
         unit: Of deviations whose column names none.
         named: Names of the columns of targets and of actual positions, where the words of the
-            header do not tell, as in a log of two encoders; empty for those that do.
+            header do not show them, as in a log of two encoders; empty otherwise.
         component: Component error that was measured, such as EYX or EBX; "" for positioning.
 
     Raises:
         BadFile: No column of targets or deviations, a unit that is not stated.
     """
     sheet = _upright(sheet)
-    names = [bare(c) for c in sheet.columns]
-    target = _only(names, _TARGET, without=(_ACTUAL, _DEVIATION))
-    target = sheet.column(named[0]) if named[0] else target
+    target = sheet.column(named[0]) if named[0] else sheet.find(_TARGET, _ACTUAL, _DEVIATION)
     if target is None:
-        expected = "a column of targets, or its name by --target (and --actual)"
-        raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", expected)
-    is_own = _is_own(axis, component)
-    base = ANGLES if axis in "ABC" else MM
-    factor = base[_unit(sheet, target, base, "deg" if axis in "ABC" else "mm")]
-    at = sheet.numbers(target) * factor
-    base = ANGLES if _is_angle(axis, component) else MM
-    values, actual = _read_columns(sheet, names, target, named[1], is_own)
-    if values is None and actual is None:
-        return replace(_wide(sheet, axis, target, at, unit, base), component=component)
-    cycle, direction = _only(names, _CYCLE), _only(names, _DIRECTION)
-    clock = _only(names, _TIME)
-    if values is not None:
-        deviation = sheet.numbers(values) * base[_unit(sheet, values, base, unit)]
-    else:
-        assert actual is not None
-        deviation = sheet.numbers(actual) * base[_unit(sheet, actual, base, unit)] - at
-    n = len(sheet)
-    time = np.zeros(n)
-    if clock is not None:
-        time = seconds(sheet, clock)
-        sign, stroke = strokes(_held(at))
-    else:
-        sign, stroke = approaches(_held(at))
-        parted = _ways_of_parts(sheet)
-        sign = parted if np.any(parted) else sign
-    return _present(
-        sheet,
-        PositioningTest(
-            axis=axis,
-            target=at,
-            deviation=deviation,
-            cycle=_whole(sheet, cycle) if cycle is not None else stroke,
-            direction=signs(sheet, direction) if direction is not None else sign,
-            line=np.array(sheet.lines),
-            time=time,
-            temperature=temperatures(sheet) if clock is not None else {},
-            is_by_order=direction is None and bool(np.any(sign < 0)),
-            component=component,
-        ),
+        raise sheet.lacking("a column of targets, or its name by --target (and --actual)")
+    turns = axis in "ABC"
+    at = sheet.quantity(target, ANGLES if turns else MM, "deg" if turns else "mm")
+    units = ANGLES if _is_angle(axis, component) else MM
+    column, is_position = _readings(sheet, target, named[1], _is_own(axis, component))
+    if column is None:
+        return _present(sheet, stacked(_wide(sheet, axis, component, target, at, unit)))
+    deviation = sheet.quantity(column, units, unit)
+    cycle, direction, clock = map(sheet.find, (_CYCLE, _DIRECTION, _TIME))
+    sign, stroke = approaches(_held(at)) if clock is None else strokes(_held(at))
+    parted = _ways_of_parts(sheet)
+    if clock is None and np.any(parted):
+        sign = parted
+    test = PositioningTest(
+        axis=axis,
+        target=at,
+        deviation=deviation - at if is_position else deviation,
+        cycle=stroke if cycle is None else _whole(sheet, cycle),
+        direction=sign if direction is None else signs(sheet, direction),
+        line=np.array(sheet.lines),
+        time=None if clock is None else seconds(sheet, clock),
+        temperature={} if clock is None else temperatures(sheet),
+        is_by_order=direction is None and bool(np.any(sign < 0)),
+        component=component,
     )
+    return _present(sheet, test)
 
 
-def _read_columns(
-    sheet: Sheet, names: list[str], target: int, named: str, is_own: bool
-) -> tuple[int | None, int | None]:
-    """Columns of deviations and of actual positions; of a component there are deviations alone."""
-    values, actual = _only(names, _DEVIATION), _only(names, _ACTUAL)
+def _readings(sheet: Sheet, target: int, named: str, is_own: bool) -> tuple[int | None, bool]:
+    """Column of readings, None of a table with a column a run; whether they are positions."""
     if is_own and named:
-        return None, sheet.column(named)
+        return sheet.column(named), True
+    values, actual = sheet.find(_DEVIATION), sheet.find(_ACTUAL)
     if is_own:
-        neither = values is None and actual is None
-        return values, _only(names, _REFERENCE) if neither else actual
-    aside = [i for i, name in enumerate(names) if _ASIDE.search(name) and i != target]
+        actual = sheet.find(_REFERENCE) if actual is None else actual
+        return (actual, True) if values is None else (values, False)
+    aside = [i for i, name in enumerate(sheet.names) if _ASIDE.search(name) and i != target]
     values = next(iter(aside), actual) if values is None else values
-    values = None if len(aside) > 1 else values  # a column a run
-    return sheet.column(named) if named else values, None
+    if named:
+        return sheet.column(named), False
+    return (None if len(aside) > 1 else values), False
 
 
 def _held(at: Array) -> Array:
@@ -216,44 +215,40 @@ def _upright(sheet: Sheet) -> Sheet:
 
 
 def _wide(
-    sheet: Sheet, axis: str, target: int, at: Array, unit: str | None, base: dict[str, float]
-) -> PositioningTest:
-    """A row a target, a column a cycle and direction."""
-    parts, signs = [], {}
-    parted = _ways_of_parts(sheet)
-    for i, name in enumerate(sheet.columns):
-        number = _NUMBER.search(name)
-        digits = number.group(0) if number else "1" if _ALONE.match(bare(name)) else ""
+    sheet: Sheet, axis: str, component: str, target: int, at: Array, unit: str | None
+) -> list[PositioningTest]:
+    """Every column of readings of a table with a row a target."""
+    units = ANGLES if _is_angle(axis, component) else MM
+    parts, found = [], {}
+    whole = np.ones(len(sheet), dtype=np.int64)
+    for i, name in enumerate(sheet.names):
+        number = _NUMBER.search(sheet.columns[i])
+        digits = number[0] if number else "1" if _ALONE.match(name) else ""
         if i == target or not digits:
             continue
         if len(digits) > _LONGEST:
-            raise BadFile(sheet.path, "header", f"column {name[:40]!r}", "the number of a cycle")
-        rest = bare(name).replace(digits, "", 1)
-        sign = 1 if UP.search(rest) else -1 if DOWN.search(rest) else 0
-        values = _deviations(sheet, i, target, at, unit, base)
-        whole = np.ones(len(sheet), dtype=np.int64)
-        ways = sign * whole if sign else parted
-        parts.append((at, values, int(digits) * whole, ways, sheet.lines))
-        signs[name] = sign
+            shown = f"column {sheet.columns[i][:40]!r}"
+            raise BadFile(sheet.path, "header", shown, "the number of a cycle")
+        found[i] = sign_of(name.replace(digits, "", 1))
+        parts.append(
+            PositioningTest(
+                axis=axis,
+                target=at,
+                deviation=_deviations(sheet, i, target, at, unit, units),
+                cycle=int(digits) * whole,
+                direction=found[i] * whole if found[i] else _ways_of_parts(sheet),
+                line=np.array(sheet.lines),
+                component=component,
+            )
+        )
     if not parts:
         expected = "a column of deviations, or a column a cycle and direction (1 up, 1 down, ...)"
-        raise BadFile(sheet.path, "header", f"columns {_listed(sheet)}", expected)
-    unsaid = next((name for name, sign in signs.items() if sign == 0), None)
-    if unsaid is not None and any(signs.values()):
+        raise sheet.lacking(expected)
+    unsaid = next((i for i, sign in found.items() if sign == 0), None)
+    if unsaid is not None and any(found.values()):
         expected = "up or down (fwd, bwd, +, -) in its name, as in others"
-        raise BadFile(sheet.path, "header", f"column {unsaid!r}", expected)
-    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
-    return _present(
-        sheet,
-        PositioningTest(
-            axis=axis,
-            target=columns[0],
-            deviation=columns[1],
-            cycle=columns[2],
-            direction=columns[3],
-            line=columns[4],
-        ),
-    )
+        raise BadFile(sheet.path, "header", f"column {sheet.columns[unsaid]!r}", expected)
+    return parts
 
 
 def _ways_of_parts(sheet: Sheet) -> IntArray:
@@ -264,15 +259,12 @@ def _ways_of_parts(sheet: Sheet) -> IntArray:
 
 
 def _deviations(
-    sheet: Sheet, column: int, target: int, at: Array, unit: str | None, base: dict[str, float]
+    sheet: Sheet, column: int, target: int, at: Array, unit: str | None, units: dict[str, float]
 ) -> Array:
     """Deviations of one column, which may hold actual positions: those grow as the targets do."""
-    known = unit_of_column(sheet.columns[column]) or unit
-    if known is None and _is_position(sheet.numbers(column), sheet.numbers(target)):
-        known = unit_of_column(sheet.columns[target]) or ("mm" if base is MM else "deg")
-    if known is None or known not in base:
-        known = _unit(sheet, column, base, unit)
-    values = sheet.numbers(column) * base[known]
+    if unit is None and _is_position(sheet.numbers(column), sheet.numbers(target)):
+        unit = unit_of_column(sheet.columns[target]) or ("mm" if units is MM else "deg")
+    values = sheet.quantity(column, units, unit)
     return values - at if _is_position(values, at) else values
 
 
@@ -290,38 +282,7 @@ def _present(sheet: Sheet, test: PositioningTest) -> PositioningTest:
     rows = np.isfinite(test.target) & np.isfinite(test.deviation)
     if not rows.any():
         raise BadFile(sheet.path, "table", "no row with a target and a reading", "one or more")
-    return replace(
-        test,
-        target=test.target[rows],
-        deviation=test.deviation[rows],
-        cycle=test.cycle[rows],
-        direction=test.direction[rows],
-        line=test.line[rows],
-        time=test.time[rows] if len(test.time) else np.zeros(int(rows.sum())),
-        temperature={name: values[rows] for name, values in test.temperature.items()},
-    )
-
-
-def _only(
-    names: list[str], pattern: re.Pattern[str], without: tuple[re.Pattern[str], ...] = ()
-) -> int | None:
-    """The first column whose name a pattern finds and others do not."""
-    found = (i for i, n in enumerate(names) if pattern.search(n))
-    return next((i for i in found if not any(w.search(names[i]) for w in without)), None)
-
-
-def _unit(sheet: Sheet, column: int, base: dict[str, float], otherwise: str | None) -> str:
-    """Unit of a column; raises BadFile where none is known."""
-    unit = unit_of_column(sheet.columns[column]) or otherwise
-    if unit is None or unit not in base:
-        found = f"column {sheet.columns[column]!r} in {unit or 'an unknown unit'}"
-        expected = f"one of {', '.join(base)} behind the name, or --unit"
-        raise BadFile(sheet.path, "header", found, expected)
-    return unit
-
-
-def _listed(sheet: Sheet) -> str:
-    return ", ".join(repr(c) for c in sheet.columns)
+    return picked(test, rows)
 
 
 def _whole(sheet: Sheet, column: int) -> IntArray:

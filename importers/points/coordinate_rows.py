@@ -1,22 +1,21 @@
 """Lists of points with a row a coordinate, as reports of CMMs are laid out.
 
-Which rows are one point is told by its name, wherever they stand; by several columns together where
-one does not tell points apart (a part and the number of its hole); else by the order of the rows.
+Rows of one point share its name, wherever they stand; or several columns together, where one does
+not distinguish points (a part and the number of its hole); else the order of the rows decides.
 """
 
 import re
 from collections.abc import Sequence
 from itertools import pairwise
 
-from matstd.importers.sheets import Sheet, bare
-from matstd.twin.errors import BadFile
+from matstd.importers.sheets import Sheet
 
-_VALUE = re.compile(r"(value|wert|valeur|reading|result|ergebnis)\Z", re.IGNORECASE)
+_VALUE = re.compile(r"\A(value|wert|valeur|reading|result|ergebnis)\Z", re.IGNORECASE)
 """Names of a column of what was measured, where none says so more plainly."""
 
 LONELY = 2.0 / 3.0
-"""Share of coordinates that points must have found, below which the order of the rows tells
-no points: tables with all X first, then all Y."""
+"""Share of coordinates that points must have, below which the order of the rows gives no points:
+tables with all X first, then all Y."""
 
 
 def letters_of_rows(sheet: Sheet) -> list[str] | None:
@@ -36,16 +35,11 @@ def nominal_and_measured(
     sheet: Sheet, nominal: re.Pattern[str], measured: re.Pattern[str]
 ) -> tuple[int, int]:
     """Columns of the two; raises BadFile where one is missing."""
-    names = [bare(c) for c in sheet.columns]
-    found = [
-        next((i for i, n in enumerate(names) if p.search(n)), None) for p in (nominal, measured)
-    ]
-    if found[1] is None:
-        found[1] = next((i for i, n in enumerate(names) if _VALUE.match(n.strip())), None)
-    if found[0] is None or found[1] is None:
-        told = f"columns {', '.join(map(repr, sheet.columns))}"
-        raise BadFile(sheet.path, "header", told, "columns such as 'nominal' and 'measured'")
-    return found[0], found[1]
+    stated, found = sheet.find(nominal), sheet.find(measured)
+    found = sheet.find(_VALUE) if found is None else found
+    if stated is None or found is None:
+        raise sheet.lacking("columns such as 'nominal' and 'measured'")
+    return stated, found
 
 
 def points_of_rows(
@@ -72,7 +66,7 @@ def points_of_rows(
 def _named(
     rows: Sequence[int], label: Sequence[str], setup: Sequence[str], letters: Sequence[str]
 ) -> list[dict[str, int]] | None:
-    """Points by their names; None where names do not tell them apart."""
+    """Points by their names; None where names do not distinguish them."""
     keys = [(setup[k], label[k], letters[k]) for k in rows]
     if not all(label[k] for k in rows) or len(set(keys)) < len(keys):
         return None

@@ -3,9 +3,6 @@
 A CMM has its own origin, a plate lies anywhere on a table. The rigid motion that joins nominal and
 measured places best is known in closed form at any size, in as many directions as were measured;
 the machine's errors are small beside what makes it necessary.
-
-Reference:
-    W. Kabsch, Acta Cryst. A32 (1976) 922: rotation between two sets of points.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,6 +13,7 @@ import numpy as np
 from matstd.importers.points.point_list import PointList
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.record import rigid_motion, turn_of
 
 SHIFT = 1.0
 """Displacement (mm) from which a list is taken for one in another frame; a smaller one is found
@@ -72,15 +70,12 @@ def measured_frames(points: PointList) -> list[OtherFrame]:
         if whole.sum() <= measured.sum():
             continue
         a = points.nominal[rows][whole][:, measured]
-        R, b = _motion(setup, a, a + off[whole][:, measured])
         T = np.eye(4)
-        letters = np.flatnonzero(measured)
-        T[np.ix_(letters, letters)] = R
-        T[letters, 3] = b
+        letters = [*np.flatnonzero(measured), 3]
+        T[np.ix_(letters, letters)] = _motion(setup, a, a + off[whole][:, measured])
         middle = points.nominal[rows][whole].mean(axis=0)
         shift = float(np.linalg.norm(apply(T, middle) - middle))
-        turn = float(np.arccos(np.clip(0.5 * (np.trace(T[:3, :3]) - 1.0), -1.0, 1.0)))
-        out.append(OtherFrame(setup, T, shift, turn))
+        out.append(OtherFrame(setup, T, shift, turn_of(T[:3, :3])))
     return out
 
 
@@ -89,12 +84,12 @@ def in_nominal_frame(points: PointList, frames: Sequence[OtherFrame]) -> PointLi
 
     A point of which a coordinate is missing cannot be turned: it counts as not measured.
     """
-    return _moved(points, frames, lambda T, at: (apply(inverse(T), at[1]), at[0]))
+    return _moved(points, frames, lambda T, nominal, found: apply(inverse(T), found) - nominal)
 
 
 def in_measured_frame(points: PointList, frames: Sequence[OtherFrame]) -> PointList:
     """The same list with deviations from where the nominal places lie in the measured frame."""
-    return _moved(points, frames, lambda T, at: (at[1], apply(T, at[0])))
+    return _moved(points, frames, lambda T, nominal, found: found - apply(T, nominal))
 
 
 def places(points: PointList, frames: Sequence[OtherFrame]) -> Array:
@@ -109,55 +104,45 @@ def places(points: PointList, frames: Sequence[OtherFrame]) -> Array:
 def _moved(
     points: PointList,
     frames: Sequence[OtherFrame],
-    pair: Callable[[Array, tuple[Array, Array]], tuple[Array, Array]],
+    deviation_of: Callable[[Array, Array, Array], Array],
 ) -> PointList:
-    """A list whose deviations are those between a pair of places, from the nominal and measured."""
+    """A list with deviations computed from a frame, the nominal places and those found."""
     deviation = points.deviation.copy()
     for frame in frames:
         rows = np.flatnonzero(points.setup == frame.setup)
         nominal, off = points.nominal[rows], points.deviation[rows]
         measured = np.isfinite(off).any(axis=0)
         found = np.where(measured, nominal + off, apply(frame.T, nominal))
-        one, other = pair(frame.T, (nominal, found))
-        deviation[rows] = np.where(measured, one - other, np.nan)
+        deviation[rows] = np.where(measured, deviation_of(frame.T, nominal, found), np.nan)
     return replace(points, deviation=deviation)
 
 
-def _motion(setup: str, a: Array, b: Array) -> tuple[Array, Array]:
-    """Rotation (k, k) and shift (k,) that take a to b, gross points aside, in k directions."""
+def _motion(setup: str, a: Array, b: Array) -> Array:
+    """Pose (k + 1, k + 1) that takes a to b, gross points aside, in k directions."""
     near = np.ones(len(a), dtype=bool)
-    off = b - a - np.median(b - a, axis=0)
     for _ in range(ROUNDS):
-        R, t = _kabsch(a[near], b[near])
-        off = np.linalg.norm(a @ R.T + t - b, axis=1)
+        T = rigid_motion(a[near], b[near])
+        off = np.linalg.norm(_at(T, a) - b, axis=1)
         kept = off <= max(NEAR * float(np.median(off)), 1e-9)
         if np.array_equal(kept, near):
             break
         near = kept
-    M, s = _kabsch(a[near], b[near], is_mirrored=True)
-    left, other = (
-        float(np.sqrt(np.mean((a[near] @ Q.T + v - b[near]) ** 2))) for Q, v in ((R, t), (M, s))
-    )
+    mirrored = rigid_motion(a[near], b[near], is_mirrored=True)
+    left, other = (float(np.sqrt(np.mean((_at(M, a[near]) - b[near]) ** 2))) for M in (T, mirrored))
     if a.shape[1] > 1 and left > SHIFT and left > MIRRORED * other and _fills(a):
         raise DesignError(
             f"points of {setup!r}: they fit a mirrored frame to {other:.3g} mm rms and no other "
             f"({left:.3g} mm); expected axes that count the same way as the nominal ones"
         )
-    return R, t
+    return T
+
+
+def _at(T: Array, a: Array) -> Array:
+    """Points after a pose in their k directions."""
+    return np.asarray(a @ T[:-1, :-1].T + T[:-1, -1])
 
 
 def _fills(a: Array) -> bool:
     """Whether points spread in all directions, so that a mirrored frame is another one."""
     s = np.linalg.svd(a - a.mean(axis=0), compute_uv=False)
     return len(s) == a.shape[1] and bool(s[-1] > SHIFT)
-
-
-def _kabsch(a: Array, b: Array, is_mirrored: bool = False) -> tuple[Array, Array]:
-    """Rotation, or rotation with a reflection, and shift that take a to b best."""
-    middle_a, middle_b = a.mean(axis=0), b.mean(axis=0)
-    U, s, Vt = np.linalg.svd((a - middle_a).T @ (b - middle_b))
-    if len(s) > 1 and np.sqrt(s[-2] / len(a)) < SHIFT and not is_mirrored:
-        return np.eye(len(s)), middle_b - middle_a  # points on a line do not tell a rotation
-    sign = np.sign(np.linalg.det(Vt.T @ U.T)) * (-1.0 if is_mirrored else 1.0)
-    R = Vt.T @ np.diag([*np.ones(len(s) - 1), sign]) @ U.T
-    return R, middle_b - R @ middle_a

@@ -1,10 +1,11 @@
 """Points with their nominal places and what was found of them, before it is said who found it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from matstd.importers.sheets import stacked
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Labels
 
@@ -42,7 +43,7 @@ def misplaced(points: PointList) -> list[tuple[str, str]]:
     """Points that were found nearer to where another one belongs: (its name, the other's).
 
     What all points of a coordinate have in common is taken off first. Names mixed up, or a list in
-    another order, look so. A point without a name is told by its line.
+    another order, look so. A point without a name is named by its line.
 
     Args:
         points: Brought to the nominal frame.
@@ -78,13 +79,13 @@ def joined_points(lists: Sequence[PointList], names: Sequence[str] = ()) -> Poin
         return lists[0]
     if len(set(names)) < len(names):
         names = [f"{name}-{i + 1}" for i, name in enumerate(names)]
-    of = list(zip(lists, names, strict=True))
-    return PointList(
-        nominal=np.concatenate([p.nominal for p in lists]),
-        deviation=np.concatenate([p.deviation for p in lists]),
-        feature=np.concatenate([p.feature for p in lists]),
-        setup=np.concatenate([[f"{name}_{s}" for s in p.setup] for p, name in of]),
-        line=np.concatenate([p.line for p in lists]),
-        approach=np.concatenate([p.approach for p in lists]),
-        run=np.concatenate([np.full(len(p.line), name) for p, name in of]),
+    return stacked(
+        [
+            replace(
+                p,
+                setup=np.array([f"{name}_{s}" for s in p.setup]),
+                run=np.full(len(p.line), name),
+            )
+            for p, name in zip(lists, names, strict=True)
+        ]
     )

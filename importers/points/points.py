@@ -11,11 +11,11 @@ Both compare where a point is with where it should be, and mean opposite things:
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
-from matstd.importers.instruments import signs
 from matstd.importers.points.coordinate_rows import (
     letters_of_rows,
     nominal_and_measured,
@@ -23,11 +23,11 @@ from matstd.importers.points.coordinate_rows import (
 )
 from matstd.importers.points.other_frame import OtherFrame, places
 from matstd.importers.points.point_list import PointList
-from matstd.importers.sheets import MM, Sheet, bare, unit_of_column
+from matstd.importers.sheets import MM, Sheet, signs
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.machine import Axis, Chain, inverse_linear, linear_directions, make_chain, tip
-from matstd.twin.record import Instrument, Run, Setup, Touches
+from matstd.twin.record import Instrument, Run, Setup, at_poses
 
 Meaning = Literal["part", "standard"]
 """Who made a list: see the module."""
@@ -37,11 +37,18 @@ _MEASURED = re.compile(r"meas|act|ist\b|\bist|gemessen|mesur|réel|cmm|found", r
 _DEVIATION = re.compile(r"dev|err|abweich|fehler|écart|\bd[xyz]\b|delta", re.IGNORECASE)
 _AFTER_DIR = re.compile(r"\b(dir)(?=[xyz]\b)", re.IGNORECASE)
 _LETTER = re.compile(r"(?<![a-z])d?([xyz])(?![a-z])", re.IGNORECASE)
+_APPROACH = re.compile(r"dir|richtung|approach|anfahr|revers|umkehr", re.IGNORECASE)
+_ROLES = (
+    ("approach", _APPROACH),
+    ("measured", _MEASURED),
+    ("deviation", _DEVIATION),
+    ("nominal", _NOMINAL),
+)
+"""What a column of a coordinate holds, by its name: the first that fits."""
 _NAME = re.compile(
     r"name|label|feature|hole|point|element|bohrung|merkmal|élément|trou|alésage|\bid\b",
     re.IGNORECASE,
 )
-_APPROACH = re.compile(r"dir|richtung|approach|anfahr|revers|umkehr", re.IGNORECASE)
 _SETUP = re.compile(r"set-?up|part|session|date|day|aufspannung|werkst", re.IGNORECASE)
 
 
@@ -69,25 +76,20 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
         if ("approach", letter) in found:
             approach[:, i] = signs(sheet, found["approach", letter])
         if ("nominal", letter) in found:
-            nominal[:, i] = _coordinate(sheet, found["nominal", letter], unit or "mm")
+            nominal[:, i] = sheet.quantity(found["nominal", letter], MM, unit or "mm")
         if ("measured", letter) in found:
-            measured = _coordinate(sheet, found["measured", letter], unit or "mm")
+            measured = sheet.quantity(found["measured", letter], MM, unit or "mm")
             deviation[:, i] = measured - nominal[:, i]
         elif ("deviation", letter) in found:
-            deviation[:, i] = _coordinate(sheet, found["deviation", letter], unit)
+            deviation[:, i] = sheet.quantity(found["deviation", letter], MM, unit)
     if not np.isfinite(deviation).any() or not any(role == "nominal" for role, _ in found):
-        raise BadFile(
-            sheet.path,
-            "header",
-            f"columns {', '.join(map(repr, sheet.columns))}",
-            "columns such as 'x nominal [mm]' and 'x measured [mm]', or a mapping file",
-        )
-    names = [bare(c) for c in sheet.columns]
+        expected = "columns such as 'x nominal [mm]' and 'x measured [mm]', or a mapping file"
+        raise sheet.lacking(expected)
     return PointList(
         nominal=nominal,
         deviation=deviation,
-        feature=np.array(_texts(sheet, names, _NAME, "")),
-        setup=np.array(_texts(sheet, names, _SETUP, "a")),
+        feature=np.array(_texts(sheet, _NAME, "")),
+        setup=np.array(_texts(sheet, _SETUP, "a")),
         line=np.array(sheet.lines),
         approach=approach,
     )
@@ -95,13 +97,12 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
 
 def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointList:
     """Points of a table with a row a coordinate."""
-    names = [bare(c) for c in sheet.columns]
     nominal, measured = (
-        _coordinate(sheet, c, unit or "mm")
+        sheet.quantity(c, MM, unit or "mm")
         for c in nominal_and_measured(sheet, _NOMINAL, _MEASURED)
     )
-    setup = _texts(sheet, names, _SETUP, "a")
-    label, points = points_of_rows(sheet, letters, _texts(sheet, names, _NAME, ""), setup)
+    setup = _texts(sheet, _SETUP, "a")
+    label, points = points_of_rows(sheet, letters, _texts(sheet, _NAME, ""), setup)
     at, off = np.zeros((len(points), 3)), np.full((len(points), 3), np.nan)
     for p, point in enumerate(points):
         for letter, k in point.items():
@@ -121,47 +122,29 @@ def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointL
 def _roles(sheet: Sheet) -> dict[tuple[str, str], int]:
     """Column of every role and letter."""
     found: dict[tuple[str, str], int] = {}
-    for i, column in enumerate(sheet.columns):
-        name = bare(column)
+    for i, name in enumerate(sheet.names):
         letter = _LETTER.search(_AFTER_DIR.sub(r"\1 ", name.replace("_", " ")))
         if letter is None:
             continue
-        role = (
-            "approach"
-            if _APPROACH.search(name)
-            else "measured"
-            if _MEASURED.search(name)
-            else "deviation"
-            if _DEVIATION.search(name.replace("_", " "))
-            else "nominal"
-            if _NOMINAL.search(name) or name.strip().lower() == letter.group(1).lower()
-            else None
-        )
+        is_plain = name.strip().lower() == letter[1].lower()
+        words = name.replace("_", " ")
+        role = next((role for role, pattern in _ROLES if pattern.search(words)), None)
+        role = "nominal" if role is None and is_plain else role
         if role is None:
             continue
-        key = (role, letter.group(1).lower())
+        key = (role, letter[1].lower())
         if key in found:
-            both = f"{sheet.columns[found[key]]!r} and {column!r}"
+            both = f"{sheet.columns[found[key]]!r} and {sheet.columns[i]!r}"
             raise BadFile(sheet.path, "header", both, f"one column of {role} {key[1]}")
         found[key] = i
     return found
 
 
-def _coordinate(sheet: Sheet, column: int, otherwise: str | None) -> Array:
-    """A column in mm."""
-    unit = unit_of_column(sheet.columns[column]) or otherwise
-    if unit not in MM:
-        found = f"column {sheet.columns[column]!r} without a unit of length"
-        raise BadFile(sheet.path, "header", found, f"one of {', '.join(MM)} behind it, or --unit")
-    return sheet.numbers(column) * MM[unit]
-
-
-def _texts(sheet: Sheet, names: list[str], pattern: re.Pattern[str], empty: str) -> list[str]:
+def _texts(sheet: Sheet, pattern: re.Pattern[str], empty: str) -> list[str]:
     """Cells of the first column that a pattern names and that holds no coordinate."""
-    for i, name in enumerate(names):
-        if pattern.search(name) and not _LETTER.search(name.replace("_", " ")):
-            return [text or empty for text in sheet.text(i)]
-    return [empty] * len(sheet)
+    found = sheet.find(pattern, _LETTER)
+    cells = [""] * len(sheet) if found is None else sheet.text(found)
+    return [text or empty for text in cells]
 
 
 def linear_machine(points: PointList, frames: Sequence[OtherFrame] = ()) -> Chain:
@@ -208,28 +191,19 @@ def points_run(
         OutsideTravel: A point that the machine does not reach.
     """
     rows, axis = np.nonzero(np.isfinite(points.deviation))
-    length = np.zeros(len(rows))
-    q = _readings(chain, places(points, frames)[rows], length)
-    labels = list(dict.fromkeys(points.setup.tolist()))  # in the order of the lists
+    q = _readings(chain, places(points, frames)[rows])
+    setups = points.setup.tolist()
+    labels = list(dict.fromkeys(setups))  # in the order of the lists
     stands = {label: np.eye(4) for label in labels} | {f.setup: f.T for f in frames}
-    turned = np.array([stands[label][:3, :3] for label in points.setup])[rows]
-    setup = np.array([labels.index(label) for label in points.setup], dtype=np.int64)
-    of = (
-        dict(zip(points.setup.tolist(), points.run.tolist(), strict=True))
-        if len(points.run)
-        else {}
-    )
+    turned = np.array([stands[label][:3, :3] for label in setups])[rows]
+    of = dict(zip(setups, points.run.tolist(), strict=True)) if len(points.run) else {}
     sign = -1.0 if meaning == "part" else 1.0
-    touches = Touches(
-        chain=chain,
-        q=q,
-        length=length,
-        radius=np.zeros(len(rows)),
+    touches = replace(
+        at_poses(chain, q, 0.0),
         point=points.nominal[rows],
         normal=turned[np.arange(len(rows)), axis],  # of the machine, as the standard sees it
         setups=tuple(Setup(_key(k), stands[k], run=of.get(k, "")) for k in labels),
-        setup=setup[rows],
-        time=np.zeros(len(rows)),
+        setup=np.array([labels.index(label) for label in setups], dtype=np.int64)[rows],
         approach=_approach(points, chain)[rows],
         feature=points.feature[rows],
         pose=rows.astype(np.int64),
@@ -239,17 +213,16 @@ def points_run(
     return Run(touches, deviation, np.full(len(rows), u), line=points.line[rows])
 
 
-def _readings(chain: Chain, place: Array, length: Array) -> Array:
+def _readings(chain: Chain, place: Array) -> Array:
     """Readings that bring the nominal tool point to places of the table frame, (N, A)."""
-    zero = np.zeros((len(place), len(chain.axes)))
+    q = np.zeros((len(place), len(chain.axes)))
     if len(chain.linear_axes) == 3:
-        return inverse_linear(chain, place, zero, length)
+        return inverse_linear(chain, place, q, 0.0)
     # fewer axes reach places in their own directions only: what is beside them is the set-up's
     columns = [chain.axis_index(name) for name in chain.linear_axes]
-    D = linear_directions(chain, zero)
-    offset = place - tip(chain, zero, length)
-    zero[:, columns] = np.einsum("nmi,ni->nm", np.linalg.pinv(D), offset)
-    return zero
+    back = np.linalg.pinv(linear_directions(chain, q))
+    q[:, columns] = np.einsum("nmi,ni->nm", back, place - tip(chain, q, 0.0))
+    return q
 
 
 def _approach(points: PointList, chain: Chain) -> Array:

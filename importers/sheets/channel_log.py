@@ -7,21 +7,30 @@ object a line, with a time and what was read then. Out comes a table with a colu
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import datetime
+from typing import NamedTuple
 
 import numpy as np
 
 _LINE = re.compile(r"(\S+)\s+(\d{4}-\d{2}-\d{2})[T\s]+(\d{2}:\d{2}:\d{2}(?:\.\d+)?)\s+(\S.*)\Z")
+_CLOCK = re.compile(r"ts|t|time|timestamp|eventtime|zeit", re.IGNORECASE)
+"""Keys under which an object has its time."""
 
 MOSTLY = 0.8
 """Share of the lines from which a text is such a log; others are remarks and alarms."""
 
-_CLOCK = re.compile(r"ts|t|time|timestamp|eventtime|zeit", re.IGNORECASE)
-"""Keys under which an object has its time."""
-
 FEWEST = 3
 """Values from which a channel is more than the setting of something."""
+
+
+class Reading(NamedTuple):
+    """What a channel said at a time, s: one value, or an array of samples."""
+
+    line: int
+    channel: str
+    time: float
+    values: list[float]
 
 
 def by_channels(text: str) -> list[tuple[int, list[str]]]:
@@ -37,48 +46,43 @@ def by_channels(text: str) -> list[tuple[int, list[str]]]:
         [(1, ['time [s]', 'a', 'b']), (1, ['0.0', '1.0', '5.0'])]
     """
     lines = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
-    at = _of_lines(lines) or _of_objects(lines)
-    is_array = any(len(v) > 1 for rows in at.values() for _, _, v in rows)
-    kept = {n: r for n, r in at.items() if (len(r) >= FEWEST) != is_array or len(r[0][2]) > 1}
+    readings = [r for r in _of_lines(lines) or _of_objects(lines) if r.values]
+    at: dict[str, list[Reading]] = {}
+    for reading in readings:
+        at.setdefault(reading.channel, []).append(reading)
+    is_array = any(len(r.values) > 1 for r in readings)
+    kept = {n: r for n, r in at.items() if (len(r) >= FEWEST) != is_array or len(r[0].values) > 1}
     if len(kept) < 2:
         return []
-    return _arrays(kept) if is_array else _scalars(kept)
+    return _arrays(kept) if is_array else _scalars(kept, readings[0].time)
 
 
-def _of_lines(lines: list[tuple[int, str]]) -> dict[str, list[tuple[int, float, list[float]]]]:
-    """Values of every channel of a log with a line a value, each with its line and time."""
+def _of_lines(lines: Sequence[tuple[int, str]]) -> list[Reading]:
+    """Readings of a log with a line a value; none of another text."""
     found = [(i, m) for i, line in lines if (m := _LINE.match(line))]
-    at: dict[str, list[tuple[int, float, list[float]]]] = {}
-    if not found or len(found) < MOSTLY * len(lines):
-        return at
-    first = _seconds(found[0][1])
-    for i, match in found:
-        values = _values(match[4])
-        if values:
-            at.setdefault(match[1], []).append((i, _seconds(match) - first, values))
-    return at
+    if len(found) < MOSTLY * len(lines):
+        return []
+    return [
+        Reading(i, m[1], _instant(f"{m[2]} {m[3][:15]}") or 0.0, _numbers(m[4])) for i, m in found
+    ]
 
 
-def _of_objects(lines: list[tuple[int, str]]) -> dict[str, list[tuple[int, float, list[float]]]]:
-    """The same of a log with a JSON object a line; what lies deeper is named `above.below`."""
-    at: dict[str, list[tuple[int, float, list[float]]]] = {}
+def _of_objects(lines: Sequence[tuple[int, str]]) -> list[Reading]:
+    """Readings of a log with a JSON object a line; what lies deeper is named `above.below`."""
+    out: list[Reading] = []
     if not lines or not lines[0][1].startswith("{"):
-        return at
-    first: float | None = None
+        return out
     for i, line in lines:
         try:
             read = dict(_leaves(json.loads(line)))
         except ValueError:
-            return {}
+            return []
         clock = next((k for k in read if _CLOCK.fullmatch(k)), None)
         time = _instant(read.pop(clock)) if clock else None
-        if time is None:
-            continue
-        first = time if first is None else first
-        for name, value in read.items():
-            if isinstance(value, int | float) and not isinstance(value, bool):
-                at.setdefault(name, []).append((i, time - first, [float(value)]))
-    return at
+        if time is not None:
+            numbers = ((k, v) for k, v in read.items() if isinstance(v, int | float))
+            out += [Reading(i, k, time, [float(v)]) for k, v in numbers if not isinstance(v, bool)]
+    return out
 
 
 def _leaves(value: object, above: str = "") -> Iterator[tuple[str, object]]:
@@ -100,11 +104,7 @@ def _instant(value: object) -> float | None:
         return None
 
 
-def _seconds(match: re.Match[str]) -> float:
-    return datetime.fromisoformat(f"{match[2]} {match[3][:15]}").timestamp()
-
-
-def _values(text: str) -> list[float]:
+def _numbers(text: str) -> list[float]:
     """Numbers behind the time: one, or a count and so many; words of alarms behind them go."""
     out: list[float] = []
     for word in text.split():
@@ -112,35 +112,31 @@ def _values(text: str) -> list[float]:
             out.append(float(word))
         except ValueError:
             break
-    return out[1 : 1 + int(out[0])] if len(out) > 1 and out[0] == len(out) - 1 else out[:1]
+    return out[1:] if len(out) > 1 and out[0] == len(out) - 1 else out[:1]
 
 
-def _scalars(
-    at: dict[str, list[tuple[int, float, list[float]]]],
-) -> list[tuple[int, list[str]]]:
-    leader = max(at, key=lambda name: len(at[name]))
-    time = np.array([t for _, t, _ in at[leader]])
-    columns = {
-        name: np.interp(
-            time, [t for _, t, _ in rows], [v[0] for _, _, v in rows], left=np.nan, right=np.nan
+def _scalars(at: Mapping[str, Sequence[Reading]], start: float) -> list[tuple[int, list[str]]]:
+    """Values of all channels at the times of the fullest one."""
+    leader = max(at.values(), key=len)
+    time = np.array([r.time for r in leader]) - start
+    columns = [
+        np.interp(
+            time,
+            [r.time - start for r in rows],
+            [r.values[0] for r in rows],
+            left=np.nan,
+            right=np.nan,
         )
-        for name, rows in at.items()
-    }
-    table = np.column_stack([time, *columns.values()])
-    whole = np.isfinite(table).all(axis=1)
-    lines = [i for i, _, _ in at[leader]]
-    rows = [(lines[k], [repr(float(v)) for v in table[k]]) for k in np.flatnonzero(whole)]
-    return [(lines[0], ["time [s]", *columns]), *rows]
-
-
-def _arrays(
-    at: dict[str, list[tuple[int, float, list[float]]]],
-) -> list[tuple[int, list[str]]]:
-    """Samples of arrays that came together: those of every channel one after the other."""
-    joined = {name: [(i, v) for i, _, values in rows for v in values] for name, rows in at.items()}
-    count = min(map(len, joined.values()))
-    rows = [
-        (next(iter(joined.values()))[k][0], [repr(v[k][1]) for v in joined.values()])
-        for k in range(count)
+        for rows in at.values()
     ]
-    return [(rows[0][0], list(joined)), *rows]
+    table = np.column_stack([time, *columns])
+    whole = np.flatnonzero(np.isfinite(table).all(axis=1))
+    rows = [(leader[k].line, [repr(float(v)) for v in table[k]]) for k in whole]
+    return [(leader[0].line, ["time [s]", *at]), *rows]
+
+
+def _arrays(at: Mapping[str, Sequence[Reading]]) -> list[tuple[int, list[str]]]:
+    """Samples of arrays that came together: those of every channel one after the other."""
+    joined = [[(r.line, repr(v)) for r in rows for v in r.values] for rows in at.values()]
+    rows = [(cells[0][0], [v for _, v in cells]) for cells in zip(*joined, strict=False)]
+    return [(rows[0][0], list(at)), *rows]

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from matstd.importers.sheets.sheet import Sheet, unit_of_time
+from matstd.importers.sheets.sheet import Sheet
+from matstd.importers.sheets.units import SECONDS, parted
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.units import DAY, HOUR, MINUTE
@@ -27,7 +28,7 @@ def seconds(sheet: Sheet, column: int) -> Array:
     """
     if has_clock(sheet, column):
         return clock_times(sheet, column)
-    return sheet.numbers(column) * unit_of_time(sheet.columns[column])
+    return sheet.numbers(column) * SECONDS.get(parted(sheet.columns[column])[1], 1.0)
 
 
 def has_clock(sheet: Sheet, column: int) -> bool:

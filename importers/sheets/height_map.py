@@ -15,7 +15,7 @@ _REPRAP = re.compile(r"\W*RepRapFirmware height map file", re.IGNORECASE)
 _MESH = re.compile(r"(?:#\*#\s*)?\[bed_mesh\s+([^\]]+)\]\s*\Z")
 _SECTION = re.compile(r"(?:#\*#\s*)?\[")
 _KEY = re.compile(r"(?:#\*#\s*)?([a-z_]+)\s*[=:]\s*(.*?)\s*\Z")
-_NOT_PROBED = "0"
+_NOT_PROBED = ("0", "nan")
 """What stands for a point that was not probed; a height of zero has decimals."""
 
 HEADER = ["x [mm]", "y [mm]", "dz [mm]", "set-up"]
@@ -23,6 +23,9 @@ HEADER = ["x [mm]", "y [mm]", "dz [mm]", "set-up"]
 
 Rows = list[tuple[int, list[str]]]
 """Rows of a table, each with its line."""
+
+Axes = Sequence[tuple[float, float, int]]
+"""First place, spacing and number of places along X and Y."""
 
 
 def by_heights(path: Path, text: str) -> Rows:
@@ -37,11 +40,9 @@ def by_heights(path: Path, text: str) -> Rows:
     lines = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
     if lines and _REPRAP.match(lines[0][1]):
         return [(lines[0][0], HEADER), *_reprap(path, lines)]
-    meshes = [k for k, (_, line) in enumerate(lines) if _MESH.match(line)]
-    if not meshes:
-        return []
-    rows = [row for k in meshes for row in _klipper(path, lines[k:])]
-    return [(lines[meshes[0]][0], HEADER), *rows]
+    meshes = [(k, m[1].strip()) for k, (_, line) in enumerate(lines) if (m := _MESH.match(line))]
+    rows = [row for k, name in meshes for row in _klipper(path, name, lines[k:])]
+    return [(lines[meshes[0][0]][0], HEADER), *rows] if meshes else []
 
 
 def _reprap(path: Path, lines: Sequence[tuple[int, str]]) -> Rows:
@@ -53,18 +54,19 @@ def _reprap(path: Path, lines: Sequence[tuple[int, str]]) -> Rows:
     axes = [head.get("axis0", "X").upper(), head.get("axis1", "Y").upper()]
     if axes != ["X", "Y"]:
         raise BadFile(path, where, f"axes {' and '.join(axes)}", "X and Y")
-    origin, step, count = [], [], []
-    for i, letter in enumerate("xy"):
-        origin.append(_number(path, where, head, f"{letter}min", f"min{i}"))
-        step.append(_number(path, where, head, f"{letter}spacing", f"spacing{i}", "spacing"))
-        count.append(int(_number(path, where, head, f"{letter}num", f"num{i}")))
-    return _points(path, lines[3:], origin, step, count, "bed")
+    along = [
+        (
+            _number(path, where, head, f"{letter}min", f"min{i}"),
+            _number(path, where, head, f"{letter}spacing", f"spacing{i}", "spacing"),
+            int(_number(path, where, head, f"{letter}num", f"num{i}")),
+        )
+        for i, letter in enumerate("xy")
+    ]
+    return _points(path, lines[3:], along, "bed")
 
 
-def _klipper(path: Path, lines: Sequence[tuple[int, str]]) -> Rows:
+def _klipper(path: Path, name: str, lines: Sequence[tuple[int, str]]) -> Rows:
     """Points of one mesh of Klipper, whose section begins the lines."""
-    match = _MESH.match(lines[0][1])
-    name = match.group(1).strip() if match else ""
     where = f"line {lines[0][0]}, [bed_mesh {name}]"
     matrix: list[tuple[int, str]] = []
     head: dict[str, str] = {}
@@ -73,38 +75,34 @@ def _klipper(path: Path, lines: Sequence[tuple[int, str]]) -> Rows:
         if _SECTION.match(line):
             break
         if key:
-            head[key.group(1)] = key.group(2)
+            head[key[1]] = key[2]
         elif "," in line:
             matrix.append((i, line.removeprefix("#*#").strip()))
-    count = [int(_number(path, where, head, f"{c}_count")) for c in "xy"]
-    low, high = ([_number(path, where, head, f"{m}_{c}") for c in "xy"] for m in ("min", "max"))
-    step = [(b - a) / max(n - 1, 1) for a, b, n in zip(low, high, count, strict=True)]
-    return _points(path, matrix, low, step, count, name)
+    along = []
+    for letter in "xy":
+        count = int(_number(path, where, head, f"{letter}_count"))
+        low, high = (_number(path, where, head, f"{end}_{letter}") for end in ("min", "max"))
+        along.append((low, (high - low) / max(count - 1, 1), count))
+    return _points(path, matrix, along, name)
 
 
-def _points(
-    path: Path,
-    matrix: Sequence[tuple[int, str]],
-    origin: Sequence[float],
-    step: Sequence[float],
-    count: Sequence[int],
-    name: str,
-) -> Rows:
-    """A row a point that was probed."""
-    if len(matrix) != count[1]:
-        expected = f"{count[1]} rows, as its head says"
+def _points(path: Path, matrix: Sequence[tuple[int, str]], along: Axes, name: str) -> Rows:
+    """A row for every point that was probed."""
+    (x, dx, columns), (y, dy, rows) = along
+    if len(matrix) != rows:
+        expected = f"{rows} rows, as its head says"
         raise BadFile(path, f"height map {name}", f"{len(matrix)} rows of heights", expected)
     out: Rows = []
     for k, (line, text) in enumerate(matrix):
         cells = _split(text)
-        if len(cells) != count[0]:
-            expected = f"{count[0]}, as the head says"
+        if len(cells) != columns:
+            expected = f"{columns}, as the head says"
             raise BadFile(path, f"line {line}", f"{len(cells)} heights", expected)
-        for i, cell in enumerate(cells):
-            if cell == _NOT_PROBED or cell.lower() == "nan":
-                continue
-            x, y = origin[0] + i * step[0], origin[1] + k * step[1]
-            out.append((line, [f"{x:.12g}", f"{y:.12g}", cell, name]))
+        out += [
+            (line, [f"{x + i * dx:.12g}", f"{y + k * dy:.12g}", cell, name])
+            for i, cell in enumerate(cells)
+            if cell.lower() not in _NOT_PROBED
+        ]
     return out
 
 
@@ -114,9 +112,9 @@ def _split(line: str) -> list[str]:
 
 def _number(path: Path, where: str, head: dict[str, str], *names: str) -> float:
     """A number of the head under one of its names."""
-    found = next((head[name] for name in names if name in head), None)
+    found = next((head[name] for name in names if name in head), "nothing")
     try:
-        value = float(found or "")
+        value = float(found)
     except ValueError:
         raise BadFile(path, where, f"{names[0]}: {found or 'nothing'}", "a number") from None
     if not abs(value) <= 1e5:

@@ -149,7 +149,7 @@ def gross_rows(fit: Fit) -> list[dict[str, Any]]:
 def _extent(t: Touches) -> str:
     """At how many poses and in what time the touches were made, as far as either says something."""
     poses = len(np.unique(np.column_stack([t.setup, t.pose]), axis=0))
-    table = "" if t.chain.is_serial_arm else "table "
+    table = "table " if t.chain.turns_workpiece else ""
     at = f" at {poses} {table}pose{'s' if poses != 1 else ''}" if t.chain.rotary_axes else ""
     time = float(np.ptp(t.time))
     return f"{at} in {span(time)}" if time > 0.0 else at

@@ -97,7 +97,7 @@ def _held_words(diagnosis: Diagnosis) -> str:
         return "rows held out by the file"
     t = diagnosis.fit.run.touches
     poses = len(np.unique(np.column_stack([t.setup, t.pose])[diagnosis.fit.used], axis=0))
-    what = "pose" if t.chain.is_serial_arm else "table pose" if t.chain.rotary_axes else "place"
+    what = "table pose" if t.chain.turns_workpiece else "pose" if t.chain.rotary_axes else "place"
     return f"held out, one {what if poses >= MIN_POSES else 'block'} after the other"
 
 

@@ -8,7 +8,7 @@ from matstd.diagnosis.geometry.arm_machine import found_arm
 from matstd.diagnosis.geometry.learnt import geometry_rows
 from matstd.diagnosis.remarks.run_remarks import JointsStood, remarks
 from matstd.importers.arms.serial_arm import arm_from_dh, joint_readings, tracker_run
-from matstd.importers.sheets.sheet import read_sheet
+from matstd.importers.sheets import read_sheet
 from matstd.report.geometry.geometry_words import quantity_name
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.model.model import Model

@@ -14,7 +14,7 @@ from matstd.diagnosis.residual.partial_residuals import partial
 from matstd.importers.files.machine_draft import machine_text
 from matstd.importers.instruments.axis_run import one_axis_machine, positioning_run
 from matstd.importers.instruments.positioning import PositioningTest, read_positioning
-from matstd.importers.sheets.sheet import read_sheet
+from matstd.importers.sheets import read_sheet
 from matstd.report.words import remark_sentence, verdict_sentence
 from matstd.twin.effects.periodic import Harmonic
 from matstd.twin.files.run_file import read_run

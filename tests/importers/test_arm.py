@@ -8,7 +8,7 @@ import pytest
 from matstd.cli import main
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.importers.arms.serial_arm import arm_from_dh, joint_readings, tracker_run
-from matstd.importers.sheets.sheet import read_sheet
+from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile, DesignError, NotEnoughData
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.files.run_file import read_run

@@ -8,7 +8,7 @@ from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.geometry.learnt import geometry_rows
 from matstd.importers.instruments.axis_run import one_axis_machine, positioning_run
 from matstd.importers.instruments.positioning import read_positioning
-from matstd.importers.sheets.sheet import read_sheet
+from matstd.importers.sheets import read_sheet
 from matstd.twin.effects import backlash
 from matstd.twin.effects.position_table import propose
 from matstd.twin.files import read_run

@@ -6,7 +6,7 @@ import pytest
 from matstd.cli import main
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.importers.instruments.circle import circle_machine, circle_run, read_circle
-from matstd.importers.sheets.sheet import read_sheet
+from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.files.run_file import read_run
@@ -99,7 +99,7 @@ def test_a_long_table_by_the_command(tmp_path):
     [
         ("angle,a [µm],b [µm]\n0,1,2\n9,1,2\n", "radial deviations"),
         ("angle,dr1 [µm],dr2 [µm]\n0,1,2\n9,1,2\n", "CCW or CW"),
-        ("angle,CCW,CW\n0,1,2\n9,1,2\n", "unit of length"),
+        ("angle,CCW,CW\n0,1,2\n9,1,2\n", "unknown unit"),
         ("place,CCW [µm]\n0,1\n9,1\n", "column of angles"),
     ],
 )

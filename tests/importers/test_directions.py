@@ -5,9 +5,8 @@ import pytest
 
 from matstd.cli import main
 from matstd.importers.instruments.acceptance import positioning_figures
-from matstd.importers.instruments.axis_log import approaches
 from matstd.importers.instruments.positioning import read_positioning
-from matstd.importers.sheets.sheet import read_sheet
+from matstd.importers.sheets import approaches, read_sheet
 from matstd.twin.errors import BadFile
 from matstd.twin.units import UM
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from matstd.importers.points.points import read_points
-from matstd.importers.sheets.sheet import read_sheet
+from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile
 
 HEADS = {

@@ -5,7 +5,7 @@ import pytest
 
 from matstd.cli import main
 from matstd.importers.points.points import read_points
-from matstd.importers.sheets.sheet import read_sheet
+from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile
 from matstd.twin.files.run_file import read_run
 from matstd.twin.units import UM

@@ -7,7 +7,7 @@ import pytest
 
 from matstd.importers.arms.serial_arm import arm_from_dh
 from matstd.importers.instruments.positioning import read_positioning
-from matstd.importers.sheets.sheet import read_sheet
+from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile
 
 

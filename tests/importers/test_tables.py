@@ -16,7 +16,7 @@ from matstd.importers.instruments.axis_run import one_axis_machine, positioning_
 from matstd.importers.instruments.circle import read_circle
 from matstd.importers.instruments.positioning import PositioningTest, read_positioning
 from matstd.importers.points.points import linear_machine, points_run, read_points
-from matstd.importers.sheets.sheet import bare, read_sheet, unit_of_column
+from matstd.importers.sheets import bare, read_sheet, unit_of_column
 from matstd.twin.errors import BadFile
 from matstd.twin.files.run_file import read_run
 from matstd.twin.library.catalogue import parse_effect
