@@ -53,7 +53,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         What could not be drawn and why, one line each; the page says it too.
     """
     remarks: list[str] = comparison_remarks(design.placement)
-    chain, stands = design.project.chain, design.project.setup.T_table_artefact
+    chain, stands = design.brief.chain, design.brief.setup.T_table_artefact
     assumed = [*chain.remarks, *standing_remarks(chain, stands)]
     with ThreadPoolExecutor(1) as beside:  # pictures are rendered in processes of their own
         counted = beside.submit(_times, design)
@@ -68,8 +68,8 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         folder / "report.html",
         "design.html",
         folder=folder,
-        project=design.project,
-        verdict=verdict_of_design(design.placement, design.project.workspace),
+        project=design.brief,
+        verdict=verdict_of_design(design.placement, design.brief.ranges),
         standard=design.placement.standard,
         plan=design.plan,
         programs=design.programs,
@@ -101,7 +101,7 @@ def _standard_pictures(design: Design, folder: Path, remarks: list[str]) -> list
 
 def _volumes(design: Design, folder: Path, remarks: list[str]) -> list[tuple[str, str]]:
     """Maps in three dimensions, with the standard in its place."""
-    stands = design.project.setup.T_table_artefact
+    stands = design.brief.setup.T_table_artefact
     place = folder / MAPS
     return draw_study_volumes(design.study, place, remarks, folder / "standard.stl", stands)
 
@@ -112,7 +112,7 @@ def _draw_curves(design: Design, folder: Path) -> str:
     curves = [
         touch_curve(_on(placement.criterion, r.body), r.name, r.touches) for r in placement.rivals
     ]
-    save(draw_touch_curves(curves, design.project.noise), folder / CURVES)
+    save(draw_touch_curves(curves, design.brief.noise), folder / CURVES)
     return (
         "Error left against the number of touches, predicted for every artefact by one rule: its "
         "touches in the order in which each helps most, and beyond their number all of them again. "
@@ -143,9 +143,9 @@ def _standard(design: Design, on_machine: dict[str, float]) -> dict[str, Any]:
     return {
         "patches": [_patch(p, design) for p in design.placement.standard.patches],
         "certificate": design.placement.certificate,
-        "criterion": criterion_words(design.project.standard),
+        "criterion": criterion_words(design.brief.options.criterion),
         "identification": " ".join(
-            design_lines(design.placement, design.project.workspace, design.worst)[2:]
+            design_lines(design.placement, design.brief.ranges, design.worst)[2:]
         ),
         "comparison": [_rival(r, design, on_machine) for r in design.placement.rivals],
         "rival": _rival(best, design, on_machine) if best is not None else None,
@@ -307,14 +307,14 @@ def _proof(design: Design) -> dict[str, Any]:
     return {
         "machines": machines,
         "worst": max(machines, key=lambda m: m["proofs"][0]["after_um"]),
-        "noise_um": design.project.noise / UM,
+        "noise_um": design.brief.noise / UM,
         "proof_poses": len(design.machines[0].proof.before),
         "poses": len({v.pose for v in design.plan.visits}),
         "minutes": round(design.programs.duration / 60.0),
-        "task": design.project.task.name,
+        "task": design.brief.task.name,
         "budgets": budget_rows(design.budgets),
         "first_budget": next(iter(design.budgets.values())),
-        "task_lines": task_lines(design.budgets, design.project.task.tolerance, design.visits),
+        "task_lines": task_lines(design.budgets, design.brief.task.tolerance, design.visits),
     }
 
 

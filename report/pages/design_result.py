@@ -2,8 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
-from matstd.artefact.brief import Project
+from matstd.artefact.body import Standard
+from matstd.artefact.brief import Brief
 from matstd.artefact.compare import IdentifiabilityReport, WorstRegions
 from matstd.artefact.place import Placement
 from matstd.cad_out.making import Making
@@ -41,12 +43,12 @@ class Proven:
     in_workspace: Proof
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Design:
     """Everything that a design run made; the files of the same names hold it.
 
     Attributes:
-        project: What was asked for.
+        brief: What was asked for.
         study: Sensitivities and random machines.
         maps: File and caption of the study's pictures.
         placement: Standard and touches.
@@ -55,13 +57,15 @@ class Design:
         making: Reach of cutters, first mode, sag.
         stations: Touches in their order and the programs that make them, by clamping and probe.
         machines: Random machines, probed and identified.
-        known: What the touches can and cannot tell apart.
+        identifiability: What the touches can and cannot distinguish.
         effective: Number of parameters that the first machine's data decide rather than the prior.
         budgets: Uncertainty of the user's task on the first machine, by what corrects results.
         visits: What they rest upon.
+        remarks: What could not be drawn.
+        folder: With the files; None before they are in their place.
     """
 
-    project: Project
+    brief: Brief
     study: Study
     maps: list[tuple[str, str]]
     placement: Placement
@@ -70,10 +74,17 @@ class Design:
     making: Making
     stations: tuple[Station, ...]
     machines: tuple[Proven, ...]
-    known: IdentifiabilityReport
+    identifiability: IdentifiabilityReport
     effective: float
     budgets: Mapping[str, TaskUncertainty]
     visits: Visits
+    remarks: tuple[str, ...] = ()
+    folder: Path | None = None
+
+    @property
+    def standard(self) -> Standard:
+        """The standard."""
+        return self.placement.standard
 
     @property
     def plan(self) -> TouchPlan:
@@ -84,3 +95,11 @@ class Design:
     def programs(self) -> ProgramSet:
         """All programs."""
         return all_programs(self.stations)
+
+    def __repr__(self) -> str:
+        standard, programs = self.standard, self.programs.programs
+        where = "" if self.folder is None else f", in {self.folder}"
+        return (
+            f"Design({standard.name}: {len(standard.patches)} faces, {len(standard.spheres)} "
+            f"balls, {len(self.placement.touches)} touches, {len(programs)} programs{where})"
+        )

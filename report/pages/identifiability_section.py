@@ -40,7 +40,7 @@ def known_content(design: Design, folder: Path) -> dict[str, Any]:
         design: What was made.
         folder: The results.
     """
-    known = design.known
+    known = design.identifiability
     never = [f for f in known.freedoms if f.first.resolution is Resolution.NEVER]
     resolved = [f for f in known.freedoms if f not in never]
     names = [short(name) for name in known.model.names]

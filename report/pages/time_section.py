@@ -20,14 +20,14 @@ _ORDERINGS = {
 
 def minutes(design: Design) -> dict[str, float]:
     """Minutes on the machine by artefact, by one planner and one clock; nan without a body."""
-    project, placement = design.project, design.placement
+    brief, placement = design.brief, design.placement
     probe = design.plan.probe
     found = {}
     for rival in placement.rivals:
         seconds = np.nan
         if rival.body is not None:
             seconds = probing_time(
-                rival.body, project.chain, probe, project.setup, rival.touches, design.plan.options
+                rival.body, brief.chain, probe, brief.setup, rival.touches, design.plan.options
             )
         found[rival.name] = float(seconds) / MINUTE
     return found
@@ -39,9 +39,9 @@ def proof_words(design: Design) -> str:
     They are planned as the programs are, and with every table pose once: half as many motions of
     rotary axes, which then come from one side alone.
     """
-    project, placement, plan = design.project, design.placement, design.plan
+    brief, placement, plan = design.brief, design.placement, design.plan
     once = replace(plan.options, shortest_visit=len(placement.proof) + 1)
-    body, chain, setup = placement.standard, project.chain, project.setup
+    body, chain, setup = placement.standard, brief.chain, brief.setup
     as_planned, quicker = (
         probing_time(body, chain, plan.probe, setup, placement.proof, options) / MINUTE
         for options in (plan.options, once)
@@ -56,7 +56,7 @@ def proof_words(design: Design) -> str:
 
 def order_content(design: Design) -> dict[str, Any]:
     """Table of the orders in which the same touches could be made, and its sentence."""
-    found = orders(design.plan, design.placement.criterion.model, design.project.noise)
+    found = orders(design.plan, design.placement.criterion.model, design.brief.noise)
     planned, quickest = found[0], min(found, key=lambda order: order.duration)
     return {
         "orders": [_row(order) for order in found],

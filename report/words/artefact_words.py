@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from matstd.artefact.brief import StandardTable
 from matstd.artefact.compare import ERROR, RISK, WANTED
 from matstd.artefact.place import Placement
+from matstd.artefact.worth import CriterionOptions
 from matstd.report.numbers import digits, percent
 from matstd.twin.units import UM
 
@@ -19,15 +19,15 @@ _CRITERIA = {
 _NAMED = 4  # effects that are not found surely, by name
 
 
-def criterion_words(wanted: StandardTable) -> str:
+def criterion_words(wanted: CriterionOptions) -> str:
     """What touches were chosen for."""
-    words = [_CRITERIA[wanted.criterion]]
+    words = [_CRITERIA[wanted.name]]
     if wanted.robust_machines:
         which = (
             "" if wanted.robust_share == 1.0 else f"the worst {percent(wanted.robust_share)} of "
         )
         words.append(f"averaged over {which}{wanted.robust_machines} drawn machines")
-    if wanted.potential and wanted.criterion == "D":
+    if wanted.potential and wanted.name == "D":
         words.append("with the effects of the library beside them")
     elif wanted.potential:
         words.append(

@@ -17,10 +17,10 @@ from matstd.artefact.compare.alternatives import (
 from matstd.artefact.compare.identifiability import identifiability_report
 from matstd.artefact.layout.sites import Blank
 from matstd.artefact.reach.touchable import ProbeReach
+from matstd.artefact.tool.probe import Probe
 from matstd.artefact.worth.touch_criterion import criterion_for, random_touches
 from matstd.information.identifiability.estimable_combinations import combinations
 from matstd.information.identifiability.freedoms import Resolution
-from matstd.probe_paths.plan.probe import Probe
 from matstd.report.identifiability.identifiability_file import (
     identifiability_table,
     write_identifiability,
