@@ -15,8 +15,10 @@ ROOT = Path(__file__).parents[1]
 INDEX, PAGES = ROOT / "docs" / "api.md", ROOT / "out" / "api"
 ROOMS = (
     "matstd.twin",
+    "matstd.importers",
     "matstd.sensitivity",
     "matstd.information",
+    "matstd.nc",
     "matstd.artefact",
     "matstd.diagnosis",
     "matstd.cad_out",

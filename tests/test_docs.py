@@ -12,8 +12,10 @@ from matstd.cli import COMMANDS
 ROOT = Path(__file__).parents[1]
 ROOMS = (
     "twin",
+    "importers",
     "sensitivity",
     "information",
+    "nc",
     "artefact",
     "diagnosis",
     "cad_out",

@@ -26,6 +26,7 @@ from matstd.artefact.tool import Probe
 from matstd.artefact.worth import CriterionOptions, TouchOptions
 from matstd.sensitivity.first_order import Workspace
 from matstd.sensitivity.population import Population
+from matstd.twin.display import Displayed
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
@@ -122,8 +123,8 @@ class StudySettings:
     visits: int = 10
 
 
-@dataclass(frozen=True, eq=False)
-class Brief:
+@dataclass(frozen=True, eq=False, repr=False)
+class Brief(Displayed):
     """A design as it is asked for, in base units.
 
     Attributes:

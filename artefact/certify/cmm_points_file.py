@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import Standard
+from matstd.importers.sheets import MM, Sheet, read_sheet, unit_of_column
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.record import Labels
-from matstd.twin.sheets import MM, Sheet, read_sheet, unit_of_column
 
 STAMP = "MATSTD"
 """Word before the fingerprint of the standard, in the programs we write and in their results."""

@@ -13,9 +13,9 @@ from matstd.compensation.part_programs.language import (
     Reading,
     centre_by_radius,
     checked_arc,
-    numbers,
 )
 from matstd.compensation.part_programs.motion import Arc, Cycle, Motion
+from matstd.nc.grammar import gcode_lines, split_words
 from matstd.twin.frames import Array
 
 ENDING = ".ngc"
@@ -30,7 +30,6 @@ HAS_INVERSE_TIME = True
 _FEED = re.compile(r"F[\d.]+")
 _BACK = re.compile(r"G94 F[\d.]+")
 _CENTRES = dict(zip("XYZ", "IJK", strict=True))
-_REMARK = re.compile(r"\([^)]*\)|;.*")
 _NAME = re.compile(r"O\d+")
 _NOT_PLAIN = re.compile(r"[/$]|O\d|O<|.*[#\[=]")
 _CHANGE = re.compile(r"M0*6(?!\d)", re.IGNORECASE)
@@ -44,21 +43,19 @@ def read(text: str, reading: Reading) -> None:
     """
     modes = Modes(calls_by_t=_CHANGE.search(text) is None)
     is_begun = False
-    for number, raw in enumerate(text.splitlines(), start=1):
-        remarks = _REMARK.findall(raw) if "(" in raw or ";" in raw else []
-        bare = (_REMARK.sub("", raw) if remarks else raw).strip().upper()
-        if not bare or bare[0] == "%" or (not is_begun and _NAME.fullmatch(bare)):
-            reading.keep(number, raw.strip())
+    for line, raw, code, remarks in gcode_lines(text.splitlines()):
+        if not code or code[0] == "%" or (not is_begun and _NAME.fullmatch(code)):
+            reading.keep(line, raw)
             continue
         is_begun = True
-        if _NOT_PLAIN.match(bare):
+        if _NOT_PLAIN.match(code):
             expected = "plain words: no parameters, expressions, subprograms or skipped blocks"
-            raise reading.refusal(number, repr(raw.strip()), expected)
+            raise reading.refusal(line, repr(raw), expected)
         try:
-            words = numbers(bare)
+            words = split_words(code)
         except ValueError as error:
-            raise reading.refusal(number, repr(str(error)), "words of G-code") from None
-        _line(number, words, "".join(remarks).strip(), reading, modes)
+            raise reading.refusal(line, repr(str(error)), "words of G-code") from None
+        _line(line, words, remarks, reading, modes)
 
 
 def _line(

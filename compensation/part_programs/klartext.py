@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 
 from matstd.compensation.part_programs import klartext_cycles
-from matstd.compensation.part_programs.klartext_flow import Block, in_order
 from matstd.compensation.part_programs.klartext_motions import (
     Modes,
     Words,
@@ -18,8 +17,9 @@ from matstd.compensation.part_programs.klartext_motions import (
     take_feed,
     take_functions,
 )
-from matstd.compensation.part_programs.language import NUMBER, Reading
+from matstd.compensation.part_programs.language import Reading
 from matstd.compensation.part_programs.motion import Corner, Motion
+from matstd.nc.grammar import NUMBER, klartext_blocks, run_order
 from matstd.twin.frames import Array
 
 ENDING = ".H"
@@ -60,21 +60,8 @@ def read(text: str, reading: Reading) -> None:
         BadFile: A block that is not understood, with its line.
     """
     modes = Modes()
-    for number, block in in_order(list(_blocks(text)), reading):
-        _block(number, block, reading, modes)
-
-
-def _blocks(text: str) -> Iterator[Block]:
-    """Blocks of a file; one that goes on in the next line ends in ~."""
-    lines = text.replace("~\r\n", "~\n").splitlines()
-    i = 0
-    while i < len(lines):
-        number, raw = i + 1, lines[i]
-        while raw.rstrip().endswith("~") and i + 1 < len(lines):
-            i += 1
-            raw = f"{raw}\n{lines[i]}"
-        i += 1
-        yield Block(number, re.sub(r"\A\s*\d+\s+", "", raw).strip())
+    for block in run_order(list(klartext_blocks(text.splitlines())), reading.path):
+        _block(block.line, block.text, reading, modes)
 
 
 def _block(number: int, block: str, reading: Reading, modes: Modes) -> None:

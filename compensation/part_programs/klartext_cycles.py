@@ -7,8 +7,9 @@ bottom of the hole needs.
 import re
 from typing import NamedTuple
 
-from matstd.compensation.part_programs.language import NUMBER, Reading
+from matstd.compensation.part_programs.language import Reading
 from matstd.compensation.part_programs.motion import Cycle
+from matstd.nc.grammar import NUMBER
 from matstd.twin.frames import Array
 
 HOLES = ("200", "201", "202", "203", "205", "206", "207", "208", "209", "240", "241")

@@ -7,12 +7,12 @@ import numpy as np
 
 from matstd.compensation.part_programs import klartext_cycles
 from matstd.compensation.part_programs.language import (
-    NUMBER,
     Reading,
     centre_by_radius,
     checked_arc,
 )
 from matstd.compensation.part_programs.motion import Arc
+from matstd.nc.grammar import NUMBER
 from matstd.twin.frames import Array
 from matstd.twin.units import DEG
 

@@ -1,7 +1,6 @@
 """What languages of part programs share: words of a block, the state that they change."""
 
 import math
-import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -22,8 +21,6 @@ from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.units import DEG
-
-NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"
 
 
 @dataclass
@@ -262,19 +259,3 @@ def checked_arc(
         raise reading.refusal(line, f"an end {off:.4f} mm off the circle", f"{ROUND} mm at most")
     angle = angle_between(start, stop, centre, positive, turns)
     return Arc((plane[0], plane[1]), centre, angle)
-
-
-_WORD = re.compile(rf"([A-Z])({NUMBER})")
-_WORDS = re.compile(rf"(?:[A-Z]{NUMBER})*")
-
-
-def numbers(text: str) -> list[tuple[str, float]]:
-    """Words of a block: letters with their numbers.
-
-    Raises:
-        ValueError: Something that is no word, which is the message.
-    """
-    bare = "".join(text.split())
-    if not _WORDS.fullmatch(bare):
-        raise ValueError(_WORD.sub("", bare))
-    return [(letter, float(number)) for letter, number in _WORD.findall(bare)]

@@ -24,6 +24,7 @@ from matstd.diagnosis.search import refined
 from matstd.twin.effects import usual_distance
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Inner, Tunable
+from matstd.twin.numbers import significant
 
 ALIKE = float(np.log(100.0))
 """Log odds below which two periods count as not told apart."""
@@ -194,4 +195,4 @@ def even_step(q: Array) -> float | None:
     count = np.round((q - first) / step)
     step = float(count @ (q - first) / max(float(count @ count), 1.0))
     off = np.abs((q - first) / step - np.round((q - first) / step))
-    return float(f"{step:.4g}") if off.max() < EVEN else None
+    return significant(step, 4) if off.max() < EVEN else None

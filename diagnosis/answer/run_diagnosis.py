@@ -54,6 +54,7 @@ from matstd.diagnosis.search import (
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.model import Effect, Model, moved_components
+from matstd.twin.numbers import rms
 from matstd.twin.record import Run, Touches, with_commanded, without_copies
 from matstd.twin.thermal import ThermalField
 
@@ -134,7 +135,7 @@ def _diagnosed(
     library = [e for e in library if e.name not in known]
     single = [e for e in library if not getattr(e, "is_shrunk", False)]
     task, final = found_in(task, added, single, progress)
-    if task.model.chain.is_serial_arm:  # whose lines bend like what it lacks
+    if task.model.chain.joints:  # errors of their lines bend like effects that are missing
         task = task.suited((*added, *final.effects))
     choice = chosen_by_prediction(task, added, final, library, progress)
     if choice is not None:
@@ -304,8 +305,8 @@ def _candidates(final: SearchState) -> tuple[Candidate, ...]:
                 effect=member.effect.name,
                 kind=member.effect.kind,
                 p_value=search.corrected(member.candidate, float(scores.p[variant])),
-                rms=float(np.sqrt(np.mean((effects.residual[:n] * u) ** 2))),
-                test_rms=float(np.sqrt(np.mean((effects.held_out.error * u) ** 2))),
+                rms=rms(effects.residual[:n] * u),
+                test_rms=rms(effects.held_out.error * u),
                 log_odds=float(effects.evidence - nothing.effects.evidence),
             )
         )

@@ -8,8 +8,8 @@ import numpy as np
 from matstd.diagnosis.fit import Fit, fit_run
 from matstd.diagnosis.geometry import CHANGED, Estimate, GeometryRow, changed_since, changing
 from matstd.twin.effects import Change
-from matstd.twin.frames import Array
 from matstd.twin.model import Effect, columns
+from matstd.twin.numbers import rms
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,9 +97,9 @@ def run_errors(fit: Fit) -> tuple[RunErrors, ...]:
             RunErrors(
                 name=name,
                 touches=int(counted.sum()),
-                rms=_rms(fit.residual[rows]) if is_fitted else None,
-                test_rms=_rms(held_out[own]) if is_fitted else None,
-                left_out=None if others is None else _rms(others.residual[counted]),
+                rms=rms(fit.residual[rows]) if is_fitted else None,
+                test_rms=rms(held_out[own]) if is_fitted else None,
+                left_out=None if others is None else rms(others.residual[counted]),
             )
         )
     return tuple(out)
@@ -150,7 +150,3 @@ def _without(fit: Fit, run: int) -> Fit | None:
     split = np.where(fit.used & (touches.run != run), "", "test")
     model = changing(fit.model, touches, since)
     return fit_run(replace(fit.run, split=split), model, gross=fit.gross, memory=fit.memory)
-
-
-def _rms(errors: Array) -> float:
-    return float(np.sqrt(np.mean(errors**2)))

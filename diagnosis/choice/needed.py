@@ -7,6 +7,7 @@ import numpy as np
 
 from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, projected
 from matstd.twin.effects import Again
+from matstd.twin.numbers import rms
 from matstd.twin.record import IntArray
 
 
@@ -39,7 +40,7 @@ def needed(
 def _error(complement: ResidualSpace, effects: Sequence[ScaledEffect]) -> float:
     """Plain root mean square error of blocks left out, mm."""
     left = EffectSet(complement, projected(complement, effects)).held_out
-    return float(np.sqrt(np.mean((left.error * complement.u) ** 2)))
+    return rms(left.error * complement.u)
 
 
 def _renumbered(effects: Sequence[ScaledEffect]) -> tuple[ScaledEffect, ...]:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from matstd.diagnosis.choice.blocks import blocks, rms
+from matstd.diagnosis.choice.blocks import blocks
 from matstd.diagnosis.choice.bodies import bodies
 from matstd.diagnosis.choice.field import sized_field
 from matstd.diagnosis.choice.needed import needed
@@ -34,6 +34,7 @@ from matstd.twin.effects import again
 from matstd.twin.frames import Array
 from matstd.twin.library import proposals
 from matstd.twin.model import Effect
+from matstd.twin.numbers import rms
 from matstd.twin.record import IntArray, Touches
 from matstd.twin.thermal import drives, field
 

@@ -11,6 +11,7 @@ from pydantic import Field
 from matstd.diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
 from matstd.diagnosis.regression import Memory
 from matstd.diagnosis.remarks import OfAnotherRun
+from matstd.twin.display import Displayed
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files import (
     MachineTables,
@@ -108,8 +109,8 @@ class ModelTable(Table):
     from_inner: list[list[float]] = Field(default_factory=list)
 
 
-@dataclass(frozen=True, eq=False)
-class SavedModel:
+@dataclass(frozen=True, eq=False, repr=False)
+class SavedModel(Displayed):
     """A model with what is known of its parameters.
 
     Attributes:

@@ -12,6 +12,7 @@ from matstd.diagnosis.regression import BoolArray
 from matstd.twin.effects import Overtones, PositionTable
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Inner, columns, inner_values
+from matstd.twin.numbers import rms
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG, MINUTE, UM, URAD
 
@@ -157,10 +158,10 @@ def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> 
     """
     C = columns([effect], fit.run.touches)[fit.used]
     explained = C @ theta
-    rms = float(np.sqrt(np.mean(explained**2)))
-    # d rms / d theta = C^T C theta / (n rms)
-    slope = C.T @ explained / max(len(C) * rms, 1e-300)
-    return _told("rms", "mm", rms, slope, covariance)
+    size = rms(explained)
+    # d rms / d theta = C^T C theta / (n size)
+    slope = C.T @ explained / max(len(C) * size, 1e-300)
+    return _told("rms", "mm", size, slope, covariance)
 
 
 def curve_sizes(fit: Fit, effect: Effect) -> Sequence[Reported]:

@@ -118,7 +118,7 @@ def _gain(K: Array, k: Array, left: float, count: int, of: IntArray, more: float
 def _kind(effect: Effect, chain: Chain) -> str:
     """What an error of the ordinary model, or its change, does over its axis."""
     effect = effect.effect if isinstance(effect, Change) else effect
-    if isinstance(effect, LocationError) and chain.is_serial_arm:
+    if isinstance(effect, LocationError):
         return "tilts" if error_class(chain, effect.symbol) == "arm_tilt" else "stays"
     if not isinstance(effect, ComponentError):
         return "stays"

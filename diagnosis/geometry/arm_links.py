@@ -78,9 +78,11 @@ class Lines:
 
 
 def arm_functionals(fit: Fit, joints: Sequence[str]) -> Iterator[Functional]:
-    """Lengths, twists, offsets and zeros of the joints of an arm that were probed."""
+    """Lengths, twists, offsets and zeros of the joints that were probed."""
     chain = fit.model.chain
-    names = [j for j in chain.arm_joints if j in joints]
+    names = [j for j in chain.joints if j in joints]
+    if not names:
+        return
     links = [chain.link(j) for j in names]
     nominal = Lines(np.stack([k.point for k in links]), np.stack([k.direction for k in links]))
     levers = _levers(chain, names)

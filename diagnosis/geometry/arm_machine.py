@@ -39,7 +39,7 @@ def found_arm(fit: Fit) -> FoundArm | None:
     """The arm by the rows of a fit; None where it is none, or where lines make nothing better."""
     chain = fit.model.chain
     lines = tuple(e for _, e in geometric_effects(fit) if isinstance(e, LocationError))
-    if not chain.is_serial_arm or not lines:
+    if not chain.joints or not lines:
         return None
     fit = fit_run(fit.run, Model(chain, lines), gross=fit.gross)
     sizes = {
@@ -49,7 +49,7 @@ def found_arm(fit: Fit) -> FoundArm | None:
     }
     links, after = [], np.eye(4)  # what the zeros of the joints before do to everything behind
     for link in chain.links:
-        if link.name in chain.arm_joints:
+        if link.is_joint:
             e = np.array([sizes.get((link.name, k), (0, 0.0))[1] for k in range(6)])
             zero, e[link.own_component] = e[link.own_component], 0.0
             point = apply(after, link.point + e[:3])

@@ -43,6 +43,7 @@ from matstd.diagnosis.search.task import DiagnosisTask
 from matstd.twin.effects import Again, again
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
+from matstd.twin.numbers import rms
 
 ROUNDS = 4
 """Most rounds of looking for gross errors and effects in turn; a usual run needs two."""
@@ -170,7 +171,7 @@ def _held_out(state: SearchState) -> float:
     """Error of poses left out by what was found, without patterns that have no name, mm."""
     complement = state.library.complement
     effects = EffectSet(complement, projected(complement, state.effects))
-    return float(np.sqrt(np.mean((effects.held_out.error * complement.u) ** 2)))
+    return rms(effects.held_out.error * complement.u)
 
 
 def _with_further_periods(

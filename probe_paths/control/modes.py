@@ -177,20 +177,15 @@ def _assign(block: Block, state: State) -> None:
 
 
 def _subtract(block: Block, state: State) -> None:
-    value = state.value(block, int(block.word("from")))
-    if not isinstance(value, float):
-        raise state.refusal(block, repr(block.text), "a number, not the result of a touch")
-    held = state.reached.get(int(block.word("from")))
-    state.write(block, int(block.word("q")), value - block.number("value"))
-    if held is not None:
-        state.reached[int(block.word("q"))] = held[0], held[1] + block.number("value")
-
-
-def _minus(block: Block, state: State) -> None:
-    value, other = (state.value(block, int(block.word(name))) for name in ("from", "other"))
+    """FN 2: a parameter less a number, or less another parameter."""
+    value, is_number = state.value(block, int(block.word("from"))), block.words["other"] is None
+    other = block.number("value") if is_number else state.value(block, int(block.word("other")))
     if not isinstance(value, float) or not isinstance(other, float):
         raise state.refusal(block, repr(block.text), "numbers, not results of touches")
+    held = state.reached.get(int(block.word("from"))) if is_number else None
     state.write(block, int(block.word("q")), value - other)
+    if held is not None:
+        state.reached[int(block.word("q"))] = held[0], held[1] + other
 
 
 _SETTERS = {
@@ -206,6 +201,5 @@ _SETTERS = {
     Kind.WAIT: _wait,
     Kind.ASSIGN: _assign,
     Kind.SUBTRACT: _subtract,
-    Kind.MINUS: _minus,
     Kind.SPINDLE_OFF: _spindle_off,
 }

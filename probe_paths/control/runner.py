@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from matstd.nc.grammar import COMPARISONS, DEEPEST, Flow
 from matstd.probe_paths.control.modes import check_cycle, read_datum, set_mode
 from matstd.probe_paths.control.motion import retract_max, straight_line
 from matstd.probe_paths.control.state import State
@@ -34,9 +35,6 @@ from matstd.probe_paths.language import (
 from matstd.probe_paths.plan import Heading, ProgramFrame, Sensor
 from matstd.twin.errors import BadFile
 from matstd.twin.units import MINUTE
-
-MAX_CALLS = 8
-"""Depth of nested subprograms that the control allows."""
 
 MaskSource = Callable[[str], str | None]
 """Gives the text of a mask file by its name without folder; None where there is none."""
@@ -70,7 +68,7 @@ class Runner:
     def __init__(
         self,
         blocks: Sequence[Block],
-        places: dict[int, int],
+        places: dict[str, int],
         frame: ProgramFrame,
         path: Path,
         name: str,
@@ -95,17 +93,15 @@ class Runner:
     def run(self, start: int, state: State, is_branch: bool = False) -> list[Step]:
         """Steps from one block to the end of the program."""
         steps: list[Step] = []
-        returns: list[int] = []
-        i, executed = start, 0
+        flow = Flow(self.path, self.places, 100 * len(self.blocks))
+        i = start
         while True:
             block = self.blocks[i]
-            executed += 1
-            if executed > 100 * len(self.blocks):
-                raise state.refusal(block, "a loop without end", "a program that comes to M30")
+            flow.count(block.line)
             if block.kind is Kind.END:
                 raise state.refusal(block, "END PGM", "M30 or LBL 0 before it")
             if block.kind is Kind.PROGRAM_STOP:
-                self._check_end(state, block, returns)
+                self._check_end(state, block, flow)
                 return steps
             if block.kind is Kind.ERROR:
                 if state.fault is None:
@@ -113,21 +109,17 @@ class Runner:
                 else:
                     self._check_alarm(i, state, state.fault)
                 return [*steps, Halt(block.line, int(block.word("number")))]
-            i = self._next(i, block, state, returns, steps)
+            i = self._next(i, block, state, flow, steps)
 
-    def _next(
-        self, i: int, block: Block, state: State, returns: list[int], steps: list[Step]
-    ) -> int:
+    def _next(self, i: int, block: Block, state: State, flow: Flow, steps: list[Step]) -> int:
         """Execute one block; the index of the following one."""
         if block.kind is Kind.CALL:
-            returns.append(i + 1)
-            if len(returns) > MAX_CALLS:
-                raise state.refusal(block, f"{len(returns)} nested calls", f"at most {MAX_CALLS}")
-            return self.places[int(block.word("label"))] + 1
+            return flow.call(i, block.line, block.word("label"))
         if block.kind is Kind.LABEL and block.word("label") == "0":
-            if not returns:
-                raise state.refusal(block, "LBL 0 that nobody called", "M30 before subprograms")
-            return returns.pop()
+            back = flow.end()
+            if back is None:
+                raise state.refusal(block, "LBL 0 without a call", "M30 before subprograms")
+            return back
         if block.kind is Kind.JUMP:
             return self._jump(i, block, state)
         if block.kind in _SILENT:
@@ -141,16 +133,15 @@ class Runner:
 
     def _jump(self, i: int, block: Block, state: State) -> int:
         """FN 11, 12: a number decides at once; a touch's status is taken as good, and as missed."""
-        is_less = block.words["q"] is not None
-        q = int(block.word("q" if is_less else "q_greater"))
-        value = state.value(block, q)
-        if q == Q.START or Label.is_behind(int(block.word("label"))):
+        than, q, label = block.word("than"), int(block.word("q")), block.word("label")
+        value, is_less = state.value(block, q), than == "LT"
+        if q == Q.START or Label.is_behind(int(label)):
             self._check_skip(i, block, state)
-        target, limit = self.places[int(block.word("label"))] + 1, block.number("limit")
+        target, limit = self.places[label] + 1, block.number("limit")
         if not isinstance(value, Result):
-            if value < limit if is_less else value > limit:
+            if COMPARISONS[than](value, limit):
                 return target
-            state.note_test(q, int(block.word("label")), limit, is_less)
+            state.note_test(q, int(label), limit, is_less)
             return i + 1
         if value.part != STATUS or limit != 0.0 or not is_less:
             raise state.refusal(block, repr(block.text), "the status (fourth result) LT +0")
@@ -160,7 +151,7 @@ class Runner:
         # what has met something in the air ends the program, what has not goes on
         wrong, right = (i + 1, target) if touch.is_air else (target, i + 1)
         self.branches += 1
-        if self.branches > MAX_CALLS:  # a branch that comes back to its own touch
+        if self.branches > DEEPEST:  # a branch that comes back to its own touch
             raise state.refusal(block, "a loop without end", "a program that comes to M30")
         touch.on_miss.extend(self.run(wrong, missed, is_branch=True))
         self.branches -= 1
@@ -171,11 +162,12 @@ class Runner:
     def _check_skip(self, i: int, block: Block, state: State) -> None:
         """A visit is skipped after its turn and all tests, up to the retract of the next one."""
         state.check_is_as_planned(block)
-        label = int(block.word("label"))
+        label = block.word("label")
         place = self.places[label]
         after = next(b for b in self.blocks[place + 1 :] if b.kind is not Kind.STRUCTURE)
         is_retract = after.kind is Kind.LINE and "M91" in after.word("functions")
-        is_start = block.words["q_greater"] == str(int(Q.START)) and Label.is_behind(label)
+        is_start = block.word("q") == str(int(Q.START)) and block.word("than") == "GT"
+        is_start = is_start and Label.is_behind(int(label))
         if not (is_start and place > i and is_retract and state.is_retracted):
             raise state.refusal(
                 block,
@@ -325,9 +317,9 @@ class Runner:
             )
         return lines
 
-    def _check_end(self, state: State, block: Block, returns: list[int]) -> None:
+    def _check_end(self, state: State, block: Block, flow: Flow) -> None:
         state.check_status_was_tested(block)
-        if returns:
+        if flow.returns:
             raise state.refusal(block, "M30 inside a subprogram", "LBL 0 at its end")
         if not state.is_retracted:
             raise state.refusal(block, "M30", f"a retract ({state.says.retract}) at the end")

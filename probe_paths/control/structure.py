@@ -6,6 +6,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
+from matstd.nc.grammar import label_places
 from matstd.probe_paths.language import Block, Kind, Label, language_of
 from matstd.probe_paths.plan import Heading, parse_heading
 from matstd.twin.errors import BadFile
@@ -76,41 +77,32 @@ def program_name(blocks: Sequence[Block], path: Path) -> str:
     return name
 
 
-def labels(blocks: Sequence[Block], path: Path) -> dict[int, int]:
+def labels(blocks: Sequence[Block], path: Path) -> dict[str, int]:
     """Block index of every label.
 
     Raises:
-        BadFile: A label that stands twice or that nobody defined, a subprogram before M30 or
-            without LBL 0, no M30.
+        BadFile: A label that stands twice or is not defined, a subprogram before M30, no M30.
     """
     kinds = [block.kind for block in blocks]
     if Kind.PROGRAM_STOP not in kinds:
         raise BadFile(path, f"line {blocks[-1].line}", "no M30", "M30 at the end of the program")
+    labelled = [(i, b) for i, b in enumerate(blocks) if b.kind is Kind.LABEL]
+    found = label_places(((i, b.line, b.word("label")) for i, b in labelled), path)
     stop = kinds.index(Kind.PROGRAM_STOP)
-    found: dict[int, int] = {}
-    for i, block in enumerate(blocks):
-        if block.kind is not Kind.LABEL or block.word("label") == "0":
-            continue
-        number = int(block.word("label"))
-        if number in found:
-            raise BadFile(path, f"line {block.line}", f"LBL {number} again", "every label once")
-        if i < stop and not Label.stands_inside(number):
-            raise BadFile(path, f"line {block.line}", f"LBL {number}", "subprograms after M30")
-        found[number] = i
+    inside = {name for name in found if Label.stands_inside(int(name))}
+    for name, i in found.items():
+        if i < stop and name not in inside:
+            where = f"line {blocks[i].line}"
+            raise BadFile(path, where, f"LBL {name}", "subprograms after M30")
     for block in blocks:
-        if block.kind in (Kind.CALL, Kind.JUMP) and int(block.word("label")) not in found:
-            available = ", ".join(str(n) for n in found if not Label.stands_inside(n)) or "none"
-            raise BadFile(
-                path,
-                f"line {block.line}",
-                f"LBL {block.word('label')}",
-                f"a label that is defined; available: {available}",
-            )
-    asked = {int(b.word("label")) for b in blocks if b.kind is Kind.JUMP}
-    for number in sorted(set(found) - asked):
-        if Label.stands_inside(number):
-            line, lost = f"line {blocks[found[number]].line}", f"LBL {number} that nothing goes to"
-            raise BadFile(path, line, lost, "a test of the visit to start at")
+        if block.kind in (Kind.CALL, Kind.JUMP) and block.word("label") not in found:
+            available = ", ".join(n for n in found if n not in inside) or "none"
+            expected = f"a label that is defined; available: {available}"
+            raise BadFile(path, f"line {block.line}", f"LBL {block.word('label')}", expected)
+    asked = {b.word("label") for b in blocks if b.kind is Kind.JUMP}
+    for name in sorted(inside - asked):
+        line, lost = f"line {blocks[found[name]].line}", f"LBL {name} that nothing goes to"
+        raise BadFile(path, line, lost, "a test of the visit to start at")
     return found
 
 

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
+from matstd.nc.grammar import SIGNED, klartext_blocks
 from matstd.probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
 from matstd.twin.errors import BadFile
 
-_NUM = r"[+-]\d{1,5}(?:\.\d{0,7})?"
-_XYZ = rf"X({_NUM}) Y({_NUM}) Z({_NUM})"
+_XYZ = rf"X({SIGNED}) Y({SIGNED}) Z({SIGNED})"
 _PATH = r"[A-Z0-9_:\\.-]+"
 
 
@@ -34,30 +34,32 @@ class Kind(Enum):
     SHORTER_WAY_OFF = r"M127"
     PLANE_OFF = r"PLANE RESET STAY"
     PLANE = (
-        rf"PLANE SPATIAL SPA(?P<a>{_NUM}) SPB(?P<b>{_NUM}) SPC(?P<c>{_NUM}) STAY"
+        rf"PLANE SPATIAL SPA(?P<a>{SIGNED}) SPB(?P<b>{SIGNED}) SPC(?P<c>{SIGNED}) STAY"
         r" (?:SEQ(?P<which>[+-])|TABLE ROT)"
     )
     SHIFT_NAME = r"CYCL DEF 7\.0 DATUM SHIFT"
-    SHIFT = rf"CYCL DEF 7\.(?P<index>[123]) (?P<axis>[XYZ])(?P<value>{_NUM})"
+    SHIFT = rf"CYCL DEF 7\.(?P<index>[123]) (?P<axis>[XYZ])(?P<value>{SIGNED})"
     PRESET = r"CYCL DEF 247 DATUM SETTING ~ Q339 ?= ?(?P<row>[+]\d+)(?: ;.*)?"
     TOOL_CALL = r"TOOL CALL (?P<tool>\d+) Z(?P<speed> S.*)?"
     LINE = (
-        rf"L(?P<axes>(?: [A-Z]{_NUM})+)(?P<radius> R0)?"
+        rf"L(?P<axes>(?: [A-Z]{SIGNED})+)(?P<radius> R0)?"
         r"(?: F(?P<feed>MAX|\d+))?(?P<functions>(?: M\d+)*)"
     )
     PROBE_NAME = r"TCH PROBE 4\.0 (?P<cycle>[A-Z0-9][A-Z0-9 -]*)"
     PROBE_RESULT = r"TCH PROBE 4\.1 Q(?P<q>\d+)"
-    PROBE_VECTOR = rf"TCH PROBE 4\.2 IX(?P<x>{_NUM}) IY(?P<y>{_NUM}) IZ(?P<z>{_NUM})"
+    PROBE_VECTOR = rf"TCH PROBE 4\.2 IX(?P<x>{SIGNED}) IY(?P<y>{SIGNED}) IZ(?P<z>{SIGNED})"
     PROBE_PATH = (
-        rf"TCH PROBE 4\.3 (?P<word>[A-Z][A-Z -]*?) ?(?P<distance>{_NUM}) F(?P<feed>\d+) "
-        rf"MB(?P<back>{_NUM}) REFERENCE SYSTEM: ?(?P<system>[01])"
+        rf"TCH PROBE 4\.3 (?P<word>[A-Z][A-Z -]*?) ?(?P<distance>{SIGNED}) F(?P<feed>\d+) "
+        rf"MB(?P<back>{SIGNED}) REFERENCE SYSTEM: ?(?P<system>[01])"
     )
     # a control that saves a program leaves out blanks, zeros and the last line end
-    ASSIGN = rf"FN ?0: Q(?P<q>\d+) ?= ?(?P<value>{_NUM})"
-    SUBTRACT = rf"FN ?2: Q(?P<q>\d+) ?= ?\+?Q(?P<from>\d+) ?- ?(?P<value>{_NUM})"
-    MINUS = r"FN ?2: Q(?P<q>\d+) ?= ?\+?Q(?P<from>\d+) ?- ?\+?Q(?P<other>\d+)"
+    ASSIGN = rf"FN ?0: Q(?P<q>\d+) ?= ?(?P<value>{SIGNED})"
+    SUBTRACT = (
+        rf"FN ?2: Q(?P<q>\d+) ?= ?\+?Q(?P<from>\d+) ?- ?(?:(?P<value>{SIGNED})|\+?Q(?P<other>\d+))"
+    )
+    # FN 12 goes with LT, FN 11 with GT
     JUMP = (
-        r"FN ?1(?:2: ?IF ?\+?Q(?P<q>\d+) ?LT|1: ?IF ?\+?Q(?P<q_greater>\d+) ?GT) ?"
+        r"FN ?1(?:2(?=.*LT)|1(?=.*GT)): ?IF ?\+?Q(?P<q>\d+) ?(?P<than>LT|GT) ?"
         r"(?P<limit>[+-]\d+(?:\.\d*)?) GOTO LBL ?(?P<label>\d+)"
     )
     ERROR = r"FN ?14: ERROR ?= ?(?P<number>\d+)"
@@ -145,33 +147,23 @@ def read_klartext(data: bytes, path: str | Path, dialect: Dialect) -> list[Block
         BadFile: A byte outside ASCII, mixed line ends, a last line cut off, a number out of
             sequence, a block that is not in the closed list.
     """
-    lines = physical_lines(data, path)
     blocks: list[Block] = []
-    numbered: bool | None = None
-    i = 0
-    while i < len(lines):
-        first, raw = i + 1, lines[i]
-        while raw.endswith("~"):
-            i += 1
-            if i == len(lines):
-                raise BadFile(path, f"line {i}", repr(raw), "a further line after the tilde")
-            raw = f"{raw} {lines[i]}"
-        i += 1
-        folded = " ".join(raw.split())
-        if len(folded) > LONGEST:
-            found = f"{len(folded)} characters in one block"
-            raise BadFile(path, f"line {first}", found, f"at most {LONGEST}")
-        match = re.match(r"(\d+) (.*)", folded)
-        numbered = match is not None if numbered is None else numbered
-        if numbered != (match is not None):
+    is_numbered: bool | None = None
+    for line, number, text in klartext_blocks(physical_lines(data, path)):
+        folded, where = " ".join(text.split()), f"line {line}"
+        shown = f"{number} {folded}".lstrip()
+        if shown.endswith("~"):
+            raise BadFile(path, where, repr(shown), "a further line after the tilde")
+        if len(shown) > LONGEST:
             raise BadFile(
-                path, f"line {first}", repr(folded), "block numbers everywhere or nowhere"
+                path, where, f"{len(shown)} characters in one block", f"at most {LONGEST}"
             )
-        if match is not None:
-            if (match[1].lstrip("0") or "0") != str(len(blocks)):
-                raise BadFile(path, f"line {first}", f"block number {match[1]}", str(len(blocks)))
-            folded = match[2]
-        blocks.append(_parse(folded, first, path, dialect))
+        is_numbered = bool(number) if is_numbered is None else is_numbered
+        if is_numbered != bool(number):
+            raise BadFile(path, where, repr(shown), "block numbers everywhere or nowhere")
+        if number and (number.lstrip("0") or "0") != str(len(blocks)):
+            raise BadFile(path, where, f"block number {number}", str(len(blocks)))
+        blocks.append(_parse(folded, line, path, dialect))
     return blocks
 
 

@@ -4,6 +4,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+from matstd.nc.grammar import SIGNED
 from matstd.probe_paths.language import gcode as g
 from matstd.probe_paths.language.blocks import Block, Kind, physical_lines
 from matstd.probe_paths.language.dialect import TOOL_LENGTH, Label, Q
@@ -12,10 +13,9 @@ from matstd.twin.errors import BadFile
 
 Words = dict[str, str | None]
 
-_NUM = r"[+-]\d{1,5}(?:\.\d{0,7})?"
 _SYSTEM = "|".join(re.escape(text) for text in g.SYSTEM.values())
-_CALL = " ".join([rf"\[({_NUM})\]"] * 4 + [r"\[(\d+)\]", rf"\[({_NUM})\]"])
-_TOUCH = re.compile(rf"O{g.TOUCH} CALL {_CALL} \[(\d+)\] \[({_NUM})\]\Z")
+_CALL = " ".join([rf"\[({SIGNED})\]"] * 4 + [r"\[(\d+)\]", rf"\[({SIGNED})\]"])
+_TOUCH = re.compile(rf"O{g.TOUCH} CALL {_CALL} \[(\d+)\] \[({SIGNED})\]\Z")
 
 _LINES = {
     Kind.BEGIN: r"\(BEGIN PGM (?P<name>\S+) (?P<unit>\S+)\)",
@@ -27,15 +27,14 @@ _LINES = {
     Kind.SHIFT: r"G92\.1",
     Kind.PRESET: r"G43 G5(?P<row>[4-9])",
     Kind.TOOL_CALL: r"T(?P<tool>\d+) M6(?P<speed> S.*)?",
-    Kind.RETRACT_MAX: rf"G53 G0 Z(?P<z>{_NUM}) \(RETRACT\)",
+    Kind.RETRACT_MAX: rf"G53 G0 Z(?P<z>{SIGNED}) \(RETRACT\)",
     Kind.LINE: (
-        r"(?P<machine>G53 )?(?P<g>G[01])(?P<axes>(?: [A-Z][+-]\d{1,5}(?:\.\d{0,7})?)+)"
+        rf"(?P<machine>G53 )?(?P<g>G[01])(?P<axes>(?: [A-Z]{SIGNED})+)"
         r"(?: F(?P<feed>\d+))?"
     ),
     Kind.READ: rf"#(?P<q>\d+) = (?P<datum>{_SYSTEM})",
-    Kind.ASSIGN: rf"#(?P<q>\d+) = (?P<value>{_NUM})",
-    Kind.SUBTRACT: rf"#(?P<q>\d+) = \[#(?P<from>\d+) - (?P<value>{_NUM})\]",
-    Kind.MINUS: r"#(?P<q>\d+) = \[#(?P<from>\d+) - #(?P<other>\d+)\]",
+    Kind.ASSIGN: rf"#(?P<q>\d+) = (?P<value>{SIGNED})",
+    Kind.SUBTRACT: (rf"#(?P<q>\d+) = \[#(?P<from>\d+) - (?:(?P<value>{SIGNED})|#(?P<other>\d+))\]"),
     Kind.WAIT: re.escape(g.WAIT),
     Kind.CALL: r"O(?P<label>[1-9]\d*) CALL",
     Kind.LABEL: r"O(?P<label>[1-9]\d*) (?P<what>SUB(?: \(.*\))?|ENDSUB)",
@@ -147,21 +146,20 @@ class _Reader:
         if called is None:
             raise BadFile(self.path, f"line {self.i}", repr(self.lines[self.i - 1]), "O.. CALL")
         self._must(f"O{match[1]} ENDIF")
-        key = "q" if match["than"] == "LT" else "q_greater"
-        words: Words = {"q": None, "q_greater": None, "limit": match["limit"]}
-        return Block(line, Kind.JUMP, {**words, key: match["q"], "label": called["label"]}, text)
+        words: Words = {**match.groupdict(), "label": called["label"]}
+        return Block(line, Kind.JUMP, words, text)
 
     def _skip(self, match: re.Match[str], text: str) -> Block:
         """Begin or end of a visit that may be skipped."""
         self.i += 1
-        found = match.groupdict()
         number = int(match[1]) - g.SKIP
         if not Label.is_behind(number):
             raise BadFile(self.path, f"line {self.i}", repr(text), "an IF or ENDIF of our programs")
-        if not found:
-            return Block(self.i, Kind.LABEL, {"label": str(number)}, text)
-        words: Words = {"q": None, "q_greater": found["q"], "limit": found["limit"]}
-        return Block(self.i, Kind.JUMP, {**words, "label": str(number)}, text)
+        label: Words = {"label": str(number)}
+        if not match.groupdict():
+            return Block(self.i, Kind.LABEL, label, text)
+        words: Words = {"q": match["q"], "than": "GT", "limit": match["limit"]}
+        return Block(self.i, Kind.JUMP, {**words, **label}, text)
 
     def _printed(self) -> Block:
         """Lines of a log as those of a mask file."""
@@ -240,7 +238,7 @@ def _straight(words: Words) -> Words:
 
 
 def _minuend(words: Words) -> Words:
-    is_length = f"#{words['from']}" == g.LENGTH
+    is_length = f"#{words['from']}" == g.LENGTH and words["other"] is None
     return {**words, "from": str(TOOL_LENGTH) if is_length else words["from"]}
 
 

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from matstd.compensation.field import rms
 from matstd.compensation.programs import Compensated
 from matstd.report.numbers import digits
+from matstd.twin.numbers import rms, rms_length
 from matstd.twin.units import MINUTE, NM, UM
 
 
@@ -18,12 +18,12 @@ def program_lines(name: str, done: Compensated) -> Iterator[tuple[str, bool]]:
     """
     motions, points = len(done.program.motions), len(done.q)
     yield f"{name}: {motions} motions as {points} lines", True
-    before, after = (rms(field[done.is_stated]) / UM for field in (done.before, done.after))
+    before, after = (rms_length(field[done.is_stated]) / UM for field in (done.before, done.after))
     worst = np.linalg.norm(done.after[done.is_stated], axis=1).max() / UM
     words = f"tool point at line ends {digits(before)} -> {digits(after)} µm rms"
     words += f" (worst {digits(worst)} µm)"
-    if done.u.any() and rms(done.u[:, None]) > NM:
-        words += f"; the model is known to {digits(rms(done.u[:, None]) / UM, 2)} µm there"
+    if done.u.any() and rms(done.u) > NM:
+        words += f"; the model is known to {digits(rms(done.u) / UM, 2)} µm there"
     yield f"- {words}", False
     if done.is_cut:
         row = int(np.nanargmax(done.between))

@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.compensation.field import Share, rms
+from matstd.compensation.field import Share
 from matstd.report.numbers import with_uncertainty
 from matstd.report.style import INK, NEUTRAL, SOFT, figure, plain, save, series
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms_length
 from matstd.twin.units import MINUTE, UM
 
 LONGEST = 32
@@ -27,7 +28,7 @@ def draw_shares_along(path: str | Path, time: Array, whole: Array, shares: Seque
         whole: Deviation of all together, (N, 3), mm.
         shares: Of each, the largest first.
     """
-    shown = [s for s in shares[:BARS] if rms(s.field) > 0.0]
+    shown = [s for s in shares[:BARS] if rms_length(s.field) > 0.0]
     drawn = figure(max(3.6, 0.9 + 0.24 * len(shown)))
     left, right = drawn.subplots(1, 2)
     is_timed = np.ptp(time) > 0.0
@@ -40,7 +41,7 @@ def draw_shares_along(path: str | Path, time: Array, whole: Array, shares: Seque
     left.set_ylabel("deviation of the tool point in µm")
     left.legend(fontsize=8, frameon=False)
     y = np.arange(len(shown))[::-1]
-    sizes = [rms(s.field) / UM for s in shown]
+    sizes = [rms_length(s.field) / UM for s in shown]
     colours = [series(k) if k < LINES else NEUTRAL for k in range(len(shown))]
     right.barh(y, sizes, color=colours, height=0.7)
     errors = [s.u / UM for s in shown]
@@ -60,10 +61,10 @@ def _short(name: str) -> str:
 
 def share_lines(whole: Array, shares: Sequence[Share], most: int = 8) -> Iterator[str]:
     """The whole, and the largest of what it is made of."""
-    yield f"all together {with_uncertainty(rms(whole) / UM, None, 'µm')} rms"
+    yield f"all together {with_uncertainty(rms_length(whole) / UM, None, 'µm')} rms"
     for share in shares[:most]:
         yield f"- {share.name} {_size(share)}"
 
 
 def _size(share: Share) -> str:
-    return with_uncertainty(rms(share.field) / UM, share.u / UM or None, "µm")
+    return with_uncertainty(rms_length(share.field) / UM, share.u / UM or None, "µm")

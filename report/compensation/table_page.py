@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from matstd.compensation.field import MachineErrors, rms
+from matstd.compensation.field import MachineErrors
 from matstd.compensation.tables import Header, Played
 from matstd.report.compensation.table_pictures import draw_errors_left, draw_shares
 from matstd.report.compensation.table_words import control_title, result_sentence, small
 from matstd.report.numbers import digits, signed, with_uncertainty
 from matstd.report.pages import Picture, write_page
 from matstd.twin.machine import Chain
+from matstd.twin.numbers import rms_length
 from matstd.twin.units import DEG, UM
 
 PAGE = "report.html"
@@ -40,7 +41,7 @@ def write_compensation_page(
         title=title,
         head=head,
         poses=len(first.q),
-        before=rms(first.before) / UM,
+        before=rms_length(first.before) / UM,
         model_u=first.u_rms / UM,
         tool_u=first.u_tool / UM,
         left_out=errors.left_out,
@@ -64,7 +65,7 @@ def _control(place: Path, played: Played, chain: Chain) -> dict[str, Any]:
         "title": control_title(played.format),
         "files": ", ".join(played.files),
         "sentence": result_sentence(result),
-        "after": small(rms(result.after) / UM),
+        "after": small(rms_length(result.after) / UM),
         "expected": small(result.expected / UM, 2),
         "interpolation": small(played.interpolation / UM, 2),
         "where": "over the workspace" if played.by_name else "along the axes through the datum",

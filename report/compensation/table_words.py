@@ -4,9 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from matstd.compensation.field import Left, Result, rms
+from matstd.compensation.field import Left, Result
 from matstd.compensation.tables import Played
 from matstd.report.numbers import digits, with_uncertainty
+from matstd.twin.numbers import rms_length
 from matstd.twin.units import NM, UM
 
 _TITLES = {
@@ -27,7 +28,7 @@ def control_title(name: str) -> str:
 
 def result_sentence(result: Result) -> str:
     """Before, after, and what to expect with a model that is not the truth, rms."""
-    before, after = rms(result.before) / UM, rms(result.after) / UM
+    before, after = rms_length(result.before) / UM, rms_length(result.after) / UM
     words = f"{digits(before)} -> {small(after)} µm rms over the workspace"
     worst = np.linalg.norm(result.after, axis=1).max() / UM
     words += f" (worst of {len(result.q)} poses {small(worst)} µm)"

@@ -7,6 +7,7 @@ import numpy as np
 from matstd.diagnosis.drift import ArxInputs, DriftRecord, IntArray, Judged, Kept, LinearLaw
 from matstd.report.numbers import digits, span
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
 from matstd.twin.units import MINUTE
 
 _TITLES = {
@@ -35,7 +36,7 @@ def units_word(record: DriftRecord) -> str:
 
 def together(values: Array, record: DriftRecord) -> float:
     """Root mean square over components, µm or µrad."""
-    return float(np.sqrt(np.mean((values / record.size) ** 2)))
+    return rms(values / record.size)
 
 
 def drift_lines(

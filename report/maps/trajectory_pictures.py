@@ -14,6 +14,7 @@ from matstd.sensitivity.study import AlongPath, Study, Trajectory
 from matstd.twin.effects import ComponentError
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
+from matstd.twin.numbers import rms
 from matstd.twin.units import UM, URAD
 
 if TYPE_CHECKING:
@@ -42,7 +43,7 @@ def axis_effect_picture(effect: AlongPath) -> tuple[Figure, str]:
     first = effect.dominant[0] if effect.dominant else "nothing"
     caption = (
         f"Effect of {_words(effect)} along a trajectory ({path.name}, {len(path.q)} poses), exact: "
-        f"at most {effect.size.max() / UM:.1f} µm, {_rms(effect.size) / UM:.1f} µm rms; the "
+        f"at most {effect.size.max() / UM:.1f} µm, {rms(effect.size) / UM:.1f} µm rms; the "
         f"largest part is made by {first}."
     )
     return drawn, caption
@@ -110,10 +111,6 @@ def _finish(axes: Axes) -> None:
 def _plain(axes: Axes) -> None:
     plain(axes)
     axes.margins(x=0.0)
-
-
-def _rms(size: Array) -> float:
-    return float(np.sqrt(np.mean(size**2)))
 
 
 def _words(effect: AlongPath) -> str:

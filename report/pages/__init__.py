@@ -1,4 +1,4 @@
-"""HTML pages, each in one file that loads nothing from anywhere.
+"""HTML pages, each in one file that loads nothing from anywhere; what results show in a notebook.
 
 `write_page` renders a template of `templates/`; a module for each page turns a result into the
 numbers, rows and pictures that its template shows.
@@ -8,6 +8,7 @@ from matstd.report.pages.compare_page import write_compare_page
 from matstd.report.pages.design_page import write_design_page
 from matstd.report.pages.design_result import Design, Proven
 from matstd.report.pages.diagnosis_page import write_diagnosis_page
+from matstd.report.pages.notebook import drawing
 from matstd.report.pages.page import write_page
 from matstd.report.pages.pdf import Printer, printer, write_pdf
 from matstd.report.pages.residual_section import Picture
@@ -20,6 +21,7 @@ __all__ = [
     "Picture",
     "Printer",
     "Proven",
+    "drawing",
     "printer",
     "write_compare_page",
     "write_design_page",

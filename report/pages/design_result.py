@@ -18,6 +18,7 @@ from matstd.probe_paths.emit import ProgramSet
 from matstd.probe_paths.plan import TouchPlan
 from matstd.probe_paths.stations import Station, all_programs
 from matstd.sensitivity.study import Study
+from matstd.twin.display import Displayed
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 
@@ -44,7 +45,7 @@ class Proven:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Design:
+class Design(Displayed):
     """Everything that a design run made; the files of the same names hold it.
 
     Attributes:
@@ -95,11 +96,3 @@ class Design:
     def programs(self) -> ProgramSet:
         """All programs."""
         return all_programs(self.stations)
-
-    def __repr__(self) -> str:
-        standard, programs = self.standard, self.programs.programs
-        where = "" if self.folder is None else f", in {self.folder}"
-        return (
-            f"Design({standard.name}: {len(standard.patches)} faces, {len(standard.spheres)} "
-            f"balls, {len(self.placement.touches)} touches, {len(programs)} programs{where})"
-        )

@@ -1,7 +1,7 @@
-"""Results as they show themselves: a short text, and in a notebook a table with a picture.
+"""What a result shows of itself: a short text, and in a notebook a table with a picture.
 
-`matstd.twin.display` calls this module by name. To teach it a result, register a text, and a
-picture if there is one that says most.
+The texts are registered in `matstd.twin.display` when this module is imported. For a new result,
+register a text, and a picture if one says most.
 """
 
 from collections.abc import Callable
@@ -13,33 +13,34 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from matstd.artefact.body import Standard
+from matstd.artefact.brief import Brief
 from matstd.artefact.compare import IdentifiabilityReport
 from matstd.diagnosis.answer import Comparison, Diagnosis
+from matstd.diagnosis.files import SavedModel
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.residual import rank_variables
 from matstd.report.identifiability import gist
 from matstd.report.maps import draw_regions
+from matstd.report.pages.design_result import Design
 from matstd.report.pages.page import picture
 from matstd.report.plots import draw_fall, draw_over_variables
 from matstd.report.style import save
 from matstd.report.words import comparison_sentence, microns, study_words, verdict_sentence
 from matstd.sensitivity.shares import regions
 from matstd.sensitivity.study import Study
-from matstd.twin.display import Tabular
+from matstd.twin.display import Displayed, Tabular, html, text
+from matstd.twin.machine import Chain
+from matstd.twin.model import Model
+from matstd.twin.numbers import rms
 from matstd.twin.record import Run
 
-_ROWS = 10  # of a table that are shown; the rest is told
-
-
-@singledispatch
-def text(result: object) -> str:
-    """A result in one or a few lines."""
-    return object.__repr__(result)
+_ROWS = 10  # of a table that are shown; of the others their number
 
 
 @text.register
 def _run(run: Run) -> str:
-    size = float(np.sqrt(np.mean(run.deviation**2)))
+    size = rms(run.deviation)
     poses = len(np.unique(run.touches.pose))
     return (
         f"{len(run)} touches at {poses} table poses of {run.touches.chain.name}, "
@@ -75,6 +76,53 @@ def _identifiability(known: IdentifiabilityReport) -> str:
     return f"{gist(known)}."
 
 
+@text.register
+def _chain(chain: Chain) -> str:
+    return f"{chain.name}: {chain.notation}"
+
+
+@text.register
+def _model(model: Model) -> str:
+    return (
+        f"model of {model.chain.name}: {len(model.effects)} effects, "
+        f"{len(model.parameters)} parameters"
+    )
+
+
+@text.register
+def _saved(saved: SavedModel) -> str:
+    source = saved.source
+    return f"{saved.model!r}, estimated from {source.touches} touches ({source.run})"
+
+
+@text.register
+def _standard(standard: Standard) -> str:
+    state = "as designed" if standard.known is None else f"calibrated with {standard.known.source}"
+    return (
+        f"{standard.name}: {len(standard.patches)} freeform faces, {len(standard.spheres)} balls, "
+        f"{state}"
+    )
+
+
+@text.register
+def _brief(brief: Brief) -> str:
+    return (
+        f"{brief.path.name}: {brief.options.name} for {brief.chain.name}, "
+        f"programs for {Path(brief.programs.control).name}"
+    )
+
+
+@text.register
+def _design(design: Design) -> str:
+    standard, programs = design.standard, design.programs.programs
+    where = "" if design.folder is None else f", in {design.folder}"
+    return (
+        f"{standard.name} for {design.brief.chain.name}: {len(standard.patches)} freeform faces, "
+        f"{len(standard.spheres)} balls, {len(design.placement.touches)} touches, "
+        f"{len(programs)} programs{where}"
+    )
+
+
 @singledispatch
 def drawing(result: object) -> Callable[[Path], None] | None:
     """What draws the picture of a result into a file; None where there is none."""
@@ -97,7 +145,8 @@ def _regions(study: Study) -> Callable[[Path], None]:
     return lambda path: save(draw_regions(study.chain, found), path)
 
 
-def html(result: object) -> str:
+@html.register
+def _all_of(result: Displayed) -> str:
     """The text, the first rows of the table and the picture of a result."""
     parts = [f"<p>{escape(text(result)).replace(chr(10), '<br>')}</p>"]
     if isinstance(result, Tabular):

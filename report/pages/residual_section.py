@@ -18,6 +18,7 @@ from matstd.report.plots import (
 )
 from matstd.report.words import microns, region_words, stated_noise, structure_words
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
 from matstd.twin.record import Run, Touches
 from matstd.twin.units import UM
 
@@ -148,7 +149,7 @@ def gross_rows(fit: Fit) -> list[dict[str, Any]]:
 def _extent(t: Touches) -> str:
     """At how many poses and in what time the touches were made, as far as either says something."""
     poses = len(np.unique(np.column_stack([t.setup, t.pose]), axis=0))
-    table = "" if t.chain.is_serial_arm else "table "
+    table = "table " if t.chain.turns_workpiece else ""
     at = f" at {poses} {table}pose{'s' if poses != 1 else ''}" if t.chain.rotary_axes else ""
     time = float(np.ptp(t.time))
     return f"{at} in {span(time)}" if time > 0.0 else at
@@ -165,7 +166,7 @@ def setting(run: Run, fit: Fit) -> dict[str, Any]:
         "stated": microns(stated_noise(run)),
         "scatter": microns(stated_noise(run) * fit.noise.factor),
         "fingerprint": run.fingerprint,
-        "u_um": float(np.sqrt(np.mean(run.u**2))) / UM,
+        "u_um": rms(run.u) / UM,
         "parameters": len(fit.parameters),
         "held_out": int((run.split == "test").sum()),
     }

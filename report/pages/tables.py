@@ -3,14 +3,13 @@
 They are read from the finished page, so that they say what it says, in the units of its headings.
 """
 
-import csv
-import io
 import re
 from dataclasses import dataclass, field
 from html.parser import HTMLParser
 from pathlib import Path
 
 from matstd.twin.files import write_whole, written_whole
+from matstd.twin.text import csv_text
 
 FOLDER, WORKBOOK = "tables", "tables.xlsx"
 """Where they go, beside the page."""
@@ -65,9 +64,8 @@ def write_tables(page: str | Path) -> list[Path]:
     for number, table in enumerate(page_tables(page.read_text(encoding="utf-8")), start=1):
         name = f"{number:02d}-{_slug(table.section)}"
         out.append(page.parent / FOLDER / f"{name}.csv")
-        text = io.StringIO()
-        csv.writer(text, lineterminator="\n").writerows(map(plain, row) for row in table.rows)
-        write_whole(out[-1], text.getvalue())
+        head, *rows = ([plain(cell) for cell in row] for row in table.rows)
+        write_whole(out[-1], csv_text(head, rows))
         sheet = book.create_sheet(name[:_LONGEST])
         for row in ([table.caption], *table.rows):
             sheet.append([value(plain(cell)) for cell in row])

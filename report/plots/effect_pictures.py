@@ -32,6 +32,7 @@ from matstd.report.words import microns
 from matstd.twin.frames import Array
 from matstd.twin.library import parse_effect
 from matstd.twin.model import Effect
+from matstd.twin.numbers import rms
 from matstd.twin.units import UM
 
 MOST_BARS = 14
@@ -63,7 +64,7 @@ def draw_fall(path: str | Path, diagnosis: Diagnosis) -> None:
     x = np.arange(len(steps))
     fitted = np.array([s.fit.rms for s in steps]) / UM
     held = np.array([s.fit.test_rms for s in steps]) / UM
-    u = float(np.sqrt(np.mean(diagnosis.run.u**2))) / UM
+    u = rms(diagnosis.run.u) / UM
     low, high = min(fitted.min(), held.min(), u), max(fitted.max(), held.max())
     _noise_lines(ax, diagnosis.fit, u)
     for y, colour, marker, word in (
@@ -96,7 +97,7 @@ def _held_words(diagnosis: Diagnosis) -> str:
         return "rows held out by the file"
     t = diagnosis.fit.run.touches
     poses = len(np.unique(np.column_stack([t.setup, t.pose])[diagnosis.fit.used], axis=0))
-    what = "pose" if t.chain.is_serial_arm else "table pose" if t.chain.rotary_axes else "place"
+    what = "table pose" if t.chain.turns_workpiece else "pose" if t.chain.rotary_axes else "place"
     return f"held out, one {what if poses >= MIN_POSES else 'block'} after the other"
 
 

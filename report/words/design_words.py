@@ -6,14 +6,13 @@ that the ball reaches on the standard, comes second and is named as such.
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from matstd.artefact.compare import Rival, WorstRegions
 from matstd.artefact.place import Placement
 from matstd.diagnosis.answer import Proof
 from matstd.diagnosis.fit import Fit
 from matstd.report.numbers import digits
 from matstd.report.words.artefact_words import blind_spots, identification_sentence, proof_sentence
+from matstd.twin.numbers import rms
 from matstd.twin.units import DEG, UM
 from matstd.twin.words import listed
 
@@ -130,10 +129,7 @@ def _regions_sentence(worst: WorstRegions) -> str:
 def proof_line(number: int, in_workspace: Proof, in_volume: Proof, fit: Fit) -> str:
     """One simulated machine: what its model does not predict, there and on the faces held back."""
     held_back = fit.test_rows
-    left, noise = (
-        float(np.sqrt(np.mean(v[held_back] ** 2))) if held_back.any() else 0.0
-        for v in (fit.residual, fit.run.u)
-    )
+    left, noise = (rms(v[held_back]) if held_back.any() else 0.0 for v in (fit.residual, fit.run.u))
     faces = f"; on the faces held back {_um(left)} rms is left, noise {_um(noise)}" if left else ""
     return (
         f"machine {number}: in your workspace {_after(in_workspace)}; "

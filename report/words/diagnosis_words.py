@@ -14,6 +14,7 @@ from matstd.report.numbers import condition, digits, noun, span, unit_words, wit
 from matstd.report.words.open_words import microns, nearest_clause, stated_noise, undecided_sentence
 from matstd.report.words.remark_words import memory_words
 from matstd.twin.library import title_of
+from matstd.twin.numbers import rms
 from matstd.twin.units import DEG, UM
 from matstd.twin.words import listed
 
@@ -340,7 +341,7 @@ def promise_sentence(
         others: What the model has of another run: the promise holds where nothing like it happens.
     """
     word = "worse than" if found.rms > BROKEN * promised else "as good as"
-    expected = float(np.sqrt(np.mean(found.u[found.counted] ** 2)))
+    expected = rms(found.u[found.counted])
     elsewhere = (
         f" At these touches, which are not those that it was made from, {microns(expected)} "
         "are to be expected of its uncertainty."

@@ -95,7 +95,10 @@ def test_formulas(frame, tmp_path, formula, value):
 @pytest.mark.parametrize(
     ("blocks", "said"),
     [
-        ("LBL 1\nLBL 1", "line 6: found LBL 1 again, expected it once, as in line 5"),
+        (
+            "LBL 1\nLBL 1",
+            "line 6: found LBL 1 again, expected every label once; it is in line 5",
+        ),
         ("LBL 1\nCALL LBL 1", "LBL 1 without an end, expected LBL 0 behind it"),
         ("LBL 1\nCALL LBL 1\nLBL 0", "line 6: found subprograms 9 deep, expected 8 at most"),
         ("LBL 1\nFN 9: IF +1 EQU +1 GOTO LBL 1", "blocks, expected a program that ends"),
@@ -110,7 +113,7 @@ def test_formulas(frame, tmp_path, formula, value):
     ],
 )
 def test_what_does_not_run_is_named_with_its_line(frame, tmp_path, blocks, said, monkeypatch):
-    monkeypatch.setattr("matstd.compensation.part_programs.klartext_flow.MOST", 1000)
+    monkeypatch.setattr("matstd.nc.grammar.order.MOST", 1000)
     with pytest.raises(BadFile) as refused:
         program(f"{START}{blocks}\nEND PGM A MM\n", frame, tmp_path)
     assert said in str(refused.value)

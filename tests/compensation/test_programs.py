@@ -193,7 +193,7 @@ def test_klartext_is_the_same_geometry(frame, tmp_path):
         ("a.H", "L X+1 RL F9", "the tool, whose radius nobody has stated, expected --tool-radius"),
         ("a.H", "L X+Q1", "Q1 without a value, expected a parameter that the program has set"),
         ("a.H", "FN 18: SYSREAD Q1 = ID1", "expected FN 0 to FN 8 and FN 13 with"),
-        ("a.H", "CALL LBL 3", "LBL 3, expected a label of this file: none"),
+        ("a.H", "CALL LBL 3", "LBL 3, expected a label that is defined; available: none"),
         ("a.H", "CYCL DEF 252 CIRCULAR POCKET ~\nQ215=0", "and holes (200, 201, 202"),
         ("a.H", "APPR LCT X+1 Y+1 R5 RL F9", "L, LP, CC, C, CP, CR, RND, CHF: others are"),
         ("a.H", "C X+1 Y+1 DR+ F9", "CC with two of X, Y and Z before it"),

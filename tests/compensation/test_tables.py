@@ -9,7 +9,7 @@ from bench import LENGTH, oracle_tip
 from matstd.cli import main
 from matstd.compensation.field.inverse import datum_of, played
 from matstd.compensation.field.machine_errors import MachineErrors, deviation
-from matstd.compensation.field.over_workspace import aligned, rms, workspace
+from matstd.compensation.field.over_workspace import aligned, workspace
 from matstd.compensation.field.state import State
 from matstd.compensation.tables.along_axes import along_axes
 from matstd.compensation.tables.by_name import line
@@ -25,6 +25,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.numbers import rms_length as rms
 from matstd.twin.units import DEG, NM, UM, URAD
 
 

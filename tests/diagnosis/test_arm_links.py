@@ -7,11 +7,11 @@ from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.geometry.arm_machine import found_arm
 from matstd.diagnosis.geometry.learnt import geometry_rows
 from matstd.diagnosis.remarks.run_remarks import JointsStood, remarks
+from matstd.importers.arms.serial_arm import arm_from_dh, joint_readings, tracker_run
+from matstd.importers.sheets import read_sheet
 from matstd.report.geometry.geometry_words import quantity_name
-from matstd.twin.foreign.serial_arm import arm_from_dh, joint_readings, tracker_run
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.model.model import Model
-from matstd.twin.sheets.sheet import read_sheet
 from matstd.twin.units import DEG, UM, URAD
 
 A = np.array([350.0, 1150.0, 41.0, 0.0, 0.0, 0.0])

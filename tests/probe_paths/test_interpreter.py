@@ -220,7 +220,7 @@ SEEDED: dict[str, tuple[Change, str]] = {
         "after a touch without contact",
     ),
     "spindle not stopped": (drop("M5"), "M5 before it"),
-    "loop without end": (insert("CALL LBL 90", "FN 12: IF +Q1613"), "expected at most 8"),
+    "loop without end": (insert("CALL LBL 90", "FN 12: IF +Q1613"), "8 at most"),
 }  # fmt: skip
 
 

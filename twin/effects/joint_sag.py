@@ -104,7 +104,7 @@ def joint_sag(chain: Chain, joint: str) -> JointSag:
     The point of the next joint has no lever if it lies on this joint's line; two at one place are
     one.
     """
-    joints = chain.arm_joints
+    joints = chain.tool_rotary_axes
     own = chain.link(joint)
     ends = [*(chain.link(j) for j in joints[joints.index(joint) :]), chain.links[-1]]
     places = []
@@ -119,7 +119,7 @@ def joint_sag(chain: Chain, joint: str) -> JointSag:
 def make(chain: Chain, arguments: Sequence[str]) -> JointSag:
     """From the joint."""
     check_count(KIND.usage, arguments, 1, 1)
-    joints = chain.arm_joints
+    joints = chain.tool_rotary_axes
     if arguments[0] not in joints:
         known = ", ".join(joints) or "none on this machine"
         raise refusal(KIND.usage, arguments, f"a rotary axis that carries the tool: {known}")
@@ -130,12 +130,11 @@ def make(chain: Chain, arguments: Sequence[str]) -> JointSag:
 
 
 def propose(touches: Touches) -> Iterable[JointSag]:
-    """Every joint of a serial arm."""
-    if touches.chain.is_serial_arm:
-        for joint in touches.chain.arm_joints:
-            found = joint_sag(touches.chain, joint)
-            if found.places:
-                yield found
+    """Every joint of an open chain."""
+    for joint in touches.chain.joints:
+        found = joint_sag(touches.chain, joint)
+        if found.places:
+            yield found
 
 
 KIND = Kind(

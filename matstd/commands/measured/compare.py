@@ -32,7 +32,10 @@ OURS = (FOUND, "pictures/*.png", *REPORT_FILES)
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("run_file", metavar="RUN.csv", help="measurements")
-    add_measured(parser, "predict with it; without one the ordinary geometric model is fitted")
+    add_measured(
+        parser,
+        "the run is compared with its predictions (default: the ordinary geometric model, fitted)",
+    )
 
 
 def run(args: argparse.Namespace) -> int:

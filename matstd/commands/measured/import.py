@@ -10,9 +10,9 @@ from matstd.options import add_output, seen_from
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from matstd.importers.sheets import Sheet
     from matstd.twin.machine import Chain
     from matstd.twin.record import Run
-    from matstd.twin.sheets import Sheet
 
 _SIGN = {
     "positioning": "a deviation (actual - target) is the axis's own error; in the run it stands as "
@@ -37,32 +37,45 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "files",
         metavar="FILE",
         nargs="+",
-        help="csv, txt, xlsx, xls or ods; of several lists of points each is a set-up of its own",
+        help="csv, txt, xlsx, xls or ods; each of several lists of points is one set-up",
     )
     _add_kinds(parser)
     _add_details(parser)
-    parser.add_argument("--machine", metavar="MACHINE.toml", help="the machine; else one is made")
+    parser.add_argument(
+        "--machine",
+        metavar="MACHINE.toml",
+        help="machine file (default: a file is written from the table)",
+    )
     parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
-    parser.add_argument("--u-urad", type=float, help="the same of a rotary axis, µrad")
+    parser.add_argument(
+        "--u-urad", type=float, help="standard uncertainty of one reading of a rotary axis, µrad"
+    )
     parser.add_argument(
         "--in-order",
         metavar="SECONDS",
         type=float,
-        help="rows stand in the order in which they were taken, so far apart: for slips and drifts",
+        help="rows are in the order of measurement, SECONDS apart; allows the search for "
+        "drifts and slips",
     )
-    parser.add_argument("--unit", help="of deviations whose column names none, such as µm")
     parser.add_argument(
-        "--columns", metavar="NAME,...", help="names of the columns of a table without a header"
+        "--unit", help="unit of deviations if the column header names none, such as µm"
     )
-    parser.add_argument("--sheet", metavar="NAME", help="sheet of a workbook (the first with data)")
-    add_output(parser, "RUN.csv", "overwrite the outputs")
+    parser.add_argument(
+        "--columns", metavar="NAME,...", help="column names of a table without header"
+    )
+    parser.add_argument(
+        "--sheet", metavar="NAME", help="sheet of a workbook (default: the first with data)"
+    )
+    add_output(parser, "RUN.csv", "overwrite existing outputs")
 
 
 def _add_kinds(parser: argparse.ArgumentParser) -> None:
     """What the files are: one of them."""
     kind = parser.add_mutually_exclusive_group(required=True)
     kind.add_argument(
-        "--positioning", metavar="AXIS", help="ISO 230-2 table of this axis: targets, cycles"
+        "--positioning",
+        metavar="AXIS",
+        help="positioning test of this axis (ISO 230-2): targets, cycles",
     )
     kind.add_argument(
         "--component",
@@ -76,19 +89,22 @@ def _add_kinds(parser: argparse.ArgumentParser) -> None:
         help="circular test (ISO 230-4, ball bar) in XY, YZ or ZX: angles, radial deviations",
     )
     kind.add_argument(
-        "--part", action="store_true", help="nominal/measured list of a part this machine made"
+        "--part", action="store_true", help="nominal/measured list of a part that this machine made"
     )
     kind.add_argument(
         "--standard",
         action="store_true",
-        help="nominal/measured list of a calibrated plate or standard this machine measured",
+        help="nominal/measured list of a calibrated plate or standard that this machine measured",
     )
     kind.add_argument(
         "--arm",
         action="store_true",
-        help="serial arm under a tracker: columns j1, j2 ... of joints and x, y, z of reflectors",
+        help="serial arm measured by a laser tracker: columns j1, j2 ... (joints) and x, "
+        "y, z (reflector)",
     )
-    kind.add_argument("--map", metavar="MAP.toml", help="any other table, by a mapping file")
+    kind.add_argument(
+        "--map", metavar="MAP.toml", help="any other table, described by a mapping file"
+    )
 
 
 def _add_details(parser: argparse.ArgumentParser) -> None:
@@ -98,48 +114,55 @@ def _add_details(parser: argparse.ArgumentParser) -> None:
         "--target",
         metavar="COLUMN",
         default="",
-        help="where the axis was told to go, if the header does not say; of two encoders the one "
-        "that the control believes",
+        help="column of the target positions, if the header does not name it; with two "
+        "encoders, the one that closes the position loop",
     )
     test.add_argument(
         "--actual",
         metavar="COLUMN",
         default="",
-        help="where the axis really was, by the better instrument",
+        help="column of the actual positions, by the reference instrument",
     )
     circle = parser.add_argument_group("with --circle")
     circle.add_argument("--radius", type=float, help="nominal radius, mm")
-    circle.add_argument("--feed", type=float, help="mm/min, from which times and speeds follow")
+    circle.add_argument("--feed", type=float, help="feed, mm/min; times and speeds follow from it")
     circle.add_argument(
         "--bar-force",
         metavar="N",
         type=float,
-        help="of a loaded bar, which pushes the tool outwards (negative: pulls)",
+        help="force of a loaded ball bar on the tool, N, outwards (negative: inwards)",
     )
     place: dict[str, Any] = {"metavar": ("X", "Y", "Z"), "type": float, "nargs": 3}
     circle.add_argument(
-        "--centre", default=(0.0, 0.0, 0.0), help="readings at its centre, mm (0 0 0)", **place
+        "--centre",
+        default=(0.0, 0.0, 0.0),
+        help="axis readings at the centre of the circle, mm (0 0 0)",
+        **place,
     )
     arm = parser.add_argument_group("with --arm")
     arm.add_argument(
         "--dh",
         metavar="DH.csv",
-        help="for --machine: Denavit and Hartenberg's a alpha d theta, a row a joint",
+        help="Denavit-Hartenberg parameters a, alpha, d, theta, one row per joint, instead "
+        "of --machine",
     )
     arm.add_argument(
-        "--modified", action="store_true", help="the parameters of --dh are modified ones (Craig)"
+        "--modified",
+        action="store_true",
+        help="the parameters of --dh follow the modified convention (Craig)",
     )
     arm.add_argument(
         "--coupled",
         metavar="J3+J2",
         action="append",
         default=[],
-        help="a joint whose readings count from the link before another joint (Fanuc: J3+J2)",
+        help="coupled joints: the reading of the first is relative to the link before the "
+        "second (Fanuc: J3+J2)",
     )
     arm.add_argument(
         "--reflector",
-        help="place of the reflector, mm, in the tool frame, or with --dh in the frame of the "
-        "flange; found from the data where it is not stated",
+        help="position of the reflector, mm, in the tool frame, or with --dh in the flange "
+        "frame (default: estimated from the data)",
         **place,
     )
 
@@ -149,9 +172,9 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from matstd.console import say
+    from matstd.importers.sheets import read_sheet
     from matstd.twin.errors import DesignError
     from matstd.twin.files import refuse_to_overwrite
-    from matstd.twin.sheets import read_sheet
 
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)
@@ -178,9 +201,9 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
     from pathlib import Path
 
     from matstd.console import say, say_each
+    from matstd.importers import mapped_run
     from matstd.twin.errors import BadFile
     from matstd.twin.files import read_machine, read_run, write_whole
-    from matstd.twin.foreign import mapped_run
 
     text, left_out = mapped_run(sheet, args.map)
     with tempfile.TemporaryDirectory() as folder:
@@ -221,8 +244,8 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
 
     from matstd.commands.measured.kinds import arm, circle, points, positioning
     from matstd.console import say
+    from matstd.importers import machine_text
     from matstd.twin.files import refuse_to_overwrite, write_run, write_whole
-    from matstd.twin.foreign import machine_text
     from matstd.twin.units import UM
 
     meaning = next(m for m in _SIGN if getattr(args, m))

@@ -8,18 +8,18 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     import argparse
 
-    from matstd.twin.foreign import PositioningTest
+    from matstd.importers.instruments import PositioningTest
+    from matstd.importers.sheets import Sheet
     from matstd.twin.frames import Array
     from matstd.twin.machine import Chain
     from matstd.twin.record import Run
-    from matstd.twin.sheets import Sheet
 
 
 def positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """A positioning test as a run."""
+    from matstd.importers import one_axis_machine, positioning_run, read_positioning
     from matstd.twin.errors import DesignError
     from matstd.twin.files import read_machine
-    from matstd.twin.foreign import one_axis_machine, positioning_run, read_positioning
     from matstd.twin.units import UM, URAD
 
     name = args.component or ""
@@ -40,7 +40,7 @@ def _say_positioning(test: PositioningTest) -> None:
     import numpy as np
 
     from matstd.console import say
-    from matstd.twin.foreign import positioning_figures
+    from matstd.importers.instruments import positioning_figures
     from matstd.twin.units import DEG, UM, URAD
 
     turns = test.axis in "ABC"
@@ -89,9 +89,9 @@ def _say_component(test: PositioningTest) -> None:
 def circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """A circular test as a run."""
     from matstd.console import say
+    from matstd.importers import circle_machine, circle_run, read_circle
     from matstd.twin.errors import DesignError
     from matstd.twin.files import read_machine
-    from matstd.twin.foreign import circle_machine, circle_run, read_circle
     from matstd.twin.units import UM
 
     plane = args.circle.upper()
@@ -122,9 +122,7 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     import numpy as np
 
     from matstd.console import say
-    from matstd.twin.errors import DesignError
-    from matstd.twin.files import read_machine
-    from matstd.twin.foreign import (
+    from matstd.importers.arms import (
         arm_from_dh,
         coupled,
         joint_readings,
@@ -132,7 +130,9 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         misfit,
         tracker_run,
     )
-    from matstd.twin.sheets import read_sheet
+    from matstd.importers.sheets import read_sheet
+    from matstd.twin.errors import DesignError
+    from matstd.twin.files import read_machine
     from matstd.twin.units import UM
 
     if bool(args.machine) == bool(args.dh):
@@ -181,8 +181,7 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
 def points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tuple[Run, Chain]:
     """A list of points as a run."""
     from matstd.console import say
-    from matstd.twin.files import read_machine
-    from matstd.twin.foreign import (
+    from matstd.importers.points import (
         in_measured_frame,
         in_nominal_frame,
         joined_points,
@@ -192,6 +191,7 @@ def points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tuple
         points_run,
         read_points,
     )
+    from matstd.twin.files import read_machine
     from matstd.twin.units import DEG, UM
 
     lists = [read_points(sheet, args.unit) for sheet in sheets]

@@ -10,11 +10,14 @@ from matstd.workers import add_scheduler
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("project", metavar="PROJECT.toml", help="what to design, for which machine")
+    parser.add_argument(
+        "project", metavar="PROJECT.toml", help="project file: machine, blank, workspace, control"
+    )
     parser.add_argument(
         "--control",
         metavar="NAME|FILE.toml",
-        help="for which programs are written, instead of the project's (docs/controls.md)",
+        help="control that the programs are written for (default: the project's; see "
+        "docs/controls.md)",
     )
     add_scheduler(parser)
     add_pdf(parser)

@@ -1,0 +1,25 @@
+"""Klartext and G-code as text: blocks, words, values, and the order in which blocks run.
+
+Nothing here knows a machine. A reader that stands on it decides which blocks it takes.
+"""
+
+from matstd.nc.grammar.blocks import Block, Line, gcode_lines, klartext_blocks
+from matstd.nc.grammar.flow import DEEPEST, Flow, label_places
+from matstd.nc.grammar.formulas import COMPARISONS
+from matstd.nc.grammar.order import run_order
+from matstd.nc.grammar.words import NUMBER, SIGNED, split_words
+
+__all__ = [
+    "COMPARISONS",
+    "DEEPEST",
+    "NUMBER",
+    "SIGNED",
+    "Block",
+    "Flow",
+    "Line",
+    "gcode_lines",
+    "klartext_blocks",
+    "label_places",
+    "run_order",
+    "split_words",
+]

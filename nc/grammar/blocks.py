@@ -1,0 +1,77 @@
+"""Text of a program to its blocks: numbers, comments and continued lines, nothing else."""
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+
+class Block(NamedTuple):
+    """One block of Klartext.
+
+    Attributes:
+        line: Of the file, from 1; the first of a block that goes on.
+        number: Block number as it stands there; empty where the block has none.
+        text: Without the number; line ends stand where the block goes on.
+    """
+
+    line: int
+    number: str
+    text: str
+
+    @property
+    def folded(self) -> str:
+        """On one line, with single spaces."""
+        return " ".join(self.text.split())
+
+    @property
+    def bare(self) -> str:
+        """Folded, without its comment, in capitals; names in quotes as they are."""
+        text = " ".join(self.text.partition(";")[0].split())
+        return "".join(p if p[:1] == '"' else p.upper() for p in re.split(r'("[^"]*")', text))
+
+
+_NUMBERED = re.compile(r"\s*(\d+)\s+")
+
+
+def klartext_blocks(lines: Sequence[str]) -> Iterator[Block]:
+    """Blocks of a Klartext program; a line that ends in a tilde continues on the next one.
+
+    Only the last block of a file that is cut off can end in a tilde.
+    """
+    i = 0
+    while i < len(lines):
+        first, raw = i + 1, lines[i]
+        while raw.rstrip().endswith("~") and i + 1 < len(lines):
+            i += 1
+            raw = f"{raw}\n{lines[i]}"
+        i += 1
+        match = _NUMBERED.match(raw)
+        number, text = (match[1], raw[match.end() :]) if match else ("", raw)
+        yield Block(first, number, text.strip())
+
+
+class Line(NamedTuple):
+    """One line of G-code.
+
+    Attributes:
+        line: Of the file, from 1.
+        text: As it stands there, without spaces at its ends.
+        code: In capitals, without remarks.
+        remarks: Comments in brackets and behind a semicolon, with these, one after the other.
+    """
+
+    line: int
+    text: str
+    code: str
+    remarks: str
+
+
+_REMARK = re.compile(r"\([^)]*\)|;.*")
+
+
+def gcode_lines(lines: Sequence[str]) -> Iterator[Line]:
+    """Lines of a G-code program."""
+    for number, raw in enumerate(lines, start=1):
+        remarks = _REMARK.findall(raw) if "(" in raw or ";" in raw else []
+        code = (_REMARK.sub("", raw) if remarks else raw).strip().upper()
+        yield Line(number, raw.strip(), code, "".join(remarks).strip())
