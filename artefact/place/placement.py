@@ -53,6 +53,10 @@ from matstd.information.selection import Certificate
 from matstd.twin.compute import Progress, silent
 from matstd.twin.frames import Array
 
+_CRITERION, _PLACES, _RIVALS, _CHOSEN = 1, 7, 72, 99
+"""Per cent of the time until criterion, places, rivals and the standard itself are there: on five
+axes 1, 6, 73 and 99.7 %, on three 1, 13, 71 and 99 %."""
+
 _FREE = 480  # free touches that judge what is visible, at least
 
 
@@ -123,6 +127,7 @@ def design_standard(
             every limit; the message names what binds.
         NotReachable: The machine reaches too few touches on the standard.
     """
+    progress("placement", 0, 100)
     reach, blank, options = brief.reach, brief.blank, brief.options
     choice = options.choice
     check_blank(blank.base, reach)
@@ -137,14 +142,14 @@ def design_standard(
         choice.touches,
         brief.population,
     )
-    progress("placement", 1, 6)
+    progress("placement", _CRITERION, 100)
     all_poses = table_poses(criterion, choice.poses) if poses is None else poses
     places = ball_places(criterion.plain, blank, all_poses, rng)
     bodies = body_choice(places, all_poses, options.patches, options.sites, rng)
-    progress("placement", 2, 6)
+    progress("placement", _PLACES, 100)
     library = _effects(criterion, max(choice.touches, _FREE), rng)
     rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)
-    progress("placement", 4, 6)
+    progress("placement", _RIVALS, 100)
     bases = ball_bases(criterion.plain, rivals, places, all_poses, options)
     first = identifying(criterion, bodies, bases, options)
     found = rearranged(criterion, bodies, places, first, bases[0].value, all_poses, choice)
@@ -153,10 +158,10 @@ def design_standard(
     proof, powers = _proving(on_body, found, on_faces, choice.proof, library, rng)
     requests, tried = found.tried[found.chosen], found.tried
     standard = with_error_shares(criterion, found.standard, proof)
-    progress("placement", 5, 6)
+    progress("placement", _CHOSEN, 100)
     lots = random_lots(tried, len(requests), rng)
     own = evaluated(f"standard {options.name}", here, requests, lots, library, len(tried), standard)
-    progress("placement", 6, 6)
+    progress("placement", 100, 100)
     return Placement(
         standard=standard,
         requests=requests,
