@@ -6,7 +6,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from matstd.artefact.layout.sites import Blank
+from matstd.artefact.layout.blank import Blank
 from matstd.artefact.worth import ball_choice
 from matstd.artefact.worth.calibration import Calibration
 from matstd.artefact.worth.touch_choice import each_at, face_grid, sphere_grid, table_poses

@@ -17,7 +17,7 @@ from matstd.artefact.body.limits import (
     overhang,
 )
 from matstd.artefact.brief.brief import PlacementOptions
-from matstd.artefact.layout.sites import Blank
+from matstd.artefact.layout.blank import Blank
 from matstd.artefact.place.placement import design_standard
 from matstd.artefact.reach.probe_clearance import ProbeShape
 from matstd.artefact.reach.touchable import ProbeReach, Requests

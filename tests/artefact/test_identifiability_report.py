@@ -15,7 +15,7 @@ from matstd.artefact.compare.alternatives import (
     touches_reached_in,
 )
 from matstd.artefact.compare.identifiability import identifiability_report
-from matstd.artefact.layout.sites import Blank
+from matstd.artefact.layout.blank import Blank
 from matstd.artefact.reach.touchable import ProbeReach
 from matstd.artefact.tool.probe import Probe
 from matstd.artefact.worth.touch_criterion import criterion_for, random_touches

@@ -12,7 +12,7 @@ from matstd.artefact.body.patch import Meeting
 from matstd.artefact.body.standard import Base
 from matstd.artefact.brief.brief import PlacementOptions
 from matstd.artefact.compare.power import proof_power, task_normals
-from matstd.artefact.layout.sites import Blank
+from matstd.artefact.layout.blank import Blank
 from matstd.artefact.place.placement import design_standard
 from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
 from matstd.artefact.reach.touchable import ProbeReach

@@ -9,9 +9,9 @@ import pytest
 from matstd.artefact.body.freeform import graph_patch
 from matstd.artefact.feasibility.room import check_room, light_enough, room_among
 from matstd.artefact.feasibility.touched import mutually_probeable, touches_on, untouched
+from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.rival_artefacts import with_spheres
 from matstd.artefact.layout.side_by_side import most_side_by_side
-from matstd.artefact.layout.sites import Blank
 from matstd.artefact.layout.upright import balls_on_posts, faces_beside, freeform_faces
 from matstd.artefact.place.body_choice import BodyChoice
 from matstd.artefact.reach.probe_clearance import ProbeShape
