@@ -50,4 +50,5 @@ def fitted_sphere(points: Array, start: Array | None = None) -> FittedSphere:
     first = np.append(start, np.linalg.norm(points - start, axis=1).mean())
     solved = least_squares(left, first, jacobian, method="lm", xtol=_PRECISE, ftol=_PRECISE).x
     J = jacobian(solved)
-    return FittedSphere(solved[:3], float(solved[3]), left(solved), np.linalg.pinv(J.T @ J))
+    cofactor = np.asarray(np.linalg.pinv(J.T @ J), dtype=np.float64)
+    return FittedSphere(solved[:3], float(solved[3]), left(solved), cofactor)

@@ -44,8 +44,8 @@ from matstd.artefact.worth import (
     Visibility,
     ball_places,
     criterion_for,
+    poses_within,
     random_touches,
-    table_poses,
     visibility,
     with_error_shares,
 )
@@ -143,7 +143,7 @@ def design_standard(
         brief.population,
     )
     progress("placement", _CRITERION, 100)
-    all_poses = table_poses(criterion, choice.poses) if poses is None else poses
+    all_poses = poses_within(reach.chain, brief.rotary, choice.poses) if poses is None else poses
     places = ball_places(criterion.plain, blank, all_poses, rng)
     bodies = body_choice(places, all_poses, options.patches, options.sites, rng)
     progress("placement", _PLACES, 100)

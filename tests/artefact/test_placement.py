@@ -17,7 +17,7 @@ from matstd.artefact.place.placement import design_standard
 from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
 from matstd.artefact.reach.touchable import ProbeReach
 from matstd.artefact.worth.potential import library
-from matstd.artefact.worth.touch_choice import TouchOptions, table_poses
+from matstd.artefact.worth.touch_choice import TouchOptions, poses_within
 from matstd.artefact.worth.touch_criterion import CriterionOptions
 from matstd.information.criteria.posterior import Posterior
 from matstd.sensitivity.population.dependence import Group, grouped
@@ -258,20 +258,17 @@ def test_an_unknown_criterion_is_refused():
         PlacementOptions(criterion=CriterionOptions("T"))
 
 
-def test_poses_keep_room_to_be_approached(reach, chain):
-    class Criterion:
-        rotary = np.array([(-360.0 * DEG, 360.0 * DEG), (-110.0 * DEG, 30.0 * DEG)])
-
-    Criterion.reach = reach
-    poses = table_poses(Criterion, 18)
+def test_poses_keep_room_to_be_approached(chain):
+    rotary = np.array([(-360.0 * DEG, 360.0 * DEG), (-110.0 * DEG, 30.0 * DEG)])
+    poses = poses_within(chain, rotary, 18)
     assert 80 <= len(poses) <= 140
     assert poses[:, 1].min() >= -104.0 * DEG - 1e-9
     assert poses[:, 1].max() <= 24.0 * DEG + 1e-9
     np.testing.assert_allclose(poses / DEG, np.round(poses / DEG), atol=1e-9)
     assert len(np.unique(poses[:, 1])) > 20  # many different readings of B
-    Criterion.rotary = np.array([(0.0, 0.0), (-109.0 * DEG, -108.0 * DEG)])
+    narrow = np.array([(0.0, 0.0), (-109.0 * DEG, -108.0 * DEG)])
     with pytest.raises(NotReachable, match="leave no room: they are approached from both sides"):
-        table_poses(Criterion, 18)
+        poses_within(chain, narrow, 18)
 
 
 class ScalesAreDrawn(Exception):
