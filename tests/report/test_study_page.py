@@ -128,4 +128,4 @@ def test_a_machine_without_a_volume_is_told_so(tmp_path):
     )
     remarks: list[str] = []
     assert draw_study_volumes(small, tmp_path, remarks) == []
-    assert remarks == ["No maps in three dimensions: they need three linear axes with room."]
+    assert remarks == ["No maps in three dimensions: they need three linear axes that can move."]
