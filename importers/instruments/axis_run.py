@@ -34,9 +34,9 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
 
     Every reading is a distance along the motion: its direction is that in which the tool moves
     relative to the workpiece while the reading grows, its deviation the negative of what the
-    instrument says; of a straightness the direction is that of the component. An angle is told
-    times `ARM`, as an autocollimator reads it: it feels neither an eccentric polygon nor an axis
-    that wanders aside.
+    instrument says; of a straightness the direction is that of the component. An angle is
+    written times `ARM`, as an autocollimator reads it: neither an eccentric polygon nor an axis
+    that wanders aside changes it.
 
     Args:
         test: The readings.

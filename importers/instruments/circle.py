@@ -22,7 +22,7 @@ from matstd.twin.record import Instrument, IntArray, Labels, Run, Setup, at_pose
 from matstd.twin.units import MINUTE
 
 BETWEEN = 10.0
-"""Pause (s) between two runs of which nobody says how long it was."""
+"""Pause (s) that is assumed between two runs."""
 
 JUST = 1e-6
 """Angle (rad) before a reading at which its axes last moved for certain."""
