@@ -87,7 +87,6 @@ def import_arm(
         chain, turned = arm_from_dh(dh, table.q, is_modified)
         other = arm_from_dh(dh, table.q, not is_modified)[0]
     assert chain is not None
-    _check_joints(table, chain)
     stated = None if reflector is None else turned @ np.array(reflector)
 
     def left(arm: Chain, q: Array) -> float:
@@ -123,7 +122,6 @@ def tracker_run(table: ArmTable, chain: Chain, u: float, reflector: Array | None
         DesignError: Readings of other joints than the arm has, or of another arm.
         NotEnoughData: Poses too few or too alike to say where reflector and tracker are.
     """
-    _check_joints(table, chain)
     found = placed(table, chain, u, reflector)
     _check_placed(table.sheet, found, reflector is not None)
     sheet = table.sheet
@@ -146,16 +144,6 @@ def tracker_run(table: ArmTable, chain: Chain, u: float, reflector: Array | None
     )
     lines = np.array(sheet.lines)[which]
     return Run(touches, computed_deviation(touches), np.full(n, u), line=lines)
-
-
-def _check_joints(table: ArmTable, chain: Chain) -> None:
-    """Refuse readings of other joints than the arm has."""
-    axes = chain.programmed_axes
-    if len(table.joints) != len(axes) or chain.axes != axes:
-        raise DesignError(
-            f"{table.sheet.path}: {len(table.joints)} columns of joints, expected {len(axes)}: "
-            f"{', '.join(axes)}"
-        )
 
 
 def _check_placed(sheet: Sheet, found: Placement, is_stated: bool) -> None:

@@ -4,9 +4,8 @@ import csv
 import io
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -55,15 +54,8 @@ _TEXT = ("feature", "setup", "pose", "split")
 """Columns of a run that hold names."""
 
 
-@dataclass(frozen=True, eq=False)
-class MappedRun:
-    """A run made by a mapping file.
-
-    Attributes:
-        text: Of its run file.
-        run: As it reads back.
-        left_out: Number of readings without a deviation, which are not in it.
-    """
+class MappedRun(NamedTuple):
+    """Text of a run file, the run that it reads back as, and how many readings had no deviation."""
 
     text: str
     run: Run

@@ -111,11 +111,10 @@ def points_run(
     its rotary axes at zero; table frame and list share their origin, the set-up is free in a fit.
 
     Args:
-        points: The list.
+        points: The list, its deviations those in the frames.
         meaning: `part` or `standard`; it decides the sign.
         u: Standard uncertainty of one coordinate, mm.
-        frames: Where the set-ups of a standard stand that are not where the list says; deviations
-            are those in these frames.
+        frames: Where the set-ups of a standard stand that are not where the list says.
 
     Raises:
         OutsideTravel: A point that the machine does not reach.

@@ -135,9 +135,8 @@ def points(args: argparse.Namespace, sheets: list[Sheet]) -> tuple[Run, Chain]:
     from matstd.twin.units import DEG, UM
 
     u = _uncertainty(args, "u_um", UM)
-    meaning = "part" if args.part else "standard"
     then = "brought back to the nominal one" if args.part else "the standard stands so"
-    found = import_points(sheets, meaning, u, _machine(args), args.unit)
+    found = import_points(sheets, "part" if args.part else "standard", u, _machine(args), args.unit)
     if found.misplaced:
         some = ", ".join(f"{own!r} at {other!r}" for own, other in found.misplaced[:3])
         say(
