@@ -63,9 +63,10 @@ def placed(table: ArmTable, chain: Chain, u: float, reflector: Array | None) -> 
     damped least squares from the flange (variable projection, Golub and Pereyra 1973).
 
     Args:
+        table: Readings and measured places.
         chain: The nominal arm.
         u: Standard uncertainty of one coordinate, mm.
-        reflector: Where the reflector sits, tool frame, (3,), mm, if that is known.
+        reflector: Its place in the tool frame, (3,), mm, if that is known.
 
     Raises:
         DesignError: Readings of other joints than the arm has; several reflectors, and one place.

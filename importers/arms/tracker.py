@@ -73,8 +73,7 @@ def import_arm(
         reflector: Its place, mm, in the tool frame, or with `dh` in that of the flange, if known.
 
     Raises:
-        DesignError: Both descriptions or none, readings and places of another arm.
-        NotEnoughData: Poses too few or too alike.
+        DesignError: Both descriptions or none; also what `tracker_run` refuses.
     """
     if (machine is None) == (dh is None):
         given = "both given" if dh else "neither given"
@@ -106,17 +105,14 @@ def import_arm(
 def tracker_run(table: ArmTable, chain: Chain, u: float, reflector: Array | None = None) -> Run:
     """Run of an arm under a tracker: three rows a reflector and pose, along x, y, z of the tracker.
 
-    Times, temperatures, loads and columns of other units (torques, currents) of the sheet go with
-    them.
+    Its set-up is the tracker's frame, `touches.target` the reflector; times, temperatures, loads
+    and columns of other units (torques, currents) of the sheet go with it.
 
     Args:
         table: Readings in the order of the axes of the arm.
         chain: The arm.
         u: Standard uncertainty of one coordinate, mm.
         reflector: In the tool frame, (3,), mm; None finds it.
-
-    Returns:
-        The run; its set-up is the tracker's frame, `touches.target` has the reflector.
 
     Raises:
         DesignError: Readings of other joints than the arm has, or of another arm.

@@ -65,12 +65,12 @@ class MappedRun(NamedTuple):
 def import_mapped(
     sheet: Sheet, path: str | Path, folder: Path, chain: Chain | None = None
 ) -> MappedRun:
-    """A run by a mapping file, read once as the run file that it will be.
+    """A run by a mapping file, read once as the run file that it will be in a folder.
 
     Args:
         path: The mapping file.
-        folder: Where the run file will stand, from which its head names the machine.
-        chain: The machine; None takes the one that the head names.
+        folder: Of the run file, from which its head names the machine.
+        chain: The machine, in place of the one that the head names.
 
     Raises:
         BadFile: The mapping file's key, or what is wrong in the run that it makes.
@@ -101,12 +101,8 @@ def mapped_run(sheet: Sheet, path: str | Path) -> tuple[str, int]:
     them, with columns of its own beside the common ones; they are one pose. The head stands in the
     mapping file as it shall stand in the run.
 
-    Args:
-        path: The mapping file.
-
     Returns:
-        The text, and the number of readings that were left out because the cell of their deviation
-        is empty.
+        The text, and the number of readings left out because they have no deviation.
 
     Raises:
         BadFile: The mapping file's key, or a column that the table does not have.

@@ -76,8 +76,7 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
         unit: Of deviations whose column names none.
 
     Raises:
-        BadFile: Neither angles and deviations nor two coordinates, a unit or a direction that is
-            not stated.
+        BadFile: No such columns, a unit or a direction that is not stated.
     """
     at = sheet.find(_ANGLE)
     places = [i for i in map(sheet.find, map(_letter, plane)) if i is not None]
@@ -159,11 +158,7 @@ def _sense(word: str) -> int:
 def _order(
     sheet: Sheet, column: int, angle: Array, said: int | None, is_one_of_several: bool
 ) -> Order:
-    """The order of the rows of one column.
-
-    Raises:
-        BadFile: One of several columns whose name does not state its direction.
-    """
+    """The order of the rows of one column; raises BadFile where its name must state it."""
     n = len(sheet)
     order, sense = np.arange(n), _sense(sheet.names[column])
     if said is not None:

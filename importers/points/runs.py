@@ -45,19 +45,17 @@ def import_points(
     machine: Chain | None = None,
     unit: str | None = None,
 ) -> PointsImport:
-    """Run of one list of points or several, with its machine.
+    """Run of one list of points, or of several as runs of their own, with its machine.
 
     Args:
-        sheets: Of several, each is a run of its own.
         meaning: Who made and who measured the points: see `reading`.
         u: Standard uncertainty of one coordinate, mm.
         machine: None makes one whose travels are those of the points.
         unit: Of columns whose name has none; None takes mm for coordinates and refuses deviations.
 
     Raises:
-        BadFile: No nominal or no measured coordinate; a deviation without a unit.
-        DesignError: Points that fit a mirrored frame alone.
-        OutsideTravel: A point that the machine does not reach.
+        DesignError: Points that fit a mirrored frame alone; also what `read_points` refuses, and a
+            point that the machine does not reach.
     """
     lists = [read_points(sheet, unit) for sheet in sheets]
     points = joined_points(lists, [sheet.path.stem for sheet in sheets])
