@@ -10,6 +10,7 @@ if TYPE_CHECKING:
 
     from matstd.importers import Sheet
     from matstd.importers.instruments import PositioningTest
+    from matstd.importers.points import Meaning
     from matstd.twin.machine import Chain
     from matstd.twin.record import Run
 
@@ -134,9 +135,10 @@ def points(args: argparse.Namespace, sheets: list[Sheet]) -> tuple[Run, Chain]:
     from matstd.importers import import_points
     from matstd.twin.units import DEG, UM
 
-    u = _uncertainty(args, "u_um", UM)
+    meaning: Meaning = "part" if args.part else "standard"
     then = "brought back to the nominal one" if args.part else "the standard stands so"
-    found = import_points(sheets, "part" if args.part else "standard", u, _machine(args), args.unit)
+    u = _uncertainty(args, "u_um", UM)
+    found = import_points(sheets, meaning, u, _machine(args), args.unit)
     if found.misplaced:
         some = ", ".join(f"{own!r} at {other!r}" for own, other in found.misplaced[:3])
         say(
