@@ -1,6 +1,7 @@
 # All set-up on a fresh machine with Python 3.11 or later, git and make:
 #   make design   the main job, into out/hsm600u
 #   make test     the tests
+#   make mutants  whether the tests notice 200 wrong lines, an hour or two
 #   make api      the pages of the Python interface, docs/api.md and out/api
 PYTHON ?= python3
 BIN := .venv/bin
@@ -9,7 +10,7 @@ BIN := .venv/Scripts
 PYTHON = py -3
 endif
 
-.PHONY: design test proof lint benchmark api clean
+.PHONY: design test proof lint benchmark mutants api clean
 
 .venv/installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv
@@ -32,6 +33,9 @@ lint: .venv/installed
 
 benchmark: .venv/installed
 	$(BIN)/python -m benchmarks
+
+mutants: .venv/installed
+	$(BIN)/python benchmarks/mutants.py
 
 api: .venv/installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e ".[docs]"

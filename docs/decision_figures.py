@@ -146,7 +146,7 @@ def step_file() -> dict[str, str]:
         code = (
             "import sys; from build123d import export_step\n"
             "from matstd.artefact.body import read_standard\n"
-            "from matstd.cad_out.build import as_part\n"
+            "from matstd.cad_out.kernel import as_part\n"
             "export_step(as_part(read_standard(sys.argv[1]))[0], sys.argv[2])\n"
         )
         from matstd.artefact.body import write_standard

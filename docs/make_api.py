@@ -15,6 +15,7 @@ ROOT = Path(__file__).parents[1]
 INDEX, PAGES = ROOT / "docs" / "api.md", ROOT / "out" / "api"
 ROOMS = (
     "matstd.twin",
+    "matstd.importers",
     "matstd.sensitivity",
     "matstd.information",
     "matstd.nc",

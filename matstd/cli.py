@@ -9,33 +9,37 @@ from collections.abc import Sequence
 
 FOLDERS = {
     "standard": {
-        "design": "the main job: sensitivities, standard, STEP and STL, programs, proof, report",
+        "design": "design a material standard: geometry, STEP and STL, probing programs, "
+        "virtual test, report",
         "sensitivity": "sensitivity of the tool point to every error parameter at every pose",
-        "calibrate": "a standard as a CMM finds it, and the program for that machine",
-        "uncertainty": "of a measuring task, from visits to the calibrated faces (ISO 15530-3)",
+        "calibrate": "apply a CMM calibration to a standard, or write the CMM program (DMIS)",
+        "uncertainty": "expanded uncertainty of a measuring task, from repeated runs on a "
+        "calibrated standard (ISO 15530-3)",
     },
     "probing": {
-        "simulate": "run an emitted probing program on the machine's twin and write a run file",
-        "control-test": "emitted programs on an installed LinuxCNC, the exact twin as its machine",
-        "evaluate": "logs of our probing programs from the control, made a run file",
-        "replan": "programs planned again for where the standard stands, as a log tells it",
+        "simulate": "run emitted probing programs on the machine's twin and write a run file",
+        "control-test": "run emitted programs on an installed LinuxCNC with the exact twin as its "
+        "machine",
+        "evaluate": "convert the control's logs of emitted probing programs to a run file",
+        "replan": "re-plan the programs for the actual position of the standard",
     },
     "measured": {
-        "import": "tables of instruments, CMMs and spreadsheets made a run file",
-        "compare": "measurements against the model: where it fails",
-        "diagnose": "which effect is missing in the model, and how far the error falls with it",
-        "thermal": "laws of a thermal drift from logs of temperatures, and predictions with them",
+        "import": "convert tables of instruments, CMMs and spreadsheets to a run file",
+        "compare": "compare measurements with the model: where it fails",
+        "diagnose": "find the effect that the model lacks and the error that remains with it",
+        "thermal": "fit laws of thermal drift to temperature logs and predict with them",
     },
     "compensation": {
-        "compensate": "the identified model goes back to the control: tables, or a part program",
-        "serve": "corrections while the machine moves, over OPC UA or on LinuxCNC",
-        "contributions": "what every error adds along a program or at poses",
+        "compensate": "compensate with an identified model: control tables or a part program",
+        "serve": "serve corrections while the machine moves, over OPC UA or on LinuxCNC",
+        "contributions": "contribution of every error along a program or at poses",
     },
     "machine": {
         "volumetric": "exact deviation of the tool point in the table frame, one row per pose",
-        "machines": "the machines that come with the tool, with the source of every figure",
-        "new": "a commented minimal file to start from: machine, project, run or effect",
-        "effects": "the effects that can be added, each with its formula and units",
+        "machines": "list the included machines; print a machine file with the source of every "
+        "figure",
+        "new": "write a commented minimal file: machine, project, run or effect",
+        "effects": "list the effects of the library with their formulas and units",
     },
 }
 """Commands by the folder of `matstd/commands` that has their files, with what each does."""
@@ -108,10 +112,13 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
     """Parser that imports only the command that is called, so that help answers at once."""
     parser = argparse.ArgumentParser(
         prog="matstd",
-        description="Designs freeform material standards for multi-axis machine tools, probes them "
-        "on the machine's digital twin, and names the physics that a model lacks.",
+        description="Designs freeform material standards for multi-axis machine tools, probes "
+        "them on the machine's digital twin, and identifies the effects that a model "
+        "lacks.",
     )
-    parser.add_argument("--version", action=_Version, nargs=0, help="what results depend on")
+    parser.add_argument(
+        "--version", action=_Version, nargs=0, help="print the versions that results depend on"
+    )
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
     called = next((word for word in arguments if not word.startswith("-")), None)
     for folder, inside in FOLDERS.items():

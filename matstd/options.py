@@ -46,8 +46,8 @@ def add_output(parser: argparse.ArgumentParser, name: str = "OUT", force: str = 
         force: Help of --force where it is not the usual.
     """
     is_folder = name == "OUT"
-    meaning = "folder to be made" if is_folder else "to be written"
-    usual = "replace results of an earlier run" if is_folder else "overwrite the output"
+    meaning = "output folder" if is_folder else "output file"
+    usual = "replace results of an earlier run" if is_folder else "overwrite an existing output"
     parser.add_argument("-o", "--output", metavar=name, required=True, help=meaning)
     parser.add_argument("--force", action="store_true", help=force or usual)
 
@@ -55,7 +55,11 @@ def add_output(parser: argparse.ArgumentParser, name: str = "OUT", force: str = 
 def add_effects(parser: argparse.ArgumentParser) -> None:
     """The option --effects."""
     parser.add_argument(
-        "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
+        "--effects",
+        metavar="FILE.py",
+        action="append",
+        default=[],
+        help="file with your own effects; may be repeated",
     )
 
 
@@ -66,8 +70,8 @@ def add_body(parser: argparse.ArgumentParser, meaning: str) -> None:
         "--body-u-K",
         metavar="U",
         type=float,
-        help="standard uncertainty of the temperature of the standard (0.3 where it is stated, "
-        "2 about 20 °C where it is not)",
+        help="standard uncertainty of the temperature of the standard, K (0.3 if the "
+        "temperature is stated; otherwise 2, about 20 °C)",
     )
 
 
@@ -120,7 +124,9 @@ def add_measured(parser: argparse.ArgumentParser, without: str) -> None:
     add_start(parser, without)
     add_pitch(parser)
     add_effects(parser)
-    parser.add_argument("--no-report", action="store_true", help="no pictures and no page")
+    parser.add_argument(
+        "--no-report", action="store_true", help="do not write the report page and its figures"
+    )
     add_pdf(parser)
     add_output(parser)
 
@@ -131,7 +137,7 @@ def add_pdf(parser: argparse.ArgumentParser) -> None:
         "--pdf",
         action="store_true",
         default=None,
-        help="print the report into report.pdf too (by WeasyPrint or a browser of this machine)",
+        help="also print the report to report.pdf (needs WeasyPrint or a browser)",
     )
 
 
@@ -163,12 +169,12 @@ def add_start(parser: argparse.ArgumentParser, without: str) -> None:
         parser: Of the command.
         without: What it does without a model, for the help.
     """
-    parser.add_argument("--model", metavar="MODEL.toml", help=f"of an earlier run; {without}")
+    parser.add_argument("--model", metavar="MODEL.toml", help=f"model of an earlier run; {without}")
     parser.add_argument(
         "--start",
         metavar="WHAT",
-        help=f"starting model: {SETUP} (where the standard stands, no more), {GEOMETRY} (the "
-        "ordinary model, as without this option), or MODEL.toml (as --model)",
+        help=f"starting model: {SETUP} (position of the standard only), {GEOMETRY} (the ordinary "
+        "geometric model, the default) or MODEL.toml (as --model)",
     )
 
 
@@ -180,8 +186,8 @@ def add_pitch(parser: argparse.ArgumentParser) -> None:
         action="extend",
         nargs="+",
         default=[],
-        help="pitch of the screw or scale of an axis: errors that repeat are looked for at it and "
-        "at its whole fractions, and it is preferred among periods that look alike",
+        help="pitch of the screw or scale of an axis; the search for periodic errors "
+        "includes it and its whole fractions and prefers it to similar periods",
     )
 
 

@@ -16,8 +16,8 @@ def add_scheduler(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--scheduler",
         metavar="tcp://HOST:PORT",
-        help="let the workers of this Dask scheduler draw the random machines; the results are "
-        "those of a run without",
+        help="draw the random machines on the workers of this Dask scheduler; the results "
+        "do not change",
     )
 
 

@@ -13,7 +13,6 @@ import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-TYPES = ROOT / "build" / "types"
 
 
 def link_folder(link: Path, goal: Path) -> None:
@@ -33,22 +32,22 @@ def remove_links(folder: Path) -> None:
             entry.unlink()
 
 
-def installed_layout() -> Path:
-    """build/types/matstd with every folder and file where an installation has it."""
-    layout = TYPES / "matstd"
+def installed_layout(root: Path) -> Path:
+    """build/types/matstd of a project, every folder and file where an installation has it."""
+    layout = root / "build" / "types" / "matstd"
     layout.mkdir(parents=True, exist_ok=True)
     remove_links(layout)
-    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
     for name, folder in project["tool"]["setuptools"]["package-dir"].items():
-        link_folder(layout / name.removeprefix("matstd."), ROOT / folder)
-    for entry in (ROOT / "matstd").iterdir():
+        link_folder(layout / name.removeprefix("matstd."), root / folder)
+    for entry in (root / "matstd").iterdir():
         if entry.is_dir() and entry.name != "__pycache__":
             link_folder(layout / entry.name, entry)
         elif entry.is_file():
-            shutil.copyfile(entry, layout / entry.name)
+            shutil.copy2(entry, layout / entry.name)
     return layout
 
 
 if __name__ == "__main__":
-    installed_layout()
+    installed_layout(ROOT)
     sys.exit(subprocess.run([sys.executable, "-m", "mypy"], cwd=ROOT, check=False).returncode)

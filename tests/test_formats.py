@@ -19,6 +19,7 @@ from matstd.diagnosis.drift.beams import beam_estimate, read_beams
 from matstd.diagnosis.drift.record import DriftRecord
 from matstd.diagnosis.files.diagnosis_file import comparison_table, diagnosis_table
 from matstd.diagnosis.files.model_file import read_model
+from matstd.importers.files.mapping_file import MappingTable
 from matstd.probe_paths.control.log import read_log
 from matstd.twin.errors import BadFile
 from matstd.twin.files import run_columns, run_file
@@ -28,7 +29,6 @@ from matstd.twin.files.pose_file import read_poses
 from matstd.twin.files.run_file import read_run
 from matstd.twin.files.sensor_file import read_sensors
 from matstd.twin.files.toml import Table
-from matstd.twin.foreign.mapping_file import MappingTable
 from matstd.twin.machine.ranges import DEFAULT_RANGES
 from matstd.twin.record.several_runs import joined
 from matstd.twin.units import UM, URAD
@@ -122,7 +122,7 @@ def test_beams_are_read(folder):
 
 def every_table():
     """All models of tables that any reader of the tool has."""
-    for room in ("twin", "artefact", "diagnosis", "probe_paths", "cad_out", "matstd"):
+    for room in ("twin", "importers", "artefact", "diagnosis", "probe_paths", "cad_out", "matstd"):
         for file in (ROOT / room).rglob("*.py"):
             if "(Table)" in file.read_text(encoding="utf-8"):
                 name = file.relative_to(ROOT).with_suffix("").as_posix().replace("/", ".")

@@ -15,10 +15,11 @@ import pytest
 ROOT = Path(__file__).parents[1]
 BELOW = {
     "twin": set(),
+    "importers": {"twin"},
     "sensitivity": {"twin"},
     "information": {"twin"},
     "nc": {"twin"},
-    "artefact": {"twin", "sensitivity", "information"},
+    "artefact": {"twin", "importers", "sensitivity", "information"},
     "diagnosis": {"twin", "information"},
     "cad_out": {"twin", "artefact"},
     "probe_paths": {"twin", "artefact", "nc"},
@@ -31,11 +32,15 @@ ALLOWED = BELOW | {
 """Which rooms a room may import."""
 VOCABULARY = {
     "twin.units",
+    "twin.numbers",
+    "twin.text",
+    "twin.sampling",
     "twin.frames",
     "twin.errors",
     "twin.words",
     "twin.compute",
     "twin.display",
+    "twin.files.whole",
     "twin.versions",
     "report.numbers",
 }
@@ -44,7 +49,7 @@ HEAVY = {"build123d", "OCP", "pyvista", "vtk", "matplotlib", "trimesh", "manifol
 DRAWING = {"matplotlib", "pyvista", "vtk"}
 # The kernel's own files name forty of its classes each; they are imported inside functions only.
 KERNEL = {
-    f"cad_out/build/{name}.py"
+    f"cad_out/kernel/{name}.py"
     for name in (
         ["assembly", "exchange", "faces", "letters", "pmi", "primitives", "reader", "solid", "xcaf"]
     )
@@ -60,7 +65,7 @@ CARDS = {"formula", "units", "typical", "source", "summary"}
 EXCUSED = {
     "twin/files/run_columns.py": "remarks of a reader on single lines, like its refusals",
     "twin/files/run_checks.py": "kinds of unit mistakes, put into one line of refusal",
-    "twin/foreign/machine_draft.py": "comments of a machine file that is written",
+    "importers/files/machine_draft.py": "comments of a machine file that is written",
     "probe_paths/plan/planner.py": "reason of a refusal, as the reach has it",
     "probe_paths/control/log_clock.py": "remarks of a reader on single lines, like its refusals",
     "probe_paths/campaign/as_programmed.py": "refusals that name what stood in a log",
@@ -125,6 +130,19 @@ def top_level_imports(tree: ast.Module) -> list[tuple[str, int]]:
     return imports(ast.Module(body=body, type_ignores=[]))
 
 
+def imports_by_string(tree: ast.AST) -> list[tuple[str, int]]:
+    """Modules of ours that are named in a string, as `import_module("matstd.report")` does."""
+    return [
+        (in_house(text), node.lineno)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Constant | ast.JoinedStr)
+        and re.match(r"matstd(\.\w+)+", text := text_of(node))
+        and " " not in text
+        and in_house(text) != text
+        and not text.endswith((".toml", ".csv", ".json"))
+    ]
+
+
 def is_package(name: str) -> bool:
     """Whether a dotted name is a folder of ours."""
     return (ROOT / name.replace(".", "/") / "__init__.py").exists()
@@ -152,7 +170,7 @@ def test_rooms_have_one_name() -> None:
 @pytest.mark.parametrize("room", ALLOWED)
 def test_rooms_import_one_way(room: str) -> None:
     for file in IN_ROOM[room]:
-        for name, line in imports(tree_of(file)):
+        for name, line in imports(tree_of(file)) + imports_by_string(tree_of(file)):
             other = name.split(".")[0]
             assert other not in ALLOWED or other == room or other in ALLOWED[room], (
                 f"{file}:{line}: {room} imports {other}"
@@ -280,6 +298,41 @@ def test_examples_and_benchmarks_enter_by_faces(folder: str) -> None:
                 listed = set(getattr(load(name), "__all__", ()))
                 for alias in node.names:
                     assert name in VOCABULARY or alias.name in listed, f"{file}: {alias.name}"
+
+
+EFFECTS = ("twin.effects", "twin.thermal", "twin.elastic")
+"""Parts that define effects."""
+
+
+def questions(tree: ast.Module) -> list[tuple[str, int]]:
+    """What a file asks by class or by a string: names in `isinstance`, `match`; flags by name."""
+    found = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.MatchClass):
+            found.append((ast.unparse(node.cls), node.lineno))
+        if not isinstance(node, ast.Call) or len(node.args) < 2:
+            continue
+        if ast.unparse(node.func) in ("isinstance", "issubclass"):
+            names = (n for n in ast.walk(node.args[1]) if isinstance(n, ast.Name | ast.Attribute))
+            found += [(ast.unparse(n).split(".")[-1], node.lineno) for n in names]
+        if ast.unparse(node.func) in ("getattr", "hasattr"):
+            found.append((text_of(node.args[1]), node.lineno))
+    return found
+
+
+def test_effects_are_asked_by_their_traits() -> None:
+    """Above the twin nothing depends on which class an effect is of."""
+    from matstd.twin.model import Traits
+
+    parts = [f for f in IN_ROOM["twin"] if part_of(module_of(f)) in EFFECTS]
+    classes = {n.name for f in parts for n in tree_of(f).body if isinstance(n, ast.ClassDef)}
+    flags = {*Traits.__dataclass_fields__, "inner", "tuned", "tuning", "parameters", "terms"}
+    assert len(classes) > 30
+    for room in ALLOWED.keys() - {"twin"}:
+        for file in IN_ROOM[room]:
+            own = {n.name for n in tree_of(file).body if isinstance(n, ast.ClassDef)}
+            for name, line in questions(tree_of(file)):
+                assert name not in (classes - own) | flags, f"{file}:{line}: asks for {name}"
 
 
 def test_folders_are_small() -> None:

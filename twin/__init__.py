@@ -13,7 +13,7 @@ searches. Everything is in mm, rad, s, degC and N; only files carry other units,
 Where to add things: an effect is a file in `effects` and a line in `library.catalogue` (or a user's
 own file, docs/own_effects.md); a quantity recorded at every touch is a field of `record.Touches`
 and a column in `files.run_columns`; a file format of ours is a reader in `files`,
-another's in `foreign`.
+another's in `matstd.importers`.
 
 Beside the parts stand the words that every room speaks: `units`, `frames`, `errors`, `words`,
 `compute`, `versions`.
@@ -35,14 +35,13 @@ from matstd.twin.record import Run, Touches, at_poses
 PARTS = (
     "machine",
     "record",
+    "fields",
     "model",
     "thermal",
     "elastic",
     "effects",
     "library",
     "files",
-    "sheets",
-    "foreign",
 )
 """From bottom to top: each imports only from those before it."""
 

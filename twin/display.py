@@ -1,13 +1,16 @@
 """How results show themselves: a short text, in a notebook a table and a picture, a CSV table.
 
-Words and pictures are made in `report`, which lies above every result. It is looked up by its name
-when somebody asks to see one, so nothing below imports it.
+`text` and `html` are registers by type. They begin with what every record can show of itself: its
+name and the sizes of its fields. `report`, which lies above every result, registers sentences,
+tables and pictures when it is imported; `before_showing` names what shall happen before the first
+result is shown, such as that import.
 """
 
-import csv
-import io
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sized
+from dataclasses import fields, is_dataclass
+from functools import singledispatch
+from html import escape
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -15,21 +18,65 @@ from typing import Any
 import numpy as np
 
 from matstd.twin.errors import MissingLibrary
+from matstd.twin.text import csv_text
 
-_MADE_BY = "matstd.report.pages.notebook"
+MOST_LETTERS = 40
+"""Letters of a value of a field that are shown; of a longer one its size or type."""
+
+_BEFORE: list[Callable[[], object]] = []
 
 
-class Shown:
+def before_showing(prepare: Callable[[], object]) -> None:
+    """Call something once, before the next result is shown."""
+    _BEFORE.append(prepare)
+
+
+def _prepared() -> None:
+    while _BEFORE:
+        _BEFORE.pop()()
+
+
+@singledispatch
+def text(result: object) -> str:
+    """A result in one or a few lines: the name of its type, and its fields where it has some."""
+    name = type(result).__name__
+    if not is_dataclass(result):
+        return f"<{name}>"
+    shown = ", ".join(f"{f.name}={_brief(getattr(result, f.name))}" for f in fields(result))
+    return f"{name}({shown})"
+
+
+def _brief(value: object) -> str:
+    """A value where it is short; else its shape, its length or its type."""
+    if isinstance(value, np.ndarray):
+        return f"<array {value.shape}>"
+    if isinstance(value, Displayed):
+        return f"<{type(value).__name__}>"
+    if isinstance(value, Sized) and not isinstance(value, str):
+        return f"<{len(value)} of {type(value).__name__}>"
+    shown = value.name if isinstance(value, Path) else repr(value)
+    return shown if len(shown) <= MOST_LETTERS else f"<{type(value).__name__}>"
+
+
+@singledispatch
+def html(result: object) -> str:
+    """A result for a notebook: its text."""
+    return f"<p>{escape(text(result))}</p>"
+
+
+class Displayed:
     """A result with a short text for `repr`, and more in a notebook."""
 
     def __repr__(self) -> str:
-        return str(import_module(_MADE_BY).text(self))
+        _prepared()
+        return text(self)
 
     def _repr_html_(self) -> str:
-        return str(import_module(_MADE_BY).html(self))
+        _prepared()
+        return html(self)
 
 
-class Tabular(Shown, ABC):
+class Tabular(Displayed, ABC):
     """A result that is a table, units in the names of its columns.
 
     Attributes:
@@ -49,14 +96,13 @@ class Tabular(Shown, ABC):
             The text.
         """
         table = self.columns()
-        out = io.StringIO()
-        writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(table)
-        for row in zip(*table.values(), strict=True):
-            writer.writerow([self.cell(value) for value in row])
+        rows = zip(*table.values(), strict=True)
+        written = csv_text(table, ([self.cell(value) for value in row] for row in rows))
         if path is not None:
-            import_module("matstd.twin.files").write_whole(path, out.getvalue())
-        return out.getvalue()
+            from matstd.twin.files.whole import write_whole
+
+            write_whole(path, written)
+        return written
 
     def cell(self, value: Any) -> str:
         """One value as text."""

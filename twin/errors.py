@@ -45,6 +45,19 @@ class BadValue(DesignError, ValueError):
         super().__init__(message, key=key, found=found, expected=expected)
 
 
+class BadArgument(DesignError, ValueError):
+    """An argument of a function, or the option of a command that stands for it.
+
+    Args:
+        name: Of the argument; the option of the same name has hyphens.
+        found: What was given.
+        expected: What should stand there.
+    """
+
+    def __init__(self, name: str, found: object, expected: str) -> None:
+        super().__init__(f"{name} {found}: expected {expected}", argument=name)
+
+
 class UnknownAxis(DesignError, KeyError):
     """An axis letter that the machine does not have."""
 

@@ -14,6 +14,7 @@ from matstd.artefact.body.known import Known
 from matstd.artefact.body.patch import Mask, Surface
 from matstd.artefact.body.sag import Sag
 from matstd.artefact.body.solids import BLEND, Ball, Body, Column, Cone, Plate, column
+from matstd.twin.display import Displayed
 from matstd.twin.elastic import material as usual
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array
@@ -108,8 +109,8 @@ class Core:
     height: float
 
 
-@dataclass(frozen=True, eq=False)
-class Standard:
+@dataclass(frozen=True, eq=False, repr=False)
+class Standard(Displayed):
     """A freeform material standard in its own frame: origin in the middle of the seat, z up.
 
     Attributes:

@@ -30,6 +30,7 @@ from matstd.artefact.brief.workshop_tables import (
 )
 from matstd.sensitivity.montecarlo import MACHINES_A_BATCH
 from matstd.sensitivity.population import Population
+from matstd.twin.display import Displayed
 from matstd.twin.errors import BadFile, UnknownAxis
 from matstd.twin.files import (
     SetupTable,
@@ -104,8 +105,8 @@ class ProjectTable(Table):
     simulation: SimulationTable = SimulationTable()
 
 
-@dataclass(frozen=True)
-class Project:
+@dataclass(frozen=True, repr=False)
+class Project(Displayed):
     """A design project in base units.
 
     Attributes:

@@ -26,6 +26,7 @@ from matstd.artefact.certify.cmm_points_file import SIDES, CmmPoints
 from matstd.artefact.certify.face_correction import corrected_face
 from matstd.twin.errors import BadFile, NotEnoughData
 from matstd.twin.frames import Array, apply
+from matstd.twin.numbers import rms
 from matstd.twin.record import rigid_motion
 from matstd.twin.units import UM
 
@@ -113,7 +114,7 @@ def calibrated(nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: flo
             found = corrected_face(patch, point[rows], u_point)
         patches.append(found.patch)
         known[patch.name] = KnownFeature(len(rows), u_feature, found.u_tilt, found.u_form)
-        moved[patch.name], left[patch.name] = found.moved, _rms(found.left)
+        moved[patch.name], left[patch.name] = found.moved, rms(found.left)
         offset[patch.name] = found.offset
     standard = replace(
         nominal,
@@ -166,10 +167,6 @@ def _slips(name: str, cmm: CmmPoints, rows: np.ndarray) -> str:
     """What is told of points that were left out."""
     lines = ", ".join(str(line) for line in cmm.line[rows])
     return f"{name}: points that stand out are left out, lines {lines} of {cmm.path}"
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 def _balls(nominal: Standard, cmm: CmmPoints, u_point: float, slips: list[str]) -> dict[str, Ball]:
@@ -231,7 +228,7 @@ def fitted_ball(points: Array, u_point: float) -> Ball:
         radius=radius,
         u=float(np.sqrt(np.trace(covariance[:3, :3]) / 3.0)),
         u_radius=float(np.sqrt(covariance[3, 3])),
-        left=_rms(left),
+        left=rms(left),
         points=len(points),
     )
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from matstd.artefact.body import FreeformPatch
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
 
 _WEIGHTS = np.logspace(-8.0, 4.0, 49)  # of the bending, over the range from none to a plane
 _ROUNDS = 3  # foot points move by slope times correction: micrometres, settled after two
@@ -58,7 +59,7 @@ def corrected_face(patch: FreeformPatch, points: Array, u_point: float) -> Corre
     tilts = np.linalg.lstsq(plane, _basis(patch, grid) @ root, rcond=None)[0][1:]
     return CorrectedFace(
         patch=made,
-        u_form=float(np.sqrt(np.mean(u**2))),
+        u_form=rms(u),
         u_tilt=float(np.linalg.norm(tilts) / np.sqrt(2.0)),
         moved=float(np.abs(G @ c).max()),
         offset=float((G @ c).mean()),

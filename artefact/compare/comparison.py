@@ -25,6 +25,7 @@ from matstd.information.criteria import DesignCriterion, Posterior, prior_sd_of_
 from matstd.information.selection import Selection, exchange, fill
 from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
 
 _TRIED = 3000  # touches that the ideal scatter may choose from
 _DRAWS = 5  # of random touches, averaged
@@ -97,15 +98,15 @@ def evaluated(
     over = after.predicted_sd(criterion.tip_volume)
     of_user = after.predicted_sd(criterion.tip_user)
     by_chance = [
-        _rms(_posterior(criterion, lot).predicted_sd(criterion.tip_volume)) for lot in random
+        rms(_posterior(criterion, lot).predicted_sd(criterion.tip_volume)) for lot in random
     ]
     return Rival(
         name=name,
-        rms=_rms(over),
+        rms=rms(over),
         p95=float(np.quantile(over, 0.95)),
-        rms_user=_rms(of_user),
+        rms_user=rms(of_user),
         p95_user=float(np.quantile(of_user, 0.95)),
-        rms_random=float(np.sqrt(np.mean(np.square(by_chance)))),
+        rms_random=rms(np.array(by_chance)),
         estimable=after.degrees_of_freedom,
         visible=library.shown(criterion, chosen),
         could_be_visible=len(library.effects),
@@ -124,18 +125,14 @@ def _posterior(criterion: Criterion, touches: Requests) -> Posterior:
     return Posterior(criterion.known_rows(touches), criterion.prior_sd, criterion.model.names)
 
 
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))
-
-
 def prior_rms(criterion: Criterion) -> tuple[float, float]:
     """Root mean square of the expected deviation before any touch, mm: probed volume, user's.
 
     The set-up counts with what the machine's error ranges say of it, not as unknown.
     """
     return (
-        _rms(prior_sd_of_tip(criterion.tip_volume, criterion.model.prior_sd)),
-        _rms(prior_sd_of_tip(criterion.tip_user, criterion.model.prior_sd)),
+        rms(prior_sd_of_tip(criterion.tip_volume, criterion.model.prior_sd)),
+        rms(prior_sd_of_tip(criterion.tip_user, criterion.model.prior_sd)),
     )
 
 

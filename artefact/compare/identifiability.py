@@ -26,7 +26,7 @@ from matstd.information.identifiability import (
     in_families,
     supported_degrees,
 )
-from matstd.twin.display import Shown
+from matstd.twin.display import Displayed
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.model import Model
@@ -50,7 +50,7 @@ class Alone:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class IdentifiabilityReport(Shown):
+class IdentifiabilityReport(Displayed):
     """What a design's touches can and cannot know.
 
     Attributes:

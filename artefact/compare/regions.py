@@ -15,6 +15,7 @@ from matstd.artefact.reach import Requests
 from matstd.artefact.worth import Criterion
 from matstd.information.criteria import Posterior, prior_sd_of_tip
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
 from matstd.twin.record import at_poses
 
 _SHARE = 0.05  # of the poses: as many as are the worst of one machine
@@ -60,7 +61,7 @@ def worst_regions(
     return WorstRegions(
         poses=count,
         recurrence=float(recurrence[worst].mean()),
-        before=float(np.sqrt(np.mean(before**2))),
-        after=float(np.sqrt(np.mean(after**2))),
+        before=rms(before),
+        after=rms(after),
         covered=float(np.mean(after <= _SEEN * before)),
     )

@@ -1,6 +1,5 @@
 """Everything about the making of a standard, and its file."""
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ from matstd.cad_out.making.cutting import OVERHANG, RADIUS, Cutting, cutting_of
 from matstd.cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
 from matstd.cad_out.making.stiffness import Stiffness
 from matstd.twin.files import write_whole
+from matstd.twin.text import json_text
 from matstd.twin.units import DEG, UM
 
 FIRST_MODE, SAG = 500.0, 0.1 * UM
@@ -63,7 +63,7 @@ def write_making(path: Path, making: Making) -> None:
         "first_mode_limit_Hz": FIRST_MODE,
         "sag_limit_um": SAG / UM,
     }
-    write_whole(path, json.dumps(table, indent=1, allow_nan=False) + "\n")
+    write_whole(path, json_text(table))
 
 
 def _stiffness_table(stiffness: Stiffness | None, material: Material) -> dict[str, Any]:

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from matstd.artefact.body import BLEND, Standard
-from matstd.cad_out.build import FACES, FACTS, STEP, run_kernel
 from matstd.cad_out.details import BALL, Details, Screw, details_of
+from matstd.cad_out.kernel import FACES, FACTS, STEP, run_kernel
 from matstd.cad_out.meshes import (
     aspects,
     chord_errors,
@@ -33,6 +33,7 @@ from matstd.cad_out.verify.untold import untold
 from matstd.twin.errors import NotBuildable
 from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
+from matstd.twin.text import json_text
 from matstd.twin.units import NM, UM
 
 FACE_LIMIT = 0.01 * UM
@@ -340,7 +341,7 @@ def write_conformity(path: Path, conformity: Conformity) -> None:
         "faults": conformity.faults(),
         "measured": asdict(conformity),
     }
-    write_whole(path, json.dumps(table, indent=1, sort_keys=True, allow_nan=False) + "\n")
+    write_whole(path, json_text(table, sort_keys=True))
 
 
 def refuse_faults(name: str, conformity: Conformity) -> None:

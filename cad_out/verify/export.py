@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import Standard, write_standard
-from matstd.cad_out.build import FACES, FACTS, MESH, SCENES, STANDARD, STEP, run_kernel
+from matstd.cad_out.kernel import FACES, FACTS, MESH, SCENES, STANDARD, STEP, run_kernel
 from matstd.cad_out.meshes import Mesh, write_stl
 from matstd.cad_out.verify.conformity import Conformity, measure, refuse_faults, write_conformity
 from matstd.twin.errors import DesignError

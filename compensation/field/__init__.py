@@ -20,7 +20,6 @@ from matstd.compensation.field.over_workspace import (
     aligned,
     relative_columns,
     result_of,
-    rms,
     workspace,
 )
 from matstd.compensation.field.shares import Share, contributions
@@ -45,7 +44,6 @@ __all__ = [
     "played",
     "relative_columns",
     "result_of",
-    "rms",
     "shifted",
     "workspace",
 ]

@@ -9,7 +9,9 @@ from matstd.compensation.field.inverse import Datum, played
 from matstd.compensation.field.machine_errors import Corrects, MachineErrors, deviation
 from matstd.twin.frames import Array, skew
 from matstd.twin.machine import Chain
+from matstd.twin.numbers import rms, rms_length
 from matstd.twin.record import Touches
+from matstd.twin.sampling import even_points
 
 POSES = 256
 """Over which figures are taken: their rms is then known to some 4 %."""
@@ -17,9 +19,6 @@ POSES = 256
 
 def workspace(chain: Chain, limits: Mapping[str, tuple[float, float]], n: int = POSES) -> Array:
     """Readings evenly spread over the travels, without chance: a sequence of low discrepancy.
-
-    Point i is the fractional part of ``i alpha``, with alpha the powers of the inverse of the root
-    of ``x^(d+1) = x + 1`` in d dimensions.
 
     Args:
         chain: The machine.
@@ -29,16 +28,8 @@ def workspace(chain: Chain, limits: Mapping[str, tuple[float, float]], n: int = 
 
     Returns:
         Shape (n, A); spindles that no program turns stand at zero.
-
-    Reference:
-        M. Roberts, The unreasonable effectiveness of quasirandom sequences, 2018.
     """
-    d = len(chain.programmed_axes)
-    root = 2.0
-    for _ in range(40):
-        root = (1.0 + root) ** (1.0 / (d + 1))
-    alpha = root ** -np.arange(1.0, d + 1.0)
-    unit = np.mod(0.5 + np.arange(1, n + 1)[:, None] * alpha, 1.0)
+    unit = even_points(n, len(chain.programmed_axes))
     q = np.zeros((n, len(chain.axes)))
     for k, name in enumerate(chain.programmed_axes):
         low, high = limits.get(name, chain.link(name).range)
@@ -89,22 +80,17 @@ class Result:
     @property
     def u_rms(self) -> float:
         """What the uncertainty of the model adds to the rms, mm."""
-        return float(np.sqrt(np.mean(self.u**2)))
+        return rms(self.u)
 
     @property
     def expected_before(self) -> float:
         """Rms to expect without it: of the model and what it does not know, mm."""
-        return float(np.hypot(rms(self.before), self.u_rms))
+        return float(np.hypot(rms_length(self.before), self.u_rms))
 
     @property
     def expected(self) -> float:
         """Rms to expect with it: what is left and what the model does not know, mm."""
-        return float(np.hypot(rms(self.after), self.u_rms))
-
-
-def rms(vectors: Array) -> float:
-    """Root mean square length of vectors (N, 3)."""
-    return float(np.sqrt(np.mean(np.einsum("ni,ni->n", vectors, vectors))))
+        return float(np.hypot(rms_length(self.after), self.u_rms))
 
 
 def relative_columns(errors: MachineErrors, touches: Touches, datum: Datum) -> Array:
@@ -169,11 +155,11 @@ def _left(errors: MachineErrors, columns: Array, unheld: Array) -> tuple[Left, .
     for name in errors.groups:
         rows = errors.parameter_rows(name)
         field, spread = unheld[:, :, rows] @ theta[rows], unheld[:, :, rows] @ errors.root[rows]
-        size = rms(field)
+        size = rms_length(field)
         u = float(np.sqrt(np.mean(np.einsum("nik,nik->n", spread, spread))))
         if size > u:  # along the field where there is one, over all of it where there is none
             slope = np.einsum("ni,nik->k", field, spread) / (size * len(field))
             u = float(np.linalg.norm(slope))
-        before = rms(columns[:, :, rows] @ theta[rows])
+        before = rms_length(columns[:, :, rows] @ theta[rows])
         out.append(Left(name=name, before=before, rms=size, u=u))
     return tuple(sorted(out, key=lambda item: -item.rms))

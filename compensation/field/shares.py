@@ -6,8 +6,8 @@ import numpy as np
 
 from matstd.compensation.field.inverse import Datum
 from matstd.compensation.field.machine_errors import MachineErrors, deviation
-from matstd.compensation.field.over_workspace import rms
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms_length
 from matstd.twin.record import Touches
 
 
@@ -44,4 +44,4 @@ def contributions(errors: MachineErrors, touches: Touches, datum: Datum) -> tupl
         spread = (alone.columns(touches[some]) - alone.columns(there)) @ alone.root
         u = float(np.sqrt(np.einsum("nik,nik->", spread, spread) / len(some)))
         out.append(Share(name, field, u))
-    return tuple(sorted(out, key=lambda share: -rms(share.field)))
+    return tuple(sorted(out, key=lambda share: -rms_length(share.field)))

@@ -1,14 +1,13 @@
 """What a compensated program leaves, as JSON ("compensated-program/1")."""
 
-import json
 from pathlib import Path
 
 import numpy as np
 
-from matstd.compensation.field import rms
 from matstd.compensation.programs.compensation import Compensated
 from matstd.twin.files import write_whole
-from matstd.twin.units import UM
+from matstd.twin.numbers import in_um, rms, rms_length
+from matstd.twin.text import json_text
 
 FORMAT = "compensated-program/1"
 
@@ -22,19 +21,17 @@ def write_program_result(path: str | Path, done: Compensated) -> None:
         "motions": len(done.program.motions),
         "lines": len(done.q),
         "seconds": round(float(done.elapsed[-1]), 3),
-        "divided_for_um": _um(done.tolerance),
+        "divided_for_um": in_um(done.tolerance),
         "at_line_ends": {
-            key: {"rms_um": _um(rms(v)), "worst_um": _um(np.linalg.norm(v, axis=1).max())}
+            key: {
+                "rms_um": in_um(rms_length(v)),
+                "worst_um": in_um(np.linalg.norm(v, axis=1).max()),
+            }
             for key, v in ends.items()
         },
-        "between_line_ends": {"worst_um": _um(done.worst_between) if done.is_cut else None},
-        "model_u_um": _um(rms(done.u[:, None])),
-        "largest_correction_um": _um(np.abs(done.added[:, done.program.frame.linear]).max()),
+        "between_line_ends": {"worst_um": in_um(done.worst_between) if done.is_cut else None},
+        "model_u_um": in_um(rms(done.u)),
+        "largest_correction_um": in_um(np.abs(done.added[:, done.program.frame.linear]).max()),
         "lines_left_as_they_are": list(done.unmoved),
     }
-    write_whole(path, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
-
-
-def _um(value: float) -> float:
-    """In µm to a nanometre."""
-    return round(float(value) / UM, 3) + 0.0
+    write_whole(path, json_text(data))

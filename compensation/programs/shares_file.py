@@ -9,6 +9,7 @@ from matstd.compensation.field import Share
 from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
 from matstd.twin.record import Touches
+from matstd.twin.text import csv_text
 from matstd.twin.units import DEG, UM
 
 
@@ -31,7 +32,6 @@ def write_shares(path: str | Path, touches: Touches, whole: Array, shares: Seque
     names += [f"{name}_d{c}_um" for name, _ in fields for c in "xyz"]
     table = np.column_stack([touches.time, *readings, *(field / UM for _, field in fields)])
     rows = (
-        ",".join(f"{v:.5g}" if k > len(axes) else f"{v:.5f}" for k, v in enumerate(row))
-        for row in table
+        [f"{v:.5g}" if k > len(axes) else f"{v:.5f}" for k, v in enumerate(row)] for row in table
     )
-    write_whole(path, "\n".join([",".join(["time_s", *names]), *rows]) + "\n")
+    write_whole(path, csv_text(["time_s", *names], rows))

@@ -6,6 +6,7 @@ import numpy as np
 
 from matstd.compensation.programs.compensation import Compensated
 from matstd.twin.files import write_whole
+from matstd.twin.text import csv_text
 from matstd.twin.units import DEG, UM
 
 
@@ -37,6 +38,6 @@ def write_trajectory(path: str | Path, done: Compensated) -> None:
             done.between / UM,
         ]
     )
-    form = "%d,%.3f," + ",".join(["%.5f"] * len(axes)) + ",%.3f" * 3 + ",%.5f" * 3 + ",%.3f" * 7
-    rows = (form % tuple(row) for row in table.tolist())
-    write_whole(path, "\n".join([",".join(names), *rows]) + "\n")
+    forms = ["%d", "%.3f", *["%.5f"] * len(axes), *["%.3f"] * 3, *["%.5f"] * 3, *["%.3f"] * 7]
+    rows = ([form % v for form, v in zip(forms, row, strict=True)] for row in table.tolist())
+    write_whole(path, csv_text(names, rows))

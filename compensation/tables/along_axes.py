@@ -13,7 +13,6 @@ from matstd.compensation.field import (
     correction,
     deviation,
     played,
-    rms,
 )
 from matstd.compensation.tables.by_name import (
     BETWEEN,
@@ -26,6 +25,7 @@ from matstd.compensation.tables.by_name import (
 )
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Contribution, linear_directions
+from matstd.twin.numbers import rms_length
 from matstd.twin.record import Touches
 from matstd.twin.units import NM
 
@@ -206,9 +206,9 @@ def most_useful(
     left, effects = _fields(tables, errors, datum, q)
     chosen: list[int] = []
     while len(chosen) < most:
-        trials = {k: rms(left + e) for k, e in enumerate(effects) if k not in chosen}
+        trials = {k: rms_length(left + e) for k, e in enumerate(effects) if k not in chosen}
         best = min(trials, key=lambda k: trials[k], default=None)
-        if best is None or trials[best] > rms(left) - WORTH:
+        if best is None or trials[best] > rms_length(left) - WORTH:
             break
         chosen.append(best)
         left = left + effects[best]
@@ -227,9 +227,9 @@ def harmless(tables: AxisTables, errors: MachineErrors, datum: Datum, q: Array) 
     left, effects = _fields(tables, errors, datum, q)
     kept = dict(enumerate(effects))
     while kept:
-        trials = {k: rms(left + sum(e for j, e in kept.items() if j != k)) for k in kept}
+        trials = {k: rms_length(left + sum(e for j, e in kept.items() if j != k)) for k in kept}
         worst = min(trials, key=lambda k: trials[k])
-        if trials[worst] > rms(left + sum(kept.values())) - WORTH:
+        if trials[worst] > rms_length(left + sum(kept.values())) - WORTH:
             break
         del kept[worst]
     out = [t if k in kept else _reversal_of(t) for k, t in enumerate(tables.tables)]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from matstd.compensation.field import Datum, MachineErrors, Result, result_of, rms
+from matstd.compensation.field import Datum, MachineErrors, Result, result_of
 from matstd.compensation.tables import heidenhain_com, iso_csv, linuxcnc_comp, sinumerik_cec
 from matstd.compensation.tables.acceptance import Acceptance, acceptance
 from matstd.compensation.tables.along_axes import (
@@ -28,6 +28,7 @@ from matstd.twin.errors import DesignError
 from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
+from matstd.twin.numbers import rms_length
 from matstd.twin.units import UM
 
 Tables = NamedTables | AxisTables
@@ -78,7 +79,7 @@ class Harmful(DesignError):
 
 def refuse_harmful(played: Played) -> None:
     """Raise Harmful for tables that leave more than they found over the workspace."""
-    before, after = rms(played.result.before), rms(played.result.after)
+    before, after = rms_length(played.result.before), rms_length(played.result.after)
     if after > before + WORTH:
         raise Harmful(
             f"{played.format}: the tables would leave {after / UM:.3g} µm rms over the workspace, "

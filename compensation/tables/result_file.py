@@ -1,19 +1,20 @@
 """What tables correct and leave, as `compensation.json` ("compensation/1")."""
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from matstd.compensation.field import MachineErrors, Result, rms
+from matstd.compensation.field import MachineErrors, Result
 from matstd.compensation.tables.formats import Played
 from matstd.compensation.tables.header import Header
 from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
-from matstd.twin.units import DEG, UM
+from matstd.twin.numbers import in_um, rms_length
+from matstd.twin.text import json_text
+from matstd.twin.units import DEG
 
 FORMAT = "compensation/1"
 
@@ -31,7 +32,7 @@ def write_table_results(
         "not_of_the_machine": list(errors.left_out),
         "tables": [_table(p, errors.chain) for p in played],
     }
-    write_whole(path, json.dumps(data, indent=1, ensure_ascii=False) + "\n")
+    write_whole(path, json_text(data))
 
 
 def _table(played: Played, chain: Chain) -> dict[str, Any]:
@@ -40,18 +41,23 @@ def _table(played: Played, chain: Chain) -> dict[str, Any]:
         "control": played.format,
         "files": list(played.files),
         **figures(result),
-        "interpolation_um": _um(played.interpolation),
+        "interpolation_um": in_um(played.interpolation),
         "interpolation_holds": "over the workspace" if played.by_name else "along the axes",
         "not_held": [
-            {"error": x.name, "before_um": _um(x.before), "rms_um": _um(x.rms), "u_um": _um(x.u)}
+            {
+                "error": x.name,
+                "before_um": in_um(x.before),
+                "rms_um": in_um(x.rms),
+                "u_um": in_um(x.u),
+            }
             for x in result.left
         ],
         "acceptance": {
             "readings": _readings(chain, played.acceptance.q),
-            "without_um": [_um(v) for v in played.acceptance.without],
-            "with_um": [_um(v) for v in played.acceptance.with_table],
-            "wrong_sign_um": [_um(v) for v in played.acceptance.wrong_sign],
-            "u_um": [_um(v) for v in played.acceptance.u],
+            "without_um": [in_um(v) for v in played.acceptance.without],
+            "with_um": [in_um(v) for v in played.acceptance.with_table],
+            "wrong_sign_um": [in_um(v) for v in played.acceptance.wrong_sign],
+            "u_um": [in_um(v) for v in played.acceptance.u],
         },
     }
 
@@ -60,13 +66,13 @@ def figures(result: Result) -> dict[str, Any]:
     """Before and after, with what the uncertainty of the model adds."""
     return {
         "poses": len(result.q),
-        "before_rms_um": _um(rms(result.before)),
-        "before_worst_um": _um(np.linalg.norm(result.before, axis=1).max()),
-        "after_rms_um": _um(rms(result.after)),
-        "after_worst_um": _um(np.linalg.norm(result.after, axis=1).max()),
-        "model_u_um": _um(result.u_rms),
-        "tool_u_um": _um(result.u_tool),
-        "expected_rms_um": _um(result.expected),
+        "before_rms_um": in_um(rms_length(result.before)),
+        "before_worst_um": in_um(np.linalg.norm(result.before, axis=1).max()),
+        "after_rms_um": in_um(rms_length(result.after)),
+        "after_worst_um": in_um(np.linalg.norm(result.after, axis=1).max()),
+        "model_u_um": in_um(result.u_rms),
+        "tool_u_um": in_um(result.u_tool),
+        "expected_rms_um": in_um(result.expected),
     }
 
 
@@ -77,8 +83,3 @@ def _readings(chain: Chain, q: Array) -> dict[str, float]:
         value = float(q[chain.axis_index(name)]) / (DEG if is_rotary else 1.0)
         out[f"{name}_{'deg' if is_rotary else 'mm'}"] = round(value, 4) + 0.0
     return out
-
-
-def _um(value: float) -> float:
-    """In µm to a nanometre."""
-    return round(float(value) / UM, 3) + 0.0

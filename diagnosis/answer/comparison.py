@@ -18,6 +18,7 @@ from matstd.twin.display import Tabular
 from matstd.twin.frames import Array
 from matstd.twin.library import ordinary_model
 from matstd.twin.model import Model
+from matstd.twin.numbers import rms
 from matstd.twin.record import Run, with_commanded, without_copies
 from matstd.twin.units import UM
 
@@ -116,12 +117,12 @@ class Comparison(Tabular):
     @cached_property
     def rms(self) -> float:
         """Root mean square residual, mm."""
-        return float(np.sqrt(np.mean(self.residual[self.counted] ** 2)))
+        return rms(self.residual[self.counted])
 
     @property
     def rms_measured(self) -> float:
         """Root mean square of the measured deviations, mm: what there was to predict."""
-        return float(np.sqrt(np.mean(self.run.deviation[self.counted] ** 2)))
+        return rms(self.run.deviation[self.counted])
 
     @property
     def worst(self) -> int:

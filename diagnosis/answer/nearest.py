@@ -10,9 +10,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from matstd.diagnosis.answer.verdict import Candidate, Dependence, Offer
-from matstd.diagnosis.evidence import ScaledEffect, f_probability, quiet
+from matstd.diagnosis.evidence import ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.regression import GrossErrors
+from matstd.diagnosis.regression import GrossErrors, f_probability
 from matstd.diagnosis.search import DiagnosisTask, refined_named
 from matstd.twin.library import parse_effect
 from matstd.twin.machine import LETTERS

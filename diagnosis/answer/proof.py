@@ -10,6 +10,7 @@ from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.machine import exact_tip, inverse_linear, tip
 from matstd.twin.model import Effect, Model, contribution
+from matstd.twin.numbers import rms, rms_length
 from matstd.twin.record import Run, Setup, Touches, at_poses
 
 
@@ -41,17 +42,17 @@ class Proof:
     @property
     def rms_before(self) -> float:
         """Root mean square of the true volumetric error, mm."""
-        return _rms(self.before)
+        return rms_length(self.before)
 
     @property
     def rms_after(self) -> float:
         """Root mean square of what is not predicted, mm."""
-        return _rms(self.after)
+        return rms_length(self.after)
 
     @property
     def rms_u(self) -> float:
         """Root mean square of the stated standard uncertainty, mm."""
-        return float(np.sqrt(np.mean(self.u**2)))
+        return rms(self.u)
 
     @property
     def factor(self) -> float:
@@ -66,10 +67,6 @@ class Proof:
         all three).
         """
         return float(np.mean(np.linalg.norm(self.after, axis=1) <= 2.0 * self.u))
-
-
-def _rms(vectors: Array) -> float:
-    return float(np.sqrt(np.mean(np.sum(vectors**2, axis=1))))
 
 
 def probed_volume(run: Run, count: int, rng: np.random.Generator) -> Touches:

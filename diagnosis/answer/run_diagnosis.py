@@ -52,10 +52,11 @@ from matstd.diagnosis.search import (
     refined_named,
 )
 from matstd.twin.compute import one_blas_thread
+from matstd.twin.fields import moved_components
 from matstd.twin.library import ordinary_model, parse_effect
-from matstd.twin.model import Effect, Model, moved_components
+from matstd.twin.model import Effect, Model, traits
+from matstd.twin.numbers import rms
 from matstd.twin.record import Run, Touches, with_commanded, without_copies
-from matstd.twin.thermal import ThermalField
 
 PERIODS_PLANNED = 8
 """Periods that look alike, the longest ones, that a plan of touches tells apart."""
@@ -132,9 +133,9 @@ def _diagnosed(
         check_distinct(ResidualSpace.of(task.fit()), added)
     known = {e.name for e in (*task.model.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
-    single = [e for e in library if not getattr(e, "is_shrunk", False)]
+    single = [e for e in library if not traits(e).is_shrunk]
     task, final = found_in(task, added, single, progress)
-    if task.model.chain.is_serial_arm:  # whose lines bend like what it lacks
+    if task.model.chain.joints:  # errors of their lines bend like effects that are missing
         task = task.suited((*added, *final.effects))
     choice = chosen_by_prediction(task, added, final, library, progress)
     if choice is not None:
@@ -142,7 +143,7 @@ def _diagnosed(
     result = _result(task, added, final, progress, rng)
     if choice is None:
         return result
-    fields = [e for e in result.found if isinstance(e, ThermalField)]
+    fields = [e for e in result.found if traits(e).parameter_drives]
     told: tuple[Remark, ...] = (
         *choice_remarks(choice, result.found),
         *(field_shares(result.fit, e) for e in fields),
@@ -304,8 +305,8 @@ def _candidates(final: SearchState) -> tuple[Candidate, ...]:
                 effect=member.effect.name,
                 kind=member.effect.kind,
                 p_value=search.corrected(member.candidate, float(scores.p[variant])),
-                rms=float(np.sqrt(np.mean((effects.residual[:n] * u) ** 2))),
-                test_rms=float(np.sqrt(np.mean((effects.held_out.error * u) ** 2))),
+                rms=rms(effects.residual[:n] * u),
+                test_rms=rms(effects.held_out.error * u),
                 log_odds=float(effects.evidence - nothing.effects.evidence),
             )
         )

@@ -4,7 +4,6 @@ import numpy as np
 
 from matstd.diagnosis.fit import MIN_POSES, Fit
 from matstd.diagnosis.regression import Memory
-from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
 MOST = 6
@@ -55,8 +54,3 @@ def _touches(fit: Fit, memory: Memory | None) -> float:
         t = fit.run.touches
         places = len(np.unique(np.column_stack([t.point, t.normal])[fit.used], axis=0))
     return memory.length * places
-
-
-def rms(errors: Array) -> float:
-    """Root mean square."""
-    return float(np.sqrt(np.mean(np.asarray(errors) ** 2)))

@@ -19,6 +19,7 @@ from matstd.diagnosis.drift.record import DriftRecord
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_text, write_whole
 from matstd.twin.frames import Array
+from matstd.twin.text import csv_text, json_text
 from matstd.twin.versions import versions
 
 FORMAT = "matstd-thermal/1"
@@ -73,7 +74,7 @@ def write_drift(
         "law": _stated(best.law),
         "versions": versions(),
     }
-    write_whole(path, json.dumps(data, indent=1, allow_nan=False) + "\n")
+    write_whole(path, json_text(data))
 
 
 def _named(names: Sequence[str], values: Array) -> dict[str, float] | None:
@@ -248,7 +249,6 @@ def write_prediction(path: str | Path, record: DriftRecord, predicted: Array, u:
     """
     names = [f"{c}_{SHOWN[x]}" for c, x in zip(record.components, record.units, strict=True)]
     head = ["time_s", *names, *(f"u_{n}" for n in names)]
-    lines = [",".join(head)]
-    for t, row, spread in zip(record.time, predicted / record.size, u / record.size, strict=True):
-        lines.append(f"{t:.0f}," + ",".join(f"{v:.4f}" for v in (*row, *spread)))
-    write_whole(path, "\n".join(lines) + "\n")
+    each = zip(record.time, predicted / record.size, u / record.size, strict=True)
+    rows = ([f"{t:.0f}", *(f"{v:.4f}" for v in (*row, *spread))] for t, row, spread in each)
+    write_whole(path, csv_text(head, rows))

@@ -16,6 +16,7 @@ from matstd.diagnosis.drift.plain_laws import OneStepArx, constant, one_step_arx
 from matstd.diagnosis.drift.record import DriftRecord, IntArray, blocks, is_speed
 from matstd.twin.compute import Progress
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms, rms_of_columns
 
 BLOCKS = 4
 """Parts of the training hours that are left out in turn: each must hold a load cycle."""
@@ -73,7 +74,7 @@ class Judged:
 
     def total(self, values: Array, record: DriftRecord) -> float:
         """Over all components, in micrometres or microradians."""
-        return float(np.sqrt(np.mean((values / record.size) ** 2)))
+        return rms(values / record.size)
 
     def u(self, record: DriftRecord) -> Array:
         """Standard uncertainty of the free run at every row, (N, K), base units."""
@@ -154,7 +155,7 @@ def _judged(
     law = fits(record, parts)
     nothing = np.full(len(record.components), np.nan)
     if isinstance(law, OneStepArx) and not law.is_stable:
-        step = rms(law.one_step(record)[held] - record.displacement[held])
+        step = rms_of_columns(law.one_step(record)[held] - record.displacement[held])
         return Judged(
             name=name,
             law=law,
@@ -178,16 +179,16 @@ def _judged(
     free = law.predicted(record)
 
     def missed(predicted: Array) -> Array:
-        return rms(record.centred((predicted - record.displacement)[held], held))
+        return rms_of_columns(record.centred((predicted - record.displacement)[held], held))
 
     return Judged(
         name=name,
         law=law,
-        one_step=rms((_one_step(law, record, free) - record.displacement)[held]),
-        left_out=nothing if pole else rms(np.concatenate(errors)),
+        one_step=rms_of_columns((_one_step(law, record, free) - record.displacement)[held]),
+        left_out=nothing if pole else rms_of_columns(np.concatenate(errors)),
         free_run=missed(free),
         noisy=missed(law.predicted(noisy)) if noisy else None,
-        factor=nothing if pole else rms(np.concatenate(ratios)),
+        factor=nothing if pole else rms_of_columns(np.concatenate(ratios)),
         pole=pole,
     )
 
@@ -200,8 +201,3 @@ def _one_step(law: Law, record: DriftRecord, free: Array) -> Array:
     if record.zeros is not None:  # nothing is known at the first row of a log
         before = np.where(np.diff(record.zeros, prepend=-1) != 0, np.arange(len(record)), before)
     return record.displacement[before] + free - free[before]
-
-
-def rms(values: Array) -> Array:
-    """Of every column, (K,)."""
-    return np.sqrt(np.mean(values**2, axis=0))

@@ -5,10 +5,9 @@ from functools import cached_property
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
-from scipy.special import betainc
 
 from matstd.diagnosis.evidence.effect_signatures import ResidualSpace, Signatures
-from matstd.diagnosis.regression import PRIOR_DOF, LeftOut, left_out
+from matstd.diagnosis.regression import PRIOR_DOF, LeftOut, f_probability, left_out
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 
@@ -25,27 +24,6 @@ the true noise inflates as much: beside the true noise it must still be free."""
 SAME = 1e-4
 """Share of the square of a signature that model and other effects must leave of it: with less, its
 size is a hundred times as uncertain as it would be without them, and says nothing."""
-
-SMALLEST = 1e-300
-"""Probabilities are not told smaller than this."""
-
-
-def f_probability(
-    drop: Array | float, k: Array | float, rest: Array | float, dof: Array | float
-) -> Array:
-    """Probability of an F statistic at least as large: drop over k against rest over dof.
-
-    Args:
-        drop: Fall of the squared residual by k further columns.
-        k: Their number.
-        rest: Squared residual with them.
-        dof: Degrees of freedom with them.
-    """
-    rest = np.maximum(rest, 1e-300)
-    k = np.maximum(k, 1e-9)
-    x = rest / (rest + np.maximum(drop, 0.0))
-    p = betainc(0.5 * np.maximum(dof, 1.0), 0.5 * np.asarray(k), x)
-    return np.maximum(p, SMALLEST)
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,5 @@
 """diagnosis.json ("diagnosis/1") and comparison.json: results for other programs."""
 
-import json
 from collections.abc import Sequence
 from itertools import zip_longest
 from pathlib import Path
@@ -16,7 +15,9 @@ from matstd.diagnosis.files.trend_table import trend_table
 from matstd.diagnosis.fit import Fit, file_unit
 from matstd.diagnosis.residual import Condition, Region, Side
 from matstd.twin.files import reading_columns, write_whole
+from matstd.twin.numbers import significant
 from matstd.twin.record import Touches
+from matstd.twin.text import csv_text, json_text
 from matstd.twin.units import UM
 
 FORMAT = "diagnosis/1"
@@ -67,7 +68,7 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
 
 def write_diagnosis(path: str | Path, result: Diagnosis, remarks: Sequence[str] = ()) -> None:
     """Write `diagnosis.json`, whole or not at all; arguments as of `diagnosis_table`."""
-    write_whole(path, _text(diagnosis_table(result, remarks)))
+    write_whole(path, json_text(diagnosis_table(result, remarks)))
 
 
 def comparison_table(
@@ -89,11 +90,11 @@ def comparison_table(
         "u_um": _um(float(np.median(found.run.u))),
         "measured_rms_um": _um(found.rms_measured),
         "rms_um": _um(found.rms),
-        "chi2_ratio": _digits(found.chi2_ratio),
+        "chi2_ratio": significant(found.chi2_ratio),
         "worst": {
             "line": int(found.run.line[worst]),
             "residual_um": _um(float(found.residual[worst])),
-            "normalised": _digits(float(found.normalised[worst])),
+            "normalised": significant(float(found.normalised[worst])),
         },
         "replicates": None
         if noise.replicates is None
@@ -123,7 +124,7 @@ def write_comparison(
     remarks: Sequence[str] = (),
 ) -> None:
     """Write `comparison.json`, whole or not at all; arguments as of `comparison_table`."""
-    write_whole(path, _text(comparison_table(found, structure, remarks)))
+    write_whole(path, json_text(comparison_table(found, structure, remarks)))
 
 
 def write_residuals(path: str | Path, found: Comparison) -> None:
@@ -131,17 +132,8 @@ def write_residuals(path: str | Path, found: Comparison) -> None:
     write_whole(path, found.to_csv())
 
 
-def _text(table: dict[str, Any]) -> str:
-    return json.dumps(table, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
-
-
-def _digits(value: float) -> float:
-    """Six significant digits: more would be rounding."""
-    return float(f"{value:.6g}")
-
-
 def _um(value: float) -> float:
-    return _digits(value / UM)
+    return significant(value / UM)
 
 
 def _errors(fit: Fit) -> dict[str, float]:
@@ -149,7 +141,7 @@ def _errors(fit: Fit) -> dict[str, float]:
     return {
         "rms_um": _um(fit.rms),
         "test_rms_um": _um(fit.test_rms),
-        "chi2_ratio": _digits(fit.noise.chi2_ratio),
+        "chi2_ratio": significant(fit.noise.chi2_ratio),
     }
 
 
@@ -162,8 +154,8 @@ def _step(step: Step) -> dict[str, Any]:
     return {
         "effect": step.effect.name,
         "kind": step.effect.kind,
-        "parameters": {r.name: _digits(r.value) for r in step.reported},
-        "uncertainty": {r.name: _digits(r.u) for r in step.reported if r.u is not None},
+        "parameters": {r.name: significant(r.value) for r in step.reported},
+        "uncertainty": {r.name: significant(r.u) for r in step.reported if r.u is not None},
         "p_value": step.p_value,
         **errors,
         "cannot_be_told_from": list(dict.fromkeys(r.effect.name for r in rivals)),
@@ -177,9 +169,9 @@ def _alike(step: Step) -> dict[str, Any]:
     if alike is None:
         return {}
     if alike.is_harmonic:
-        return {"harmonics_alike": [_digits(h) for h in alike.periods]}
+        return {"harmonics_alike": [significant(h) for h in alike.periods]}
     return {
-        "periods_alike_mm": [_digits(p) for p in alike.periods],
+        "periods_alike_mm": [significant(p) for p in alike.periods],
         "step_mm": alike.step,
         "pitch_mm": alike.pitch,
     }
@@ -236,9 +228,12 @@ def _detectable(found: Detectable) -> dict[str, Any]:
     model in use imitates the effect.
     """
     suffix, factor = file_unit(found.unit)
-    own = None if found.size is None else _digits(found.size / factor)
+    own = None if found.size is None else significant(found.size / factor)
     scanned = {
-        f"{s.quantity}_{s.unit}" if s.unit else s.quantity: [_digits(s.low), _digits(s.high)]
+        f"{s.quantity}_{s.unit}" if s.unit else s.quantity: [
+            significant(s.low),
+            significant(s.high),
+        ]
         for s in found.scanned
     }
     where = {"scanned": scanned} if scanned else {}
@@ -280,12 +275,12 @@ def _group(group: GroupResidual) -> dict[str, Any]:
         "touches": group.touches,
         "mean_um": _um(group.mean),
         "rms_um": _um(group.rms),
-        "normalised_rms": _digits(group.normalised),
+        "normalised_rms": significant(group.normalised),
     }
 
 
 def plan_text(plan: Plan) -> str:
     """A plan as a table with the columns of a run file, for whoever writes the program."""
     rows = planned(plan.touches)
-    lines = [f"# to tell {plan.tells_apart[0]} from {plan.tells_apart[1]}", ",".join(rows[0])]
-    return "\n".join([*lines, *(",".join(str(v) for v in row.values()) for row in rows)]) + "\n"
+    head = f"# to tell {plan.tells_apart[0]} from {plan.tells_apart[1]}\n"
+    return head + csv_text(rows[0], (row.values() for row in rows))

@@ -5,6 +5,7 @@ from typing import Any
 
 from matstd.diagnosis.faults import DescriptionFault
 from matstd.diagnosis.files.geometry_table import number_table
+from matstd.twin.numbers import significant
 from matstd.twin.units import UM
 
 
@@ -19,12 +20,7 @@ def _fault(fault: DescriptionFault) -> dict[str, Any]:
         "axes": list(fault.axes),
         "chain": fault.notation or None,
         "numbers": [number_table(n) for n in fault.numbers],
-        "log_odds": _digits(fault.log_odds),
-        "test_rms_um": [_digits(v / UM) for v in fault.test_rms],
-        "errors_over_expected": [_digits(v) for v in fault.widened],
+        "log_odds": significant(fault.log_odds),
+        "test_rms_um": [significant(v / UM) for v in fault.test_rms],
+        "errors_over_expected": [significant(v) for v in fault.widened],
     }
-
-
-def _digits(value: float) -> float:
-    """Six significant digits: more would be rounding."""
-    return float(f"{value:.6g}")

@@ -3,6 +3,7 @@
 from typing import Any
 
 from matstd.diagnosis.geometry import Estimate, FoundNumber, GeometryRow, LearntGeometry
+from matstd.twin.numbers import significant
 from matstd.twin.units import UM, URAD
 
 UNITS = {"mm": ("um", UM), "rad": ("urad", URAD), "1": ("ppm", 1e-6)}
@@ -16,8 +17,8 @@ def geometry_table(geometry: LearntGeometry) -> dict[str, Any]:
         "ladder": [
             {
                 "model": step.rung.value,
-                "rms_um": _digits(step.rms / UM),
-                "test_rms_um": _digits(step.test_rms / UM),
+                "rms_um": significant(step.rms / UM),
+                "test_rms_um": significant(step.test_rms / UM),
             }
             for step in geometry.ladder
         ],
@@ -25,8 +26,8 @@ def geometry_table(geometry: LearntGeometry) -> dict[str, Any]:
             {
                 "key": c.key,
                 "stated": list(c.stated),
-                "found": [float(f"{v:.9g}") for v in c.found],
-                "uncertainty": [None if u is None else _digits(u) for u in c.u],
+                "found": [significant(v, 9) for v in c.found],
+                "uncertainty": [None if u is None else significant(u) for u in c.u],
                 "cannot_be_told_from": [number_table(n) for n in c.rivals],
             }
             for c in geometry.corrections
@@ -37,7 +38,7 @@ def geometry_table(geometry: LearntGeometry) -> dict[str, Any]:
 
 def number_table(number: FoundNumber) -> dict[str, Any]:
     """A number of the description, mm or rad."""
-    change, u = _digits(number.change), _digits(number.u)
+    change, u = significant(number.change), significant(number.u)
     return {"name": number.name, "change": change, "uncertainty": u}
 
 
@@ -49,11 +50,11 @@ def _row(row: GeometryRow) -> dict[str, Any]:
         "symbol": row.symbol,
         "axes": list(row.axes),
         "is_determined": row.is_determined,
-        f"expected_{suffix}": _digits(row.expected / factor),
+        f"expected_{suffix}": significant(row.expected / factor),
     }
     if not row.is_determined:
         return out | {
-            f"uncertainty_{suffix}": _digits(row.estimate.u / factor),
+            f"uncertainty_{suffix}": significant(row.estimate.u / factor),
             "shared_with": list(row.shared_with),
         }
     out |= _estimate("", suffix, row.estimate, factor)
@@ -68,11 +69,6 @@ def _row(row: GeometryRow) -> dict[str, Any]:
 
 def _estimate(name: str, suffix: str, estimate: Estimate, factor: float) -> dict[str, float]:
     return {
-        f"{name or 'value_'}{suffix}": _digits(estimate.value / factor),
-        f"{name}uncertainty_{suffix}": _digits(estimate.u / factor),
+        f"{name or 'value_'}{suffix}": significant(estimate.value / factor),
+        f"{name}uncertainty_{suffix}": significant(estimate.u / factor),
     }
-
-
-def _digits(value: float) -> float:
-    """Six significant digits: more would be rounding."""
-    return float(f"{value:.6g}")

@@ -11,6 +11,7 @@ from pydantic import Field
 from matstd.diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
 from matstd.diagnosis.regression import Memory
 from matstd.diagnosis.remarks import OfAnotherRun
+from matstd.twin.display import Displayed
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files import (
     MachineTables,
@@ -23,7 +24,7 @@ from matstd.twin.files import (
 from matstd.twin.frames import Array
 from matstd.twin.library import owner_of, parse_effect
 from matstd.twin.machine import Chain
-from matstd.twin.model import Effect, Model, Tunable
+from matstd.twin.model import Effect, Model, is_tunable
 from matstd.twin.record import Run, Touches, without_copies
 from matstd.twin.units import DEG, UM
 
@@ -108,8 +109,8 @@ class ModelTable(Table):
     from_inner: list[list[float]] = Field(default_factory=list)
 
 
-@dataclass(frozen=True, eq=False)
-class SavedModel:
+@dataclass(frozen=True, eq=False, repr=False)
+class SavedModel(Displayed):
     """A model with what is known of its parameters.
 
     Attributes:
@@ -310,8 +311,8 @@ def _effect(
         raise BadFile(path, f"{key}.name", entry.name, expected) from error
     if not entry.inner:
         return effect
-    if not isinstance(effect, Tunable) or len(entry.inner) != len(effect.tuning):
-        expected = ", ".join(effect.tuning) if isinstance(effect, Tunable) else "none"
+    if not is_tunable(effect) or len(entry.inner) != len(effect.tuning):
+        expected = ", ".join(effect.tuning) if is_tunable(effect) else "none"
         raise BadFile(path, f"{key}.inner", ", ".join(entry.inner), expected)
     values = []
     for (stored, value), name in zip(entry.inner.items(), effect.tuning, strict=True):

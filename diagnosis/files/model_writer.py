@@ -15,6 +15,7 @@ from matstd.twin.frames import Array
 from matstd.twin.library import owner_of
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, columns, inner_values
+from matstd.twin.numbers import rms
 from matstd.twin.units import DEG, UM
 
 
@@ -115,7 +116,7 @@ def _share(fit: Fit, effect: Effect, theta: Array) -> float:
     moved = columns([effect], fit.run.touches)[fit.used] @ theta
     free = columns(fit.setups, touches)
     left = moved - free @ np.linalg.lstsq(free, moved, rcond=None)[0]
-    return float(np.sqrt(np.mean(left**2)))
+    return rms(left)
 
 
 def _told(number: Reported) -> dict[str, Any]:

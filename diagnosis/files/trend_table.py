@@ -5,6 +5,7 @@ from typing import Any
 from matstd.diagnosis.answer import RunErrors, Trend
 from matstd.diagnosis.files.geometry_table import UNITS
 from matstd.diagnosis.geometry import Estimate
+from matstd.twin.numbers import significant
 from matstd.twin.units import UM
 
 
@@ -29,7 +30,7 @@ def _run(run: RunErrors, has_changed: bool) -> dict[str, Any]:
 
 
 def _um(value: float | None) -> float | None:
-    return None if value is None else _digits(value / UM)
+    return None if value is None else significant(value / UM)
 
 
 def _row(trend: Trend, k: int) -> dict[str, Any]:
@@ -51,13 +52,8 @@ def _row(trend: Trend, k: int) -> dict[str, Any]:
 
 
 def _number(estimate: Estimate | None, factor: float) -> float | None:
-    return None if estimate is None else _digits(estimate.value / factor)
+    return None if estimate is None else significant(estimate.value / factor)
 
 
 def _u(estimate: Estimate | None, factor: float) -> float | None:
-    return None if estimate is None else _digits(estimate.u / factor)
-
-
-def _digits(value: float) -> float:
-    """Six significant digits: more would be rounding."""
-    return float(f"{value:.6g}")
+    return None if estimate is None else significant(estimate.u / factor)

@@ -1,13 +1,13 @@
 """uncertainty.json ("uncertainty/1"): the budget of a measuring task, for other programs."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from matstd.diagnosis.task import LEVEL, TaskUncertainty, guarded
 from matstd.twin.files import write_whole
-from matstd.twin.units import UM
+from matstd.twin.numbers import in_um
+from matstd.twin.text import json_text
 
 FORMAT = "uncertainty/1"
 
@@ -26,7 +26,7 @@ def uncertainty_table(
         "format": FORMAT,
         "task": task,
         "level": LEVEL,
-        "tolerance_um": None if tolerance is None else _um(tolerance),
+        "tolerance_um": None if tolerance is None else in_um(tolerance, 4),
         "budgets": [_budget(name, one, tolerance) for name, one in budgets.items()],
     }
 
@@ -39,7 +39,7 @@ def write_uncertainty(
 ) -> None:
     """Write `uncertainty.json`, whole or not at all; arguments as of `uncertainty_table`."""
     table = uncertainty_table(task, budgets, tolerance)
-    write_whole(path, json.dumps(table, indent=1, ensure_ascii=False) + "\n")
+    write_whole(path, json_text(table))
 
 
 def _budget(name: str, one: TaskUncertainty, tolerance: float | None) -> dict[str, Any]:
@@ -49,29 +49,25 @@ def _budget(name: str, one: TaskUncertainty, tolerance: float | None) -> dict[st
         "places": one.places,
         "faces": one.faces,
         "poses": one.poses,
-        "b_um": _um(one.bias),
-        "u_cal_um": _um(one.u_cal),
-        "u_p_um": _um(one.u_p),
-        "u_b_um": _um(one.u_b),
-        "u_w_um": _um(one.u_w),
-        "spread_um": _um(one.spread),
-        "spread_by_calibration_um": _um(one.expected),
-        "u_um": _um(one.u),
+        "b_um": in_um(one.bias, 4),
+        "u_cal_um": in_um(one.u_cal, 4),
+        "u_p_um": in_um(one.u_p, 4),
+        "u_b_um": in_um(one.u_b, 4),
+        "u_w_um": in_um(one.u_w, 4),
+        "spread_um": in_um(one.spread, 4),
+        "spread_by_calibration_um": in_um(one.expected, 4),
+        "u_um": in_um(one.u, 4),
         "degrees_of_freedom": round(one.dof, 1),
         "k": round(one.k, 3),
-        "U_um": _um(one.U),
-        "U_uncorrected_um": _um(one.U_uncorrected),
+        "U_um": in_um(one.U, 4),
+        "U_uncorrected_um": in_um(one.U_uncorrected, 4),
         "by_face": [
-            {"feature": face, "mean_um": _um(mean), "spread_um": _um(spread)}
+            {"feature": face, "mean_um": in_um(mean, 4), "spread_um": in_um(spread, 4)}
             for face, mean, spread in one.by_face
         ],
     }
     if tolerance is not None:
         zone = guarded(tolerance, one.u, one.dof)
-        out["conforms_within_um"] = _um(zone.accepted) if zone.accepted > 0.0 else None
-        out["does_not_conform_beyond_um"] = _um(zone.rejected)
+        out["conforms_within_um"] = in_um(zone.accepted, 4) if zone.accepted > 0.0 else None
+        out["does_not_conform_beyond_um"] = in_um(zone.rejected, 4)
     return out
-
-
-def _um(value: float) -> float:
-    return round(value / UM, 4)

@@ -25,11 +25,12 @@ from matstd.diagnosis.regression import (
     solve,
     whitener,
 )
-from matstd.twin.display import Shown
+from matstd.twin.display import Displayed
 from matstd.twin.effects import Free, placing_errors, setup_errors
 from matstd.twin.errors import NotEnoughData
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Model, Parameter, columns
+from matstd.twin.numbers import rms
 from matstd.twin.record import IntArray, Run
 
 PASSES = 5
@@ -49,7 +50,7 @@ MIN_TOUCHES = 8
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Fit(Shown):
+class Fit(Displayed):
     """A model fitted to a run.
 
     Parameters stand in the order: effects of the model, set-ups, tangents of inner parameters.
@@ -155,7 +156,7 @@ class Fit(Shown):
     @property
     def rms(self) -> float:
         """Root mean square residual of the rows used, mm."""
-        return float(np.sqrt(np.mean(self.residual[self.used] ** 2)))
+        return rms(self.residual[self.used])
 
     @cached_property
     def test_rows(self) -> BoolArray:
@@ -210,7 +211,7 @@ class Fit(Shown):
         others, once left out, is extrapolated to, and a plain mean would tell of little else.
         """
         if self.test_rows.any():
-            return float(np.sqrt(np.mean(self.residual[self.test_rows] ** 2)))
+            return rms(self.residual[self.test_rows])
         u, machine = self.u[self.used], ~self._is_setup
         X = self.X[self.used]
         if self.whitener is not None:
@@ -257,8 +258,8 @@ class Fit(Shown):
                 X[rows, part] = 0.0
             spread = (self.solution.spread(X[self.test_rows]) ** 2).sum(axis=1)
             error = self.residual[self.test_rows] / np.sqrt(1.0 + spread)
-            return float(np.sqrt(np.mean(error**2)))
-        return self.weight * self.held_out.rms * float(np.sqrt(np.mean(self.u[self.used] ** 2)))
+            return rms(error)
+        return self.weight * self.held_out.rms * rms(self.u[self.used])
 
     def of_effect(self, name: str) -> slice:
         """Places of one effect's parameters; raises KeyError."""

@@ -27,9 +27,9 @@ import numpy as np
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry.quantities import Functional, Quantity, geometric_effects
-from matstd.twin.effects import LocationError
 from matstd.twin.frames import Array, rotation
 from matstd.twin.machine import Chain, Symbol
+from matstd.twin.model import traits
 
 PARALLEL = 0.05
 """Sine of the angle between two lines below which their distance, not their crossing, is told."""
@@ -78,17 +78,20 @@ class Lines:
 
 
 def arm_functionals(fit: Fit, joints: Sequence[str]) -> Iterator[Functional]:
-    """Lengths, twists, offsets and zeros of the joints of an arm that were probed."""
+    """Lengths, twists, offsets and zeros of the joints that were probed."""
     chain = fit.model.chain
-    names = [j for j in chain.arm_joints if j in joints]
+    names = [j for j in chain.joints if j in joints]
+    if not names:
+        return
     links = [chain.link(j) for j in names]
     nominal = Lines(np.stack([k.point for k in links]), np.stack([k.direction for k in links]))
     levers = _levers(chain, names)
     weights: dict[tuple[Quantity, str], Array] = {}
     for start, effect in geometric_effects(fit):
-        if isinstance(effect, LocationError) and effect.symbol.link in names:
+        constant = traits(effect).ordinary_constant
+        if constant is not None and constant.link in names:
             ahead, behind = (
-                _measures(_moved(nominal, names, chain, effect.symbol, s), nominal, names)
+                _measures(_moved(nominal, names, chain, constant, s), nominal, names)
                 for s in (STEP, -STEP)
             )
             for key, (_, value) in ahead.items():

@@ -6,7 +6,7 @@
 - the angular errors of a linear axis and all errors of a rotary one are curves of its reading, of
   which the peak-to-valley over the probed readings is told;
 - the line of a rotary axis is where the tool sees it, place and tilt, while the axis turns;
-- of a serial arm instead the lengths and twists of links and the zeros of joints (`arm_links`).
+- of joints instead the lengths and twists of links and the zeros of joints (`arm_links`).
 
 None of them depends on where the standard stands, nor on how parameters share what they have in
 common.
@@ -44,8 +44,7 @@ def functionals(fit: Fit, theta: Array) -> Iterator[Functional]:
         for second in axes[i + 1 :]:
             yield from _squareness(lines[first], lines[second])
     probed = [axis for axis in chain.rotary_axes if _is_probed(fit, axis)]
-    if chain.is_serial_arm:
-        yield from arm_functionals(fit, probed)
+    yield from arm_functionals(fit, probed)
     for axis in probed:
         yield from _rotary(fit, theta, axis)
 
@@ -204,9 +203,9 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
     if t.instrument.reads_angle:
         reach = float(np.median(np.linalg.norm(t.point, axis=1)))
     unit = {False: "mm", True: "rad"}
-    is_joint = t.chain.is_serial_arm and axis in t.chain.arm_joints
-    is_untold = is_joint or t.instrument.reads_angle  # where it is, no angle tells
-    for component, weights in () if is_untold else sorted(_line_of(fit, axis).items()):
+    # the line of a joint is known to its neighbours alone, and no angle shows where a line is
+    is_unseen = link.is_joint or t.instrument.reads_angle
+    for component, weights in () if is_unseen else sorted(_line_of(fit, axis).items()):
         yield Functional(
             quantity=Quantity.ROTARY_LINE,
             symbol=f"E{LETTERS[component]}0{axis}",

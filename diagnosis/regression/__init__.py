@@ -5,6 +5,7 @@ that were left out, gross errors, and noise that remembers, with a `Whitener` th
 independent. Nothing here knows a machine.
 """
 
+from matstd.diagnosis.regression.f_test import f_probability, f_tail
 from matstd.diagnosis.regression.gross import GrossErrors, find_gross, robust_scale, shots
 from matstd.diagnosis.regression.linear import BoolArray, LeftOut, Solution, left_out, solve
 from matstd.diagnosis.regression.memory import CLEARLY, Memory, Whitener, likely_memory, whitener
@@ -20,6 +21,8 @@ __all__ = [
     "Noise",
     "Solution",
     "Whitener",
+    "f_probability",
+    "f_tail",
     "find_gross",
     "left_out",
     "likely_memory",

@@ -3,10 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import betainc
 
 from matstd.diagnosis.fit import Fit, fit_run
-from matstd.diagnosis.regression import solve
+from matstd.diagnosis.regression import f_probability, solve
 from matstd.twin.frames import Array
 from matstd.twin.record import Instrument, IntArray
 
@@ -69,8 +68,8 @@ def jump_in_order(fit: Fit) -> JumpInOrder | None:
     N = (t.normal_table / (fit.u * fit.weight)[:, None])[fit.used][order]
     fall = _falls(N, fit.solution.Q[order], fit.solution.residual[order], first)
     k = int(np.argmax(fall))
-    share, dof = fall[k] / fit.solution.objective, len(first) - 2 * FREE
-    p = float(betainc(0.5 * dof, 0.5 * FREE, max(1.0 - share, 0.0))) * len(fall)
+    share, dof = min(fall[k] / fit.solution.objective, 1.0), len(first) - 2 * FREE
+    p = float(f_probability(share, FREE, 1.0 - share, dof)) * len(fall)
     if p > CHANCE or share < SHARE:
         return None
     after = np.arange(len(line)) >= first[k + 1]

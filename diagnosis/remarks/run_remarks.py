@@ -13,6 +13,7 @@ from matstd.diagnosis.remarks.order import JumpInOrder, jump_in_order
 from matstd.diagnosis.remarks.other_run import OfAnotherRun
 from matstd.diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
 from matstd.twin.elastic import short_beams
+from matstd.twin.numbers import rms
 
 FEW_DOF = 30.0
 """Below so many degrees of freedom only large effects can be seen."""
@@ -290,7 +291,7 @@ def _touches(fit: Fit) -> list[Remark]:
         out.append(FewTouches(n, p))
     if fit.solution.dof < FEW_DOF:
         out.append(FewDegreesOfFreedom(fit.solution.dof))
-        ratio = fit.standardised_test_rms / float(np.sqrt(np.mean(fit.run.u**2)))
+        ratio = fit.standardised_test_rms / rms(fit.run.u)
         if ratio > DOUBTFUL:
             out.append(HeldOutInDoubt(ratio))
     t = fit.run.touches
@@ -298,8 +299,7 @@ def _touches(fit: Fit) -> list[Remark]:
     if poses < MIN_POSES:
         turns = bool(t.chain.rotary_axes) and not t.instrument.reads_angle
         out.append(FewPoses(poses, turns))
-    joints = t.chain.arm_joints if t.chain.is_serial_arm else ()
-    stood = tuple(j for j in joints if np.ptp(t.reading(j)[fit.used]) < STANDS)
+    stood = tuple(j for j in t.chain.joints if np.ptp(t.reading(j)[fit.used]) < STANDS)
     if stood:
         out.append(JointsStood(stood))
     return out

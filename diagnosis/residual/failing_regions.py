@@ -13,12 +13,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import fdtrc, ndtr
+from scipy.special import ndtr
 
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.regression import BoolArray
+from matstd.diagnosis.regression import BoolArray, f_tail
 from matstd.diagnosis.residual.patterns import variables
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
 
 CHANCE = 1e-3
 """Probability that noise is said to have a region."""
@@ -151,7 +152,7 @@ def _mean_chance(z: Array, others: Array) -> float:
 def _size_chance(z: Array, others: Array) -> float:
     """Probability of such a variance beside that of the others, F test."""
     ratio = float(np.mean(z**2) / np.mean(others**2)) if len(others) else 0.0
-    return float(fdtrc(len(z), max(len(others), 1), ratio))
+    return float(f_tail(ratio, len(z), len(others)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,13 +187,12 @@ def _judged(
     if p >= CHANCE:
         return None
     r = fit.residual[seen]
-    rms = float(np.sqrt(np.mean(r**2)))
     u = float(np.sqrt(np.sum(noise[seen] ** 2)) / len(r))
     return Region(
         conditions=_tightest(conditions),
         rows=rows,
         mean=float(r.mean()),
-        rms=rms,
+        rms=rms(r),
         p_value=p,
         u=u,
     )

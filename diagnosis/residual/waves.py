@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.diagnosis.evidence import EffectSet, f_probability
+from matstd.diagnosis.evidence import EffectSet
+from matstd.diagnosis.regression import f_probability
 from matstd.diagnosis.residual.patterns import directions
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches

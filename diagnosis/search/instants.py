@@ -9,9 +9,9 @@ how far an effect reaches, and what noise remembers from one instant to the next
 """
 
 import numpy as np
-from scipy.special import fdtrc
 
 from matstd.diagnosis.evidence import EffectSet
+from matstd.diagnosis.regression import f_tail
 
 SHARED = 0.5
 """Share of rows that stand at the instant and the readings of the row before, from which rows of an
@@ -48,4 +48,4 @@ def p_by_instants(others: EffectSet, whole: EffectSet) -> float:
     g = D.T @ others.residual
     explained = float(g @ inverse @ g)
     scatter = float(np.einsum("mi,ij,mj->", each, inverse, each))
-    return float(fdtrc(added, freedom, explained / max(scatter, 1e-300)))
+    return float(f_tail(explained / max(scatter, 1e-300), added, freedom))

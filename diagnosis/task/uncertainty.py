@@ -29,6 +29,7 @@ import numpy as np
 
 from matstd.diagnosis.task.predictive import expected_error
 from matstd.diagnosis.task.visits import Visits
+from matstd.twin.numbers import rms, rms_length
 
 LEVEL = 0.95
 """Share of results that U is to cover."""
@@ -124,8 +125,8 @@ def task_uncertainty(visits: Visits, u_w: float = 0.0) -> TaskUncertainty:
         bias=bias,
         u_cal=u_cal,
         u_p=u_p,
-        spread=float(np.sqrt(np.mean((mean - bias) ** 2))),
-        expected=float(np.sqrt(np.mean(np.sum((K - common) ** 2, axis=1)))),
+        spread=rms(mean - bias),
+        expected=rms_length(K - common),
         u_w=u_w,
         u=u,
         dof=dof,

@@ -1,6 +1,5 @@
-"""identifiability.json: what a design's touches can and cannot know."""
+"""identifiability.json: what the touches of a design can and cannot determine."""
 
-import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -20,6 +19,8 @@ from matstd.report.identifiability.parameter_words import in_words, short
 from matstd.report.numbers import shown
 from matstd.twin.files import write_whole
 from matstd.twin.machine import Chain, Link
+from matstd.twin.numbers import significant
+from matstd.twin.text import json_text
 from matstd.twin.units import DEG
 
 FORMAT = "identifiability/1"
@@ -39,9 +40,9 @@ def identifiability_table(known: IdentifiabilityReport) -> dict[str, Any]:
         "parameters": g.parameters,
         "rank": g.rank,
         "condition": {
-            "columns_of_length_one": _rounded(g.condition),
-            "in_units_of_expected_sizes": _rounded(g.condition_prior),
-            "per_um_and_urad": _rounded(g.condition_raw),
+            "columns_of_length_one": significant(g.condition),
+            "in_units_of_expected_sizes": significant(g.condition_prior),
+            "per_um_and_urad": significant(g.condition_raw),
         },
         "freedoms": [
             {
@@ -49,7 +50,7 @@ def identifiability_table(known: IdentifiabilityReport) -> dict[str, Any]:
                 "words": freedom_words(f, chain),
                 "why": reason_words(f),
                 "resolved_by": resolution_words(f),
-                "alike": [{"parameter": t.name, "per_unit": _rounded(t.value)} for t in f.alike],
+                "alike": [{"parameter": t.name, "per_unit": significant(t.value)} for t in f.alike],
             }
             for f in g.freedoms
         ],
@@ -59,9 +60,9 @@ def identifiability_table(known: IdentifiabilityReport) -> dict[str, Any]:
         "combinations": [
             {
                 "words": combination_words(names, units, c.weights, c.importance),
-                "u": _rounded(c.u / shown(c.unit)[1]),
+                "u": significant(c.u / shown(c.unit)[1]),
                 "unit": shown(c.unit)[0],
-                "prior_over_posterior": _rounded(c.gain),
+                "prior_over_posterior": significant(c.gain),
             }
             for c in known.combinations
         ],
@@ -69,8 +70,8 @@ def identifiability_table(known: IdentifiabilityReport) -> dict[str, Any]:
             {
                 "parameter": a.name,
                 "words": in_words(a.name, chain),
-                "expected": _rounded(a.expected / shown(a.unit)[1]),
-                "u": _rounded(a.u / shown(a.unit)[1]),
+                "expected": significant(a.expected / shown(a.unit)[1]),
+                "u": significant(a.u / shown(a.unit)[1]),
                 "unit": shown(a.unit)[0],
             }
             for a in known.alone
@@ -86,21 +87,20 @@ def _alternative(other: Alternative) -> dict[str, Any]:
 
 
 def _alternative_words(other: Alternative) -> str:
-    """What another stylus length or set-up would buy."""
+    """Benefit of another stylus length or set-up."""
     if not other.is_possible:
         return f"{other.name}: {other.refusal}"
     gained, ratio = other.rank_gained, other.variance_ratio
-    seen = f"{gained} more combinations of machine errors" if gained else "no combination more is"
+    seen = f"{gained or 'no'} additional combinations of machine errors visible"
     change = f"{100 * abs(ratio - 1.0):.0f} % {'less' if ratio < 1.0 else 'more'}"
     return (
-        f"{other.name}: {seen} seen; mean predicted variance of the tool point {change} at equal "
-        "touches"
+        f"{other.name}: {seen}; mean predicted variance of the tool point {change} at equal touches"
     )
 
 
 def _reading(link: Link, limits: tuple[float, float]) -> tuple[str, list[float]]:
     suffix, unit = ("_mm", 1.0) if link.kind == "linear" else ("_deg", DEG)
-    return link.name + suffix, [_rounded(v / unit) for v in limits]
+    return link.name + suffix, [significant(v / unit) for v in limits]
 
 
 def _degree(degree: Degree, chain: Chain) -> dict[str, Any]:
@@ -109,16 +109,12 @@ def _degree(degree: Degree, chain: Chain) -> dict[str, Any]:
         "parameter": degree.symbol,
         "supported": list(degree.supported),
         "largest": degree.largest,
-        "u": _rounded(degree.u / factor),
+        "u": significant(degree.u / factor),
         "unit": label,
         "words": degree_words(degree, chain),
     }
 
 
-def _rounded(value: float) -> float:
-    return float(f"{value:.6g}")
-
-
 def write_identifiability(path: Path, known: IdentifiabilityReport) -> None:
     """Write the record as a JSON file, whole or not at all."""
-    write_whole(path, json.dumps(identifiability_table(known), indent=1, ensure_ascii=False) + "\n")
+    write_whole(path, json_text(identifiability_table(known)))

@@ -1,6 +1,5 @@
-"""identification.json: what was estimated, how sure it is, and what can never be known."""
+"""identification.json: estimates, their uncertainties, and what cannot be determined."""
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ from matstd.diagnosis.fit import Estimable, Fit, estimable
 from matstd.report.identifiability.identifiability_words import combination_words, freedom_words
 from matstd.report.numbers import shown
 from matstd.twin.files import write_whole
+from matstd.twin.text import json_text
 from matstd.twin.units import UM
 
 FORMAT = "identification/1"
@@ -70,6 +70,5 @@ def _value(name: str, value: float, u: float, unit: str) -> dict[str, Any]:
 def write_identification(path: str | Path, fit: Fit, proofs: Sequence[Proof] = ()) -> Estimable:
     """Write identification.json, whole or not at all; returns what the fit determines."""
     known = estimable(fit)
-    text = json.dumps(identification_table(fit, known, proofs), indent=1, ensure_ascii=False)
-    write_whole(path, text + "\n")
+    write_whole(path, json_text(identification_table(fit, known, proofs)))
     return known

@@ -1,7 +1,7 @@
-"""Results as they show themselves: a short text, and in a notebook a table with a picture.
+"""What a result shows of itself: a short text, and in a notebook a table with a picture.
 
-`matstd.twin.display` calls this module by name. To teach it a result, register a text, and a
-picture if there is one that says most.
+The texts are registered in `matstd.twin.display` when this module is imported. For a new result,
+register a text, and a picture if one says most.
 """
 
 from collections.abc import Callable
@@ -13,33 +13,34 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
+from matstd.artefact.body import Standard
+from matstd.artefact.brief import Project
 from matstd.artefact.compare import IdentifiabilityReport
 from matstd.diagnosis.answer import Comparison, Diagnosis
+from matstd.diagnosis.files import SavedModel
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.residual import rank_variables
 from matstd.report.identifiability import gist
 from matstd.report.maps import draw_regions
+from matstd.report.numbers import microns
 from matstd.report.pages.page import picture
 from matstd.report.plots import draw_fall, draw_over_variables
 from matstd.report.style import save
-from matstd.report.words import comparison_sentence, microns, study_words, verdict_sentence
+from matstd.report.words import comparison_sentence, study_words, verdict_sentence
 from matstd.sensitivity.shares import regions
 from matstd.sensitivity.study import Study
-from matstd.twin.display import Tabular
+from matstd.twin.display import Displayed, Tabular, html, text
+from matstd.twin.machine import Chain
+from matstd.twin.model import Model
+from matstd.twin.numbers import rms
 from matstd.twin.record import Run
 
-_ROWS = 10  # of a table that are shown; the rest is told
-
-
-@singledispatch
-def text(result: object) -> str:
-    """A result in one or a few lines."""
-    return object.__repr__(result)
+_ROWS = 10  # of a table that are shown; of the others their number
 
 
 @text.register
 def _run(run: Run) -> str:
-    size = float(np.sqrt(np.mean(run.deviation**2)))
+    size = rms(run.deviation)
     poses = len(np.unique(run.touches.pose))
     return (
         f"{len(run)} touches at {poses} table poses of {run.touches.chain.name}, "
@@ -75,6 +76,42 @@ def _identifiability(known: IdentifiabilityReport) -> str:
     return f"{gist(known)}."
 
 
+@text.register
+def _chain(chain: Chain) -> str:
+    return f"{chain.name}: {chain.notation}"
+
+
+@text.register
+def _model(model: Model) -> str:
+    return (
+        f"model of {model.chain.name}: {len(model.effects)} effects, "
+        f"{len(model.parameters)} parameters"
+    )
+
+
+@text.register
+def _saved(saved: SavedModel) -> str:
+    source = saved.source
+    return f"{saved.model!r}, estimated from {source.touches} touches ({source.run})"
+
+
+@text.register
+def _standard(standard: Standard) -> str:
+    state = "as designed" if standard.known is None else f"calibrated with {standard.known.source}"
+    return (
+        f"{standard.name}: {len(standard.patches)} freeform faces, {len(standard.spheres)} balls, "
+        f"{state}"
+    )
+
+
+@text.register
+def _project(project: Project) -> str:
+    return (
+        f"{project.path.name}: {project.standard.name} for {project.chain.name}, "
+        f"programs for {Path(project.control).name}"
+    )
+
+
 @singledispatch
 def drawing(result: object) -> Callable[[Path], None] | None:
     """What draws the picture of a result into a file; None where there is none."""
@@ -83,12 +120,12 @@ def drawing(result: object) -> Callable[[Path], None] | None:
 
 @drawing.register
 def _over_variables(found: Comparison) -> Callable[[Path], None]:
-    return lambda path: draw_over_variables(path, found.fit, rank_variables(found.fit))
+    return lambda path: save(draw_over_variables(found.fit, rank_variables(found.fit)), path)
 
 
 @drawing.register
 def _fall(found: Diagnosis) -> Callable[[Path], None]:
-    return lambda path: draw_fall(path, found)
+    return lambda path: save(draw_fall(found), path)
 
 
 @drawing.register
@@ -97,7 +134,8 @@ def _regions(study: Study) -> Callable[[Path], None]:
     return lambda path: save(draw_regions(study.chain, found), path)
 
 
-def html(result: object) -> str:
+@html.register
+def _all_of(result: Displayed) -> str:
     """The text, the first rows of the table and the picture of a result."""
     parts = [f"<p>{escape(text(result)).replace(chr(10), '<br>')}</p>"]
     if isinstance(result, Tabular):

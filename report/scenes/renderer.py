@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from matstd.cad_out.build import run_apart
+from matstd.cad_out.kernel import run_apart
 from matstd.twin.errors import DesignError, MissingLibrary
 from matstd.twin.frames import Array
 

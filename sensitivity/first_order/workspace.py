@@ -8,6 +8,7 @@ import numpy as np
 from matstd.twin.errors import DesignError, NotReachable, OutsideTravel, UnknownAxis
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, inverse_linear, tip
+from matstd.twin.sampling import latin_points
 from matstd.twin.units import DEG
 
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]
@@ -112,12 +113,6 @@ def grid(workspace: Workspace, counts: Mapping[str, int] | int) -> Array:
     return q
 
 
-def _hypercube(low: Array, high: Array, count: int, rng: np.random.Generator) -> Array:
-    """Latin hypercube: every one of `count` strata of every variable once, (count, len(low))."""
-    strata = np.stack([rng.permutation(count) for _ in low], axis=-1)
-    return low + (high - low) * (strata + rng.random(strata.shape)) / count
-
-
 def latin_hypercube(workspace: Workspace, count: int, rng: np.random.Generator) -> Array:
     """Poses that fill a workspace evenly.
 
@@ -138,17 +133,12 @@ def latin_hypercube(workspace: Workspace, count: int, rng: np.random.Generator) 
     chain = workspace.chain
     low, high = np.array([workspace.limit(name) for name in chain.axes]).T
     if workspace.volume is None:
-        return _hypercube(low, high, count, rng)
+        return latin_points(low, high, count, rng)
     rotary = [chain.axis_index(a) for a in chain.axes if a not in chain.linear_axes]
-    corner_low, corner_high = np.array(workspace.volume)
+    low, high = np.append(workspace.volume, [low[rotary], high[rotary]], axis=1)
     found = np.zeros((0, len(chain.axes)))
     for _ in range(_ROUNDS):
-        cube = _hypercube(
-            np.concatenate([corner_low, low[rotary]]),
-            np.concatenate([corner_high, high[rotary]]),
-            count,
-            rng,
-        )
+        cube = latin_points(low, high, count, rng)
         q = np.zeros((count, len(chain.axes)))
         q[:, rotary] = cube[:, 3:]
         q = inverse_linear(chain, cube[:, :3], q, workspace.length)

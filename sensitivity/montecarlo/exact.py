@@ -6,6 +6,7 @@ import numpy as np
 
 from matstd.sensitivity.population import Population, coefficients, draw
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
 from matstd.twin.record import at_poses
 
 
@@ -55,7 +56,7 @@ def exact_check(
     return ExactCheck(
         machines=machines,
         poses=len(q),
-        rms=float(np.sqrt(np.mean(difference**2))),
+        rms=rms(difference),
         worst=float(difference.max()),
-        rms_deviation=float(np.sqrt(np.mean(size**2))),
+        rms_deviation=rms(size),
     )

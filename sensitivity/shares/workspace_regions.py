@@ -18,6 +18,7 @@ from matstd.sensitivity.population import Population
 from matstd.sensitivity.shares.total_effect_indices import MACHINES, norm_shares
 from matstd.twin.frames import Array
 from matstd.twin.machine import tip
+from matstd.twin.sampling import even_points
 from matstd.twin.units import DEG
 
 POSES = 256
@@ -224,7 +225,7 @@ def _poses(workspace: Workspace, readings: dict[str, Squeeze]) -> Array:
     chain = workspace.chain
     found = np.zeros((0, len(chain.axes)))
     for attempt in range(_TRIES):
-        unit = _even(POSES, len(chain.axes), attempt * POSES)
+        unit = even_points(POSES, len(chain.axes), attempt * POSES)
         q = np.empty_like(unit)
         for i, name in enumerate(chain.axes):
             low, high = workspace.limit(name)
@@ -237,18 +238,3 @@ def _poses(workspace: Workspace, readings: dict[str, Squeeze]) -> Array:
         if len(found) == POSES:
             break
     return found
-
-
-def _even(count: int, dimensions: int, start: int) -> Array:
-    """Points that fill the unit cube evenly, (count, dimensions).
-
-    Reference:
-        M. Roberts, "The unreasonable effectiveness of quasirandom sequences" (2018): multiples of
-        the powers of 1/g, with g the root of ``g^(d+1) = g + 1``.
-    """
-    g = 1.5
-    for _ in range(60):
-        g = (1.0 + g) ** (1.0 / (dimensions + 1))
-    steps = g ** -np.arange(1.0, dimensions + 1.0)
-    points: Array = (0.5 + np.outer(np.arange(start + 1, start + count + 1), steps)) % 1.0
-    return points

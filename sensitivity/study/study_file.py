@@ -1,6 +1,5 @@
 """A study as files: tables, sections, and the figures of the Monte Carlo with their precision."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +10,7 @@ from matstd.sensitivity.study.machine_study import Study
 from matstd.sensitivity.study.study_table import pose_columns, statistics_columns
 from matstd.twin.files import write_whole, written_whole
 from matstd.twin.frames import Array
+from matstd.twin.text import csv_text, json_text
 from matstd.twin.units import UM, URAD
 
 
@@ -30,25 +30,25 @@ def write_study(study: Study, folder: str | Path, statement: str) -> None:
     folder, symbols = Path(folder), study.chain.symbols
     readings = pose_columns(study.chain, study.q)
     table = readings | statistics_columns(study.volumetric, study.closed)
-    write_whole(folder / "poses.csv", csv_text(table))
+    write_whole(folder / "poses.csv", _table_text(table))
     unit = [URAD / UM if s.is_angular else 1.0 for s in symbols]
     S = {s.name: study.sensitivity[:, i] * unit[i] for i, s in enumerate(symbols)}
-    write_whole(folder / "sensitivity.csv", csv_text(readings | S))
+    write_whole(folder / "sensitivity.csv", _table_text(readings | S))
     shares = {s.name: study.shares[:, i] for i, s in enumerate(symbols)}
-    write_whole(folder / "shares.csv", csv_text(readings | shares))
+    write_whole(folder / "shares.csv", _table_text(readings | shares))
     if study.total:
         some = {name: column[: study.total.total.shape[1]] for name, column in readings.items()}
         for i, s in enumerate(symbols):
             some |= {s.name: study.total.total[i], f"{s.name}_u": study.total.u[i]}
-        write_whole(folder / "total_effects.csv", csv_text(some))
+        write_whole(folder / "total_effects.csv", _table_text(some))
     if study.path:
         way = study.path.trajectory
         table = {"share_of_way": way.along} | pose_columns(study.chain, way.q)
         table |= statistics_columns(study.path.volumetric, study.path.closed)
         table |= {f"errors_of_{e.axis}_um": e.size / UM for e in study.path.effects}
-        write_whole(folder / "trajectory.csv", csv_text(table))
+        write_whole(folder / "trajectory.csv", _table_text(table))
     _write_sections(study, folder / "sections.npz")
-    write_whole(folder / "montecarlo.json", json.dumps(_summary(study, statement), indent=1) + "\n")
+    write_whole(folder / "montecarlo.json", json_text(_summary(study, statement)))
 
 
 def _summary(study: Study, statement: str) -> dict[str, Any]:
@@ -121,8 +121,7 @@ def _write_sections(study: Study, path: Path) -> None:
         np.savez_compressed(stream, allow_pickle=False, **arrays)
 
 
-def csv_text(table: dict[str, Array]) -> str:
+def _table_text(table: dict[str, Array]) -> str:
     """Columns of numbers as CSV with seven digits."""
     rows = np.stack(list(table.values()), axis=1)
-    lines = [",".join(table)] + [",".join(f"{v:.7g}" for v in row) for row in rows]
-    return "\n".join(lines) + "\n"
+    return csv_text(table, ([f"{v:.7g}" for v in row] for row in rows))

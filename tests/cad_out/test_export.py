@@ -12,10 +12,10 @@ import volume_by_hand
 
 from matstd import cad_out
 from matstd.artefact.body.datum import DatumSphere
-from matstd.cad_out.build import kernel
-from matstd.cad_out.build.process import Ending, run_apart
-from matstd.cad_out.build.settled import with_units_of_density
 from matstd.cad_out.details.detail_list import details_of
+from matstd.cad_out.kernel import process
+from matstd.cad_out.kernel.process import Ending, run_apart
+from matstd.cad_out.kernel.settled import with_units_of_density
 from matstd.cad_out.meshes.mesh import (
     chord_errors,
     is_watertight,
@@ -98,7 +98,7 @@ def test_poles_and_knots_in_the_file_are_those_of_the_design(upright, built):
 
 
 def test_the_header_says_where_the_file_comes_from(upright, built):
-    from matstd.cad_out.build.exchange import in_ascii
+    from matstd.cad_out.kernel.exchange import in_ascii
 
     place, _, _ = built
     header = re.sub(r"\s*\n\s*", "", (place / "standard.step").read_text().split("ENDSEC;")[0])
@@ -269,7 +269,7 @@ def test_a_crash_of_the_kernel_is_one_clear_error(upright, tmp_path, monkeypatch
     def crashing(module, task, folder, *arguments, timeout):
         return run_apart("faulthandler", "_sigsegv() or print", folder, timeout=timeout)
 
-    monkeypatch.setattr(kernel, "run_apart", crashing)
+    monkeypatch.setattr(process, "run_apart", crashing)
     with pytest.raises(
         NotBuildable, match=r"CAD kernel crashed \(SIGSEGV, exit code -11\).*nothing was written"
     ) as caught:
@@ -281,7 +281,7 @@ def test_a_crash_of_the_kernel_is_one_clear_error(upright, tmp_path, monkeypatch
 
 def test_a_full_disk_is_told_by_the_folder_that_is_full(upright, tmp_path, monkeypatch):
     ending = Ending(1, "", "OSError: [Errno 28] No space left on device")
-    monkeypatch.setattr(kernel, "run_apart", lambda *_, **__: ending)
+    monkeypatch.setattr(process, "run_apart", lambda *_, **__: ending)
     told = rf"^{tmp_path}: cannot be written \(\[Errno 28\] No space left on device\)$"
     with pytest.raises(DesignError, match=told):
         cad_out.verify.export_standard(upright, tmp_path)

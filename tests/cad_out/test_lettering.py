@@ -32,8 +32,8 @@ def test_an_f_points_up_and_to_the_right():
 
 def engraved_cube(*lines):
     """A cube of 20 mm; the kernel, which takes two seconds to load, is loaded here."""
-    from matstd.cad_out.build.letters import engraved
-    from matstd.cad_out.build.primitives import box
+    from matstd.cad_out.kernel.letters import engraved
+    from matstd.cad_out.kernel.primitives import box
 
     return engraved(box((0.0, 0.0, 0.0), (20.0, 20.0, 20.0)), lines)
 
@@ -41,7 +41,7 @@ def engraved_cube(*lines):
 @pytest.mark.parametrize("rows", [SMALL, LARGE])
 @pytest.mark.parametrize("turn", [np.eye(3), [[0, 0, 1], [1, 0, 0], [0, 1, 0]]], ids=["top", "+x"])
 def test_dots_take_their_caps_away(turn, rows):
-    from matstd.cad_out.build.faces import area, faces_of, is_closed, is_valid, volume
+    from matstd.cad_out.kernel.faces import area, faces_of, is_closed, is_valid, volume
 
     R = np.array(turn, dtype=float)
     line = Lettering("A7", pose(R, R @ [1.0, 1.0, 20.0]), rows)
@@ -53,7 +53,7 @@ def test_dots_take_their_caps_away(turn, rows):
 
 
 def test_a_line_that_leaves_its_face_is_cut_all_the_same():
-    from matstd.cad_out.build.faces import is_closed, is_valid, volume
+    from matstd.cad_out.kernel.faces import is_closed, is_valid, volume
 
     beyond = Lettering("A7", pose(t=np.array([16.2, 5.0, 20.0])), LARGE)
     inside = Lettering("A", pose(t=np.array([5.0, 5.0, 20.0])), LARGE)

@@ -4,8 +4,8 @@ import pytest
 import volume_by_hand
 
 from matstd.artefact.body.standard import Standard
-from matstd.cad_out.build.part import as_part
 from matstd.cad_out.details.detail_list import details_of
+from matstd.cad_out.kernel.part import as_part
 
 
 @pytest.mark.filterwarnings("ignore::DeprecationWarning", "ignore::SyntaxWarning")

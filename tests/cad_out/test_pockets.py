@@ -10,8 +10,8 @@ def test_a_closed_pocket_is_filled_and_the_outside_stays():
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeSphere
     from OCP.gp import gp_Pnt
 
-    from matstd.cad_out.build.faces import is_closed, is_valid, shells_of, solids_of, volume
-    from matstd.cad_out.build.solid import without_pockets
+    from matstd.cad_out.kernel.faces import is_closed, is_valid, shells_of, solids_of, volume
+    from matstd.cad_out.kernel.solid import without_pockets
 
     box = BRepPrimAPI_MakeBox(10.0, 10.0, 10.0).Shape()
     ball = BRepPrimAPI_MakeSphere(gp_Pnt(5.0, 5.0, 5.0), 3.0).Shape()

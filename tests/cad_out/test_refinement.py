@@ -17,7 +17,7 @@ def drilled():
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCone, BRepPrimAPI_MakeCylinder
     from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 
-    from matstd.cad_out.build.reader import triangulate
+    from matstd.cad_out.kernel.reader import triangulate
 
     box = BRepPrimAPI_MakeBox(gp_Pnt(-40.0, -30.0, 0.0), gp_Pnt(40.0, 30.0, 25.0)).Shape()
     leaning = gp_Ax2(gp_Pnt(-20.0, 0.0, -20.0), gp_Dir(np.sin(0.4), 0.0, np.cos(0.4)))
@@ -92,7 +92,7 @@ def test_rational_splines_are_followed():
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
     from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 
-    from matstd.cad_out.build.reader import farthest_from_faces, triangulate
+    from matstd.cad_out.kernel.reader import farthest_from_faces, triangulate
 
     trimesh = pytest.importorskip("trimesh")
     box = BRepPrimAPI_MakeBox(gp_Pnt(-20.0, -15.0, 0.0), gp_Pnt(20.0, 15.0, 10.0)).Shape()

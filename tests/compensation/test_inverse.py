@@ -10,7 +10,6 @@ from matstd.compensation.field.over_workspace import (
     aligned,
     relative_columns,
     result_of,
-    rms,
     workspace,
 )
 from matstd.compensation.field.state import State
@@ -20,6 +19,7 @@ from matstd.twin.effects.setup_error import SetupError
 from matstd.twin.errors import BadValue, NotReachable
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.model.model import Model
+from matstd.twin.numbers import rms_length
 from matstd.twin.units import NM, UM, URAD
 
 
@@ -29,7 +29,7 @@ def test_the_corrected_machine_stands_where_it_should(known, bench_chain, poses)
     added = correction(known, touches)
     before = oracle_tip(poses, bench_chain) - oracle_tip(poses, bench_chain, False)
     after = oracle_tip(poses + added, bench_chain) - oracle_tip(poses, bench_chain, False)
-    assert rms(before) > 50 * UM
+    assert rms_length(before) > 50 * UM
     assert np.abs(after).max() < 3 * NM  # the oracle turns about x, y, z in order
     rotary = [bench_chain.axis_index(a) for a in bench_chain.rotary_axes]
     assert not added[:, rotary].any()
@@ -107,7 +107,7 @@ def test_uncertainty_of_the_result_is_that_of_drawn_machines(bench_chain, datum)
     errors = MachineErrors.of_model(saved(bench_chain, effects, mean, np.diag(sd**2)))
     q = workspace(bench_chain, {}, 30)
     found = result_of(errors, lambda t: correction(errors, t), q, datum)
-    assert rms(found.after) < 1 * NM
+    assert rms_length(found.after) < 1 * NM
     touches = errors.touches(q, LENGTH)
     added = correction(errors, touches)
     drawn = []
@@ -116,7 +116,7 @@ def test_uncertainty_of_the_result_is_that_of_drawn_machines(bench_chain, datum)
         true = MachineErrors.of_errors(
             bench_chain, [(e, theta[[k]]) for k, e in enumerate(effects)]
         )
-        drawn.append(rms(aligned(touches.point, played(true, touches, added))) ** 2)
+        drawn.append(rms_length(aligned(touches.point, played(true, touches, added))) ** 2)
     np.testing.assert_allclose(np.sqrt(np.mean(drawn)), found.u_rms, rtol=0.15)
 
 

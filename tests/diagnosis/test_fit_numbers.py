@@ -19,10 +19,10 @@ from matstd.diagnosis.remarks.run_remarks import (
     WorseThanReplicates,
     remarks,
 )
+from matstd.importers.instruments.axis_run import one_axis_machine, positioning_run
+from matstd.importers.instruments.positioning import PositioningTest
 from matstd.twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
 from matstd.twin.errors import NotEnoughData
-from matstd.twin.foreign.axis_run import one_axis_machine, positioning_run
-from matstd.twin.foreign.positioning import PositioningTest
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.model.model import columns
 from matstd.twin.units import NM, UM

@@ -12,8 +12,8 @@ from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.evidence.effect_signatures import ScaledEffect
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.search.task import DiagnosisTask
-from matstd.twin.foreign.axis_run import one_axis_machine, positioning_run
-from matstd.twin.foreign.positioning import PositioningTest
+from matstd.importers.instruments.axis_run import one_axis_machine, positioning_run
+from matstd.importers.instruments.positioning import PositioningTest
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.record.run import Run

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from matstd.diagnosis.evidence.evidence import f_probability
+from matstd.diagnosis.regression import f_probability
 from matstd.diagnosis.residual.quadratic import ratio_probability
 
 A_FEW_PER_CENT = 0.05

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from matstd.cad_out.build.process import Ending
+from matstd.cad_out.kernel.process import Ending
 from matstd.report.scenes.standard_scene import draw_standard
 from matstd.report.scenes.volume_scene import PIXELS, Scene, composed, draw_volumes, eye
 from matstd.twin.errors import DesignError, MissingLibrary, ShapeMismatch

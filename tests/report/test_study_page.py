@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.cad_out.build.process import Ending
+from matstd.cad_out.kernel.process import Ending
 from matstd.report.pages.study_page import (
     ERROR_3D,
     S_3D,

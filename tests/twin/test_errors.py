@@ -4,11 +4,19 @@ import pickle
 
 import pytest
 
-from matstd.twin.errors import BadFile, BadValue, DesignError, UnknownAxis, UnknownSymbol
+from matstd.twin.errors import (
+    BadArgument,
+    BadFile,
+    BadValue,
+    DesignError,
+    UnknownAxis,
+    UnknownSymbol,
+)
 
 EVERY = [
     DesignError("no", reason=1),
     BadValue("axis.X.range", [2.0, 1.0], "the smaller reading first"),
+    BadArgument("hold_out", "winter", "one of spring"),
     UnknownAxis("Q", ["X", "Y"]),
     UnknownSymbol("EXW", ["EXX", "EYX"]),
     BadFile("a.toml", "axis", "nothing", "this key"),

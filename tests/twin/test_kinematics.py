@@ -19,6 +19,7 @@ from matstd.twin.frames import (
 from matstd.twin.machine.chain import Axis, Chain, make_chain
 from matstd.twin.machine.contribution import Contribution
 from matstd.twin.machine.kinematics import exact_tip, inverse_linear, reach, table_to_tool, tip
+from matstd.twin.machine.ranges import error_class
 from matstd.twin.machine.symbols import Family
 from matstd.twin.units import DEG, NM
 
@@ -301,3 +302,23 @@ def test_a_quill_in_brackets_stays_where_it_is():
     assert chain.linear_axes == ("X", "Y", "Z")
     q = inverse_linear(chain, np.array([[10.0, 20.0, -30.0]]), np.zeros((1, 4)), 100.0)
     np.testing.assert_allclose(q, [[10.0, 20.0, 70.0, 0.0]], rtol=0, atol=NM)
+
+
+@pytest.mark.parametrize(
+    ("notation", "joints", "turns"),
+    [
+        ("[w f C A B A1 t]", ("C", "A", "B", "A1"), False),
+        ("[w f X A B C t]", (), False),  # a head, however many axes it has
+        ("[w C1' f C A B A1 t]", ("C", "A", "B", "A1"), True),
+        ("[w C' B' f X t]", (), True),
+    ],
+)
+def test_joints_are_the_rotary_axes_of_an_open_chain(notation, joints, turns):
+    names = [name.strip("'") for name in notation.strip("[]").split() if name not in "wft"]
+    chain = make_chain("a", notation, {name: Axis((-1.0, 1.0)) for name in names})
+    assert chain.joints == joints
+    assert [link.name for link in chain.links if link.is_joint] == [*joints]
+    assert chain.turns_workpiece is turns
+    for symbol in chain.symbols:
+        if symbol.link not in "wt":
+            assert error_class(chain, symbol).startswith("arm_") == (symbol.link in joints)

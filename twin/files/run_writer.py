@@ -1,6 +1,5 @@
 """Writer of run files (CSV with a TOML head in comments, format "run/1")."""
 
-import csv
 import io
 import json
 from pathlib import Path
@@ -13,6 +12,7 @@ from matstd.twin.files.run_columns import FORCE, NORMAL, POINT, RADIUS, TARGET
 from matstd.twin.files.whole import write_whole
 from matstd.twin.frames import Array, fixed_xyz_angles
 from matstd.twin.record import BODY, Instrument, Run, Touches, implied_approach
+from matstd.twin.text import csv_text
 from matstd.twin.units import DEG, UM
 
 
@@ -54,10 +54,7 @@ def run_text(run: Run, machine: str) -> str:
         if setup.run:
             out.write(f"# run = {json.dumps(setup.run, ensure_ascii=False)}\n")
     columns = _columns_out(run, common_u)
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(columns)
-    writer.writerows(zip(*columns.values(), strict=True))
-    return out.getvalue()
+    return out.getvalue() + csv_text(columns, zip(*columns.values(), strict=True))
 
 
 def _body_line(touches: Touches) -> str:

@@ -7,11 +7,13 @@ from typing import Literal
 
 import numpy as np
 
+from matstd.twin.display import Displayed
 from matstd.twin.errors import BadValue, UnknownAxis, UnknownSymbol
 from matstd.twin.frames import Array
 from matstd.twin.machine.contribution import Where
 from matstd.twin.machine.notation import parse_notation
 from matstd.twin.machine.symbols import ALONG, Family, Symbol, parse_symbol
+from matstd.twin.numbers import significant
 from matstd.twin.units import DEG
 
 Kind = Literal["linear", "rotary", "fixed"]
@@ -26,9 +28,9 @@ FLATTEST = 0.01
 """Smallest singular value of the directions of linear axes: below, two of three axes stand within
 about a degree of one another."""
 
-ARM_JOINTS = 4
-"""Rotary joints between the foundation and the tool from which a machine is a serial arm: heads of
-machine tools have two or three."""
+OPEN_CHAIN = 4
+"""Rotary axes in series on the tool side from which they are joints: heads of machine tools have
+two or three."""
 
 SPINDLE_RANGE = (-360.0 * DEG, 360.0 * DEG)
 """Range of a bracketed spindle whose machine file says nothing about it, rad."""
@@ -50,7 +52,9 @@ class Link:
         pitch: Of the screw or scale of a linear axis, mm, as its owner states it; None where nobody
             said. Knowledge of the machine, no part of its kinematics.
         expected: Size of each translational error of a linear axis, mm, beyond which it is unusual
-            for such an axis; None for that of its class. Likewise no kinematics.
+            for such an axis; None for that of its class. No part of its kinematics either.
+        is_joint: A rotary axis whose line is known by how it lies to the lines of its neighbours,
+            in an open chain of `OPEN_CHAIN` and more; its errors are of a class of their own.
     """
 
     name: str
@@ -62,6 +66,7 @@ class Link:
     programmed: bool = True
     pitch: float | None = None
     expected: float | None = None
+    is_joint: bool = False
 
     @property
     def own(self) -> int:
@@ -95,8 +100,8 @@ class Axis:
     expected: float | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Chain:
+@dataclass(frozen=True, eq=False, repr=False)
+class Chain(Displayed):
     """A machine: its links in chain order from workpiece to tool, and the place of its table.
 
     Attributes:
@@ -144,15 +149,19 @@ class Chain:
         return tuple(ln.name for ln in self.links if ln.kind == "rotary" and ln.programmed)
 
     @cached_property
-    def arm_joints(self) -> tuple[str, ...]:
+    def tool_rotary_axes(self) -> tuple[str, ...]:
         """Programmed rotary axes that carry the tool, from the foundation outwards."""
-        moving = (ln for ln in self.links if ln.kind == "rotary" and ln.programmed)
-        return tuple(ln.name for ln in moving if not ln.carries_workpiece)
+        return tuple(n for n in self.rotary_axes if not self.link(n).carries_workpiece)
+
+    @cached_property
+    def joints(self) -> tuple[str, ...]:
+        """Joints of an open chain, from the foundation outwards; none on a machine tool."""
+        return tuple(link.name for link in self.links if link.is_joint)
 
     @property
-    def is_serial_arm(self) -> bool:
-        """Whether so many joints carry the tool that the machine is a serial arm."""
-        return len(self.arm_joints) >= ARM_JOINTS
+    def turns_workpiece(self) -> bool:
+        """Whether a rotary axis carries the workpiece."""
+        return len(self.tool_rotary_axes) < len(self.rotary_axes)
 
     def twist_of(self, symbol: Symbol) -> Where:
         """Where a component error acts."""
@@ -311,12 +320,14 @@ def make_chain(
             range=(0.0, 0.0),
         )
     )
-    rotary = [link.name for link in links if link.kind == "rotary" and link.programmed]
-    assumed = tuple(n for n in rotary if axes.get(n, Axis()).point is None)
+    rotary = [link for link in links if link.kind == "rotary" and link.programmed]
+    assumed = tuple(k.name for k in rotary if axes.get(k.name, Axis()).point is None)
+    in_series = [link for link in rotary if not link.carries_workpiece]
+    is_open = len(in_series) >= OPEN_CHAIN
     return Chain(
         name=name,
         notation=notation,
-        links=tuple(links),
+        links=tuple(replace(k, is_joint=True) if is_open and k in in_series else k for k in links),
         table_origin=origin,
         assumed_points=assumed,
     )
@@ -352,7 +363,7 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
         raise BadValue(f"axis.{name}.range", "nothing", "its smallest and largest reading")
     if not reach[0] < reach[1]:
         unit = 1.0 if kind == "linear" else DEG
-        found = [float(f"{end / unit:.12g}") for end in reach]
+        found = [significant(end / unit, 12) for end in reach]
         raise BadValue(f"axis.{name}.range", found, "the smaller reading first")
     own = np.eye(3)["XYZ".index(ALONG[name[0]])]
     direction = own if axis.direction is None else np.array(axis.direction, dtype=float)

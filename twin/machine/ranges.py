@@ -39,19 +39,18 @@ misses by millimetres: two that were measured had zeros off by 3 mrad, links by 
 
 def error_class(chain: Chain, symbol: Symbol) -> str:
     """Class of an error parameter: one of the keys of `DEFAULT_RANGES`."""
-    kind = chain.link(symbol.link).kind
-    joint = "arm" if chain.is_serial_arm and symbol.link in chain.arm_joints else "rotary"
+    link = chain.link(symbol.link)
+    kind = "arm" if link.is_joint else link.kind
     motion = "rotation" if symbol.is_angular else "translation"
     if symbol.family is Family.SETUP:
         return f"setup_{motion}"
     if symbol.family is Family.COMPONENT:
-        return f"{joint if kind == 'rotary' else kind}_{motion}"
+        return f"{kind}_{motion}"
     if kind == "linear":
         return "squareness" if symbol.is_angular else "linear_zero"
     if not symbol.is_angular:
-        return f"{joint}_location"
-    own = chain.link(symbol.link).own
-    return f"{joint}_zero" if symbol.component - 3 == own else f"{joint}_tilt"
+        return f"{kind}_location"
+    return f"{kind}_zero" if symbol.component - 3 == link.own else f"{kind}_tilt"
 
 
 @dataclass(frozen=True)

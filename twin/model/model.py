@@ -6,14 +6,15 @@ from functools import cached_property
 
 import numpy as np
 
+from matstd.twin.display import Displayed
 from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.machine import Chain, Contribution, exact_tip, tip
 from matstd.twin.model.effect import Effect, Parameter, contribution
 from matstd.twin.record import Touches
 
 
-@dataclass(frozen=True, eq=False)
-class Model:
+@dataclass(frozen=True, eq=False, repr=False)
+class Model(Displayed):
     """Chain plus effects; parameters of all effects stand in one vector, effect after effect.
 
     Attributes:

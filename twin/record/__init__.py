@@ -4,7 +4,7 @@
 units. A new quantity that is recorded at every touch becomes a field of it; `Run` adds deviations.
 """
 
-from matstd.twin.record.alignment import Moved, aligned, rigid_motion
+from matstd.twin.record.alignment import Moved, aligned, rigid_motion, turn_of
 from matstd.twin.record.body import BODY, StatedBody, with_body
 from matstd.twin.record.commanded import with_commanded
 from matstd.twin.record.copies import without_copies
@@ -41,6 +41,7 @@ __all__ = [
     "joined",
     "linear_approach",
     "rigid_motion",
+    "turn_of",
     "with_body",
     "with_commanded",
     "without_copies",

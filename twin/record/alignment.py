@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from matstd.twin.frames import Array, apply, pose
+from matstd.twin.frames import Array, apply
 from matstd.twin.machine import tip
 from matstd.twin.record.run import Run
 from matstd.twin.record.touches import Touches, computed_deviation
@@ -76,7 +76,7 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
         change = apply(T, middle) - apply(setup.T_table_artefact, middle)
         R = T[:3, :3] @ setup.T_table_artefact[:3, :3].T
         shift = float(np.linalg.norm(change))
-        turn = float(np.arccos(np.clip(0.5 * (np.trace(R) - 1.0), -1.0, 1.0)))
+        turn = turn_of(R)
         if shift > SHIFT or turn > TURN:
             setups[i] = replace(setup, T_table_artefact=T)
             moved.append(Moved(setup.name, shift, turn))
@@ -86,19 +86,36 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
     return replace(run, touches=touches, deviation=computed_deviation(touches)), tuple(moved)
 
 
-def rigid_motion(a: Array, b: Array, stated: Array, flat: float = FLAT) -> Array:
-    """Pose that takes points a to points b best, (4, 4).
+def rigid_motion(
+    a: Array,
+    b: Array,
+    stated: Array | None = None,
+    flat: float = FLAT,
+    is_mirrored: bool = False,
+) -> Array:
+    """Pose that takes points a to points b best, (k + 1, k + 1) in k directions.
 
-    Points on a line, across which they spread by less than `flat`, do not turn what is stated.
+    Args:
+        a: Points, (N, k), mm.
+        b: Where they are found, (N, k), mm.
+        stated: Pose whose rotation is kept where points lie on a line, across which they spread by
+            less than `flat`; None stands for no rotation.
+        flat: Spread, mm.
+        is_mirrored: Whether the rotation has a reflection in it.
     """
+    k = a.shape[1]
+    R = np.eye(k) if stated is None else stated[:k, :k]
     middle_a, middle_b = a.mean(axis=0), b.mean(axis=0)
-    told = (a - middle_a) @ stated[:3, :3].T
-    U, s, Vt = np.linalg.svd(told.T @ (b - middle_b))
-    spread = np.sqrt(s / len(a))
-    if spread[1] < flat:  # touches on a line: a rotation about it is anybody's guess
-        R = np.eye(3)
-    else:
-        sign = np.sign(np.linalg.det(Vt.T @ U.T))
-        R = Vt.T @ np.diag([1.0, 1.0, sign]) @ U.T
-    R = R @ stated[:3, :3]
-    return pose(R, middle_b - R @ middle_a)
+    U, s, Vt = np.linalg.svd(R @ (a - middle_a).T @ (b - middle_b))
+    # of points on a line nobody knows how far they are turned about it
+    if is_mirrored or k == 1 or np.sqrt(s[-2] / len(a)) >= flat:
+        sign = np.sign(np.linalg.det(Vt.T @ U.T)) * (-1.0 if is_mirrored else 1.0)
+        R = Vt.T @ np.diag([*np.ones(k - 1), sign]) @ U.T @ R
+    T = np.eye(k + 1)
+    T[:k, :k], T[:k, k] = R, middle_b - R @ middle_a
+    return T
+
+
+def turn_of(R: Array) -> float:
+    """Angle of a rotation, rad."""
+    return float(np.arccos(np.clip(0.5 * (np.trace(R) - 1.0), -1.0, 1.0)))

@@ -6,14 +6,14 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from matstd.twin.display import Shown
+from matstd.twin.display import Displayed
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array
 from matstd.twin.record.touches import IntArray, Labels, Touches
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Run(Shown):
+class Run(Displayed):
     """Measurements: touches with their deviations and standard uncertainties.
 
     Attributes:

@@ -20,36 +20,44 @@ OURS = ("*/*", "report.html", "tables.xlsx", "tables/*.csv", "pictures/*.png", "
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("model", metavar="MODEL.toml", help="of a diagnosis; or a machine file")
-    parser.add_argument("--errors", metavar="ERRORS.toml", help="errors of a machine file")
-    parser.add_argument("--tables", metavar="DIR", help="write tables of controls into it")
-    parser.add_argument("--program", metavar="IN", help="compensate a part program (.H, .ngc)")
-    parser.add_argument("-o", "--output", metavar="OUT", help="the compensated program")
+    parser.add_argument(
+        "model", metavar="MODEL.toml", help="model of a diagnosis, or a machine file with --errors"
+    )
+    parser.add_argument(
+        "--errors",
+        metavar="ERRORS.toml",
+        help="errors of the machine, if MODEL.toml is a machine file",
+    )
+    parser.add_argument(
+        "--tables", metavar="DIR", help="write compensation tables of the controls to this folder"
+    )
+    parser.add_argument("--program", metavar="IN", help="part program to compensate (.H, .ngc)")
+    parser.add_argument("-o", "--output", metavar="OUT", help="compensated program")
     parser.add_argument(
         "--tolerance",
         metavar="UM",
         type=float,
-        help="between a path and the lines it becomes, µm (1)",
+        help="largest distance between a path and the line segments that replace it, µm (1)",
     )
     add_program(parser)
     parser.add_argument(
         "--loads",
         metavar="LOADS.csv",
-        help="with --program: process forces by its lines; elsewhere --load",
+        help="process forces by program line, with --program (--load applies to the other lines)",
     )
     parser.add_argument(
         "--control",
         metavar="NAME",
         action="append",
         default=[],
-        help="only tables of this control: iso230, sinumerik, linuxcnc, heidenhain",
+        help="write only the tables of this control: iso230, sinumerik, linuxcnc, heidenhain",
     )
     parser.add_argument(
         "--opposite",
         metavar="NAME",
         action="append",
         default=[],
-        help="turn the sign of the values in the tables of this control",
+        help="reverse the sign of the values in the tables of this control",
     )
     add_state(parser)
     parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
@@ -83,6 +91,7 @@ def _program(args: argparse.Namespace, job: Job) -> int:
     )
     from matstd.console import say
     from matstd.report.compensation import draw_program, program_lines
+    from matstd.report.style import save
     from matstd.twin.files import refuse_to_overwrite, write_whole
     from matstd.twin.units import UM
 
@@ -105,7 +114,7 @@ def _program(args: argparse.Namespace, job: Job) -> int:
     done = compensated(program, job.errors, job.header(1), tolerance)
     write_whole(output, done.text)  # the first: where another run was faster, it is what is kept
     write_trajectory(beside[0], done)
-    draw_program(beside[1], done)
+    save(draw_program(done), beside[1])
     write_program_result(beside[2], done)
     for line, is_first in program_lines(output.name, done):
         say(line, style="bold" if is_first else None)

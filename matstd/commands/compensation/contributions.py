@@ -19,16 +19,20 @@ OURS = ("contributions.csv", "contributions.png")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("model", metavar="MODEL.toml", help="of a diagnosis; or a machine file")
-    parser.add_argument("--errors", metavar="ERRORS.toml", help="errors of a machine file")
-    parser.add_argument("--program", metavar="IN", help="a part program (.H, .ngc)")
-    add_program(parser)
     parser.add_argument(
-        "--loads", metavar="LOADS.csv", help="process forces by the lines of the program"
+        "model", metavar="MODEL.toml", help="model of a diagnosis, or a machine file with --errors"
     )
+    parser.add_argument(
+        "--errors",
+        metavar="ERRORS.toml",
+        help="errors of the machine, if MODEL.toml is a machine file",
+    )
+    parser.add_argument("--program", metavar="IN", help="part program (.H, .ngc)")
+    add_program(parser)
+    parser.add_argument("--loads", metavar="LOADS.csv", help="process forces by program line")
     parser.add_argument("--poses", metavar="POSES.csv", help="axis readings, one row per pose")
     add_state(parser)
-    parser.add_argument("-o", "--output", metavar="OUT", required=True, help="folder to be made")
+    parser.add_argument("-o", "--output", metavar="OUT", required=True, help="output folder")
     parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
 
 
@@ -39,6 +43,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.compensation.programs import write_shares
     from matstd.console import say
     from matstd.report.compensation import draw_shares_along, share_lines
+    from matstd.report.style import save
     from matstd.twin.files import results_folder
 
     if (args.program is None) == (args.poses is None):
@@ -49,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
         whole = deviation(job.errors, touches) - job.datum.deviation(job.errors)
         shares = contributions(job.errors, touches, job.datum)
         write_shares(folder / "contributions.csv", touches, whole, shares)
-        draw_shares_along(folder / "contributions.png", touches.time, whole, shares)
+        save(draw_shares_along(touches.time, whole, shares), folder / "contributions.png")
     for line in share_lines(whole, shares):
         say(line)
     say(f"{args.output}: look at contributions.csv, contributions.png")

@@ -14,68 +14,83 @@ def add_state(parser: argparse.ArgumentParser) -> None:
         parser,
         "--datum",
         "AXIS=READING",
-        "readings (mm, degrees) where the preset is taken; others are zero",
+        "axis readings (mm, degrees) at which the preset is taken (default: 0)",
     )
     parser.add_argument(
         "--tool-length",
         metavar="MM",
         type=float,
         required=True,
-        help="from the gauge point to the tip of the tool that stands at the datum",
+        help="length of the datum tool, from the spindle gauge point to the tip",
     )
     _several(
         parser,
         "--within",
         "AXIS=LOW:HIGH",
-        "workspace that is judged (mm, degrees); others over their travel",
+        "workspace for which the result is evaluated (mm, degrees; default: the whole travel)",
     )
     _add_driven(parser)
     _several(
         parser,
         "--switch",
         "WORD=FACTOR",
-        "scale errors, 0 is off: by symbol, effect, kind, class, axis or all",
+        "multiply errors by a factor (0: off), by symbol, effect, kind, class, axis or all",
     )
     parser.add_argument(
         "--active",
         metavar="FILE",
         action="append",
         default=[],
-        help="a table that is active on the control",
+        help="compensation table that is active on the control",
     )
     parser.add_argument(
-        "--effects", metavar="FILE.py", action="append", default=[], help="effects of your own"
+        "--effects",
+        metavar="FILE.py",
+        action="append",
+        default=[],
+        help="file with your own effects; may be repeated",
     )
 
 
 def _add_driven(parser: argparse.ArgumentParser) -> None:
     """State of the machine, and errors that are added to its model."""
     parser.add_argument(
-        "--after", metavar="MIN", type=float, default=0.0, help="minutes since switching on"
+        "--after",
+        metavar="MIN",
+        type=float,
+        default=0.0,
+        help="minutes since the machine was switched on",
     )
     _several(
         parser,
         "--temperature",
         "SENSOR=DEGC",
-        "of sensors that the model follows; what lags behind one has settled at it",
+        "sensor temperatures; effects with a time lag are taken as settled at them",
     )
-    _several(parser, "--value", "COLUMN=NUMBER", "columns of your own")
-    parser.add_argument("--rpm", type=float, help="spindle speed since switching on")
+    _several(
+        parser,
+        "--value",
+        "COLUMN=NUMBER",
+        "values of further run columns that your own effects use",
+    )
+    parser.add_argument(
+        "--rpm", type=float, help="spindle speed since the machine was switched on, 1/min"
+    )
     parser.add_argument(
         "--load",
         metavar=("FX", "FY", "FZ"),
         nargs=3,
         type=float,
         default=(0.0, 0.0, 0.0),
-        help="force on the tool in table-frame directions, N (0 0 0)",
+        help="force on the tool in the table frame, N (0 0 0)",
     )
     parser.add_argument(
         "--add",
         metavar="EFFECT=SIZE",
         action="append",
         default=[],
-        help="a further error, such as 'beam(Z,cantilever,180x180,at:420,sense:-1,mass:80)="
-        "weight=1,load=1'",
+        help="add an error, such as "
+        "'beam(Z,cantilever,180x180,at:420,sense:-1,mass:80)=weight=1,load=1'",
     )
 
 
@@ -85,14 +100,13 @@ def add_program(parser: argparse.ArgumentParser) -> None:
         parser,
         "--tool",
         "TOOL=MM",
-        "lengths of tools of the program by number or name; others have that of the datum",
+        "tool lengths by number or name (default: the length of the datum tool)",
     )
     _several(
         parser,
         "--tool-radius",
         "TOOL=MM",
-        "radii of tools by number or name, where the program goes beside a contour "
-        "(RL, RR, G41, G42)",
+        "tool radii by number or name, for programs with radius compensation (RL, RR, G41, G42)",
     )
     parser.add_argument(
         "--pass-m",
@@ -100,7 +114,7 @@ def add_program(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         type=int,
         default=[],
-        help="M functions of this machine that move nothing and change no coordinates",
+        help="M functions of this machine that neither move an axis nor change coordinates",
     )
     parser.add_argument(
         "--tcp-m",
@@ -108,5 +122,6 @@ def add_program(parser: argparse.ArgumentParser) -> None:
         nargs=2,
         type=int,
         default=(),
-        help="M functions of G-code that switch tool-point control (LinuxCNC's tables: 428 429)",
+        help="M functions that switch tool centre point control in G-code (tables for "
+        "LinuxCNC: 428 429)",
     )

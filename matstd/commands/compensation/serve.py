@@ -14,24 +14,31 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("model", metavar="MODEL.toml", help="of a diagnosis; or a machine file")
-    parser.add_argument("--errors", metavar="ERRORS.toml", help="errors of a machine file")
+    parser.add_argument(
+        "model", metavar="MODEL.toml", help="model of a diagnosis, or a machine file with --errors"
+    )
+    parser.add_argument(
+        "--errors",
+        metavar="ERRORS.toml",
+        help="errors of the machine, if MODEL.toml is a machine file",
+    )
     parser.add_argument(
         "--endpoint",
         metavar="URL",
         default="opc.tcp://localhost:4840",
-        help="where clients connect (opc.tcp://localhost:4840: this computer alone)",
+        help="address of the OPC UA server (opc.tcp://localhost:4840: reachable from this "
+        "computer only)",
     )
     parser.add_argument(
         "--linuxcnc",
         metavar="MACHINE.ini",
-        help="correct this LinuxCNC on this computer by its external offsets, instead of OPC UA",
+        help="correct this LinuxCNC on this computer by external offsets, instead of OPC UA",
     )
     for name, unit, default, words in (
-        ("--most", "UM", 200.0, "added to an axis at most, µm"),
-        ("--rate", "UM_S", 1000.0, "by which it changes at most, µm/s"),
-        ("--patience", "S", 0.5, "without readings until a correction is no longer valid, s"),
-        ("--hold", "S", 5.0, "without readings until it goes to zero, s"),
+        ("--most", "UM", 200.0, "largest correction of an axis, µm"),
+        ("--rate", "UM_S", 1000.0, "largest rate of change of a correction, µm/s"),
+        ("--patience", "S", 0.5, "time without readings until a correction is marked invalid, s"),
+        ("--hold", "S", 5.0, "time without readings until a correction returns to zero, s"),
     ):
         parser.add_argument(
             name, metavar=unit, type=float, default=default, help=f"{words} ({default:g})"

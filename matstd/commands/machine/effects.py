@@ -20,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "kind",
         metavar="KIND",
         nargs="*",
-        help="one kind, such as thermal-lag, or any words for it: spindle growth",
+        help="kind of effect, such as thermal-lag, or search words, such as: spindle growth",
     )
     add_effects(parser)
 

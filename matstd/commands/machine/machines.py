@@ -9,8 +9,12 @@ ERRORS = "-errors"
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("name", nargs="?", metavar="NAME", help="print its machine file")
-    parser.add_argument("--errors", action="store_true", help="print its error file instead")
+    parser.add_argument(
+        "name", nargs="?", metavar="NAME", help="print the machine file of this machine"
+    )
+    parser.add_argument(
+        "--errors", action="store_true", help="print its error file instead of its machine file"
+    )
 
 
 def names() -> list[str]:

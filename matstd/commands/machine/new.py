@@ -18,15 +18,15 @@ NEEDS_MACHINE = ("project", "run")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("kind", choices=TEMPLATES, help="what to write")
+    parser.add_argument("kind", choices=TEMPLATES, help="kind of file")
     parser.add_argument(
         "-o",
         "--output",
         metavar="FILE",
-        help="to be written; without it the file is printed. A project or run also gets a "
-        "machine.toml beside it where there is none",
+        help="output file (default: standard output); for a project or run, a machine.toml "
+        "is also written beside it if none exists",
     )
-    parser.add_argument("--force", action="store_true", help="overwrite the output")
+    parser.add_argument("--force", action="store_true", help="overwrite an existing output")
 
 
 def template(kind: str) -> str:

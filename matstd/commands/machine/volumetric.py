@@ -7,8 +7,8 @@ from matstd.options import add_output
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("machine", metavar="MACHINE.toml", help="the machine")
-    parser.add_argument("errors", metavar="ERRORS.toml", help="its errors")
+    parser.add_argument("machine", metavar="MACHINE.toml", help="machine file")
+    parser.add_argument("errors", metavar="ERRORS.toml", help="errors of the machine")
     parser.add_argument("poses", metavar="POSES.csv", help="axis readings, one row per pose")
     add_output(parser, "OUT.csv")
 

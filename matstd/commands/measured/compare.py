@@ -32,7 +32,10 @@ OURS = (FOUND, "pictures/*.png", *REPORT_FILES)
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("run_file", metavar="RUN.csv", help="measurements")
-    add_measured(parser, "predict with it; without one the ordinary geometric model is fitted")
+    add_measured(
+        parser,
+        "the run is compared with its predictions (default: the ordinary geometric model, fitted)",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -92,11 +95,10 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None,
     """The comparison in words, beside what the model promised, or what it was learnt with."""
     from matstd.console import say
     from matstd.report.geometry import console_lines
-    from matstd.report.numbers import signed
+    from matstd.report.numbers import microns, signed
     from matstd.report.words import (
         comparison_sentence,
         learnt_lines,
-        microns,
         promise_sentence,
         region_words,
         remark_sentence,

@@ -36,12 +36,12 @@ LISTS = (
     (
         "--hold-out",
         "RUN",
-        "learn nothing of these runs but where the standard stood, and tell how well the others "
-        "predict them",
+        "exclude these runs from the fit (only their set-ups are fitted) and report "
+        "how well the others predict them",
     ),
     ("--add", "EFFECT", "add these effects to the model"),
-    ("--only", "KIND", "look for effects of these kinds alone, or of these names"),
-    ("--without", "KIND", "do not look for effects of these kinds, or of these names"),
+    ("--only", "KIND", "search only for effects of these kinds or names"),
+    ("--without", "KIND", "do not search for effects of these kinds or names"),
 )
 """Options with one or more words, which may be given more than once."""
 
@@ -52,16 +52,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "run_files",
         metavar="RUN.csv",
         nargs="+",
-        help="measurements; several runs of one machine (days, set-ups, standards) in their order",
+        help="measurements; several runs of one machine (days, set-ups, standards) in "
+        "order of time",
     )
     for option, word, meaning in LISTS:
         parser.add_argument(
             option, metavar=word, action="extend", nargs="+", default=[], help=meaning
         )
     parser.add_argument(
-        "--auto", action="store_true", help="add whatever the diagnosis finds, step by step"
+        "--auto",
+        action="store_true",
+        help="add every effect that the diagnosis finds, step by step",
     )
-    add_measured(parser, "begin with it; without one begin with the ordinary geometric model")
+    add_measured(parser, "starting model of the diagnosis (default: the ordinary geometric model)")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -182,7 +185,7 @@ def _tell(args: argparse.Namespace, result: Diagnosis, found: str) -> None:
             "--add NAME one of them"
         )
     for i, plan in enumerate(result.plans, start=1):
-        say(f"- next_measurement_{i}.csv would tell {plan_words(plan)}")
+        say(f"- next_measurement_{i}.csv would distinguish {plan_words(plan)}")
     first = "" if args.no_report else "report.html, "
     say(f"{args.output}: look at {first}diagnosis.json, model.toml")
 

@@ -10,9 +10,7 @@ from matstd.options import add_output, seen_from
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from matstd.twin.machine import Chain
-    from matstd.twin.record import Run
-    from matstd.twin.sheets import Sheet
+    from matstd.importers import Sheet
 
 _SIGN = {
     "positioning": "a deviation (actual - target) is the axis's own error; in the run it stands as "
@@ -37,32 +35,45 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "files",
         metavar="FILE",
         nargs="+",
-        help="csv, txt, xlsx, xls or ods; of several lists of points each is a set-up of its own",
+        help="csv, txt, xlsx, xls or ods; each of several lists of points is one set-up",
     )
     _add_kinds(parser)
     _add_details(parser)
-    parser.add_argument("--machine", metavar="MACHINE.toml", help="the machine; else one is made")
+    parser.add_argument(
+        "--machine",
+        metavar="MACHINE.toml",
+        help="machine file (default: a file is written from the table)",
+    )
     parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
-    parser.add_argument("--u-urad", type=float, help="the same of a rotary axis, µrad")
+    parser.add_argument(
+        "--u-urad", type=float, help="standard uncertainty of one reading of a rotary axis, µrad"
+    )
     parser.add_argument(
         "--in-order",
         metavar="SECONDS",
         type=float,
-        help="rows stand in the order in which they were taken, so far apart: for slips and drifts",
+        help="rows are in the order of measurement, SECONDS apart; allows the search for "
+        "drifts and slips",
     )
-    parser.add_argument("--unit", help="of deviations whose column names none, such as µm")
     parser.add_argument(
-        "--columns", metavar="NAME,...", help="names of the columns of a table without a header"
+        "--unit", help="unit of deviations if the column header names none, such as µm"
     )
-    parser.add_argument("--sheet", metavar="NAME", help="sheet of a workbook (the first with data)")
-    add_output(parser, "RUN.csv", "overwrite the outputs")
+    parser.add_argument(
+        "--columns", metavar="NAME,...", help="column names of a table without header"
+    )
+    parser.add_argument(
+        "--sheet", metavar="NAME", help="sheet of a workbook (default: the first with data)"
+    )
+    add_output(parser, "RUN.csv", "overwrite existing outputs")
 
 
 def _add_kinds(parser: argparse.ArgumentParser) -> None:
     """What the files are: one of them."""
     kind = parser.add_mutually_exclusive_group(required=True)
     kind.add_argument(
-        "--positioning", metavar="AXIS", help="ISO 230-2 table of this axis: targets, cycles"
+        "--positioning",
+        metavar="AXIS",
+        help="positioning test of this axis (ISO 230-2): targets, cycles",
     )
     kind.add_argument(
         "--component",
@@ -76,19 +87,22 @@ def _add_kinds(parser: argparse.ArgumentParser) -> None:
         help="circular test (ISO 230-4, ball bar) in XY, YZ or ZX: angles, radial deviations",
     )
     kind.add_argument(
-        "--part", action="store_true", help="nominal/measured list of a part this machine made"
+        "--part", action="store_true", help="nominal/measured list of a part that this machine made"
     )
     kind.add_argument(
         "--standard",
         action="store_true",
-        help="nominal/measured list of a calibrated plate or standard this machine measured",
+        help="nominal/measured list of a calibrated plate or standard that this machine measured",
     )
     kind.add_argument(
         "--arm",
         action="store_true",
-        help="serial arm under a tracker: columns j1, j2 ... of joints and x, y, z of reflectors",
+        help="serial arm measured by a laser tracker: columns j1, j2 ... (joints) and x, "
+        "y, z (reflector)",
     )
-    kind.add_argument("--map", metavar="MAP.toml", help="any other table, by a mapping file")
+    kind.add_argument(
+        "--map", metavar="MAP.toml", help="any other table, described by a mapping file"
+    )
 
 
 def _add_details(parser: argparse.ArgumentParser) -> None:
@@ -98,48 +112,55 @@ def _add_details(parser: argparse.ArgumentParser) -> None:
         "--target",
         metavar="COLUMN",
         default="",
-        help="where the axis was told to go, if the header does not say; of two encoders the one "
-        "that the control believes",
+        help="column of the target positions, if the header does not name it; with two "
+        "encoders, the one that closes the position loop",
     )
     test.add_argument(
         "--actual",
         metavar="COLUMN",
         default="",
-        help="where the axis really was, by the better instrument",
+        help="column of the actual positions, by the reference instrument",
     )
     circle = parser.add_argument_group("with --circle")
     circle.add_argument("--radius", type=float, help="nominal radius, mm")
-    circle.add_argument("--feed", type=float, help="mm/min, from which times and speeds follow")
+    circle.add_argument("--feed", type=float, help="feed, mm/min; times and speeds follow from it")
     circle.add_argument(
         "--bar-force",
         metavar="N",
         type=float,
-        help="of a loaded bar, which pushes the tool outwards (negative: pulls)",
+        help="force of a loaded ball bar on the tool, N, outwards (negative: inwards)",
     )
     place: dict[str, Any] = {"metavar": ("X", "Y", "Z"), "type": float, "nargs": 3}
     circle.add_argument(
-        "--centre", default=(0.0, 0.0, 0.0), help="readings at its centre, mm (0 0 0)", **place
+        "--centre",
+        default=(0.0, 0.0, 0.0),
+        help="axis readings at the centre of the circle, mm (0 0 0)",
+        **place,
     )
     arm = parser.add_argument_group("with --arm")
     arm.add_argument(
         "--dh",
         metavar="DH.csv",
-        help="for --machine: Denavit and Hartenberg's a alpha d theta, a row a joint",
+        help="Denavit-Hartenberg parameters a, alpha, d, theta, one row per joint, instead "
+        "of --machine",
     )
     arm.add_argument(
-        "--modified", action="store_true", help="the parameters of --dh are modified ones (Craig)"
+        "--modified",
+        action="store_true",
+        help="the parameters of --dh follow the modified convention (Craig)",
     )
     arm.add_argument(
         "--coupled",
         metavar="J3+J2",
         action="append",
         default=[],
-        help="a joint whose readings count from the link before another joint (Fanuc: J3+J2)",
+        help="coupled joints: the reading of the first is relative to the link before the "
+        "second (Fanuc: J3+J2)",
     )
     arm.add_argument(
         "--reflector",
-        help="place of the reflector, mm, in the tool frame, or with --dh in the frame of the "
-        "flange; found from the data where it is not stated",
+        help="position of the reflector, mm, in the tool frame, or with --dh in the flange "
+        "frame (default: estimated from the data)",
         **place,
     )
 
@@ -149,9 +170,9 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from matstd.console import say
+    from matstd.importers import read_sheet
     from matstd.twin.errors import DesignError
     from matstd.twin.files import refuse_to_overwrite
-    from matstd.twin.sheets import read_sheet
 
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)
@@ -159,7 +180,7 @@ def run(args: argparse.Namespace) -> int:
     sheets = [read_sheet(path, args.sheet, names) for path in args.files]
     if args.in_order is not None and not (args.arm or args.part or args.standard):
         raise DesignError("--in-order: expected with --arm, --part or --standard alone")
-    if len(sheets) > 1 and (args.map or args.positioning or args.arm or args.circle):
+    if len(sheets) > 1 and not (args.part or args.standard):
         raise DesignError(f"{args.files[1]}: one table at a time; lists of points may be several")
     for sheet in sheets:
         if sheet.left_out:
@@ -173,72 +194,44 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
-    """Any table, by a mapping file; the result is read once before it gets its name."""
-    import tempfile
-    from pathlib import Path
-
+    """Any table, by a mapping file."""
     from matstd.console import say, say_each
-    from matstd.twin.errors import BadFile
-    from matstd.twin.files import read_machine, read_run, write_whole
-    from matstd.twin.foreign import mapped_run
+    from matstd.importers import import_mapped
+    from matstd.twin.files import read_machine, write_whole
 
-    text, left_out = mapped_run(sheet, args.map)
-    with tempfile.TemporaryDirectory() as folder:
-        trial = Path(folder) / output.name
-        write_whole(trial, text)
-        chain = read_machine(args.machine) if args.machine else _named_machine(args, text, output)
-        try:
-            found = read_run(trial, chain)
-        except BadFile as error:
-            facts = error.facts
-            where = f"what it makes of {sheet.path}: {facts['where']}"
-            raise BadFile(args.map, where, facts["found"], str(facts["expected"])) from error
-    write_whole(output, text)
-    say(f"{output}: {len(found)} readings by {args.map}")
-    if left_out:
-        readings = "1 reading" if left_out == 1 else f"{left_out} readings"
+    chain = read_machine(args.machine) if args.machine else None
+    found = import_mapped(sheet, args.map, output.parent, chain)
+    write_whole(output, found.text)
+    say(f"{output}: {len(found.run)} readings by {args.map}")
+    if found.left_out:
+        readings = "1 reading" if found.left_out == 1 else f"{found.left_out} readings"
         say(f"- {readings} left out: no deviation stands there")
-    say_each(found.remarks)
-
-
-def _named_machine(args: argparse.Namespace, text: str, output: Path) -> Chain:
-    """The machine that the head of a mapping file names, seen from the run file."""
-    from matstd.twin.errors import BadFile
-    from matstd.twin.files import parse_toml, read_machine
-
-    head = "\n".join(ln.removeprefix("# ") for ln in text.splitlines() if ln.startswith("#"))
-    named = parse_toml(head, args.map).get("machine")
-    if not isinstance(named, str):
-        raise BadFile(args.map, "head.machine", "nothing", "the machine file, or --machine")
-    return read_machine(output.parent / named)
+    say_each(found.run.remarks)
 
 
 def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> None:
-    """A positioning test or a list of points."""
+    """A test of an axis, a circle, an arm, or lists of points."""
     from pathlib import Path
 
     import numpy as np
 
     from matstd.commands.measured.kinds import arm, circle, points, positioning
     from matstd.console import say
+    from matstd.importers import machine_text
+    from matstd.importers.files import timed_by_rows
     from matstd.twin.files import refuse_to_overwrite, write_run, write_whole
-    from matstd.twin.foreign import machine_text
     from matstd.twin.units import UM
 
-    meaning = next(m for m in _SIGN if getattr(args, m))
-    if args.positioning or args.component:
-        measured, chain = positioning(args, sheets[0])
-    elif args.circle:
-        measured, chain = circle(args, sheets[0])
-    elif args.arm:
-        measured, chain = arm(args, sheets[0])
+    if args.part or args.standard:
+        measured, chain = points(args, sheets)
     else:
-        measured, chain = points(args, sheets, meaning)
+        made = arm if args.arm else circle if args.circle else positioning
+        measured, chain = made(args, sheets[0])
     if args.in_order is not None:
-        measured = _in_order(args, measured)
+        measured = timed_by_rows(measured, args.in_order)
     for sheet in sheets:
         if sheet.unused:
-            say(f"- columns of {sheet.path} that nothing was taken of: {', '.join(sheet.unused)}")
+            say(f"- columns of {sheet.path} that were not used: {', '.join(sheet.unused)}")
     machine = Path(args.machine) if args.machine else output.with_suffix(".machine.toml")
     if not args.machine:
         refuse_to_overwrite(machine, args.force)
@@ -248,27 +241,6 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
     unit = "µrad" if measured.touches.instrument.reads_angle else "µm"  # of an arm of one metre
     say(f"{output}: {len(measured)} readings, deviations {rms:.3f} {unit} rms")
-    say(f"- sign: {_SIGN[meaning]}")
+    say(f"- sign: {next(words for kind, words in _SIGN.items() if getattr(args, kind))}")
     if not args.machine:
         say(f"- {machine}: made from the data; check what is marked PLACEHOLDER")
-
-
-def _in_order(args: argparse.Namespace, run: Run) -> Run:
-    """The run with times by the order of the rows of its table; those of one row are one moment."""
-    from dataclasses import replace
-
-    import numpy as np
-
-    from matstd.twin.errors import DesignError
-    from matstd.twin.units import DAY
-
-    if not 0.0 < args.in_order <= DAY:
-        raise DesignError(f"--in-order {args.in_order:g}: expected seconds from 0 to {DAY:g}")
-    t = run.touches
-    if np.ptp(t.time) > 0.0:
-        raise DesignError(f"--in-order: {args.files[0]} has times; expected a table without")
-    time = np.zeros(len(run))
-    for k in np.unique(t.run):
-        rows = t.run == k
-        time[rows] = args.in_order * np.unique(run.line[rows], return_inverse=True)[1]
-    return replace(run, touches=replace(t, time=time))

@@ -34,33 +34,54 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="time_s or clock; temperatures name_degC, speeds name_rpm; displacements name_um, ...",
     )
     parser.add_argument(
-        "--train-until", metavar="HOURS", type=float, help="what of the log comes later is held out"
+        "--train-until",
+        metavar="HOURS",
+        type=float,
+        help="fit to the log until this time; hold out the rest",
     )
     parser.add_argument(
-        "--held-out", metavar="LOG.csv", nargs="+", default=[], help="whole logs that are held out"
+        "--held-out",
+        metavar="LOG.csv",
+        nargs="+",
+        default=[],
+        help="logs that are held out completely",
     )
     parser.add_argument(
         "--own-zeros",
         action="store_true",
-        help="displacements of every log count from a zero of its own",
+        help="fit a separate zero of the displacements for every log",
     )
     parser.add_argument(
-        "--step-min", metavar="MIN", type=float, default=STEP / 60.0, help="of the laws (5)"
+        "--step-min",
+        metavar="MIN",
+        type=float,
+        default=STEP / 60.0,
+        help="time step of the laws, minutes (5)",
     )
     parser.add_argument(
-        "--beams", metavar="BEAMS.toml", help="bodies with section and sensors, for beam estimates"
+        "--beams",
+        metavar="BEAMS.toml",
+        help="bodies with section and sensors, for estimates by beam theory",
     )
     parser.add_argument(
-        "--sensor-noise", metavar="K", type=float, help="also with so much noise on temperatures"
+        "--sensor-noise",
+        metavar="K",
+        type=float,
+        help="also evaluate with this noise on the temperatures, K",
     )
     parser.add_argument(
-        "--probe-every", metavar="HOURS", type=float, help="also with the drift probed now and then"
+        "--probe-every",
+        metavar="HOURS",
+        type=float,
+        help="also evaluate with the drift probed at this interval",
     )
     parser.add_argument(
         "--u-um", type=float, default=1.0, help="standard uncertainty of a probed drift, µm (1)"
     )
-    parser.add_argument("--no-network", action="store_true", help="without the neural network")
-    parser.add_argument("--law", metavar="thermal.json", help="predict with an earlier law instead")
+    parser.add_argument("--no-network", action="store_true", help="leave out the neural network")
+    parser.add_argument(
+        "--law", metavar="thermal.json", help="predict with this law of an earlier run; fit nothing"
+    )
     parser.add_argument(
         "--probed", metavar="PROBED.csv", help="with --law: drifts probed on standards"
     )
@@ -217,6 +238,7 @@ def _predict(args: argparse.Namespace) -> int:
     from matstd.console import say, say_each
     from matstd.diagnosis.drift import read_law, read_log, write_prediction
     from matstd.report.drift import draw_drift, law_title
+    from matstd.report.style import save
     from matstd.twin.errors import BadFile
     from matstd.twin.files import results_folder
 
@@ -246,7 +268,8 @@ def _predict(args: argparse.Namespace) -> int:
     with results_folder(args.output, args.force, OURS) as folder:
         write_prediction(folder / "drift.csv", record, predicted, u)
         (folder / "pictures").mkdir()
-        draw_drift(folder / "pictures" / "drift.png", record, predicted, u, has_measured=False)
+        drawn = draw_drift(record, predicted, u, has_measured=False)
+        save(drawn, folder / "pictures" / "drift.png")
     say(f"{law_title(saved.name)}: {len(record)} rows of {record.step / 60.0:g} min")
     say_each(record.remarks)
     say(f"{args.output}: look at drift.csv, pictures/drift.png")

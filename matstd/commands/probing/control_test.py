@@ -18,14 +18,17 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
-        "design", metavar="OUT", help="folder of `matstd design`; its programs are for any control"
+        "design", metavar="OUT", help="output folder of `matstd design`, for any control"
     )
     add_planted(parser)
     parser.add_argument(
-        "--touches", metavar="N", type=int, help="only so many, spread evenly over the programs"
+        "--touches",
+        metavar="N",
+        type=int,
+        help="run only N touches, spread evenly over the programs",
     )
     parser.add_argument(
-        "--user", default="", help="who runs LinuxCNC where you are root, which it refuses"
+        "--user", default="", help="user that runs LinuxCNC if you are root (LinuxCNC refuses root)"
     )
     add_output(parser)
 

@@ -18,10 +18,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "logs",
         metavar="LOG.TXT",
         nargs="+",
-        help="of our programs, of all probes and set-ups; in any order",
+        help="logs of the emitted programs, of all probes and set-ups, in any order",
     )
-    parser.add_argument("--standard", metavar="STANDARD.toml", required=True, help="as calibrated")
-    parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="the machine")
+    parser.add_argument(
+        "--standard", metavar="STANDARD.toml", required=True, help="standard as calibrated"
+    )
+    parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="machine file")
     parser.add_argument(
         "--u-um", type=float, default=1.0, help="standard uncertainty of one touch, µm (1.0)"
     )
@@ -29,30 +31,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--z",
         choices=("gauge", "tip"),
         default="gauge",
-        help="what Z the control returns from cycle 4: of the spindle gauge point or of the ball's "
-        "pole, which a calibrated sphere shows (gauge)",
+        help="meaning of Z in the result of cycle 4: spindle gauge point, or pole of the "
+        "probe ball; a calibrated sphere shows which (gauge)",
     )
     parser.add_argument(
         "--probe-limit-um",
         type=float,
         default=10.0,
-        help="what the ball of OUT/setup/..._CAL may have moved, or the effective radius of the "
-        "probe have changed, between two of its logs, µm; beyond it nothing is evaluated (10)",
+        help="largest change of the ball's position or of the probe's effective radius "
+        "between two logs of OUT/setup/..._CAL, µm; beyond it the command stops (10)",
     )
     parser.add_argument(
         "--programs",
         metavar="DIR",
-        help="programs that the logs are compared with: sides, poses, tool and preset (the folder "
-        "`programs` beside STANDARD.toml, where there is one)",
+        help="folder of the programs that the logs are checked against: sides, poses, tool "
+        "and preset (default: `programs` beside STANDARD.toml, if it exists)",
     )
     parser.add_argument(
         "--sensors",
         metavar="SENSORS.csv",
-        help="temperatures by the clock of the control: columns clock (2031-05-06T07:08:09) and "
-        "T_<sensor>_degC; T_body_degC is that of the standard",
+        help="temperatures over the clock of the control: columns clock "
+        "(2031-05-06T07:08:09) and T_<sensor>_degC; T_body_degC is the standard's",
     )
     add_body(
-        parser, "temperature of the standard while it was probed, °C; else that of T_body_degC"
+        parser, "temperature of the standard during probing, °C (default: T_body_degC of --sensors)"
     )
     add_output(parser, "RUN.csv")
 

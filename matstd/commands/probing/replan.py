@@ -37,22 +37,31 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "logs",
         metavar="LOG.TXT",
         nargs="+",
-        help="of the search in OUT/setup, or of programs that ran beside their place",
+        help="logs of the search in OUT/setup, or of programs that missed the standard",
     )
     parser.add_argument(
-        "--design", metavar="OUT", required=True, help="folder of `matstd design` or of a replan"
+        "--design",
+        metavar="OUT",
+        required=True,
+        help="output folder of `matstd design` or `matstd replan`",
     )
     parser.add_argument(
         "--control",
         metavar="NAME|FILE.toml",
-        help="whose words the programs have (that of the programs in OUT)",
+        help="control that the programs are written for (default: that of the programs in OUT)",
     )
     parser.add_argument(
         "--within-mm",
         type=float,
-        help="of its place the standard stands (what the search in OUT/setup was made for)",
+        help="largest expected offset of the standard from its planned position, mm "
+        "(default: that of the search in OUT/setup)",
     )
-    parser.add_argument("--within-deg", type=float, help="likewise")
+    parser.add_argument(
+        "--within-deg",
+        type=float,
+        help="largest expected rotation of the standard from its planned orientation, degrees "
+        "(default: as --within-mm)",
+    )
     add_pdf(parser)
     add_output(parser)
 

@@ -31,35 +31,47 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
-        "programs", metavar="PROGRAM", nargs="+", help="in the order in which they are run"
+        "programs",
+        metavar="PROGRAM",
+        nargs="+",
+        help="probing programs, in the order in which they run",
     )
-    parser.add_argument("--standard", metavar="STANDARD.toml", required=True, help="what is probed")
+    parser.add_argument(
+        "--standard", metavar="STANDARD.toml", required=True, help="standard that is probed"
+    )
     parser.add_argument(
         "--real-standard",
         metavar="STANDARD.toml",
-        help="the piece as it really is, a calibrated one, say, where --standard is what is "
-        "believed of it",
+        help="true geometry of the standard, such as a calibrated one, if it differs from "
+        "--standard",
     )
-    parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="the machine")
+    parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="machine file")
     add_body(
-        parser, "temperature of the standard, °C, which the run states; 20, not stated, without it"
+        parser, "temperature of the standard, °C; the run file states it (default: 20, not stated)"
     )
     add_planted(parser)
     parser.add_argument(
         "--sensors",
         metavar="SENSORS.csv",
-        help="what temperatures and the spindle do, as `evaluate` takes it: columns clock "
-        "(2031-05-06T07:08:09), T_<sensor>_degC, spindle_rpm; the run begins at its first row",
+        help="temperatures and spindle speed over time, as for `evaluate`: columns clock "
+        "(2031-05-06T07:08:09), T_<sensor>_degC, spindle_rpm; the run begins at the "
+        "first row",
     )
-    parser.add_argument("--probe-length", type=float, help="mm; must be the program's")
-    parser.add_argument("--probe-radius", type=float, help="mm; must be the program's")
+    parser.add_argument(
+        "--probe-length", type=float, help="length of the probe, mm; must equal the program's"
+    )
+    parser.add_argument(
+        "--probe-radius", type=float, help="radius of the probe ball, mm; must equal the program's"
+    )
     parser.add_argument(
         "--control",
         metavar="NAME|FILE.toml",
         default="itnc530",
-        help="whose words the programs have; needed for a dialect of your own (itnc530)",
+        help="control that the programs are written for; needed for your own dialect (itnc530)",
     )
-    parser.add_argument("--logs", metavar="FOLDER", help="also write the logs")
+    parser.add_argument(
+        "--logs", metavar="FOLDER", help="also write the logs of the control to this folder"
+    )
     add_output(parser, "RUN.csv")
 
 
@@ -164,12 +176,14 @@ def _search(
 def add_planted(parser: argparse.ArgumentParser) -> None:
     """Errors, noise, effects, set-up and probe as they really are."""
     errors = parser.add_mutually_exclusive_group()
-    errors.add_argument("--errors", metavar="ERRORS.toml", help="the machine's errors")
+    errors.add_argument("--errors", metavar="ERRORS.toml", help="errors of the machine")
     errors.add_argument(
-        "--random-errors", action="store_true", help="errors drawn from the default distributions"
+        "--random-errors",
+        action="store_true",
+        help="draw the errors from the default distributions",
     )
     parser.add_argument(
-        "--noise-um", type=float, default=1.0, help="standard deviation of one touch (1.0)"
+        "--noise-um", type=float, default=1.0, help="standard deviation of one touch, µm (1.0)"
     )
     parser.add_argument(
         "--add",
@@ -177,21 +191,22 @@ def add_planted(parser: argparse.ArgumentParser) -> None:
         action="extend",
         nargs="+",
         default=[],
-        help="plant effects: 'thermal-lag(EZZ)=25um,tau=18min', 'backlash(X)=3um', "
-        "'drift=X=2um/h'; every size with its unit",
+        help="simulate these effects, each size with its unit: "
+        "'thermal-lag(EZZ)=25um,tau=18min', 'backlash(X)=3um', 'drift=X=2um/h'",
     )
     add_effects(parser)
     parser.add_argument(
         "--setup-error",
         metavar="NAME=SIZE",
-        help="how the standard really stands, in its own frame: X=0.3mm,Y=-0.1mm,C=0.05deg",
+        help="offset of the standard from its planned set-up, in its own frame: "
+        "X=0.3mm,Y=-0.1mm,C=0.05deg",
     )
     parser.add_argument(
         "--probe-error",
         metavar="NAME=SIZE",
-        help="of the probe, true less calibrated: radius=1um,length=20um",
+        help="error of the probe, true minus calibrated value: radius=1um,length=20um",
     )
-    parser.add_argument("--seed", type=int, default=0, help="of noise and random errors (0)")
+    parser.add_argument("--seed", type=int, default=0, help="seed of noise and random errors (0)")
 
 
 def checked_noise(args: argparse.Namespace) -> None:

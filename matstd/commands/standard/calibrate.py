@@ -14,16 +14,16 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("standard", metavar="STANDARD.toml", help="as designed")
+    parser.add_argument("standard", metavar="STANDARD.toml", help="standard as designed")
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument(
         "--points",
         metavar="CMM.csv",
-        help="points of the CMM: columns feature, x, y, z, with their units (mm); of a ball also "
-        "its centre with a column diameter",
+        help="points measured by the CMM: columns feature, x, y, z (mm unless the header "
+        "names a unit); a ball may be given by its centre and a column diameter",
     )
     what.add_argument(
-        "--program", action="store_true", help="write the DMIS program that takes the points"
+        "--program", action="store_true", help="write the DMIS program that measures the points"
     )
     parser.add_argument(
         "--u-um", type=float, default=0.3, help="standard uncertainty of one point, µm (0.3)"
@@ -32,24 +32,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--u-feature-um",
         type=float,
         default=0.3,
-        help="of the place of a feature by what its points share (scales, squareness and stylus of "
-        "the CMM), as its certificate has it, µm (0.3)",
+        help="standard uncertainty of the position of a feature that its points share "
+        "(scales, squareness and stylus of the CMM), from the certificate, µm (0.3)",
     )
     parser.add_argument(
         "--body-u-K",
         metavar="U",
         type=float,
         default=0.5,
-        help="standard uncertainty of the temperature of the standard about 20 °C while it was "
-        "measured, which its scale is judged by, K (0.5)",
+        help="standard uncertainty of the temperature of the standard during the "
+        "measurement, about 20 °C, K (0.5); it enters the assessment of the scale",
     )
     parser.add_argument(
         "--accept",
         action="store_true",
-        help="write a standard that does not conform to its drawing, and state that in the file",
+        help="write the standard even if it does not conform to its drawing; the file states this",
     )
     parser.add_argument(
-        "--cad", metavar="FOLDER", help="also STEP, STL, 3MF and glTF of the standard as it is"
+        "--cad",
+        metavar="FOLDER",
+        help="also write STEP, STL, 3MF and glTF of the standard as measured",
     )
     add_output(parser, "FILE")
 

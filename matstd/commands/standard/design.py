@@ -50,11 +50,14 @@ _NOTHING = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument("project", metavar="PROJECT.toml", help="what to design, for which machine")
+    parser.add_argument(
+        "project", metavar="PROJECT.toml", help="project file: machine, blank, workspace, control"
+    )
     parser.add_argument(
         "--control",
         metavar="NAME|FILE.toml",
-        help="for which programs are written, instead of the project's (docs/controls.md)",
+        help="control that the programs are written for (default: the project's; see "
+        "docs/controls.md)",
     )
     add_scheduler(parser)
     add_pdf(parser)
@@ -98,7 +101,7 @@ def run(args: argparse.Namespace) -> int:
             raised = project.workshop.dry_run_mm
             write_sheets(folder / SHEET, made.stations, feeds(project), printed_by, raised)
     say_each(remarks)
-    verdict, *others = design_lines(made.placement, project.workspace, made.worst)
+    verdict, *others = design_lines(made.placement, project.workspace)
     say(verdict, style="bold")
     say_each(others)
     # a pose is visited twice

@@ -13,24 +13,36 @@ _STUDY_ONLY = ("draws", "digits", "tolerance_um", "scheduler", "pdf")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.description = (
-        "With a machine and poses: S of every error parameter at every pose, into a CSV file. With "
-        "a project: maps, trajectories and Monte Carlo of its random machines, into a folder."
-    )
-    parser.add_argument("source", metavar="MACHINE.toml|PROJECT.toml", help="the machine, or more")
-    parser.add_argument(
-        "poses", metavar="POSES.csv", nargs="?", help="axis readings; else those of the project"
-    )
-    parser.add_argument("-o", "--output", metavar="OUT", required=True, help="to be written")
-    parser.add_argument("--draws", type=int, metavar="N", help="random machines, at most")
-    parser.add_argument(
-        "--digits", type=int, metavar="D", help="until D digits are stable (JCGM 101, 7.9.4)"
+        "With a machine and poses: write the sensitivity to every error parameter at "
+        "every pose to a CSV file. With a project: write maps, trajectories and a "
+        "Monte Carlo study of random machines to a folder."
     )
     parser.add_argument(
-        "--tolerance-um", type=float, metavar="T", help="share of the machines beyond T µm"
+        "source", metavar="MACHINE.toml|PROJECT.toml", help="machine file, or project file"
+    )
+    parser.add_argument(
+        "poses",
+        metavar="POSES.csv",
+        nargs="?",
+        help="axis readings, one row per pose (with a machine file)",
+    )
+    parser.add_argument("-o", "--output", metavar="OUT", required=True, help="output file")
+    parser.add_argument("--draws", type=int, metavar="N", help="largest number of random machines")
+    parser.add_argument(
+        "--digits",
+        type=int,
+        metavar="D",
+        help="draw until D significant digits are stable (JCGM 101, 7.9.4)",
+    )
+    parser.add_argument(
+        "--tolerance-um",
+        type=float,
+        metavar="T",
+        help="also report the share of machines whose deviation exceeds T µm",
     )
     add_scheduler(parser)
     add_pdf(parser)
-    parser.add_argument("--force", action="store_true", help="overwrite the output")
+    parser.add_argument("--force", action="store_true", help="overwrite an existing output")
 
 
 def run(args: argparse.Namespace) -> int:

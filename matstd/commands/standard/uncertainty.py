@@ -15,21 +15,27 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
-        "run_files", metavar="RUN.csv", nargs="+", help="visits to one standard, two or more"
+        "run_files", metavar="RUN.csv", nargs="+", help="two or more runs on one standard"
     )
     parser.add_argument(
-        "--standard", metavar="STANDARD.toml", required=True, help="what was measured"
+        "--standard",
+        metavar="STANDARD.toml",
+        required=True,
+        help="calibrated standard that was measured",
     )
     parser.add_argument(
         "--task",
         metavar="TASK.toml",
-        help="what is to be measured on workpieces; without it whatever was touched on the faces",
+        help="measuring task on the workpieces (default: every feature that was touched on "
+        "the faces)",
     )
     parser.add_argument(
-        "--model", metavar="MODEL.toml", help="of an earlier run, with which results are corrected"
+        "--model",
+        metavar="MODEL.toml",
+        help="model of an earlier diagnosis; results are corrected with it",
     )
     parser.add_argument(
-        "--page", metavar="PAGE.html", help="a page of it as well, with its tables beside it"
+        "--page", metavar="PAGE.html", help="also write a report page, with its tables beside it"
     )
     add_effects(parser)
     add_output(parser, "OUT.json")

@@ -1,0 +1,21 @@
+"""Solid, STEP and triangles of a standard, built by the CAD kernel in a process of its own.
+
+In: a folder with `standard.toml`. Out: STEP file, triangles and facts in the same folder. Nothing
+here loads the kernel at import; `run_apart` serves any library that may crash.
+"""
+
+from matstd.cad_out.kernel.part import as_part
+from matstd.cad_out.kernel.process import run_apart, run_kernel
+from matstd.cad_out.kernel.worker import FACES, FACTS, MESH, SCENES, STANDARD, STEP
+
+__all__ = [
+    "FACES",
+    "FACTS",
+    "MESH",
+    "SCENES",
+    "STANDARD",
+    "STEP",
+    "as_part",
+    "run_apart",
+    "run_kernel",
+]

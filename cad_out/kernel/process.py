@@ -1,0 +1,119 @@
+"""Work in a process of its own: a crash of the CAD kernel becomes one clear error."""
+
+import os
+import signal
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from matstd.twin.errors import DesignError, NotBuildable
+
+REFUSAL = "refusal.txt"
+"""File in the shared folder that holds the reason of a refusal."""
+
+_CALL = """\
+import pathlib, {module}, matstd.twin.errors
+try:
+    {module}.{task}{arguments}
+except matstd.twin.errors.DesignError as refusal:
+    pathlib.Path({refusal!r}).write_text(str(refusal), encoding="utf-8")
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """How a task in another process ended.
+
+    Attributes:
+        code: Exit code; negative for a signal, None for a task that was stopped.
+        refusal: What the task itself refused, in one line; empty if nothing.
+        last_line: Last line of what it complained about.
+    """
+
+    code: int | None
+    refusal: str
+    last_line: str
+
+    @property
+    def is_good(self) -> bool:
+        """Whether the task ran to its end and refused nothing."""
+        return self.code == 0 and not self.refusal
+
+    def __str__(self) -> str:
+        if self.refusal:
+            return self.refusal
+        if self.code is None:
+            return "did not finish in time and was stopped"
+        words = f"failed (exit code {self.code})"
+        if self.code < 0:
+            words = f"crashed ({signal.Signals(-self.code).name}, exit code {self.code})"
+        return f"{words}: {self.last_line}" if self.last_line else words
+
+
+def run_apart(
+    module: str,
+    task: str,
+    folder: Path,
+    *arguments: float | str,
+    timeout: float = 150.0,
+    environment: dict[str, str] | None = None,
+) -> Ending:
+    """Run ``module.task(folder, *arguments)`` in a new process of this interpreter.
+
+    Args:
+        module: Where the task is defined.
+        task: A function that takes the folder and the arguments; a `DesignError` that it raises is
+            its refusal.
+        folder: Through which the two processes speak.
+        arguments: Further arguments.
+        timeout: After which the process is stopped, s.
+        environment: Variables to be set on top of this process's.
+
+    Returns:
+        How it ended; nothing is raised.
+    """
+    refusal = folder / REFUSAL
+    call = _CALL.format(
+        module=module, task=task, arguments=(str(folder), *arguments), refusal=str(refusal)
+    )
+    try:
+        done = subprocess.run(
+            [sys.executable, "-c", call],
+            env={**os.environ, **(environment or {})},
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            encoding="utf-8",
+            errors="replace",
+            timeout=timeout,
+            check=False,
+        )
+    except subprocess.TimeoutExpired:
+        return Ending(None, "", "")
+    reason = refusal.read_text(encoding="utf-8") if refusal.exists() else ""
+    lines = [line.strip() for line in done.stderr.splitlines() if line.strip()]
+    return Ending(done.returncode, reason, lines[-1] if lines else "")
+
+
+def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float = 400.0) -> None:
+    """Run one task of `matstd.cad_out.kernel.worker` in a process of its own.
+
+    Args:
+        task: Name of the function.
+        folder: Through which the two processes speak.
+        arguments: Further arguments of the function.
+        timeout: After which the process is stopped, s.
+
+    Raises:
+        NotBuildable: The task refuses; or the kernel crashes, fails or takes too long.
+        DesignError: The folder takes no more.
+    """
+    ending = run_apart("matstd.cad_out.kernel.worker", task, folder, *arguments, timeout=timeout)
+    if ending.refusal:
+        raise NotBuildable(ending.refusal)
+    if ending.last_line.startswith("OSError: "):  # it could not even write down why
+        raise DesignError(f"{folder.parent}: cannot be written ({ending.last_line[9:]})")
+    if not ending.is_good:
+        raise NotBuildable(
+            f"the CAD kernel {ending} (task '{task}'); nothing was written", exit_code=ending.code
+        )

@@ -1,0 +1,257 @@
+"""Circular tests (ISO 230-4): radial deviations of a ball bar or a grid plate over the angle.
+
+The bar says by how much the tool is farther from the centre than the path that was programmed:
+actual minus nominal. A controller that believes in its machine sees the circle outside its place by
+the negative of that, along the radius; a deviation in the file gets the other sign here.
+
+Reference:
+    ISO 230-4 (circular tests for numerically controlled machine tools).
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from matstd.importers.sheets import ANGLES, MM, Sheet, picked, stacked, strokes
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.frames import Array
+from matstd.twin.machine import Axis, Chain, linear_directions, make_chain
+from matstd.twin.record import Instrument, IntArray, Labels, Run, Setup, at_poses
+from matstd.twin.units import MINUTE
+
+BETWEEN = 10.0
+"""Pause (s) between two runs of which nobody says how long it was."""
+
+JUST = 1e-6
+"""Angle (rad) before a reading at which its axes last moved for certain."""
+
+IS_RADIUS = 0.1
+"""Distance of a column's mean from the radius, as a share of it, up to which it holds radii."""
+
+_ANGLE = re.compile(r"angle|winkel|theta|θ|\bphi\b|φ|azimut", re.IGNORECASE)
+_RUN = re.compile(r"\brun|lauf|direction|richtung|sense|\bdir\b|drehsinn", re.IGNORECASE)
+_CCW = re.compile(r"ccw|anti|counter|gegen|\bg0?3\b|\+", re.IGNORECASE)
+_CW = re.compile(r"cw|clockwise|uhrzeiger|im uhr|\bg0?2\b|-", re.IGNORECASE)
+_DEVIATION = re.compile(r"dev|radial|radius|error|abweich|fehler|δ|delta|\bdr", re.IGNORECASE)
+
+
+@dataclass(frozen=True, eq=False)
+class CircularTest:
+    """Readings of a circular test in the order in which they were taken.
+
+    Attributes:
+        plane: Letters of its two axes; angles count from the first to the second.
+        radius: Nominal, mm.
+        angle: (N,), rad.
+        deviation: Actual minus nominal radius, (N,), mm.
+        sense: 1 from the first axis to the second, -1 the other way round, (N,).
+        run: Name of the run, (N,).
+        line: Line of the file, (N,).
+    """
+
+    plane: str
+    radius: float
+    angle: Array
+    deviation: Array
+    sense: IntArray
+    run: Labels
+    line: IntArray
+
+
+def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None) -> CircularTest:
+    """A circular test from a table: a row a reading, or a row an angle and a column a run.
+
+    Places `X` and `Y` from the centre, as of a grid plate, may stand for angles and deviations.
+    Runs are those of a column of directions, or of columns named for theirs (CCW, CW, G3, G2,
+    gegen, im Uhrzeigersinn), else of angles that rise or fall.
+
+    Args:
+        plane: `XY`, `ZX` ...: angles count from the first axis to the second.
+        radius: Nominal radius, mm.
+        unit: Of deviations whose column names none.
+
+    Raises:
+        BadFile: Neither angles and deviations nor two coordinates, a unit or a direction that is
+            not stated.
+    """
+    at = sheet.find(_ANGLE)
+    letters = [sheet.find(_letter(letter)) for letter in plane]
+    if at is None and None not in letters:
+        return _cartesian(sheet, plane, radius, [i for i in letters if i is not None])
+    if at is None:
+        raise sheet.lacking("a column of angles, or of both coordinates")
+    angle = sheet.quantity(at, ANGLES, "deg")
+    others = [i for i in range(len(sheet.columns)) if i != at]
+    said = next((i for i in others if _says_sense(sheet, i)), None)
+    values = [i for i in others if i != said and _is_value(sheet, i)]
+    if not values:
+        raise sheet.lacking("a column of radial deviations")
+    parts = []
+    for i in values:
+        reading = sheet.quantity(i, MM, unit)
+        if abs(float(np.nanmean(reading)) - radius) < IS_RADIUS * radius:
+            reading = reading - radius
+        sense, run, order = _order(sheet, i, angle, said, len(values) > 1)
+        whole = CircularTest(
+            plane=plane,
+            radius=radius,
+            angle=angle,
+            deviation=reading,
+            sense=sense,
+            run=run,
+            line=np.array(sheet.lines),
+        )
+        parts.append(picked(whole, order[np.isfinite(reading + angle)[order]]))
+    return stacked(parts)
+
+
+def _letter(letter: str) -> re.Pattern[str]:
+    """What finds the column of a coordinate."""
+    return re.compile(rf"(?<![a-zA-Z]){letter}(?![a-zA-Z])", re.IGNORECASE)
+
+
+def _cartesian(sheet: Sheet, plane: str, radius: float, columns: list[int]) -> CircularTest:
+    """Places on the circle, as a grid plate or two scales read them."""
+    x, y = (sheet.quantity(i, MM, "mm") for i in columns)
+    angle = np.arctan2(y, x)
+    sense, run = _by_motion(angle)
+    return CircularTest(
+        plane=plane,
+        radius=radius,
+        angle=angle,
+        deviation=np.hypot(x, y) - radius,
+        sense=sense,
+        run=run,
+        line=np.array(sheet.lines),
+    )
+
+
+def _by_motion(angle: Array) -> tuple[IntArray, Labels]:
+    """Sense and name of the run of every row, by angles that rise or fall."""
+    sense, stroke = strokes(np.unwrap(angle))
+    sense[sense == 0] = sense[sense != 0][0] if sense.any() else 1
+    return sense, np.array([f"run{k}" for k in stroke])
+
+
+def _says_sense(sheet: Sheet, column: int) -> bool:
+    """Whether a column states for every row which way round it was taken."""
+    words = {t for t in sheet.looked_at(column) if t}
+    return bool(_RUN.search(sheet.names[column])) and bool(words) and all(map(_sense, words))
+
+
+def _is_value(sheet: Sheet, column: int) -> bool:
+    """Whether a column holds deviations, or radii."""
+    cells = [row[column] for row in sheet.cells if row[column] != ""]
+    name = sheet.names[column]
+    is_number = bool(cells) and all(isinstance(c, float) for c in cells)
+    return is_number and bool(_DEVIATION.search(name) or _sense(name))
+
+
+def _sense(word: str) -> int:
+    """1 counter-clockwise, -1 clockwise, 0 for a word that says neither."""
+    if word in ("1", "-1"):
+        return int(word)
+    return 1 if _CCW.search(word) else -1 if _CW.search(word) else 0
+
+
+def _order(
+    sheet: Sheet, column: int, angle: Array, said: int | None, is_one_of_several: bool
+) -> tuple[IntArray, Labels, IntArray]:
+    """Sense and name of the run of every row, and the rows in the order in which they were taken.
+
+    Raises:
+        BadFile: One of several columns whose name does not state its direction.
+    """
+    n = len(sheet)
+    order, sense = np.arange(n), _sense(sheet.names[column])
+    if said is not None:
+        words = sheet.text(said)
+        return np.array([_sense(w) for w in words], dtype=np.int64), np.array(words), order
+    if sense:
+        is_rising = float(np.nanmedian(np.diff(angle))) > 0.0
+        # a table over rising angles holds a clockwise run backwards
+        order = order if is_rising == (sense > 0) else order[::-1]
+        return np.full(n, sense), np.full(n, sheet.names[column]), order
+    if is_one_of_several:
+        found = f"column {sheet.columns[column]!r}"
+        raise BadFile(sheet.path, "header", found, "CCW or CW in the names of several runs")
+    return *_by_motion(angle), order
+
+
+def circle_machine(plane: str, radius: float) -> Chain:
+    """A machine of the two axes of a circle, whose travels are its diameter."""
+    axes = {letter: Axis(range=(-radius, radius)) for letter in plane}
+    return make_chain("two axes", f"[w f {' '.join(plane)} t]", axes)
+
+
+def circle_run(
+    test: CircularTest,
+    chain: Chain,
+    u: float,
+    centre: Sequence[float] = (0.0, 0.0, 0.0),
+    feed: float | None = None,
+    bar_force: float | None = None,
+) -> Run:
+    """Run of a circular test: a row a reading, along the radius outwards.
+
+    Args:
+        test: The readings.
+        chain: A machine with the two axes.
+        u: Standard uncertainty of one reading, mm.
+        centre: Readings of X, Y and Z at the centre of the circle, mm.
+        feed: Along the path, mm/min: times of the rows follow from it; None leaves them 0.
+        bar_force: Of a loaded bar that pushes the tool away from the centre, N; negative pulls.
+
+    Raises:
+        UnknownAxis: The machine does not have the axes.
+        DesignError: The circle leaves a travel.
+    """
+    n = len(test.angle)
+    first, second = (chain.axis_index(letter) for letter in test.plane)
+    around = np.column_stack([np.cos(test.angle), np.sin(test.angle)])
+    q = np.zeros((n, len(chain.axes)))
+    for letter, value in zip("XYZ", centre, strict=True):
+        if letter in chain.axes:
+            q[:, chain.axis_index(letter)] = value
+    at_centre = q.copy()
+    q[:, [first, second]] += test.radius * around
+    for letter in test.plane:
+        low, high = chain.link(letter).range
+        reading = q[:, chain.axis_index(letter)]
+        if reading.min() < low - 1e-6 or reading.max() > high + 1e-6:
+            raise DesignError(
+                f"--circle {test.plane}: {letter} from {reading.min():g} to {reading.max():g} mm; "
+                f"its travel is {low:g} to {high:g}; --centre states the middle of the circle"
+            )
+    approach = np.zeros(q.shape)
+    before = test.angle - JUST * test.sense  # at a quadrant an axis has not turned round yet
+    turned = np.column_stack([-np.sin(before), np.cos(before)]) * test.sense[:, None]
+    approach[:, [first, second]] = np.sign(turned)
+    D = linear_directions(chain, at_centre)
+    columns = [chain.linear_axes.index(letter) for letter in test.plane]
+    normal = np.einsum("nij,nj->ni", D[:, :, columns], around)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    touches = replace(
+        at_poses(chain, q, 0.0),
+        normal=normal,
+        setups=(Setup("a"),),
+        time=_times(test, feed),
+        approach=approach,
+        feature=test.run,
+        force=None if bar_force is None else bar_force * normal,
+        instrument=Instrument.BALL_BAR,
+    )
+    return Run(touches, -test.deviation, np.full(n, u), line=test.line)
+
+
+def _times(test: CircularTest, feed: float | None) -> Array:
+    """Time of every row, (N,), s, from the way along the path."""
+    if feed is None:
+        return np.zeros(len(test.angle))
+    step = np.abs(np.diff(np.unwrap(test.angle), prepend=test.angle[:1]))
+    took = step * test.radius / (feed / MINUTE)
+    changes = np.flatnonzero(test.run[1:] != test.run[:-1]) + 1
+    took[changes] = BETWEEN
+    return np.asarray(np.cumsum(took))

@@ -1,0 +1,294 @@
+"""Tests of one axis (ISO 230-2, ISO 230-1): targets, cycles, both directions of approach.
+
+The instrument (laser interferometer, autocollimator, encoder) says by how much the axis really
+moved: ``actual - target``, tool relative to workpiece, which is the component error of the axis. A
+controller that believes in the nominal machine sees the surface outside its place by the negative
+of that along the direction of motion; a deviation in the file therefore gets the other sign here.
+
+Reference:
+    ISO 230-2:2014, clauses 3 and 5 (terms, target positions, cycles).
+"""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from matstd.importers.sheets import (
+    ANGLES,
+    MM,
+    Sheet,
+    approaches,
+    bare,
+    picked,
+    seconds,
+    sign_of,
+    signs,
+    stacked,
+    strokes,
+    temperatures,
+    unit_of_column,
+)
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
+
+ALL_BUT = 0.1
+"""Slope over the targets, off from 1 by less, of positions: no axis is wrong by a tenth."""
+
+_TARGET = re.compile(
+    r"target|tgt|soll|nominal|command|set ?p(oin)?t|position|cible|consigne|\bp_?i\b",
+    re.IGNORECASE,
+)
+_ACTUAL = re.compile(r"actual|measured|ist\b|\bist|réel|mesur", re.IGNORECASE)
+_REFERENCE = re.compile(r"reference\Z|\bref(_pos)?\Z", re.IGNORECASE)
+"""The better instrument, in tables of two; a `reference position` is a target to others."""
+_DEVIATION = re.compile(r"dev|error|abweich|fehler|écart|erreur|\bx_?ij\b", re.IGNORECASE)
+_ASIDE = re.compile(
+    r"straight|gerad|rectitud|pitch|yaw|roll\b|angle|tilt|winkel|neig|nick|gier|roulis|tangage|"
+    r"lacet|\be[a-cx-z][x-z]\b",
+    re.IGNORECASE,
+)
+"""Names of columns of straightness and angular errors."""
+_CYCLE = re.compile(r"cycle|run|zyklus|lauf|\bj\b", re.IGNORECASE)
+_DIRECTION = re.compile(r"dir|richtung|approach|anfahr", re.IGNORECASE)
+_WAY_OUT = re.compile(r"\b(up|forward|fwd|vorwärts|hin)\b", re.IGNORECASE)
+_WAY_BACK = re.compile(r"\b(down|backward|bwd|reverse|rückwärts|zurück)\b", re.IGNORECASE)
+_TIME = re.compile(r"time|zeit|clock|heure|\btemps", re.IGNORECASE)
+_NUMBER = re.compile(r"\d+")
+_ALONE = re.compile(
+    r"(up|down|fwd|bwd|rev|forward|backward|reverse|vor|rück|zurück|hin|aller|retour|pos|neg|[-+↑↓])"
+    r"(wards?|wärts)?\Z",
+    re.IGNORECASE,
+)
+"""A direction alone, where there is one cycle."""
+_LONGEST = 9  # digits of the number of a cycle
+
+
+@dataclass(frozen=True, eq=False)
+class PositioningTest:
+    """Readings of a positioning test, one entry a reading.
+
+    Attributes:
+        axis: Letter of the axis.
+        target: Commanded position, (N,), mm or rad.
+        deviation: Actual minus target, (N,), mm or rad.
+        cycle: Number of the cycle, (N,).
+        direction: 1 where the target was reached with a growing reading, -1 else, 0 unknown.
+        line: Line of the file, (N,).
+        time: Since the start of a log, (N,), s; None of a table.
+        temperature: By sensor, each (N,), degC; of a log.
+        is_by_order: Whether directions are those in which the rows follow each other.
+        component: Component error that was measured, such as EYX; "" of positioning.
+    """
+
+    axis: str
+    target: Array
+    deviation: Array
+    cycle: IntArray
+    direction: IntArray
+    line: IntArray
+    time: Array | None = None
+    temperature: Mapping[str, Array] = field(default_factory=dict)
+    is_by_order: bool = False
+    component: str = ""
+
+    @property
+    def is_own(self) -> bool:
+        """Whether it is how far the axis went, not how it leads aside or tilts."""
+        return _is_own(self.axis, self.component)
+
+    @property
+    def is_log(self) -> bool:
+        """Whether its readings have times."""
+        return self.time is not None and bool(np.any(self.time))
+
+    @property
+    def is_angle(self) -> bool:
+        """Whether deviations are angles."""
+        return _is_angle(self.axis, self.component)
+
+
+def _is_own(axis: str, component: str) -> bool:
+    return component in ("", f"E{axis}{axis}")
+
+
+def _is_angle(axis: str, component: str) -> bool:
+    return (axis if _is_own(axis, component) else component[1]) in "ABC"
+
+
+def read_positioning(
+    sheet: Sheet,
+    axis: str,
+    unit: str | None = None,
+    named: tuple[str, str] = ("", ""),
+    component: str = "",
+) -> PositioningTest:
+    """A positioning test from a table.
+
+    Two layouts are understood: a row a reading (columns target, cycle, direction, and deviation or
+    actual position), and a row a target with a column a cycle and direction (`1 up`, `1 down`, or
+    the cycle in one header row and the direction in the next). With a column of times the first is
+    a log: cycles are its strokes, directions those of its motion. Without columns of directions or
+    cycles the order of the rows gives them.
+
+    Args:
+        axis: Letter of the axis, which says whether it turns (A B C).
+        unit: Of deviations whose column names none.
+        named: Names of the columns of targets and of actual positions, where the words of the
+            header do not show them, as in a log of two encoders; empty otherwise.
+        component: Component error that was measured, such as EYX or EBX; "" for positioning.
+
+    Raises:
+        BadFile: No column of targets or deviations, a unit that is not stated.
+    """
+    sheet = _upright(sheet)
+    target = sheet.column(named[0]) if named[0] else sheet.find(_TARGET, _ACTUAL, _DEVIATION)
+    if target is None:
+        raise sheet.lacking("a column of targets, or its name by --target (and --actual)")
+    turns = axis in "ABC"
+    at = sheet.quantity(target, ANGLES if turns else MM, "deg" if turns else "mm")
+    units = ANGLES if _is_angle(axis, component) else MM
+    column, is_position = _readings(sheet, target, named[1], _is_own(axis, component))
+    if column is None:
+        return _present(sheet, stacked(_wide(sheet, axis, component, target, at, unit)))
+    deviation = sheet.quantity(column, units, unit)
+    cycle, direction, clock = map(sheet.find, (_CYCLE, _DIRECTION, _TIME))
+    sign, stroke = approaches(_held(at)) if clock is None else strokes(_held(at))
+    parted = _ways_of_parts(sheet)
+    if clock is None and np.any(parted):
+        sign = parted
+    test = PositioningTest(
+        axis=axis,
+        target=at,
+        deviation=deviation - at if is_position else deviation,
+        cycle=stroke if cycle is None else _whole(sheet, cycle),
+        direction=sign if direction is None else signs(sheet, direction),
+        line=np.array(sheet.lines),
+        time=None if clock is None else seconds(sheet, clock),
+        temperature={} if clock is None else temperatures(sheet),
+        is_by_order=direction is None and bool(np.any(sign < 0)),
+        component=component,
+    )
+    return _present(sheet, test)
+
+
+def _readings(sheet: Sheet, target: int, named: str, is_own: bool) -> tuple[int | None, bool]:
+    """Column of readings, None of a table with a column a run; whether they are positions."""
+    if is_own and named:
+        return sheet.column(named), True
+    values, actual = sheet.find(_DEVIATION), sheet.find(_ACTUAL)
+    if is_own:
+        actual = sheet.find(_REFERENCE) if actual is None else actual
+        return (actual, True) if values is None else (values, False)
+    aside = [i for i, name in enumerate(sheet.names) if _ASIDE.search(name) and i != target]
+    values = next(iter(aside), actual) if values is None else values
+    if named:
+        return sheet.column(named), False
+    return (None if len(aside) > 1 else values), False
+
+
+def _held(at: Array) -> Array:
+    """Targets with those that are missing taken for the last one before them, or the first."""
+    there = np.isfinite(at)
+    last = np.maximum.accumulate(np.where(there, np.arange(len(at)), np.argmax(there)))
+    held: Array = at[last]
+    return held
+
+
+def _upright(sheet: Sheet) -> Sheet:
+    """The table with a row a target, where it has a column a target: `Target [mm], 0, 100, 200`."""
+    first = str(sheet.cells[0][0]) if len(sheet) else ""
+    if not _TARGET.search(bare(first)) or not all(isinstance(r[0], str) for r in sheet.cells):
+        return sheet
+    sheet.used.update(range(len(sheet.columns)))
+    columns = list(zip(*sheet.cells, strict=True))
+    return replace(
+        sheet,
+        columns=tuple(str(name) for name in columns[0]),
+        cells=tuple(columns[1:]),
+        lines=(sheet.lines[0],) * (len(columns) - 1),
+        above=("",) * (len(columns) - 1),
+        used=set(),
+    )
+
+
+def _wide(
+    sheet: Sheet, axis: str, component: str, target: int, at: Array, unit: str | None
+) -> list[PositioningTest]:
+    """Every column of readings of a table with a row a target."""
+    units = ANGLES if _is_angle(axis, component) else MM
+    parts, found = [], {}
+    whole = np.ones(len(sheet), dtype=np.int64)
+    for i, name in enumerate(sheet.names):
+        number = _NUMBER.search(sheet.columns[i])
+        digits = number[0] if number else "1" if _ALONE.match(name) else ""
+        if i == target or not digits:
+            continue
+        if len(digits) > _LONGEST:
+            shown = f"column {sheet.columns[i][:40]!r}"
+            raise BadFile(sheet.path, "header", shown, "the number of a cycle")
+        found[i] = sign_of(name.replace(digits, "", 1))
+        parts.append(
+            PositioningTest(
+                axis=axis,
+                target=at,
+                deviation=_deviations(sheet, i, target, at, unit, units),
+                cycle=int(digits) * whole,
+                direction=found[i] * whole if found[i] else _ways_of_parts(sheet),
+                line=np.array(sheet.lines),
+                component=component,
+            )
+        )
+    if not parts:
+        expected = "a column of deviations, or a column a cycle and direction (1 up, 1 down, ...)"
+        raise sheet.lacking(expected)
+    unsaid = next((i for i, sign in found.items() if sign == 0), None)
+    if unsaid is not None and any(found.values()):
+        expected = "up or down (fwd, bwd, +, -) in its name, as in others"
+        raise BadFile(sheet.path, "header", f"column {sheet.columns[unsaid]!r}", expected)
+    return parts
+
+
+def _ways_of_parts(sheet: Sheet) -> IntArray:
+    """Signs of directions as the words above the parts of a table say, 0 where they do not."""
+    ways = [1 if _WAY_OUT.search(a) else -1 if _WAY_BACK.search(a) else 0 for a in sheet.above]
+    both = {1, -1} <= set(ways)
+    return np.array(ways if both else np.zeros(len(sheet)), dtype=np.int64)
+
+
+def _deviations(
+    sheet: Sheet, column: int, target: int, at: Array, unit: str | None, units: dict[str, float]
+) -> Array:
+    """Deviations of one column, which may hold actual positions: those grow as the targets do."""
+    if unit is None and _is_position(sheet.numbers(column), sheet.numbers(target)):
+        unit = unit_of_column(sheet.columns[target]) or ("mm" if units is MM else "deg")
+    values = sheet.quantity(column, units, unit)
+    return values - at if _is_position(values, at) else values
+
+
+def _is_position(values: Array, at: Array) -> bool:
+    """Whether values are positions: they grow as the targets do, as no deviation does."""
+    rows = np.isfinite(values) & np.isfinite(at)
+    if rows.sum() < 2 or not np.ptp(at[rows]) > 0.0:
+        return False
+    slope = np.polyfit(at[rows] - at[rows].mean(), values[rows], 1)[0]
+    return abs(float(slope) - 1.0) < ALL_BUT
+
+
+def _present(sheet: Sheet, test: PositioningTest) -> PositioningTest:
+    """Without readings that are not there."""
+    rows = np.isfinite(test.target) & np.isfinite(test.deviation)
+    if not rows.any():
+        raise BadFile(sheet.path, "table", "no row with a target and a reading", "one or more")
+    return picked(test, rows)
+
+
+def _whole(sheet: Sheet, column: int) -> IntArray:
+    """Numbers of cycles."""
+    numbers = sheet.numbers(column)
+    odd = np.flatnonzero(~np.isfinite(numbers) | (numbers != np.round(numbers)))
+    if len(odd):
+        raise sheet.bad(int(odd[0]), column, f"{numbers[odd[0]]:g}", "the number of a cycle")
+    return numbers.astype(np.int64)

@@ -1,0 +1,148 @@
+"""Lists measured in a frame that is not the drawing's: turned or shifted, by any amount.
+
+A CMM has its own origin, a plate lies anywhere on a table. The rigid motion that joins nominal and
+measured places best is known in closed form at any size, in as many directions as were measured;
+the machine's errors are small beside what makes it necessary.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from matstd.importers.points.point_list import PointList
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.record import rigid_motion, turn_of
+
+SHIFT = 1.0
+"""Displacement (mm) from which a list is taken for one in another frame; a smaller one is found
+with the set-up, which is linear in it."""
+
+TURN = 1e-3
+"""Rotation (rad) from which it is: half its square times 200 mm is 0.1 µm, what a linear fit of
+the set-up would get wrong."""
+
+NEAR = 5.0
+"""Points farther off than so many times the median are gross and turn nothing."""
+
+ROUNDS = 20
+"""Most times that the near points are chosen anew; two are usual."""
+
+MIRRORED = 10.0
+"""So many times better a mirrored frame fits where an axis counts the other way."""
+
+
+@dataclass(frozen=True, eq=False)
+class OtherFrame:
+    """Where the points of one set-up were measured.
+
+    Attributes:
+        setup: Label of the set-up.
+        T: Takes nominal places to measured ones, (4, 4), mm.
+        shift: How far the middle of the points was moved, mm.
+        turn: By which angle they were turned, rad.
+    """
+
+    setup: str
+    T: Array
+    shift: float
+    turn: float
+
+    @property
+    def is_far(self) -> bool:
+        """Whether it is too far from the nominal frame for a linear fit of the set-up."""
+        return self.turn > TURN or self.shift > SHIFT
+
+
+def measured_frames(points: PointList) -> list[OtherFrame]:
+    """Frames in which the set-ups were measured, of those that have points enough to tell.
+
+    Raises:
+        DesignError: Points that fit a mirrored frame alone.
+    """
+    out = []
+    for setup in dict.fromkeys(points.setup.tolist()):
+        rows = points.setup == setup
+        off = points.deviation[rows]
+        measured = np.isfinite(off).any(axis=0)
+        whole = np.isfinite(off[:, measured]).all(axis=1)
+        if whole.sum() <= measured.sum():
+            continue
+        a = points.nominal[rows][whole][:, measured]
+        T = np.eye(4)
+        letters = [*np.flatnonzero(measured), 3]
+        T[np.ix_(letters, letters)] = _motion(setup, a, a + off[whole][:, measured])
+        middle = points.nominal[rows][whole].mean(axis=0)
+        shift = float(np.linalg.norm(apply(T, middle) - middle))
+        out.append(OtherFrame(setup, T, shift, turn_of(T[:3, :3])))
+    return out
+
+
+def in_nominal_frame(points: PointList, frames: Sequence[OtherFrame]) -> PointList:
+    """The same list with what was measured brought back to the frame of the nominal places.
+
+    A point of which a coordinate is missing cannot be turned: it counts as not measured.
+    """
+    return _moved(points, frames, lambda T, nominal, found: apply(inverse(T), found) - nominal)
+
+
+def in_measured_frame(points: PointList, frames: Sequence[OtherFrame]) -> PointList:
+    """The same list with deviations from where the nominal places lie in the measured frame."""
+    return _moved(points, frames, lambda T, nominal, found: found - apply(T, nominal))
+
+
+def places(points: PointList, frames: Sequence[OtherFrame]) -> Array:
+    """Nominal places in the frame in which they were measured, (N, 3), mm."""
+    out = points.nominal.copy()
+    for frame in frames:
+        rows = points.setup == frame.setup
+        out[rows] = apply(frame.T, points.nominal[rows])
+    return out
+
+
+def _moved(
+    points: PointList,
+    frames: Sequence[OtherFrame],
+    deviation_of: Callable[[Array, Array, Array], Array],
+) -> PointList:
+    """A list with deviations computed from a frame, the nominal places and those found."""
+    deviation = points.deviation.copy()
+    for frame in frames:
+        rows = np.flatnonzero(points.setup == frame.setup)
+        nominal, off = points.nominal[rows], points.deviation[rows]
+        measured = np.isfinite(off).any(axis=0)
+        found = np.where(measured, nominal + off, apply(frame.T, nominal))
+        deviation[rows] = np.where(measured, deviation_of(frame.T, nominal, found), np.nan)
+    return replace(points, deviation=deviation)
+
+
+def _motion(setup: str, a: Array, b: Array) -> Array:
+    """Pose (k + 1, k + 1) that takes a to b, gross points aside, in k directions."""
+    near = np.ones(len(a), dtype=bool)
+    for _ in range(ROUNDS):
+        T = rigid_motion(a[near], b[near])
+        off = np.linalg.norm(_at(T, a) - b, axis=1)
+        kept = off <= max(NEAR * float(np.median(off)), 1e-9)
+        if np.array_equal(kept, near):
+            break
+        near = kept
+    mirrored = rigid_motion(a[near], b[near], is_mirrored=True)
+    left, other = (float(np.sqrt(np.mean((_at(M, a[near]) - b[near]) ** 2))) for M in (T, mirrored))
+    if a.shape[1] > 1 and left > SHIFT and left > MIRRORED * other and _fills(a):
+        raise DesignError(
+            f"points of {setup!r}: they fit a mirrored frame to {other:.3g} mm rms and no other "
+            f"({left:.3g} mm); expected axes that count the same way as the nominal ones"
+        )
+    return T
+
+
+def _at(T: Array, a: Array) -> Array:
+    """Points after a pose in their k directions."""
+    return np.asarray(a @ T[:-1, :-1].T + T[:-1, -1])
+
+
+def _fills(a: Array) -> bool:
+    """Whether points spread in all directions, so that a mirrored frame is another one."""
+    s = np.linalg.svd(a - a.mean(axis=0), compute_uv=False)
+    return len(s) == a.shape[1] and bool(s[-1] > SHIFT)

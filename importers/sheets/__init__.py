@@ -1,0 +1,34 @@
+"""Tables of others as they come: workbooks, text, logs, height maps, with units and clocks.
+
+Nothing is known here of machines: a `Sheet` has columns of text and numbers, the units that stand
+behind their names, and the line of every row; what they mean is decided by the parts above.
+"""
+
+from matstd.importers.sheets.clock import clock_times, has_clock, seconds
+from matstd.importers.sheets.directions import approaches, sign_of, signs, strokes
+from matstd.importers.sheets.rows import picked, stacked
+from matstd.importers.sheets.sensors import loads, own_columns, temperatures
+from matstd.importers.sheets.sheet import Sheet
+from matstd.importers.sheets.table import read_sheet
+from matstd.importers.sheets.units import ANGLES, MM, bare, unit_of_column
+
+__all__ = [
+    "ANGLES",
+    "MM",
+    "Sheet",
+    "approaches",
+    "bare",
+    "clock_times",
+    "has_clock",
+    "loads",
+    "own_columns",
+    "picked",
+    "read_sheet",
+    "seconds",
+    "sign_of",
+    "signs",
+    "stacked",
+    "strokes",
+    "temperatures",
+    "unit_of_column",
+]

@@ -1,0 +1,136 @@
+"""A table as text and numbers: its columns by name, its cells with their lines."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from matstd.importers.sheets.units import bare, unit_of_column
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array
+
+LARGEST = 1e15
+"""What a cell may hold: more than milliseconds of a clock, and far from where squares overflow."""
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """One table of a foreign file.
+
+    Attributes:
+        columns: Names in its header, with their units as they stand there.
+        cells: Rows of numbers, each as long as `columns`; "" where a cell is empty.
+        lines: Line or row of the file that each of them stands in.
+        title: What stands above the header.
+        left_out: Lines below the header that hold no row of numbers.
+        above: For each row what stands between it and the last row of numbers before its block: a
+            table in two parts names its parts there.
+        used: Columns from which something was taken.
+    """
+
+    path: Path
+    columns: tuple[str, ...]
+    cells: tuple[tuple[str | float, ...], ...]
+    lines: tuple[int, ...]
+    title: tuple[str, ...] = ()
+    left_out: tuple[int, ...] = ()
+    above: tuple[str, ...] = ()
+    used: set[int] = field(default_factory=set, compare=False, repr=False)
+
+    def __len__(self) -> int:
+        return len(self.cells)
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """Names of the columns without their units."""
+        return tuple(map(bare, self.columns))
+
+    def numbers(self, column: int, missing: float | None = None) -> Array:
+        """Numbers of a column, (N,); not a number where a cell is empty or says `missing`.
+
+        Raises:
+            BadFile: A cell that is no number; its line and what stood there.
+        """
+        self.used.add(column)
+        out = np.full(len(self), np.nan)
+        for i, row in enumerate(self.cells):
+            cell = row[column]
+            if isinstance(cell, str) and cell:
+                expected = "a number" if "," not in cell else "one decimal mark in the whole file"
+                raise self.bad(i, column, repr(cell), expected)
+            if cell != "" and cell != missing:
+                if abs(float(cell)) > LARGEST:
+                    raise self.bad(i, column, f"{cell:g}", f"{LARGEST:g} at most")
+                out[i] = cell
+        return out
+
+    def quantity(
+        self, column: int, units: Mapping[str, float], otherwise: str | None = None
+    ) -> Array:
+        """Numbers of a column in base units, (N,).
+
+        Args:
+            units: Those that may stand behind its name, in base units.
+            otherwise: Unit of a column whose name has none; None refuses such a column.
+
+        Raises:
+            BadFile: Another unit, or none.
+        """
+        unit = unit_of_column(self.columns[column]) or otherwise
+        if unit is None or unit not in units:
+            found = f"column {self.columns[column]!r} in {unit or 'an unknown unit'}"
+            expected = f"one of {', '.join(units)} behind the name, or --unit"
+            raise BadFile(self.path, "header", found, expected)
+        return self.numbers(column) * units[unit]
+
+    def text(self, column: int) -> list[str]:
+        """Cells of a column as text; whole numbers without a decimal mark."""
+        self.used.add(column)
+        return self.looked_at(column)
+
+    def looked_at(self, column: int) -> list[str]:
+        """The same, to see what a column holds; it does not count as used."""
+        cells = [row[column] for row in self.cells]
+        return [f"{c:g}" if isinstance(c, float) else c for c in cells]
+
+    @property
+    def unused(self) -> tuple[str, ...]:
+        """Columns with a name and cells in them from which nothing was taken."""
+        rest = [i for i, name in enumerate(self.columns) if name and i not in self.used]
+        return tuple(self.columns[i] for i in rest if any(self.looked_at(i)))
+
+    def find(self, pattern: re.Pattern[str], *without: re.Pattern[str]) -> int | None:
+        """The first column whose name one pattern finds, and none of the others."""
+        return next(
+            (
+                i
+                for i, name in enumerate(self.names)
+                if pattern.search(name) and not any(w.search(name) for w in without)
+            ),
+            None,
+        )
+
+    def column(self, name: str) -> int:
+        """Index of a column by its whole name or its name without unit.
+
+        Raises:
+            BadFile: No such column, with those that are there.
+        """
+        for names in (self.columns, self.names):
+            if name in names:
+                return names.index(name)
+        expected = f"one of {', '.join(self.columns)}"
+        raise BadFile(self.path, "header", f"no column {name!r}", expected)
+
+    def bad(self, row: int, column: int, found: str, expected: str) -> BadFile:
+        """The exception for a cell."""
+        where = f"line {self.lines[row]}, column {self.columns[column]!r}"
+        return BadFile(self.path, where, found, expected)
+
+    def lacking(self, expected: str) -> BadFile:
+        """The exception for columns among which something is missing."""
+        found = f"columns {', '.join(map(repr, self.columns))}"
+        return BadFile(self.path, "header", found, expected)

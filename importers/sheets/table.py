@@ -1,0 +1,255 @@
+"""Foreign tables as they come: workbooks, and text with any separator and decimal mark.
+
+The table of a file is found, not declared: its first row of numbers ends the header; what stands
+above the header is a title, what follows the last row of numbers a footer (means, remarks).
+"""
+
+import csv
+import io
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from matstd.importers.sheets.blanks import by_blanks
+from matstd.importers.sheets.channel_log import by_channels
+from matstd.importers.sheets.height_map import by_heights
+from matstd.importers.sheets.several_tables import fullest_table
+from matstd.importers.sheets.sheet import Sheet
+from matstd.importers.sheets.units import is_unit
+from matstd.twin.errors import BadFile
+from matstd.twin.files import read_any_text
+
+Row = tuple[int, Sequence[str | float]]
+"""Cells of a line, with its number."""
+
+WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
+"""Endings of files that are read as workbooks."""
+
+_SEPARATORS = (";", "\t", ",", "|")
+"""In the order in which they are tried: a comma last, because it may be a decimal mark."""
+
+MOSTLY = 0.6
+"""Share of rows with a number from which a column is one of numbers."""
+
+_RULE = re.compile(r":?-{2,}:?\Z|\Z")
+"""Cells of a line that rules off the header, as in tables of a wiki."""
+
+_DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?\Z")
+_DECIMAL_POINT = re.compile(r"[+-]?\d+\.\d*([eE][+-]?\d+)?\Z")
+
+
+def read_sheet(path: str | Path, name: str | None = None, names: Sequence[str] = ()) -> Sheet:
+    """The table of a foreign file.
+
+    Args:
+        path: A workbook (xlsx, xls, ods ...) or text with commas, semicolons, tabs or blanks;
+            decimal commas are read where every number of the file has them.
+        name: Sheet of a workbook; None takes the first that has a table.
+        names: Of the columns, of a table without a header.
+
+    Raises:
+        BadFile: No table of numbers, a sheet that is not there, or mixed decimal marks.
+    """
+    path = Path(path)
+    if path.suffix.lower() in WORKBOOKS:
+        return _workbook(path, name, names)
+    sheet = _table(path, _text_rows(path), names)
+    if sheet is None:
+        raise BadFile(path, "file", "no table of numbers", "a header and rows of numbers below it")
+    return sheet
+
+
+def _workbook(path: Path, name: str | None, names: Sequence[str]) -> Sheet:
+    """The table of one sheet of a workbook."""
+    from python_calamine import CalamineError, CalamineWorkbook
+
+    try:
+        book = CalamineWorkbook.from_path(path)
+    except (OSError, CalamineError) as error:
+        raise BadFile(path, "file", str(error), "a workbook that can be read") from error
+    sheets = book.sheet_names
+    if name is not None and name not in sheets:
+        raise BadFile(path, "sheet", repr(name), f"one of {', '.join(sheets)}")
+    for one in [name] if name else sheets:
+        found = book.get_sheet_by_name(one).to_python(skip_empty_area=False)
+        rows = [(i + 1, [_cell(c) for c in row]) for i, row in enumerate(found)]
+        sheet = _table(path, rows, names)
+        if sheet is not None:
+            return sheet
+    raise BadFile(path, f"sheet {name or ', '.join(sheets)}", "no table of numbers", "a table")
+
+
+def _cell(value: object) -> str | float:
+    """A cell of a workbook: numbers as they are, everything else as text."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return str(value).strip()
+    return float(value)
+
+
+def _text_rows(path: Path) -> list[tuple[int, list[str | float]]]:
+    """Rows of a text file, its numbers read."""
+    text = read_any_text(path)
+    if text.lstrip().startswith("<?xml"):
+        kind = "QIF" if "<QIFDocument" in text[:4000] else "XML"
+        raise BadFile(path, "file", kind, "a table, text or workbook: export the points as such")
+    counts = {s: _typical(text, s) for s in _SEPARATORS}
+    separator = next((s for s in _SEPARATORS if counts[s] >= 1), "")
+    rows = by_heights(path, text) or by_channels(text)
+    if not rows and separator in ("", ","):
+        rows = by_blanks(text)
+    if not rows:
+        reader = csv.reader(io.StringIO(text), delimiter=separator or ",")
+        rows = [(reader.line_num, [c.strip() for c in row]) for row in reader]
+    rows = [(line, [row[0].lstrip("# "), *row[1:]] if row else row) for line, row in rows]
+    rows = [(line, row) for line, row in rows if not all(_RULE.match(c) for c in row)]
+    mark = _decimal_mark(path, rows)
+    return [(line, [_number(c, mark) for c in row]) for line, row in rows]
+
+
+def _typical(text: str, separator: str) -> float:
+    """Separators in the typical line of the fuller half of a text."""
+    counts = sorted(line.count(separator) for line in text.splitlines() if line.strip())
+    return float(np.median(counts[len(counts) // 2 :])) if counts else 0.0
+
+
+def _decimal_mark(path: Path, rows: Sequence[tuple[int, list[str]]]) -> str:
+    """The decimal mark that all numbers of a file share; raises BadFile where both stand."""
+    commas = [line for line, row in rows if any(_DECIMAL_COMMA.match(c) for c in row)]
+    points = [line for line, row in rows if any(_DECIMAL_POINT.match(c) for c in row)]
+    if commas and points:
+        found = f"decimal commas, and decimal points in line {points[0]}"
+        raise BadFile(path, f"line {commas[0]}", found, "one decimal mark in the whole file")
+    return "," if commas else "."
+
+
+def _number(cell: str, mark: str) -> str | float:
+    """A cell as a number if it is one."""
+    if "_" in cell or not cell.isascii():
+        return cell
+    try:
+        return float(cell.replace(mark, "."))
+    except ValueError:
+        return cell
+
+
+def _table(path: Path, rows: Sequence[Row], names: Sequence[str]) -> Sheet | None:
+    """Header and rows of numbers, None where there are none."""
+    rows = [(line, row) for line, row in rows if any(c != "" for c in row)]
+    rows, passed_over = fullest_table(rows, _is_data)
+    first = next((i for i in range(len(rows)) if _begins_table(rows, i)), None)
+    if first is None:
+        return None
+    above = [i for i in range(first) if sum(c != "" for c in rows[i][1]) >= 2]
+    width = max(len(row) for _, row in rows[first:])
+    rows = [(line, [*row, *[""] * (width - len(row))]) for line, row in rows]
+    if not above and not names and isinstance(rows[first][1][0], str):
+        names = [f"column {i + 1}" for i in range(width)]  # rows have names, as columns have else
+    if not above and not names:
+        expected = "a line of column names above, or --columns"
+        raise BadFile(path, f"line {rows[first][0]}", "numbers", expected)
+    if names and len(names) != width:
+        raise BadFile(path, "table", f"{width} columns", f"{len(names)}, as --columns names them")
+    header = tuple(names) or _header([rows[i][1][:width] for i in above[-3:]])
+    begin = first if names else above[-1] + 1
+    data, others = _data_rows(rows[begin:])
+    blocks = _blocks(rows, {line for line, _ in data})
+    return Sheet(
+        path=path,
+        columns=header,
+        cells=tuple(tuple(row) for _, row in data),
+        lines=tuple(line for line, _ in data),
+        title=tuple(_words(row) for _, row in rows[: max(begin - 1, 0)]),
+        left_out=tuple(sorted([*others, *passed_over])),
+        above=tuple(blocks[line] for line, _ in data),
+    )
+
+
+def _words(row: Sequence[str | float]) -> str:
+    """Cells of a row as a text."""
+    return " ".join(str(c) for c in row if c != "")
+
+
+def _blocks(rows: Sequence[Row], data: set[int]) -> dict[int, str]:
+    """What stands above the block of each row of numbers, by its line."""
+    out: dict[int, str] = {}
+    words: list[str] = []
+    block = ""
+    for line, row in rows:
+        if line in data:
+            block, words = "\n".join(words) if words else block, []
+            out[line] = block
+        else:
+            words.append(_words(row))
+    return out
+
+
+def _data_rows(rows: Sequence[Row]) -> tuple[list[Row], list[int]]:
+    """Rows of numbers with their lines, and the lines of all others.
+
+    A word alone in a line names the rows below it that have no word of their own in its column.
+    """
+    data: list[Row] = []
+    others: list[int] = []
+    heading: tuple[int, str] | None = None
+    for line, row in rows:
+        filled = [(i, c) for i, c in enumerate(row) if c != ""]
+        if _is_data(row):
+            cells = list(row)
+            if heading is not None and cells[heading[0]] == "":
+                cells[heading[0]] = heading[1]
+            data.append((line, cells))
+        elif len(filled) == 1 and isinstance(filled[0][1], str):
+            heading = (filled[0][0], filled[0][1])
+        else:
+            others.append(line)
+    footers = _footers(data)
+    return [pair for pair in data if pair[0] not in footers], sorted([*others, *footers])
+
+
+def _footers(data: Sequence[Row]) -> set[int]:
+    """Lines of means and limits, which have a word in the first column of numbers."""
+    for cells in zip(*(row for _, row in data), strict=True):
+        if sum(isinstance(c, float) for c in cells) > MOSTLY * len(cells):
+            lines = (line for line, _ in data)
+            return {n for n, c in zip(lines, cells, strict=True) if isinstance(c, str) and c}
+    return set()
+
+
+def _begins_table(rows: Sequence[Row], i: int) -> bool:
+    """Whether a row of numbers begins the table: numbers of cycles stand above a row of names."""
+    if not _is_data(rows[i][1]):
+        return False
+    after = rows[i + 1][1] if i + 1 < len(rows) else ()
+    words = sum(isinstance(c, str) and c != "" for c in after)
+    more = any(_is_data(row) for _, row in rows[i + 2 :])
+    return not (words >= 2 and not _is_data(after) and more)
+
+
+def _is_data(row: Sequence[str | float]) -> bool:
+    """Whether at least two cells and half of them are numbers."""
+    filled = [c for c in row if c != ""]
+    numbers = sum(isinstance(c, float) for c in filled)
+    return numbers >= 2 and 2 * numbers >= len(filled)
+
+
+def _header(rows: Sequence[Sequence[str | float]]) -> tuple[str, ...]:
+    """Names of the columns: the last row of names, with the rows above where names stand twice.
+
+    A cell in an upper row counts for the columns up to the next, as in merged cells. A row of units
+    alone is put behind the names above it.
+    """
+    names = [[f"{c:g}" if isinstance(c, float) else c for c in row] for row in rows]
+    last = names.pop()
+    if names and all(is_unit(n) for n in last if n):
+        pairs = zip(names.pop(), last, strict=True)
+        last = [f"{name} [{unit.strip('[]() ')}]" if unit else name for name, unit in pairs]
+    filled = [n for n in last if n]
+    if not names or len(set(filled)) == len(filled):
+        return tuple(last)
+    carried, upper = "", []
+    for name in names[-1]:
+        carried = name or carried
+        upper.append(carried)
+    return tuple(f"{a} {b}".strip() for a, b in zip(upper, last, strict=True))

@@ -1,0 +1,112 @@
+"""Mapping files: several readings a row, polar coordinates, times of a clock."""
+
+import numpy as np
+import pytest
+
+from matstd.cli import main
+from matstd.importers.files.mapping_file import mapped_run
+from matstd.importers.sheets import read_sheet, seconds
+from matstd.twin.errors import BadFile
+from matstd.twin.files.run_file import read_run
+from matstd.twin.units import UM
+
+MACHINE = """format = "machine/1"
+name = "mill"
+chain = "[w f X Y Z t]"
+[axis.X]
+range = [-200.0, 200.0]
+[axis.Y]
+range = [-200.0, 200.0]
+[axis.Z]
+range = [-200.0, 200.0]
+"""
+TABLE = """Spindeltest;;;;
+Uhrzeit;Winkel [°];X1 [µm];Y1 [µm];Z [µm]
+23:58:00;0,0;1,0;2,0;3,0
+23:59:30;90,0;1,5;;3,5
+00:01:00;180,0;2,0;4,0;4,0
+"""
+MAP = """format = "import/1"
+[head]
+machine = "machine.toml"
+instrument = "dial-gauge"
+probe = { radius_mm = 0.0, length_mm = 0.0 }
+u_um = 0.1
+[columns]
+time_s = { from = "Uhrzeit" }
+X_mm = { from = "Winkel [°]", of = "cos", factor = 150.0 }
+Y_mm = { from = "Winkel [°]", of = "sin", factor = 150.0 }
+Z_mm = 0.0
+px_mm = 0.0
+py_mm = 0.0
+pz_mm = 0.0
+[[rows]]
+nx = 1.0
+ny = 0.0
+nz = 0.0
+dev_um = { from = "X1 [µm]" }
+[[rows]]
+nx = 0.0
+ny = 1.0
+nz = 0.0
+dev_um = { from = "Y1 [µm]", factor = -1.0 }
+"""
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for name, text in (("machine.toml", MACHINE), ("map.toml", MAP)):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    (tmp_path / "table.csv").write_text(TABLE, encoding="utf-16")
+    return tmp_path
+
+
+def test_a_row_of_five_probes_is_as_many_rows_of_one_pose(folder, capsys):
+    words = ["import", str(folder / "table.csv"), "--map", str(folder / "map.toml")]
+    assert main([*words, "-o", str(folder / "run.csv")]) == 0
+    assert "1 reading left out" in capsys.readouterr().out
+    run = read_run(folder / "run.csv")
+    np.testing.assert_allclose(run.deviation / UM, [1.0, -2.0, 1.5, 2.0, -4.0])
+    assert run.touches.pose.tolist() == [0, 0, 1, 2, 2]
+    assert run.touches.time.tolist() == [0.0, 0.0, 90.0, 180.0, 180.0], "past midnight"
+    x, y = run.touches.reading("X"), run.touches.reading("Y")
+    np.testing.assert_allclose(x, [150.0, 150.0, 0.0, -150.0, -150.0], atol=1e-9)
+    np.testing.assert_allclose(y, [0.0, 0.0, 150.0, 0.0, 0.0], atol=1e-9)
+    assert run.touches.normal[3].tolist() == [1.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found"),
+    [
+        ('nz = 0.0\ndev_um = { from = "Y1', 'dev_um = { from = "Y1', "same columns in every one"),
+        ("X1 [µm]", "X9 [µm]", "rows\\[0\\].dev_um"),
+        ('of = "cos"', 'of = "tan"', "X_mm"),
+    ],
+)
+def test_mistakes_name_their_key(folder, old, new, found):
+    (folder / "map.toml").write_text(MAP.replace(old, new), encoding="utf-8")
+    with pytest.raises(BadFile, match=found):
+        mapped_run(read_sheet(folder / "table.csv"), folder / "map.toml")
+
+
+@pytest.mark.parametrize(
+    ("cells", "wanted"),
+    [
+        (("2024-05-31 23:59:50", "2024-06-01 00:00:10.5"), [0.0, 20.5]),
+        (("31.05.2024 23:59:50", "01.06.2024 00:00:10"), [0.0, 20.0]),
+        (("5/31/2024 11:59:50 PM", "6/1/2024 12:00:10 AM"), [0.0, 20.0]),
+        (("08:00", "09:30"), [0.0, 5400.0]),
+        (("12,5", "13,0"), [12.5, 13.0]),
+    ],
+)
+def test_clocks_of_instruments(tmp_path, cells, wanted):
+    rows = "\n".join(f"{c};1;2" for c in cells)
+    (tmp_path / "log.csv").write_text(f"Zeit;a;b\n{rows}\n", encoding="utf-8")
+    np.testing.assert_allclose(seconds(read_sheet(tmp_path / "log.csv"), 0), wanted)
+
+
+def test_a_date_that_may_be_read_in_two_ways_is_refused(tmp_path):
+    text = "t;a;b\n5/6/2024 23:00:00;1;2\n6/6/2024 01:00:00;1;2\n"
+    (tmp_path / "log.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(BadFile, match="day or month first"):
+        seconds(read_sheet(tmp_path / "log.csv"), 0)

@@ -1,0 +1,51 @@
+"""Cells of foreign tables that no measurement has: refused with their place, or passed over."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from matstd.importers.arms import arm_from_dh
+from matstd.importers.instruments.positioning import read_positioning
+from matstd.importers.sheets import read_sheet
+from matstd.twin.errors import BadFile
+
+
+def sheet(folder: Path, text: str):
+    (folder / "table.csv").write_text(text, encoding="utf-8")
+    return read_sheet(folder / "table.csv")
+
+
+def test_a_number_that_no_instrument_shows_is_refused_with_its_cell(tmp_path) -> None:
+    table = sheet(tmp_path, "Target [mm],1 up [µm]\n0,0.1\n50,1e300\n100,0.3\n")
+    with pytest.raises(BadFile, match=r"line 3, column '1 up \[µm\]': found 1e\+300"):
+        read_positioning(table, "X")
+
+
+def test_the_number_of_a_cycle_has_no_hundred_digits(tmp_path) -> None:
+    table = sheet(tmp_path, f"Target [mm],{'9' * 100} up [µm]\n0,0.1\n50,0.2\n100,0.3\n")
+    with pytest.raises(BadFile, match="the number of a cycle"):
+        read_positioning(table, "X")
+
+
+def test_a_joint_without_its_length_is_refused(tmp_path) -> None:
+    table = sheet(tmp_path, "a,alpha,d,theta\n0,90,89.1,0\n-425,0,,0\n")
+    with pytest.raises(BadFile, match="line 3, column 'd': found nothing"):
+        arm_from_dh(table, np.zeros((4, 2)))
+
+
+def test_a_target_that_is_missing_in_a_log_costs_its_row_alone(tmp_path) -> None:
+    """Up and down again, with a gap on either way: strokes and signs of the others are kept."""
+    at = [0.0, 1.0, None, 3.0, 4.0, 3.0, None, 1.0, 0.0]
+    rows = [f"{k},{'' if v is None else v},{0.0 if v is None else v}" for k, v in enumerate(at)]
+    table = sheet(tmp_path, "time [s],motor [mm],scale [mm]\n" + "\n".join(rows) + "\n")
+    test = read_positioning(table, "X", None, ("motor", "scale"))
+    assert test.target.tolist() == [v for v in at if v is not None]
+    assert test.direction.tolist() == [0, 1, 1, 1, -1, -1, -1]
+    assert test.cycle.tolist() == [1, 1, 1, 1, 2, 2, 2]
+
+
+def test_a_log_without_a_whole_row_is_refused(tmp_path) -> None:
+    table = sheet(tmp_path, "time [s],motor [mm],scale [mm]\n0,1,\n1,,2\n2,3,\n")
+    with pytest.raises(BadFile, match="no row with a target and a reading"):
+        read_positioning(table, "X", None, ("motor", "scale"))

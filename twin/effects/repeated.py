@@ -1,0 +1,108 @@
+"""Effects made of another effect: repeated beside it, or its change from some run on."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from matstd.twin.model import Effect, Inner, Parameter, Term, Title, Tunable, is_tunable, own_title
+from matstd.twin.record import Touches
+
+MARK = "#"
+"""Between the name of an effect and which time it stands in the model."""
+
+
+@dataclass(frozen=True)
+class Repeated:
+    """An effect with inner parameters of its own, beside one of the same name.
+
+    Only an effect with inner parameters can stand in a model twice: without them both would be one.
+
+    Attributes:
+        original: As if it stood there alone.
+        number: 2 for the second.
+    """
+
+    original: Tunable
+    number: int = 2
+
+    @property
+    def kind(self) -> str:
+        """The kind of the effect."""
+        return self.original.kind
+
+    @property
+    def name(self) -> str:
+        """`thermal-lag(EZZ,bed)#2`."""
+        return f"{self.original.name}{MARK}{self.number}"
+
+    @property
+    def title(self) -> Title:
+        """That of the effect."""
+        return own_title(self.original) or Title(self.original.name)
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Those of the effect."""
+        return self.original.parameters
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Those of the effect."""
+        return self.original.terms(touches)
+
+    def inner(self, touches: Touches) -> Sequence[Inner]:
+        """Those of the effect."""
+        return self.original.inner(touches)
+
+    def tuned(self, *values: float) -> "Repeated":
+        """With these values of the inner parameters."""
+        return replace(self, original=self.original.tuned(*values))
+
+    @property
+    def tuning(self) -> Mapping[str, float]:
+        """Values of the inner parameters."""
+        return self.original.tuning
+
+
+def repeat(effect: Effect, number: int = 2) -> Repeated | None:
+    """An effect another time, or None where it has no inner parameters to differ in."""
+    return Repeated(effect, number) if is_tunable(effect) and effect.tuning else None
+
+
+@dataclass(frozen=True)
+class Change:
+    """By how much the parameters of an effect differ from some run on.
+
+    The effect itself stands in the model beside it and is that of the runs before; what happened
+    between two runs stays until the next change.
+
+    Attributes:
+        original: What changed.
+        since_run: Number of the first run that shows it, as in `Touches.run`.
+        since: Name of that run.
+    """
+
+    original: Effect
+    since_run: int
+    since: str
+
+    kind = "change"
+
+    @property
+    def name(self) -> str:
+        """`change(location(EC0Y),autumn)`."""
+        return f"change({self.original.name},{self.since})"
+
+    @property
+    def title(self) -> Title:
+        """That of the effect."""
+        own = own_title(self.original) or Title(self.original.name)
+        return Title(f"change of {own.text}", own.carrier)
+
+    @property
+    def parameters(self) -> Sequence[Parameter]:
+        """Those of the effect: what may be anything may also become anything."""
+        return self.original.parameters
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Those of the effect, at the touches of this run and of later ones."""
+        here = touches.run >= self.since_run
+        return tuple(t._replace(amount=t.amount * here) for t in self.original.terms(touches))

@@ -1,0 +1,41 @@
+"""Figures as files and results hold them: significant digits, in_um, root mean squares."""
+
+import numpy as np
+
+from matstd.twin.frames import Array
+from matstd.twin.units import UM
+
+
+def significant(value: float, digits: int = 6) -> float:
+    """A number rounded to so many significant digits: more of them would be rounding.
+
+    Example:
+        >>> significant(0.012345678), significant(1234.5678, digits=4)
+        (0.0123457, 1235.0)
+    """
+    return float(f"{value:.{digits}g}")
+
+
+def in_um(value: float, places: int = 3) -> float:
+    """A length in mm as µm, rounded to so many places and without a minus before a zero.
+
+    Example:
+        >>> in_um(0.0123456), in_um(-1e-9)
+        (12.346, 0.0)
+    """
+    return round(float(value) / UM, places) + 0.0
+
+
+def rms(values: Array) -> float:
+    """Root mean square of all values of an array."""
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def rms_length(vectors: Array) -> float:
+    """Root mean square of the lengths of vectors, (N, 3)."""
+    return float(np.sqrt(np.mean(np.sum(np.square(vectors), axis=1))))
+
+
+def rms_of_columns(values: Array) -> Array:
+    """Root mean square of every column, (N, K) -> (K,)."""
+    return np.sqrt(np.mean(np.square(values), axis=0))

@@ -1,0 +1,36 @@
+"""Points that fill a cube evenly, for readings over the travels of a machine.
+
+Not the quasi-Monte Carlo module of scipy: its import takes two seconds, longer than most commands
+that need a few hundred poses, and its sequences are even at powers of two alone.
+"""
+
+import numpy as np
+
+from matstd.twin.frames import Array
+
+
+def even_points(count: int, dimensions: int, start: int = 0) -> Array:
+    """Points of low discrepancy in the unit cube, without chance, (count, dimensions).
+
+    Point i is the fractional part of ``0.5 + i alpha``, alpha the powers of 1/g, with g the root of
+    ``g^(d+1) = g + 1`` in d dimensions.
+
+    Args:
+        count: How many.
+        dimensions: d.
+        start: Points of the sequence that are left out.
+
+    Reference:
+        M. Roberts, The unreasonable effectiveness of quasirandom sequences, 2018.
+    """
+    g = 1.5
+    for _ in range(60):  # the fixed-point form contracts by 1 / (d + 1) and more
+        g = (1.0 + g) ** (1.0 / (dimensions + 1))
+    alpha = g ** -np.arange(1.0, dimensions + 1.0)
+    return np.mod(0.5 + np.outer(np.arange(start + 1, start + count + 1), alpha), 1.0)
+
+
+def latin_points(low: Array, high: Array, count: int, rng: np.random.Generator) -> Array:
+    """A Latin hypercube: each of `count` strata of every variable once, (count, len(low))."""
+    strata = np.stack([rng.permutation(count) for _ in low], axis=-1)
+    return low + (high - low) * (strata + rng.random(strata.shape)) / count
