@@ -49,21 +49,6 @@ from matstd.twin.thermal import (
 from matstd.twin.units import NM
 from matstd.twin.words import listed, nearest
 
-__all__ = [
-    "ENTRY_POINT_GROUP",
-    "Kind",
-    "find_kinds",
-    "kinds",
-    "load_installed_effects",
-    "load_user_effects",
-    "owner_of",
-    "parse_effect",
-    "proposals",
-    "register",
-    "title_of",
-    "users_files",
-]
-
 ENTRY_POINT_GROUP = "material_standard.effects"
 
 ROUNDING = 1e-3 * NM
@@ -267,17 +252,8 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
 
 def _check_card(kind: Kind, path: Path) -> None:
     """What a user wrote into a `Kind` is text, or can be called, where it has to be."""
-    for name in (
-        "word",
-        "arguments",
-        "formula",
-        "units",
-        "typical",
-        "source",
-        "about",
-        "title",
-        "synonyms",
-    ):
+    card = ("formula", "units", "typical", "source", "about", "title", "synonyms")
+    for name in ("word", "arguments", *card):
         if not isinstance(getattr(kind, name), str):
             raise BadFile(path, f"Kind '{kind.word}'", f"{name} = {getattr(kind, name)!r}", "text")
     if kind.belongs_to not in Kind.OWNERS:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Literal, NamedTuple, Protocol, TypeGuard, runtime_checkable
+from typing import Literal, NamedTuple, Protocol, TypeGuard
 
 import numpy as np
 
@@ -54,7 +54,6 @@ class Title(NamedTuple):
     carrier: str = ""
 
 
-@runtime_checkable
 class Effect(Protocol):
     """A physical cause of deviations: thirty lines, one closed formula.
 
@@ -132,7 +131,6 @@ def own_title(effect: Effect) -> Title | None:
     return getattr(effect, "title", None)
 
 
-@runtime_checkable
 class Tunable(Effect, Protocol):
     """An effect with inner parameters."""
 
@@ -153,8 +151,7 @@ class Tunable(Effect, Protocol):
 def is_tunable(effect: Effect) -> TypeGuard[Tunable]:
     """Whether an effect has inner parameters.
 
-    As `isinstance` says, which asks every attribute of the protocol and took a twentieth of a
-    diagnosis.
+    Known by class: the protocol asked attribute by attribute took a twentieth of a diagnosis.
     """
     return _is_tunable(type(effect))
 
