@@ -43,8 +43,8 @@ def axis_effect_picture(effect: AlongPath) -> tuple[Figure, str]:
     first = effect.dominant[0] if effect.dominant else "nothing"
     caption = (
         f"Effect of {_words(effect)} along a trajectory ({path.name}, {len(path.q)} poses), exact: "
-        f"at most {effect.size.max() / UM:.1f} µm, {rms(effect.size) / UM:.1f} µm rms; the "
-        f"largest part is made by {first}."
+        f"at most {effect.size.max() / UM:.1f} µm, {rms(effect.size) / UM:.1f} µm rms; {first} "
+        "contributes most."
     )
     return drawn, caption
 
@@ -53,11 +53,6 @@ def statistics_picture(
     path: Trajectory, found: Volumetric, closed_p95: Array
 ) -> tuple[Figure, str]:
     """Volumetric error of random machines along a trajectory.
-
-    Args:
-        path: The trajectory.
-        found: Statistics at its poses.
-        closed_p95: The 95 % quantile as if all errors were normal, (N,), mm.
 
     Returns:
         The figure and its caption.
@@ -132,9 +127,6 @@ def _error_words(chain: Chain, effect: Effect, size: float) -> str:
 
 def draw_path(study: Study, folder: Path) -> list[tuple[str, str]]:
     """Draw what random machines and single axes do along the trajectory of a study.
-
-    Args:
-        folder: For the pictures.
 
     Returns:
         File name and caption of each; none where nothing moves.
