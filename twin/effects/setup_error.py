@@ -16,8 +16,8 @@ from matstd.twin.units import T_REF, UM
 
 SHIFT_SD = 1000.0 * UM
 TURN_SD = 5e-3
-"""Expected standard deviations of a set-up, mm and rad: wide, since nobody clamps to a micrometre
-and the calibration of a machine must not depend on it."""
+"""Expected standard deviations of a set-up, mm and rad: wide, since no clamping repeats to a
+micrometre and the calibration of a machine must not depend on it."""
 
 STYLUS_SD = 100.0 * UM
 """Of the calibrated place and radius of a further stylus against the first, mm: wide as well."""

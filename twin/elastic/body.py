@@ -63,7 +63,7 @@ class Body(Declared):
     on_tool_side: bool
 
     kind, called = "beam", "bending of the body of {axis} under weight and load"
-    # how many times what the beam says: 1 and 1 where it is as it is stated
+    # multiples of what the theory of the beam predicts: 1 and 1 where it is as stated
     parameters = (Parameter("weight", "1", 1.0), Parameter("load", "1", 1.0))
 
     @cached_property
@@ -286,6 +286,6 @@ KIND = Kind(
     typical="1 where the beam is as stated; joints make it 1.5 to 3",
     source="Timoshenko beam with Cowper's shear coefficients; first paper, 2.2",
     make=make,
-    propose=no_values,  # nobody but the user knows sections
+    propose=no_values,  # only the user knows sections
     classes=(Body,),
 )

@@ -78,7 +78,7 @@ def register(kind: Kind) -> Kind:
 
 
 def _register_from(kind: Kind, path: Path) -> Kind:
-    """Register a kind of a user's file, in the place of what this file said before.
+    """Register a kind of a user's file, in the place of its former version.
 
     Raises:
         BadFile: The word is taken, or is no word.
@@ -116,7 +116,7 @@ def find_kinds(query: str) -> tuple[Kind, ...]:
 
 
 def title_of(effect: Effect) -> Title:
-    """What an effect is called by those who run machines; its kind's title, or its name at last."""
+    """Title of an effect; else that of its kind, else its name."""
     own = own_title(effect)
     if own is not None:
         return own
@@ -125,7 +125,7 @@ def title_of(effect: Effect) -> Title:
 
 
 def owner_of(effect: Effect) -> str:
-    """What an effect belongs to, one of `Kind.OWNERS`, as its kind says."""
+    """What an effect belongs to, one of `Kind.OWNERS`, as its kind states."""
     kind = _REGISTER.get(effect.kind)
     return "machine" if kind is None else kind.belongs_to
 
@@ -175,7 +175,7 @@ def _unknown(text: str, chain: Chain) -> UnknownEffect:
         meant = f"; did you mean {near}{bracket}{inside}?"
     available = ", ".join(k.word for k in kinds())
     return UnknownEffect(
-        f"unknown effect '{text}'{meant}; available: {available} (matstd effects tells all)"
+        f"unknown effect '{text}'{meant}; available: {available} (matstd effects describes them)"
     )
 
 

@@ -33,7 +33,7 @@ class Parameter(NamedTuple):
 
     Attributes:
         name: Word of the trade, unique within its effect.
-        unit: Base unit, "mm", "rad", "1/K", "mm/K"; `units.shown` tells how a user sees it.
+        unit: Base unit, "mm", "rad", "1/K", "mm/K"; `units.shown` is what a user sees.
         sd: Standard deviation that is expected before any measurement, base unit.
     """
 
@@ -43,11 +43,11 @@ class Parameter(NamedTuple):
 
 
 class Title(NamedTuple):
-    """What an effect is called by those who run machines.
+    """What an effect is called in reports.
 
     Attributes:
         text: Without the body that carries it where another could as well: `growth along Z`.
-        carrier: Axis, `t`, `w`, or "standard", "probe" ...; empty where the text says it.
+        carrier: Axis, `t`, `w`, or "standard", "probe" ...; empty where the text names it.
     """
 
     text: str
