@@ -82,7 +82,7 @@ def _joined(run_files: Sequence[str], held_out: Sequence[str]) -> Run:
         runs[name] = replace(run, split=np.full(len(run), "test")) if is_held_out else run
     if all((run.split == "test").all() for run in runs.values()):
         raise DesignError(
-            f"--hold-out {' '.join(held_out)}: no run is left, expected at least one to learn from"
+            f"--hold-out {' '.join(held_out)}: no run is left to fit, expected at least one"
         )
     return joined(runs)
 
@@ -161,12 +161,12 @@ def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> li
         if place is not None:
             try_effect(effect, run.touches, place)
         if effect.name in there:
-            raise DesignError(f"--add {name}: is in the model already, expected another effect")
+            raise DesignError(f"--add {name}: is already in the model, expected another effect")
         if effect.name in {e.name for e in out}:
             raise DesignError(f"--add {name}: given twice, expected every effect once")
         if not is_visible(effect, run.touches):
             raise DesignError(
-                f"--add {name}: moves nothing at these touches, expected an effect that does"
+                f"--add {name}: has no effect at these touches, expected one that has"
             )
         out.append(effect)
     return out
@@ -198,8 +198,8 @@ def candidates(only: Sequence[str], without: Sequence[str], run: Run) -> list[Ef
     out = [e for e in out if not _is_among(e, without)]
     if not out:
         raise DesignError(
-            f"--only {' '.join(only)} --without {' '.join(without)}: nothing is left to look for, "
-            "expected at least one effect that this run could show"
+            f"--only {' '.join(only)} --without {' '.join(without)}: nothing is left to search "
+            "for, expected at least one effect that this run could show"
         )
     return out
 

@@ -108,7 +108,7 @@ def test_the_command_writes_a_law_that_predicts_the_same_again(tmp_path, capsys)
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["--train-until", "0.1"], "rows to learn from"),
+        (["--train-until", "0.1"], "rows to fit"),
         (["--probed", "p.csv"], "--law thermal.json"),
         (["--step-min", "0"], "--step-min 0"),
         (["--law", "a.csv"], "a.csv"),

@@ -55,7 +55,7 @@ def test_directions_are_taken_and_what_is_not_is_named(imported, capsys):
     of_hole = dict(zip(run.touches.feature, run.touches.last_move("Y"), strict=True))
     assert of_hole == {"H1": 1.0, "H2": -1.0, "H3": 1.0, "H4": -1.0}
     assert not run.touches.last_move("X").any()
-    assert "nothing was taken of: Prüfer" in said
+    assert "that were not used: Prüfer" in said
 
 
 def test_lists_of_several_years_are_runs_in_their_order(imported, capsys):
@@ -137,7 +137,7 @@ def test_points_whose_names_are_mixed_up_are_told(imported, capsys):
     found = {**place, "C": place["D"], "D": place["C"]}
     rows += [f"{n},{x},{y},{found[n][0] + 1.01},{found[n][1]}" for n, (x, y) in place.items()]
     _, said = imported({"list.csv": "\n".join(rows)}, capsys)
-    assert "2 of 5 points were found nearer to the nominal place of another" in said
+    assert "2 of 5 points are closer to the nominal position of another" in said
     assert "'C' at 'D', 'D' at 'C'" in said
     right = [rows[0], *(f"{n},{x},{y},{x + 1.01},{y}" for n, (x, y) in place.items())]
     _, said = imported({"list.csv": "\n".join(right)}, capsys, "--force")

@@ -188,7 +188,7 @@ def _unknown(text: str, chain: Chain) -> UnknownEffect:
         meant = f"; did you mean {near}{bracket}{inside}?"
     available = ", ".join(k.word for k in kinds())
     return UnknownEffect(
-        f"unknown effect '{text}'{meant}; available: {available} (matstd effects tells all)"
+        f"unknown effect '{text}'{meant}; available: {available} (matstd effects lists all)"
     )
 
 

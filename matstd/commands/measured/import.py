@@ -183,7 +183,9 @@ def run(args: argparse.Namespace) -> int:
     if args.in_order is not None and not (args.arm or args.part or args.standard):
         raise DesignError("--in-order: expected with --arm, --part or --standard alone")
     if len(sheets) > 1 and (args.map or args.positioning or args.arm or args.circle):
-        raise DesignError(f"{args.files[1]}: one table at a time; lists of points may be several")
+        raise DesignError(
+            f"{args.files[1]}: one table at a time; only lists of points may be several files"
+        )
     for sheet in sheets:
         if sheet.left_out:
             lines = ", ".join(map(str, sheet.left_out[:10]))
@@ -220,7 +222,7 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
     say(f"{output}: {len(found)} readings by {args.map}")
     if left_out:
         readings = "1 reading" if left_out == 1 else f"{left_out} readings"
-        say(f"- {readings} left out: no deviation stands there")
+        say(f"- {readings} left out: no deviation")
     say_each(found.remarks)
 
 
@@ -261,7 +263,7 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
         measured = _in_order(args, measured)
     for sheet in sheets:
         if sheet.unused:
-            say(f"- columns of {sheet.path} that nothing was taken of: {', '.join(sheet.unused)}")
+            say(f"- columns of {sheet.path} that were not used: {', '.join(sheet.unused)}")
     machine = Path(args.machine) if args.machine else output.with_suffix(".machine.toml")
     if not args.machine:
         refuse_to_overwrite(machine, args.force)

@@ -109,7 +109,7 @@ def circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         way = "from the first axis to the second" if test.sense[rows][0] > 0 else "the other way"
         say(f"- {run}: {int(rows.sum())} readings, {way}")
     if args.feed is None:
-        say("- without --feed nothing is known of speeds: a servo lag cannot be told")
+        say("- without --feed speeds are unknown: a servo lag cannot be distinguished")
     chain = read_machine(args.machine) if args.machine else circle_machine(plane, args.radius)
     u = _uncertainty(args, "u_um", UM)
     if args.bar_force is not None and not abs(args.bar_force) <= 1e5:
@@ -201,7 +201,7 @@ def points(args: argparse.Namespace, sheets: list[Sheet], meaning: str) -> tuple
     if wrong:
         some = ", ".join(f"{own!r} at {other!r}" for own, other in wrong[:3])
         say(
-            f"- {len(wrong)} of {len(points.line)} points were found nearer to the nominal place "
+            f"- {len(wrong)} of {len(points.line)} points are closer to the nominal position "
             f"of another point than to their own ({some}): names or their order are mixed up?"
         )
     frames = [f for f in frames if f.is_far]

@@ -112,7 +112,7 @@ def run(args: argparse.Namespace) -> int:
     say_assumed(chain)
     say_each(told)
     if not changes and any(part.is_ball for part in parts):
-        say_each(["the ball was measured once: whether the probe has changed is not known"])
+        say_each(["the ball was measured once: a change of the probe cannot be determined"])
     say_each([*size, *measured.remarks])
     say_each(f"T_{name}_degC: that of {args.sensors} counts, not the log's" for name in twice)
     say_each(
