@@ -159,7 +159,7 @@ def test_the_page_stands_alone(made: Path) -> None:
     assert "https://" not in page
     assert page.count("data:image/png;base64,") >= 7
     assert "placeholders" in page
-    told = re.search(r"the (\d+) touches that prove take (\d+) minutes, (\d+) with every", page)
+    told = re.search(r"the (\d+) proving touches take (\d+) minutes, or (\d+) with each", page)
     touches, minutes, once = map(int, told.groups())
     with next(made.glob("tables/05-*.csv")).open(encoding="utf-8") as table:
         assert 0 < once <= minutes < max(float(way["minutes"]) for way in csv.DictReader(table))
