@@ -141,4 +141,4 @@ def test_points_whose_names_are_mixed_up_are_told(imported, capsys):
     assert "'C' at 'D', 'D' at 'C'" in said
     right = [rows[0], *(f"{n},{x},{y},{x + 1.01},{y}" for n, (x, y) in place.items())]
     _, said = imported({"list.csv": "\n".join(right)}, capsys, "--force")
-    assert "nearer" not in said
+    assert "closer" not in said
