@@ -29,7 +29,7 @@ StartingModel = str | Path | Model | SavedModel
 
 
 def read_run(path: str | Path) -> Run:
-    """Measurements from a run file (docs/formats/run.md), with the machine that it names.
+    """Measurements from a run file (docs/formats/measurements.md), with the machine that it names.
 
     Raises:
         BadFile: File, line and column, what stood there, what was expected.
