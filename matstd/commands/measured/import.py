@@ -181,7 +181,7 @@ def run(args: argparse.Namespace) -> int:
     if args.in_order is not None and not (args.arm or args.part or args.standard):
         raise DesignError("--in-order: expected with --arm, --part or --standard alone")
     if len(sheets) > 1 and not (args.part or args.standard):
-        raise DesignError(f"{args.files[1]}: one table at a time; lists of points may be several")
+        raise DesignError(f"{args.files[1]}: one table at a time, except lists of points")
     for sheet in sheets:
         if sheet.left_out:
             lines = ", ".join(map(str, sheet.left_out[:10]))
@@ -205,7 +205,7 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
     say(f"{output}: {len(found.run)} readings by {args.map}")
     if found.left_out:
         readings = "1 reading" if found.left_out == 1 else f"{found.left_out} readings"
-        say(f"- {readings} left out: no deviation stands there")
+        say(f"- {readings} left out: no deviation")
     say_each(found.run.remarks)
 
 
