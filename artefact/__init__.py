@@ -5,7 +5,9 @@ pillars, whose touches prove the model, and a datum plane. From a project (the m
 the user's workspace, the errors that are expected, a blank and its limits) `design_standard` makes
 the body and chooses the touches on it:
 
-    Project -> Blank, ProbeReach, Population -> design_standard -> Placement
+    project.toml -> read_project -> Brief (machine, probe, workshop, blank, expected errors, wishes)
+    Brief -> feasibility -> table poses, or what stands against it and the nearest wishes
+    Brief, table poses -> design_standard -> Placement
     Placement = Standard, Requests, Criterion, rivals, certificate
     Placement -> identifiability_report -> what the touches can and cannot know
     Standard -> write_standard -> standard.toml, which CAD and probing programs start from
@@ -18,52 +20,43 @@ into `layout`, a hindrance for the probe into `reach`, for its place on the tabl
 criterion into `worth`.
 """
 
-from matstd.artefact.body import (
-    DatumSphere,
-    FreeformPatch,
-    Limits,
-    Standard,
-    check,
-    constraints,
-    contact,
-    graph_patch,
-    read_standard,
-    write_standard,
-)
-from matstd.artefact.brief import Project, read_project
-from matstd.artefact.compare import IdentifiabilityReport, Rival, identifiability_report
-from matstd.artefact.layout import Blank, Fittings, Site, standard_from_sites
-from matstd.artefact.place import Placement, PlacementOptions, design_standard
-from matstd.artefact.reach import ProbeReach, Requests
-from matstd.artefact.worth import Criterion
+from matstd.artefact.body import Limits, Standard, read_standard, write_standard
+from matstd.artefact.brief import Brief, PlacementOptions, read_project
+from matstd.artefact.compare import IdentifiabilityReport, identifiability_report
+from matstd.artefact.feasibility import Feasibility, feasibility
+from matstd.artefact.layout import Blank
+from matstd.artefact.place import Placement, design_standard
+from matstd.artefact.reach import Requests
 
-PARTS = ("brief", "body", "layout", "reach", "seat", "worth", "certify", "compare", "place")
+PARTS = (
+    "body",
+    "layout",
+    "reach",
+    "tool",
+    "seat",
+    "worth",
+    "brief",
+    "feasibility",
+    "certify",
+    "compare",
+    "place",
+)
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [
     "Blank",
-    "Criterion",
-    "DatumSphere",
-    "Fittings",
-    "FreeformPatch",
+    "Brief",
+    "Feasibility",
     "IdentifiabilityReport",
     "Limits",
     "Placement",
     "PlacementOptions",
-    "ProbeReach",
-    "Project",
     "Requests",
-    "Rival",
-    "Site",
     "Standard",
-    "check",
-    "constraints",
-    "contact",
     "design_standard",
-    "graph_patch",
+    "feasibility",
     "identifiability_report",
     "read_project",
     "read_standard",
-    "standard_from_sites",
     "write_standard",
 ]

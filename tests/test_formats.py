@@ -85,7 +85,7 @@ def test_the_deviation_of_the_run_is_what_its_readings_say(folder, tmp_path):
 
 def test_projects_standards_and_models_are_read(folder):
     project = read_project(folder / "project.toml")
-    assert project.standard.touches == 300
+    assert project.options.choice.touches == 300
     assert project.population.dependence is not None
     task = read_task(folder / "task.toml")
     assert task.tolerance == pytest.approx(20.0 * UM)
