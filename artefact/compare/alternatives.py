@@ -18,6 +18,7 @@ from matstd.information.selection import Quota, Selection, fill
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array, fixed_xyz, pose
 from matstd.twin.machine import Family
+from matstd.twin.model import traits
 from matstd.twin.record import IntArray, Setup
 from matstd.twin.units import DEG
 
@@ -117,7 +118,7 @@ def _own(criterion: Criterion, other: ProbeReach) -> IntArray:
 
 def setup_parameters(criterion: Criterion, links: str = "wt") -> IntArray:
     """Parameters of the set-up of the workpiece (w), the tool (t) or both."""
-    symbols = [getattr(effect, "symbol", None) for effect, _ in criterion.model.parameters]
+    symbols = [traits(effect).symbol for effect, _ in criterion.model.parameters]
     mine = [s is not None and s.family is Family.SETUP and s.link in links for s in symbols]
     return np.flatnonzero(mine)
 

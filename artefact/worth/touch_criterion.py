@@ -33,7 +33,7 @@ from matstd.twin.compute import blocks
 from matstd.twin.errors import DesignError, NotReachable
 from matstd.twin.frames import Array, apply
 from matstd.twin.machine import Family
-from matstd.twin.model import Model
+from matstd.twin.model import Model, traits
 from matstd.twin.record import Touches, at_poses
 from matstd.twin.units import DEG
 
@@ -313,7 +313,7 @@ def _at(
 
 def _is_setup(model: Model) -> NDArray[np.bool_]:
     """Parameters of the workpiece's set-up, (P,)."""
-    symbols = [getattr(effect, "symbol", None) for effect, _ in model.parameters]
+    symbols = [traits(effect).symbol for effect, _ in model.parameters]
     return np.array(
         [s is not None and s.family is Family.SETUP and s.link == "w" for s in symbols], dtype=bool
     )

@@ -5,7 +5,7 @@ from pathlib import Path
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry import found_arm
 from matstd.importers import machine_text
-from matstd.report.words import microns
+from matstd.report.numbers import microns
 from matstd.twin.files import write_whole
 
 FOUND = "machine_found.toml"

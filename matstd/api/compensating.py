@@ -40,6 +40,7 @@ from matstd.diagnosis.files import SavedModel, model_of, read_model
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.remarks import Remark, ShortBeam
 from matstd.report.compensation import draw_program, draw_shares_along, write_compensation_page
+from matstd.report.style import save
 from matstd.twin.compute import Progress, silent
 from matstd.twin.display import Displayed
 from matstd.twin.elastic import short_beams
@@ -103,7 +104,7 @@ class Shares:
         names = ("contributions.csv", "contributions.png")
         with results_folder(folder, force, names) as place:
             write_shares(place / names[0], self.touches, self.whole, self.each)
-            draw_shares_along(place / names[1], self.touches.time, self.whole, self.each)
+            save(draw_shares_along(self.touches.time, self.whole, self.each), place / names[1])
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,7 +239,7 @@ class Compensation(Displayed):
         done = compensated(program, self.errors, self.header(), tolerance)
         write_whole(output, done.text)  # the first: where another run was faster, it is what stays
         write_trajectory(beside[0], done)
-        draw_program(beside[1], done)
+        save(draw_program(done), beside[1])
         write_program_result(beside[2], done)
         return done
 

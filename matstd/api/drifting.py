@@ -33,6 +33,7 @@ from matstd.report.drift import (
     law_title,
     write_drift_page,
 )
+from matstd.report.style import save
 from matstd.twin.compute import Progress, silent
 from matstd.twin.display import Displayed
 from matstd.twin.errors import BadArgument, BadFile, DesignError
@@ -278,8 +279,8 @@ class DriftPrediction(Displayed):
         with results_folder(folder, force, SOMETIMES) as place:
             write_prediction(place / "drift.csv", self.record, self.predicted, self.u)
             (place / "pictures").mkdir()
-            picture = place / "pictures" / "drift.png"
-            draw_drift(picture, self.record, self.predicted, self.u, has_measured=False)
+            drawn = draw_drift(self.record, self.predicted, self.u, has_measured=False)
+            save(drawn, place / "pictures" / "drift.png")
 
 
 def predict_drift(

@@ -241,7 +241,7 @@ def _place(
 
 def _dialect(control: str | None, program: Path) -> Dialect:
     """Words of the control, with tool, preset and folder of a program that was made for it."""
-    name = control or ("linuxcnc" if language_of(program).ENDING != ".H" else "itnc530")
+    name = control or ("linuxcnc" if language_of(program).ending != ".H" else "itnc530")
     dialect, text = read_dialect(name), program.read_text(encoding="ascii", errors="replace")
     if tool := re.search(r";TOOL (\d+) IS THE PROBE", text):
         dialect = replace(dialect, tool=int(tool[1]))

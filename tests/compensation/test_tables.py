@@ -9,7 +9,7 @@ from bench import LENGTH, oracle_tip
 from matstd.cli import main
 from matstd.compensation.field.inverse import datum_of, played
 from matstd.compensation.field.machine_errors import MachineErrors, deviation
-from matstd.compensation.field.over_workspace import aligned, rms, workspace
+from matstd.compensation.field.over_workspace import aligned, workspace
 from matstd.compensation.field.state import State
 from matstd.compensation.tables.along_axes import along_axes
 from matstd.compensation.tables.by_name import line
@@ -25,6 +25,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.machine.chain import Axis, make_chain
+from matstd.twin.numbers import rms_length as rms
 from matstd.twin.units import DEG, NM, UM, URAD
 
 
@@ -349,7 +350,7 @@ def test_commands(bench, errors_file, tmp_path, capsys):
     command = ["compensate", str(bench), "--errors", str(errors_file), "--tables", str(out)]
     command += ["--tool-length", "160", "--control", "iso230"]
     assert main(command) == 0
-    assert "holds every error" in capsys.readouterr().out
+    assert "represents every error" in capsys.readouterr().out
     assert {p.name for p in out.iterdir()} >= {"iso230", "report.html", "compensation.json"}
     assert main(command) == 2
     assert "already exists" in capsys.readouterr().err

@@ -101,7 +101,7 @@ def run(args: argparse.Namespace) -> int:
             raised = project.workshop.dry_run_mm
             write_sheets(folder / SHEET, made.stations, feeds(project), printed_by, raised)
     say_each(remarks)
-    verdict, *others = design_lines(made.placement, project.workspace, made.worst)
+    verdict, *others = design_lines(made.placement, project.workspace)
     say(verdict, style="bold")
     say_each(others)
     # a pose is visited twice
