@@ -18,52 +18,5 @@ into `layout`, a hindrance for the probe into `reach`, for its place on the tabl
 criterion into `worth`.
 """
 
-from matstd.artefact.body import (
-    DatumSphere,
-    FreeformPatch,
-    Limits,
-    Standard,
-    check,
-    constraints,
-    contact,
-    graph_patch,
-    read_standard,
-    write_standard,
-)
-from matstd.artefact.brief import Project, read_project
-from matstd.artefact.compare import IdentifiabilityReport, Rival, identifiability_report
-from matstd.artefact.layout import Blank, Fittings, Site, standard_from_sites
-from matstd.artefact.place import Placement, PlacementOptions, design_standard
-from matstd.artefact.reach import ProbeReach, Requests
-from matstd.artefact.worth import Criterion
-
 PARTS = ("brief", "body", "layout", "reach", "seat", "worth", "certify", "compare", "place")
 """From bottom to top: each imports only from those before it."""
-
-__all__ = [
-    "Blank",
-    "Criterion",
-    "DatumSphere",
-    "Fittings",
-    "FreeformPatch",
-    "IdentifiabilityReport",
-    "Limits",
-    "Placement",
-    "PlacementOptions",
-    "ProbeReach",
-    "Project",
-    "Requests",
-    "Rival",
-    "Site",
-    "Standard",
-    "check",
-    "constraints",
-    "contact",
-    "design_standard",
-    "graph_patch",
-    "identifiability_report",
-    "read_project",
-    "read_standard",
-    "standard_from_sites",
-    "write_standard",
-]

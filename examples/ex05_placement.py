@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.artefact import Blank, PlacementOptions, ProbeReach, design_standard
+from matstd.artefact.layout import Blank
+from matstd.artefact.place import PlacementOptions, design_standard
+from matstd.artefact.reach import ProbeReach
 from matstd.artefact.worth import TouchOptions
 from matstd.probe_paths.plan import Probe
 from matstd.sensitivity.first_order import Workspace

@@ -14,7 +14,7 @@ from matstd.artefact.brief.standard_tables import (
     StandardTable,
 )
 from matstd.artefact.brief.task_file import Task, read_task
-from matstd.artefact.brief.workshop_tables import BodyTable, ProbeTable, probe_models
+from matstd.artefact.brief.workshop_tables import BodyTable, ProbeTable
 
 __all__ = [
     "BASE_THICKNESS",
@@ -26,7 +26,6 @@ __all__ = [
     "Project",
     "StandardTable",
     "Task",
-    "probe_models",
     "read_project",
     "read_task",
 ]

@@ -20,14 +20,7 @@ from matstd.artefact.reach.within_reach import (
     spread_poses,
     turned,
 )
-from matstd.artefact.reach.workshop import (
-    TABLE,
-    Solid,
-    Workshop,
-    clearance_in_workshop,
-    round_table,
-    still_frames,
-)
+from matstd.artefact.reach.workshop import TABLE, Solid, Workshop, round_table, still_frames
 
 __all__ = [
     "ANGLE",
@@ -42,7 +35,6 @@ __all__ = [
     "Solid",
     "Workshop",
     "clearance",
-    "clearance_in_workshop",
     "closed_mesh",
     "covering_solids",
     "hangs",
