@@ -5,7 +5,9 @@ pillars, whose touches prove the model, and a datum plane. From a project (the m
 the user's workspace, the errors that are expected, a blank and its limits) `design_standard` makes
 the body and chooses the touches on it:
 
-    Project -> Blank, ProbeReach, Population -> design_standard -> Placement
+    project.toml -> read_project -> Brief (machine, probe, workshop, blank, expected errors, wishes)
+    Brief -> feasibility -> table poses, or what stands against it and the nearest wishes
+    Brief, table poses -> design_standard -> Placement
     Placement = Standard, Requests, Criterion, rivals, certificate
     Placement -> identifiability_report -> what the touches can and cannot know
     Standard -> write_standard -> standard.toml, which CAD and probing programs start from
@@ -18,5 +20,17 @@ into `layout`, a hindrance for the probe into `reach`, for its place on the tabl
 criterion into `worth`.
 """
 
-PARTS = ("brief", "body", "layout", "reach", "seat", "worth", "certify", "compare", "place")
+PARTS = (
+    "body",
+    "layout",
+    "reach",
+    "tool",
+    "seat",
+    "worth",
+    "brief",
+    "feasibility",
+    "certify",
+    "compare",
+    "place",
+)
 """From bottom to top: each imports only from those before it."""

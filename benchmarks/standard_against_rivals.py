@@ -24,8 +24,6 @@ from matstd.artefact.brief import read_project
 from matstd.artefact.compare import Power, Rival
 from matstd.artefact.place import design_standard
 from matstd.artefact.worth import TouchOptions
-from matstd.sensitivity.first_order import Workspace
-from matstd.stages.from_project import blank, placement_options, probe_reach
 from matstd.twin.units import UM
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -44,15 +42,9 @@ def placed_on(job: tuple[str, int], touches: int) -> tuple[tuple[Rival, ...], Po
     """Of a machine and a seed: the standard, then its rivals; power of its proof; CPU seconds."""
     name, seed = job
     start = time.process_time()
-    project = read_project(EXAMPLES / f"{name}.toml")
-    placement = design_standard(
-        probe_reach(project),
-        blank(project),
-        Workspace(project.chain, project.workspace, project.probe_length),
-        np.random.default_rng(seed),
-        project.population,
-        replace(placement_options(project), choice=TouchOptions(touches=touches)),
-    )
+    brief = read_project(EXAMPLES / f"{name}.toml")
+    fewer = replace(brief.options, choice=TouchOptions(touches=touches))
+    placement = design_standard(replace(brief, options=fewer), np.random.default_rng(seed))
     return placement.rivals, placement.power, time.process_time() - start
 
 

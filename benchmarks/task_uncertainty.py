@@ -3,7 +3,7 @@
     python benchmarks/task_uncertainty.py OUT PROJECT.toml [--machines N] [--visits N] [--first N]
         [--store FOLDER]
 
-OUT is a folder that `matstd design` made of the project. The emitted programs probe every machine
+OUT is a folder that `matstd design` made of the brief. The emitted programs probe every machine
 on the exact twin in several visits, the standard clamped anew and with calibration errors, the
 model is identified from the balls of the first, and U is evaluated from the faces. Then workpieces
 are measured on the same machine that have nothing of the standard but its datum balls: points
@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import Standard, read_standard
-from matstd.artefact.brief import Project, Task, read_project
+from matstd.artefact.brief import Brief, Task, read_project
 from matstd.artefact.certify import like_task, misplaced, on_faces
 from matstd.artefact.worth import Calibration
 from matstd.diagnosis.fit import Prior, fit_run
@@ -113,7 +113,7 @@ def errors_of(
 
 
 def machine(
-    project: Project,
+    brief: Brief,
     standard: Standard,
     known: Calibration,
     programs: tuple[ReadProgram, ...],
@@ -121,15 +121,15 @@ def machine(
     rng: np.random.Generator,
 ) -> dict[str, Measured]:
     """What one machine's visits found, and its errors on workpieces, by what corrects results."""
-    truth = drawn_errors(project.population, rng)
-    true, twin = misplaced(standard, known, rng), _twin(project, truth)
+    truth = drawn_errors(brief.population, rng)
+    true, twin = misplaced(standard, known, rng), _twin(brief, truth)
     stands = [
         replace(twin, setup_error=pose(rotation(rng.normal(0.0, b, 3)), rng.normal(0.0, a, 3)))
         for a, b in [CLAMPED] * number
     ]
     runs = [c.run for c in visits(programs, true, stands, rng, calibrated=standard)]
     held_back = np.where(on_faces(standard, runs[0].touches), "test", "train")
-    fit = fit_run(replace(runs[0], split=held_back), project.population.expected())
+    fit = fit_run(replace(runs[0], split=held_back), brief.population.expected())
     count = len(fit.model.parameters)
     models = {
         PLAIN: None,
@@ -137,7 +137,7 @@ def machine(
     }
     found = places_of(runs, standard, known, Task(), models)
     pieces = workpieces(runs[0], standard, rng)
-    wrong = errors_of(truth, runs[0], pieces, standard, models, project.noise, rng)
+    wrong = errors_of(truth, runs[0], pieces, standard, models, brief.noise, rng)
     return {name: Measured(seen, wrong[name]) for name, seen in found.items()}
 
 
@@ -191,7 +191,7 @@ def main() -> None:
         "--store", type=Path, help="folder for what every machine measured; it is done once"
     )
     args = parser.parse_args()
-    project = read_project(args.project)
+    brief = read_project(args.project)
     standard = read_standard(args.out / "standard.toml")
     paths = sorted((args.out / "programs").glob("*_[0-9]*.H"))
     texts = [p.read_bytes() for p in (args.project, args.out / "standard.toml", *paths)]
@@ -203,9 +203,9 @@ def main() -> None:
         if file and file.exists():
             found = stored(file, of)
         else:
-            programs = programs or checked(paths, standard, project)
-            rng = np.random.default_rng([project.seed, k])
-            found = machine(project, standard, Calibration(), programs, args.visits, rng)
+            programs = programs or checked(paths, standard, brief)
+            rng = np.random.default_rng([brief.seed, k])
+            found = machine(brief, standard, Calibration(), programs, args.visits, rng)
             if file:
                 file.parent.mkdir(parents=True, exist_ok=True)
                 store(file, of, found)
@@ -216,11 +216,11 @@ def main() -> None:
         print(f"{name}: {summary(np.array(table))}")
 
 
-def checked(paths: list[Path], standard: Standard, project: Project) -> tuple[ReadProgram, ...]:
+def checked(paths: list[Path], standard: Standard, brief: Brief) -> tuple[ReadProgram, ...]:
     """The programs, read and checked once for all machines."""
-    programs = tuple(read_program(path, project.chain) for path in paths)
+    programs = tuple(read_program(path, brief.chain) for path in paths)
     for program in programs:
-        check_moves(program, standard, project.chain)
+        check_moves(program, standard, brief.chain)
     return programs
 
 

@@ -8,15 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.artefact.layout import Blank
-from matstd.artefact.place import PlacementOptions, design_standard
-from matstd.artefact.reach import ProbeReach
+from matstd.artefact.brief import Brief, PlacementOptions
+from matstd.artefact.place import design_standard
 from matstd.artefact.worth import TouchOptions
-from matstd.probe_paths.plan import Probe
-from matstd.sensitivity.first_order import Workspace
 from matstd.twin.files import read_machine
 from matstd.twin.frames import apply
-from matstd.twin.record import Setup
 from matstd.twin.units import DEG, UM
 
 HERE = Path(__file__).parent
@@ -25,10 +21,8 @@ LIMITS = {"X": (-150.0, 150.0), "Y": (-150.0, 150.0), "B": (-90 * DEG, 20 * DEG)
 
 
 def main():
-    chain, probe = read_machine(HERE / "hsm600u-machine.toml"), Probe()
-    reach = ProbeReach(chain, Setup("a"), probe.shape, probe.length)
-    workspace = Workspace(chain, LIMITS, probe.length)
-    placed = design_standard(reach, Blank(), workspace, np.random.default_rng(600), options=OPTIONS)
+    brief = Brief(read_machine(HERE / "hsm600u-machine.toml"), ranges=LIMITS, options=OPTIONS)
+    placed = design_standard(brief, np.random.default_rng(600))
     return {
         "placement": placed,
         "not predicted before any touch, µm": placed.prior_rms[0] / UM,

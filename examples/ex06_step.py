@@ -7,25 +7,15 @@ the STEP text are compared with the design by a reader that shares no code with 
 import tempfile
 from pathlib import Path
 
-import numpy as np
-
-from matstd.artefact.body import OVERHANG, Limits, check
-from matstd.artefact.layout import Site, standard_from_sites
+from matstd.artefact.body import Limits, check, read_standard
 from matstd.cad_out.verify import export_standard
-from matstd.twin.units import DEG, UM
+from matstd.twin.units import UM
 
 HERE = Path(__file__).parent
 
 
-def site(azimuth, radius, height, tilt):
-    square = np.array([1.0, -1.0, 1.0]) * (20.0 + OVERHANG) ** 2  # as in ex04
-    heights = square[:, None] / 120.0 - square[None, :] / 180.0
-    return Site(azimuth * DEG, radius, height, tilt * DEG, (20.0, 20.0), heights, degree=(2, 2))
-
-
 def standard():
-    places = [(0, 0, 150, 0), (0, 85, 110, 40), (120, 85, 95, 50), (240, 85, 80, 60)]
-    made = standard_from_sites("SADDLES", [site(*place) for place in places])
+    made = read_standard(HERE / "saddles.toml")
     check(made, Limits())  # refuses what cannot be made or probed, and says which limit binds
     return made
 

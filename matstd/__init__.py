@@ -39,8 +39,8 @@ if TYPE_CHECKING:
         uncertainty,
     )
     from matstd.artefact.body import Standard
-    from matstd.artefact.brief import Project
     from matstd.compensation.field import State
+    from matstd.design import Project
     from matstd.diagnosis.answer import Verdict
     from matstd.diagnosis.files import SavedModel, read_model
     from matstd.diagnosis.fit import Fit
@@ -76,8 +76,8 @@ _PLACES = {
         "uncertainty",
     ),
     "artefact.body": ("Standard",),
-    "artefact.brief": ("Project",),
     "compensation.field": ("State",),
+    "design": ("Project",),
     "diagnosis.answer": ("Verdict",),
     "diagnosis.files": ("SavedModel", "read_model"),
     "diagnosis.fit": ("Fit",),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import threading
 import time
@@ -18,26 +19,55 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 PERIOD = 10.0
-"""Seconds between two lines where nobody watches a terminal."""
+"""Seconds between two lines where there is no terminal."""
+
+
+STEADY = 1.2
+"""Times the time left that was last shown, up to which a new estimate counts as the same."""
 
 
 @dataclass(slots=True)
 class _State:
-    """What the command is doing."""
+    """What the command is doing, and how long the rest of the stage takes.
+
+    The pace is that up to the last report: between two reports the time left runs down by the
+    clock. It never grows: where a stage turns out slower than it began, none is shown until an
+    estimate is below the last one again.
+    """
 
     stage: str = "reading"
     done: int = 0
     total: int = 0
     since: float = 0.0
+    reported: float = 0.0
+    shown: float = math.inf
+
+    def report(self, stage: str, done: int, total: int, now: float) -> None:
+        """Take what the work reports."""
+        if stage != self.stage:
+            self.stage, self.since, self.shown = stage, now, math.inf
+        self.done, self.total, self.reported = done, total, now
+
+    def left(self, now: float) -> float | None:
+        """Seconds left of the stage; None where they cannot be estimated."""
+        if not 0 < self.done < self.total:
+            return None
+        whole = (self.reported - self.since) * self.total / self.done
+        left = self.since + whole - now
+        if not 0.0 < left <= STEADY * self.shown:
+            return None
+        self.shown = min(left, self.shown)
+        return self.shown
 
     def words(self, now: float) -> str:
-        """The stage, how much of it is done, and how long the rest of it takes at that pace."""
+        """The stage, how much of it is done, and how long the rest of it takes."""
         if not self.total and self.done > 1:
             return f"{self.stage}, turn {self.done}"
         if not 0 < self.done < self.total:
             return self.stage
-        left = (now - self.since) * (self.total - self.done) / self.done
-        return f"{self.stage}: {100 * self.done // self.total} %, about {clock(left)} left"
+        left = self.left(now)
+        rest = "" if left is None else f", about {clock(left)} left"
+        return f"{self.stage}: {100 * self.done // self.total} %{rest}"
 
 
 def clock(seconds: float) -> str:
@@ -54,7 +84,7 @@ def clock(seconds: float) -> str:
 def turns(show: Progress) -> Callable[[float, str], None]:
     """Progress of work that goes in turns until nothing changes: what is done, and in which turn.
 
-    Nobody knows how many turns are to come, so neither a share nor a time is told.
+    How many turns are to come is not known, so neither a share nor a time is shown.
     """
     begun: Counter[str] = Counter()
     last = ""
@@ -84,22 +114,20 @@ def stages() -> Iterator[Progress]:
 
 @contextmanager
 def _bars(watched: Console) -> Iterator[Progress]:
-    from rich.progress import (
-        BarColumn,
-        TaskID,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
+    from rich.progress import BarColumn, ProgressColumn, Task, TaskID, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bars
+    from rich.text import Text
 
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(30),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-        TextColumn("left"),
-    )
+    state = _State(since=time.monotonic())
+
+    class Left(ProgressColumn):
+        """Time left of the stage that is being worked on."""
+
+        def render(self, task: Task) -> Text:
+            left = None if task.finished else state.left(time.monotonic())
+            return Text("" if left is None else f"about {clock(left)} left")
+
+    columns = (TextColumn("{task.description}"), BarColumn(30), TimeElapsedColumn(), Left())
     with Bars(*columns, console=watched) as bars:
         known: dict[str, TaskID] = {}
 
@@ -111,6 +139,7 @@ def _bars(watched: Console) -> Iterator[Progress]:
         def show(stage: str, done: int, total: int) -> None:
             raise_if_asked()
             finish(but=stage)
+            state.report(stage, done, total, time.monotonic())
             if stage not in known:
                 known[stage] = bars.add_task(f"{stage:<24}", total=max(total, 1))
             bars.update(known[stage], completed=done if total else 0, total=max(total, 1))
@@ -127,9 +156,7 @@ def _lines(out: TextIO, period: float) -> Iterator[Progress]:
 
     def show(stage: str, done: int, total: int) -> None:
         raise_if_asked()
-        if stage != state.stage:
-            state.stage, state.since = stage, time.monotonic()
-        state.done, state.total = done, total
+        state.report(stage, done, total, time.monotonic())
 
     def tell() -> None:
         while not over.wait(period):

@@ -73,6 +73,8 @@ EXCUSED = {
     "probe_paths/campaign/contact_points.py": "remark of the same reader on a feature out of place",
     "twin/library/trial.py": "the unit that a refusal of a user's effect expects",
     "artefact/compare/alternatives.py": "names of other set-ups, shown as they are",
+    "artefact/feasibility/standing.py": "what is wrong with a body, put into one refusal",
+    "artefact/feasibility/within_travels.py": "what binds, put into one refusal",
     "artefact/reach/touchable.py": "reason that a refusal counts",
     "cad_out/details/tolerances.py": "general notes of the drawing and the STEP file",
     "artefact/certify/cmm_points_file.py": "remarks of a reader on single lines, like its refusals",

@@ -18,6 +18,7 @@ from matstd.artefact.body.limits import (
 )
 from matstd.artefact.body.patch import Meeting
 from matstd.artefact.body.solids import BLEND, Plate
+from matstd.artefact.body.sphere_fit import fitted_sphere
 from matstd.artefact.body.standard import Base, Core, Material, Standard
 from matstd.artefact.body.standard_file import read_standard, write_standard
 
@@ -41,6 +42,7 @@ __all__ = [
     "check",
     "constraints",
     "contact",
+    "fitted_sphere",
     "graph_patch",
     "max_slope",
     "min_concave_radius",

@@ -1,31 +1,27 @@
-"""What is wanted: the project file, checked against its machine before any work is done.
+"""What is wanted: the project file, checked against its machine and resolved once.
 
-In: `project.toml` and the machine file it names, `task.toml`. Out: a `Project`, a `Task` in base
-units. A new key is a
-field of one of the tables, and a check beside it if it can contradict another.
+In: `project.toml`, the machine, task and mesh files that it names. Out: a `Brief` and a `Task` in
+base units; no table of a file leaves this part. A new key is a field of one of the tables, a field
+of the `Brief`, and a check beside it if it can contradict another.
 """
 
-from matstd.artefact.brief.project_file import Project, read_project
-from matstd.artefact.brief.standard_tables import (
-    BASE_THICKNESS,
-    CORNER_RADIUS,
-    FEWEST_PATCHES,
-    FINISHING,
-    StandardTable,
-)
+from matstd.artefact.brief.brief import Brief, PlacementOptions, ProgramSettings, StudySettings
+from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.brief.standard_tables import FEWEST_PATCHES, FINISHING, LEAST_SIDE, base_of
 from matstd.artefact.brief.task_file import Task, read_task
-from matstd.artefact.brief.workshop_tables import BodyTable, ProbeTable
+from matstd.artefact.brief.workshop_tables import probe_models
 
 __all__ = [
-    "BASE_THICKNESS",
-    "CORNER_RADIUS",
     "FEWEST_PATCHES",
     "FINISHING",
-    "BodyTable",
-    "ProbeTable",
-    "Project",
-    "StandardTable",
+    "LEAST_SIDE",
+    "Brief",
+    "PlacementOptions",
+    "ProgramSettings",
+    "StudySettings",
     "Task",
+    "base_of",
+    "probe_models",
     "read_project",
     "read_task",
 ]

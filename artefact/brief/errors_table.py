@@ -1,6 +1,5 @@
 """`[errors]` of a project file: what is expected of errors, their size, shape and relations."""
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -55,23 +54,8 @@ class ErrorsTable(Table):
     correlation: CorrelationTable | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class Expected:
-    """Errors that a machine is expected to have, in base units.
-
-    Attributes:
-        ranges: Amplitudes.
-        distributions: Shapes over the readings.
-        dependence: Relations between errors; None for none.
-    """
-
-    ranges: Ranges
-    distributions: Distributions
-    dependence: Dependence | None
-
-
-def expected_errors(table: ErrorsTable, chain: Chain, path: Path) -> Expected:
-    """What a table says, checked against a machine.
+def expected_errors(table: ErrorsTable, chain: Chain, path: Path) -> Population:
+    """Machines that a table expects.
 
     Raises:
         BadFile: File, key, what stood there, what was expected.
@@ -80,13 +64,12 @@ def expected_errors(table: ErrorsTable, chain: Chain, path: Path) -> Expected:
     if all(ranges.of(chain, symbol)[1] == 0.0 for symbol in chain.symbols):
         raise BadFile(path, "errors", "amplitudes of zero for every error", "one above zero")
     distributions = _distributions(table, chain, path)
-    expected = Expected(ranges, distributions, _dependence(table, path))
+    dependence = _dependence(table, path)
     try:
-        Population(chain, ranges, distributions, expected.dependence)
+        return Population(chain, ranges, distributions, dependence)
     except DesignError as error:
         key = "errors.groups" if table.groups else "errors.correlation"
         raise BadFile(path, key, str(error), "what machines can have") from error
-    return expected
 
 
 def _ranges(table: ErrorsTable, chain: Chain, path: Path) -> Ranges:

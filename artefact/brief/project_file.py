@@ -1,14 +1,14 @@
-"""Project file (TOML, format "project/1"): all that `matstd design` is told."""
+"""Project file (TOML, format "project/1"): what is designed, for which machine."""
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from pydantic import Field
 
-from matstd.artefact.brief.errors_table import ErrorsTable, Expected, expected_errors
+from matstd.artefact.brief.brief import Brief, StudySettings
+from matstd.artefact.brief.errors_table import ErrorsTable, expected_errors
 from matstd.artefact.brief.standard_tables import (
     BlankTable,
     LimitsTable,
@@ -20,17 +20,16 @@ from matstd.artefact.brief.standard_tables import (
 )
 from matstd.artefact.brief.task_file import Task, read_task
 from matstd.artefact.brief.workshop_tables import (
-    FurtherProbeTable,
     ProbeTable,
     WorkshopTable,
     check_workshop,
     checked_probe,
     checked_probes,
-    table_radius,
 )
+from matstd.artefact.reach import Body, Solid, round_table
+from matstd.artefact.seat import middle_room
+from matstd.artefact.worth import Calibration
 from matstd.sensitivity.montecarlo import MACHINES_A_BATCH
-from matstd.sensitivity.population import Population
-from matstd.twin.display import Displayed
 from matstd.twin.errors import BadFile, UnknownAxis
 from matstd.twin.files import (
     SetupTable,
@@ -43,7 +42,7 @@ from matstd.twin.files import (
 )
 from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
-from matstd.twin.units import DEG, UM
+from matstd.twin.units import DEG, UM, URAD
 
 FARTHEST = 1e6
 """A reading beyond this (mm, degrees) is a slip; larger whole numbers are no floating ones."""
@@ -73,6 +72,12 @@ class CalibrationTable(Table):
     patch_um: float = Field(default=1.0, ge=0.0)
     patch_urad: float = Field(default=10.0, ge=0.0)
     ball_um: float = Field(default=0.3, ge=0.0)
+
+    def calibration(self) -> Calibration:
+        """In base units."""
+        return Calibration(
+            patch=self.patch_um * UM, patch_tilt=self.patch_urad * URAD, ball=self.ball_um * UM
+        )
 
 
 class SimulationTable(Table):
@@ -105,88 +110,8 @@ class ProjectTable(Table):
     simulation: SimulationTable = SimulationTable()
 
 
-@dataclass(frozen=True, repr=False)
-class Project(Displayed):
-    """A design project in base units.
-
-    Attributes:
-        path: The project file.
-        machine_path: The machine file.
-        seed: Of all random numbers.
-        control: For which programs are written: a name, or a dialect file of the user's own.
-        probe: The same, and what stands above the ball, as `stack_mm`.
-        workshop: What stands beside the standard, and the control.
-        table_radius: Of the table's face, or of the largest disc on it, mm.
-        workspace: Smallest and largest reading of every programmed axis, mm or rad.
-        poses: Number of poses for the maps.
-        draws: Number of random machines for the maps; at most so many where digits are asked for.
-        digits: Significant digits that have to be stable (JCGM 101); 0 for none.
-        tolerance: Volumetric error that users allow, mm; infinite where they said nothing.
-        expected: Errors that the machine is expected to have.
-        standard: Name, number of patches, touches and table poses, and what they are chosen for.
-        material: What it is made of.
-        blank: What it is made from.
-        limits: What workshop, probe and table allow.
-        setup: Where the standard stands on the table.
-        calibration: How well the features of the standard will be known.
-        noise: Standard deviation of one simulated touch, mm.
-        machines: Number of random machines of the proof.
-        visits: Number of virtual visits from which the uncertainty of the task is evaluated.
-        task: What the user measures; whatever is touched on the faces where he did not say.
-        remarks: What the user should know of his file.
-        further_setups: In which the standard is probed again, in their order.
-        further_probes: That make what those before them do not reach, in their order.
-    """
-
-    path: Path
-    machine_path: Path
-    chain: Chain
-    seed: int
-    control: str
-    probe: ProbeTable
-    workshop: WorkshopTable
-    table_radius: float
-    workspace: dict[str, tuple[float, float]]
-    poses: int
-    draws: int
-    digits: int
-    tolerance: float
-    expected: Expected
-    standard: StandardTable
-    material: MaterialTable
-    blank: BlankTable
-    limits: LimitsTable
-    setup: Setup
-    calibration: CalibrationTable
-    noise: float
-    machines: int
-    visits: int
-    task: Task
-    remarks: tuple[str, ...] = ()
-    further_setups: tuple[Setup, ...] = ()
-    further_probes: tuple[FurtherProbeTable, ...] = ()
-
-    @property
-    def probe_radius(self) -> float:
-        """Of the ball, mm."""
-        assert self.probe.radius_mm is not None
-        return self.probe.radius_mm
-
-    @property
-    def probe_length(self) -> float:
-        """Gauge point to ball centre, mm."""
-        assert self.probe.length_mm is not None
-        return self.probe.length_mm
-
-    @property
-    def population(self) -> Population:
-        """Machines to draw from."""
-        known = self.expected
-        return Population(self.chain, known.ranges, known.distributions, known.dependence)
-
-
-def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None) -> Project:
-    """Project with its machine.
+def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None) -> Brief:
+    """Read a project with its machine, its task and the bodies of its workshop.
 
     Args:
         montecarlo: Keys of `[montecarlo]` that stand in place of those of the file.
@@ -203,51 +128,74 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     table = checked(ProjectTable, data, path)
     machine_path = path.parent / table.machine
     chain = read_machine(machine_path)
-    workspace, poses = _workspace(table, chain, path)
-    if table.montecarlo.digits and table.montecarlo.draws < 2 * MACHINES_A_BATCH:
+    ranges, poses = _workspace(table, chain, path)
+    study = _study(table, poses, path)
+    check_standard(table.standard, path)
+    first_probe = checked_probe(table.probe, path).probe()
+    face = _table_face(table, path)
+    check_material(table.material, path)
+    check_body(
+        table.blank, table.limits, table.material, first_probe.radius, min(face.half_size), path
+    )
+    setups = _setups(table, path)
+    # screws and pads stand on the table in every set-up
+    room = min(middle_room(face, setup.T_table_artefact) for setup in setups)
+    limits = table.limits.limits(first_probe.radius, room)
+    wanted, shop = table.standard, table.workshop
+    return Brief(
+        chain=chain,
+        ranges=ranges,
+        errors=expected_errors(table.errors, chain, path),
+        setups=tuple(setups),
+        options=wanted.options(table.simulation.noise_um * UM, table.calibration.calibration()),
+        task=_task(table, ranges, path),
+        probes=(first_probe, *(probe.probe() for probe in checked_probes(shop, path))),
+        table=face,
+        bodies=_bodies(table, chain, path),
+        ball=None if shop.ball is None else shop.ball.ball(face.high),
+        blank=table.blank.blank(table.material.material(), limits),
+        overhang=table.limits.overhang_mm,
+        riser=table.limits.riser_mm,
+        programs=shop.settings(table.control),
+        study=study,
+        seed=table.seed,
+        down=wanted.down,
+        author=wanted.author,
+        organisation=wanted.organisation,
+        path=path,
+        machine_path=machine_path,
+        remarks=remarks,
+    )
+
+
+def _study(table: ProjectTable, poses: int, path: Path) -> StudySettings:
+    """Random machines of maps and proof; stable digits need two batches of them."""
+    wanted, proof = table.montecarlo, table.simulation
+    if wanted.digits and wanted.draws < 2 * MACHINES_A_BATCH:
         raise BadFile(
             path,
             "montecarlo.draws",
-            f"{table.montecarlo.draws} with digits = {table.montecarlo.digits}",
+            f"{wanted.draws} with digits = {wanted.digits}",
             f"{2 * MACHINES_A_BATCH} or more: stable digits need two batches",
         )
-    check_standard(table.standard, path)
-    probe = checked_probe(table.probe, path)
-    assert probe.radius_mm is not None
-    assert probe.length_mm is not None
-    room = _table_radius(table, path)
-    check_material(table.material, path)
-    check_body(table.blank, table.limits, table.material, probe.radius_mm, room, path)
-    first, *others = _setups(table, path)
-    return Project(
-        path=path,
-        machine_path=machine_path,
-        chain=chain,
-        seed=table.seed,
-        control=table.control,
-        probe=probe,
-        workshop=table.workshop,
-        table_radius=room,
-        workspace=workspace,
+    return StudySettings(
         poses=poses,
-        draws=table.montecarlo.draws,
-        digits=table.montecarlo.digits,
-        tolerance=table.montecarlo.tolerance_um * UM,
-        expected=expected_errors(table.errors, chain, path),
-        standard=table.standard,
-        material=table.material,
-        blank=table.blank,
-        limits=table.limits,
-        setup=first,
-        calibration=table.calibration,
-        noise=table.simulation.noise_um * UM,
-        machines=table.simulation.machines,
-        visits=table.simulation.visits,
-        task=_task(table, workspace, path),
-        remarks=remarks,
-        further_setups=tuple(others),
-        further_probes=checked_probes(table.workshop, path),
+        draws=wanted.draws,
+        digits=wanted.digits,
+        tolerance=wanted.tolerance_um * UM,
+        machines=proof.machines,
+        visits=proof.visits,
     )
+
+
+def _bodies(table: ProjectTable, chain: Chain, path: Path) -> tuple[Body, ...]:
+    """Clamps, fixtures and covers, each on the table or on an axis that carries the workpiece."""
+    carriers = [k.name for k in chain.links if k.carries_workpiece and k.kind != "fixed"]
+    for i, body in enumerate(table.workshop.bodies):
+        if body.on and body.on not in carriers:
+            expected = f"one that carries the workpiece: {', '.join(carriers) or 'none'}"
+            raise BadFile(path, f"workshop.bodies.{i}.on", f"axis {body.on}", expected)
+    return tuple(body.body(path.parent) for body in table.workshop.bodies)
 
 
 def _under_their_names(data: dict[str, Any], path: Path) -> tuple[str, ...]:
@@ -306,16 +254,16 @@ def _task(table: ProjectTable, workspace: Mapping[str, tuple[float, float]], pat
     return task
 
 
-def _table_radius(table: ProjectTable, path: Path) -> float:
-    """Of the table's face, which is stated once at most."""
+def _table_face(table: ProjectTable, path: Path) -> Solid:
+    """The table, which is stated once at most."""
     check_workshop(table.workshop, table.setup, path)
-    stated = table_radius(table.workshop)
+    stated = table.workshop.table
     if stated is None:
-        return table.limits.table_radius_mm
+        return round_table(table.limits.table_radius_mm)
     if "table_radius_mm" in table.limits.model_fields_set:
         raise BadFile(path, "limits.table_radius_mm", f"{table.limits.table_radius_mm:g}",
                       "no such key beside [workshop.table]")  # fmt: skip
-    return stated
+    return stated.solid()
 
 
 def _workspace(

@@ -8,9 +8,13 @@ from typing import Literal
 
 from pydantic import Field
 
+from matstd.artefact.body import Base, Limits, Material
+from matstd.artefact.brief.brief import PlacementOptions
+from matstd.artefact.layout import Blank, Fittings
+from matstd.artefact.worth import Calibration, CriterionOptions, TouchOptions
 from matstd.twin.errors import BadFile
 from matstd.twin.files import Pair, Table
-from matstd.twin.units import KG_M3
+from matstd.twin.units import DEG, KG_M3
 
 BASE_THICKNESS = 30.0
 """Of the plate that every standard stands on, mm."""
@@ -20,6 +24,7 @@ CORNER_RADIUS = 25.0
 
 
 FEWEST_PATCHES = 3
+"""Of a standard."""
 
 STEEL = "X40Cr14 (1.2083), hardened"
 """Material that the defaults of density and expansion are of."""
@@ -27,7 +32,14 @@ STEEL = "X40Cr14 (1.2083), hardened"
 FINISHING = 3.0
 """Radius of the ball-end mill that finishes what is milled, mm: no radius is asked below it."""
 
+LEAST_SIDE = 160.0
+"""Of a base, mm."""
+
 _NARROWEST = 20.0  # mm between two slots of a table, ISO 299
+
+_LOWEST_SPHERE, _HIGHEST_SPHERE = 60.0, 130.0 / 220.0
+"""Of the sphere centres above the seat, mm and as a share of the blank's height: as far apart as
+base and patches leave room for."""
 
 
 class StandardTable(Table):
@@ -48,6 +60,24 @@ class StandardTable(Table):
     robust_share: float = Field(default=1.0, gt=0.0, le=1.0)
     down: Literal["+X", "-X", "+Y", "-Y", "+Z", "-Z"] = "-Z"
 
+    def options(self, noise: float, calibration: Calibration) -> PlacementOptions:
+        """What is designed, and what for, with a noise of mm."""
+        return PlacementOptions(
+            name=self.name,
+            serial=self.serial,
+            patches=self.patches,
+            balls=self.balls,
+            noise=noise,
+            criterion=CriterionOptions(
+                name=self.criterion,
+                potential=self.potential,
+                robust_machines=self.robust_machines,
+                robust_share=self.robust_share,
+                calibration=calibration,
+            ),
+            choice=TouchOptions(self.touches, self.poses, self.proof_touches),
+        )
+
 
 class MaterialTable(Table):
     """`[material]`: what the standard is made of."""
@@ -59,12 +89,34 @@ class MaterialTable(Table):
     modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6)  # noqa: N815
     poisson: float = Field(default=0.3, gt=0.0, lt=0.5)
 
+    def material(self) -> Material:
+        """In base units, with the usual modulus of a known name where none is stated."""
+        return Material(
+            self.name,
+            self.density_kg_m3 * KG_M3,
+            self.expansion_1_K,
+            u_expansion=self.expansion_u_1_K,
+            modulus=self.modulus_MPa,
+            poisson=self.poisson,
+        ).with_usual_modulus()
+
 
 class BlankTable(Table):
     """`[blank]`: sides of the base and height of the whole, mm."""
 
     base_mm: Pair = (280.0, 280.0)
     height_mm: float = Field(default=220.0, ge=120.0, le=400.0)
+
+    def blank(self, material: Material, limits: Limits) -> Blank:
+        """With the fittings that a blank of this height has."""
+        low, high = _LOWEST_SPHERE, _HIGHEST_SPHERE * self.height_mm
+        return Blank(
+            base=base_of(self.base_mm),
+            fittings=Fittings(sphere_heights=(low, round(0.5 * (low + high), 1), round(high, 1))),
+            material=material,
+            height=self.height_mm,
+            limits=limits,
+        )
 
 
 class LimitsTable(Table):
@@ -78,6 +130,28 @@ class LimitsTable(Table):
     slot_pitch_mm: float = Field(default=0.0, ge=0.0)
     overhang_mm: float | None = Field(default=None, ge=0.0)
     riser_mm: float = Field(default=0.0, ge=0.0)
+
+    def limits(self, ball_radius: float, table_radius: float) -> Limits:
+        """In base units.
+
+        Args:
+            ball_radius: Of the probe, mm.
+            table_radius: Of the disc about the standard's own axis that lies on the table, mm.
+        """
+        return Limits(
+            min_concave_radius=self.min_concave_radius_mm,
+            max_slope=self.max_slope_deg * DEG,
+            ball_radius=ball_radius,
+            gap=self.gap_mm,
+            max_mass=self.max_mass_kg,
+            table_radius=table_radius,
+            slot_pitch=self.slot_pitch_mm,
+        )
+
+
+def base_of(sides: tuple[float, float]) -> Base:
+    """The plate of a standard with these sides, mm."""
+    return Base((0.5 * sides[0], 0.5 * sides[1]), CORNER_RADIUS, BASE_THICKNESS)
 
 
 def check_standard(wanted: StandardTable, path: Path) -> None:
@@ -142,7 +216,7 @@ def check_body(
         BadFile: The key and what it contradicts.
     """
     sides, table = blank.base_mm, 2.0 * table_radius_mm
-    if min(sides) < 160.0:
+    if min(sides) < LEAST_SIDE:
         raise BadFile(path, "blank.base_mm", list(sides), "160 mm or more either way")
     if table < 160.0:
         expected = "160 mm or more, the smallest base of a standard"

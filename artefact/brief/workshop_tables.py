@@ -12,10 +12,15 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Literal, TypeVar
 
+import numpy as np
 from pydantic import Field
 
+from matstd.artefact.brief.brief import ProgramSettings
+from matstd.artefact.reach import TABLE, Body, DatumBall, Solid, read_drawn_body
+from matstd.artefact.tool import Probe
 from matstd.twin.errors import BadFile
 from matstd.twin.files import Pair, Table, Vector
+from matstd.twin.units import DEG, UM
 
 Cylinders = tuple[tuple[float, float], ...]
 """(end, diameter) from the ball centre upwards, mm."""
@@ -37,6 +42,17 @@ class ProbeTable(Table):
     body_diameter_mm: float = Field(default=50.0, gt=0.0)
     nose_diameter_mm: float = Field(default=90.0, gt=0.0)
 
+    def probe(self) -> Probe:
+        """In base units, once everything is stated (`checked_probe`)."""
+        assert self.radius_mm is not None
+        assert self.length_mm is not None
+        return Probe(
+            radius=self.radius_mm,
+            length=self.length_mm,
+            stack=tuple((end, 0.5 * diameter) for end, diameter in self.stack_mm or ()),
+            nose_radius=0.5 * self.nose_diameter_mm,
+        )
+
 
 class ModelTable(Table):
     """A probe of the library."""
@@ -55,6 +71,17 @@ class TableTable(Table):
     height_mm: float = 0.0
     thickness_mm: float = Field(default=60.0, gt=0.0)
 
+    def solid(self) -> Solid:
+        """The table as a body."""
+        a, b = self.sides_mm or (self.diameter_mm or 0.0,) * 2
+        return Solid(
+            TABLE,
+            (0.5 * a, 0.5 * b),
+            self.sides_mm is None,
+            self.height_mm - self.thickness_mm,
+            self.height_mm,
+        )
+
 
 class BodyTable(Table):
     """`[[workshop.bodies]]`: clamp, fixture or cover, in the frame of the table's face.
@@ -72,6 +99,25 @@ class BodyTable(Table):
     on: str = ""
     setup: str = ""
 
+    def body(self, folder: Path) -> Body:
+        """In base units; a mesh is read from a folder.
+
+        Raises:
+            BadFile: No mesh, or an empty one.
+        """
+        a, b = self.sides_mm or (self.diameter_mm or 0.0,) * 2
+        return Body(
+            name=self.name,
+            at=self.at_mm,
+            half_size=(0.5 * a, 0.5 * b),
+            is_disc=self.sides_mm is None,
+            height=self.height_mm or 0.0,
+            turn=self.turned_deg * DEG,
+            on=self.on,
+            setup=self.setup,
+            drawn=None if self.stl is None else read_drawn_body(folder / self.stl),
+        )
+
 
 class BallTable(Table):
     """`[workshop.ball]`: a calibrated ball on the table, by which the probe is watched."""
@@ -80,6 +126,11 @@ class BallTable(Table):
     diameter_mm: float = Field(gt=0.0, le=100.0)
     stem_diameter_mm: float = Field(gt=0.0)
     u_um: float = Field(default=0.5, ge=0.0, le=100.0)
+
+    def ball(self, low: float) -> DatumBall:
+        """The ball on a stem that begins at some height, mm."""
+        size = (0.5 * self.diameter_mm, 0.5 * self.stem_diameter_mm)
+        return DatumBall(*self.at_mm, *size, low, 0.5 * self.u_um * UM)
 
 
 class TemperatureTable(Table):
@@ -120,6 +171,31 @@ class WorkshopTable(Table):
     ball: BallTable | None = None
     temperatures: dict[str, TemperatureTable] = Field(default_factory=dict)
     strategy: Literal["axes", "plane-spatial"] = "axes"
+
+    def settings(self, control: str) -> ProgramSettings:
+        """How programs for a control are made; what the file leaves out is left to the dialect."""
+        stated = self.model_fields_set
+        return ProgramSettings(
+            control=control,
+            folder=self.folder if "folder" in stated else None,
+            tool=self.tool if "tool" in stated else None,
+            further_tools=tuple(probe.tool for probe in self.probes),
+            preset=self.preset if "preset" in stated else None,
+            height_read=self.height_read if "height_read" in stated else None,
+            clearance=self.clearance_mm,
+            retract=self.retract_mm,
+            probing_feed=float(self.probing_feed_mm_min),
+            approach_feed=float(self.approach_feed_mm_min),
+            turning_feed=float(self.turning_feed_deg_min),
+            touches_per_file=self.touches_per_file,
+            minutes_per_file=self.minutes_per_file or np.inf,
+            dry_run=self.dry_run_mm,
+            planes=self.strategy == "plane-spatial",
+            temperatures={
+                name: (one.parameter, one.factor, one.offset)
+                for name, one in self.temperatures.items()
+            },
+        )
 
 
 @cache
@@ -262,14 +338,3 @@ def _check_temperatures(sensors: Mapping[str, TemperatureTable], path: Path) -> 
         if len(others) > 1:
             expected = f"a parameter for each of {', '.join(others)}"
             raise BadFile(path, f"{key}.parameter", sensor.parameter, expected)
-
-
-def table_radius(workshop: WorkshopTable) -> float | None:
-    """Of the largest disc that a stated table holds, mm; None where none is stated."""
-    table = workshop.table
-    if table is None:
-        return None
-    if table.diameter_mm is not None:
-        return 0.5 * table.diameter_mm
-    assert table.sides_mm is not None
-    return 0.5 * min(table.sides_mm)

@@ -21,7 +21,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from matstd.artefact.body import FreeformPatch, Known, KnownFeature, Standard, Verdict
+from matstd.artefact.body import (
+    FreeformPatch,
+    Known,
+    KnownFeature,
+    Standard,
+    Verdict,
+    fitted_sphere,
+)
 from matstd.artefact.certify.cmm_points_file import SIDES, CmmPoints
 from matstd.artefact.certify.face_correction import corrected_face
 from matstd.twin.errors import BadFile, NotEnoughData
@@ -207,28 +214,16 @@ def _balls(nominal: Standard, cmm: CmmPoints, u_point: float, slips: list[str]) 
 
 
 def fitted_ball(points: Array, u_point: float) -> Ball:
-    """Least-squares sphere: by the linear form first, then Gauss and Newton on the distances."""
-    A = np.column_stack([2.0 * points, np.ones(len(points))])
-    solved = np.linalg.lstsq(A, (points**2).sum(axis=1), rcond=None)[0]
-    centre = solved[:3]
-    radius = float(np.sqrt(max(solved[3] + centre @ centre, 1e-12)))
-    for _ in range(20):
-        away = points - centre
-        length = np.linalg.norm(away, axis=1)
-        J = np.column_stack([away / length[:, None], np.ones(len(points))])
-        step = np.linalg.lstsq(J, length - radius, rcond=None)[0]
-        centre, radius = centre + step[:3], radius + float(step[3])
-        if np.abs(step).max() < 1e-9:
-            break
-    left = np.linalg.norm(points - centre, axis=1) - radius
-    noise = max(u_point, float(np.sqrt(left @ left / max(len(points) - 4, 1))))
-    covariance = np.linalg.pinv(J.T @ J) * noise**2
+    """Least-squares sphere, with uncertainties by the larger of stated and found noise."""
+    found = fitted_sphere(points)
+    scatter = float(np.sqrt(found.left @ found.left / max(len(points) - 4, 1)))
+    covariance = found.cofactor * max(u_point, scatter) ** 2
     return Ball(
-        centre=centre,
-        radius=radius,
+        centre=found.centre,
+        radius=found.radius,
         u=float(np.sqrt(np.trace(covariance[:3, :3]) / 3.0)),
         u_radius=float(np.sqrt(covariance[3, 3])),
-        left=rms(left),
+        left=rms(found.left),
         points=len(points),
     )
 

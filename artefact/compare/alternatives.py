@@ -11,14 +11,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.artefact.reach import ProbeReach, Requests
-from matstd.artefact.worth import Criterion
+from matstd.artefact.worth import Criterion, setup_parameters
 from matstd.information.criteria import Posterior, mean_prediction, whitened
 from matstd.information.identifiability import rank_analysis
 from matstd.information.selection import Quota, Selection, fill
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array, fixed_xyz, pose
-from matstd.twin.machine import Family
-from matstd.twin.model import traits
 from matstd.twin.record import IntArray, Setup
 from matstd.twin.units import DEG
 
@@ -113,20 +111,13 @@ def _own(criterion: Criterion, other: ProbeReach) -> IntArray:
     link = "w" if other.length == criterion.reach.length else "t"
     if other is criterion.reach:
         return np.zeros(0, dtype=np.int64)
-    return setup_parameters(criterion, link)
-
-
-def setup_parameters(criterion: Criterion, links: str = "wt") -> IntArray:
-    """Parameters of the set-up of the workpiece (w), the tool (t) or both."""
-    symbols = [traits(effect).symbol for effect, _ in criterion.model.parameters]
-    mine = [s is not None and s.family is Family.SETUP and s.link in links for s in symbols]
-    return np.flatnonzero(mine)
+    return setup_parameters(criterion.model, link)
 
 
 def machine_rank(criterion: Criterion, W: Array) -> int:
     """Combinations of machine errors that rows see, set-ups and tools being unknown."""
     P = len(criterion.prior_sd)
-    nuisance = np.concatenate([setup_parameters(criterion), np.arange(P, W.shape[1])])
+    nuisance = np.concatenate([setup_parameters(criterion.model), np.arange(P, W.shape[1])])
     return rank_analysis(W).rank - rank_analysis(W[:, nuisance]).rank
 
 

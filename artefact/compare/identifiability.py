@@ -10,11 +10,10 @@ from matstd.artefact.compare.alternatives import (
     alternatives,
     joined_rows,
     other_setups,
-    setup_parameters,
     touches_reached_in,
 )
 from matstd.artefact.reach import Requests
-from matstd.artefact.worth import Criterion
+from matstd.artefact.worth import Criterion, setup_parameters
 from matstd.information.criteria import Posterior
 from matstd.information.identifiability import (
     Degree,
@@ -103,7 +102,7 @@ def identifiability_report(
         W, criterion.prior_sd, model.names, model.parameters, model.chain, richer
     )
     units = [p.unit for _, p in model.parameters]
-    setup = setup_parameters(criterion)
+    setup = setup_parameters(model)
     chain = model.chain
     return IdentifiabilityReport(
         touches=len(requests),

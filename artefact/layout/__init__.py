@@ -1,14 +1,13 @@
 """Bodies that can be made on a blank: pillars, posts and holes, whole standards, other artefacts.
 
 In: a `Blank` with its limits. Out: upright candidates with smooth shapes, which of them stand
-beside each other, standards put together from `Site`s by hand, and rivals. A further rival is one
-more entry in `rivals`.
+beside each other, and rivals. A further rival is one more entry in `rivals`.
 """
 
+from matstd.artefact.layout.blank import Blank, Fittings
 from matstd.artefact.layout.post import post_stiffness
 from matstd.artefact.layout.rival_artefacts import rivals, with_spheres
 from matstd.artefact.layout.side_by_side import Pairs, beside_balls, most_side_by_side
-from matstd.artefact.layout.sites import Blank, Fittings, Site, standard_from_sites
 from matstd.artefact.layout.upright import (
     SOFT,
     WALL_GAP,
@@ -28,7 +27,6 @@ __all__ = [
     "Blank",
     "Fittings",
     "Pairs",
-    "Site",
     "balls_fit",
     "balls_on_posts",
     "beside_balls",
@@ -41,6 +39,5 @@ __all__ = [
     "most_side_by_side",
     "post_stiffness",
     "rivals",
-    "standard_from_sites",
     "with_spheres",
 ]

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, Standard, graph_patch
+from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.shapes import smooth_heights
-from matstd.artefact.layout.sites import Blank
 from matstd.artefact.layout.upright import ball_on_post
 from matstd.sensitivity.first_order import Box
 from matstd.twin.frames import Array, pose, rotation

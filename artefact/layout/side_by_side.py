@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from matstd.artefact.body import DatumSphere, FreeformPatch
-from matstd.artefact.layout.sites import Blank
+from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.upright import balls_fit, faces_beside, faces_fit, holes_on
 
 Pairs = NDArray[np.bool_]

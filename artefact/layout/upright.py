@@ -20,9 +20,9 @@ from matstd.artefact.body import (
     graph_patch,
     outline_distance,
 )
+from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.post import post_foot
 from matstd.artefact.layout.shapes import smooth_heights, steepest_slope
-from matstd.artefact.layout.sites import Blank
 from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array, pose
 from matstd.twin.units import UM

@@ -12,6 +12,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, MountingHole, Standard, constraints
+from matstd.artefact.feasibility import (
+    FEWEST_BALLS,
+    Room,
+    check_room,
+    in_the_way,
+    is_from_side,
+    light_enough,
+    mutually_probeable,
+    room_among,
+    share_of_mass,
+    touches_on,
+    untouched,
+)
 from matstd.artefact.layout import (
     Blank,
     faces_beside,
@@ -20,21 +33,6 @@ from matstd.artefact.layout import (
     holes_on,
     least_gap,
     most_side_by_side,
-)
-from matstd.artefact.place.room import (
-    FEWEST_BALLS,
-    Room,
-    check_room,
-    light_enough,
-    room_among,
-    share_of_mass,
-)
-from matstd.artefact.place.touched import (
-    in_the_way,
-    is_from_side,
-    seen_beside,
-    touches_on,
-    untouched,
 )
 from matstd.artefact.reach import Requests, spread_poses
 from matstd.artefact.worth import BallPlaces, Criterion
@@ -187,7 +185,7 @@ class BodyChoice:
         )
 
     def _seen(self, faces: list[FreeformPatch], balls: list[DatumSphere], poses: Array) -> Which:
-        return seen_beside(self.criterion.reach, self.blank, faces, balls, poses).beside
+        return mutually_probeable(self.criterion.reach, self.blank, faces, balls, poses).beside
 
     def _screwed(
         self, balls: list[DatumSphere]

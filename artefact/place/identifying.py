@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, Standard
+from matstd.artefact.brief import PlacementOptions
 from matstd.artefact.compare import Rival
 from matstd.artefact.layout import with_spheres
 from matstd.artefact.place.body_choice import BodyChoice
-from matstd.artefact.place.options import PlacementOptions
 from matstd.artefact.place.proving import touches_on_faces
 from matstd.artefact.reach import Mask, ProbeReach, Requests
 from matstd.artefact.worth import (

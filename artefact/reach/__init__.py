@@ -6,9 +6,10 @@ twin's effects understand them. A new hindrance is one more look in `ProbeReach`
 standard is a `Solid` of the `Workshop`.
 """
 
+from matstd.artefact.reach.bodies import Body, Clamping
 from matstd.artefact.reach.datum_ball import DatumBall
 from matstd.artefact.reach.face_of_table import hangs, standing_remarks, table_face
-from matstd.artefact.reach.mesh_cover import closed_mesh, covering_solids
+from matstd.artefact.reach.mesh_cover import read_drawn_body
 from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
 from matstd.artefact.reach.touchable import Mask, ProbeReach, Requests, joined
 from matstd.artefact.reach.within_reach import (
@@ -18,13 +19,14 @@ from matstd.artefact.reach.within_reach import (
     places_on,
     reach_of,
     spread_poses,
-    turned,
 )
 from matstd.artefact.reach.workshop import TABLE, Solid, Workshop, round_table, still_frames
 
 __all__ = [
     "ANGLE",
     "TABLE",
+    "Body",
+    "Clamping",
     "DatumBall",
     "Limit",
     "Mask",
@@ -35,16 +37,14 @@ __all__ = [
     "Solid",
     "Workshop",
     "clearance",
-    "closed_mesh",
-    "covering_solids",
     "hangs",
     "joined",
     "places_on",
     "reach_of",
+    "read_drawn_body",
     "round_table",
     "spread_poses",
     "standing_remarks",
     "still_frames",
     "table_face",
-    "turned",
 ]

@@ -1,12 +1,13 @@
 """Clamps and fixtures drawn elsewhere: a mesh covered by boxes that a program can state."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from matstd.artefact.reach.workshop import Solid
 from matstd.twin.errors import BadFile
-from matstd.twin.frames import Array, apply
+from matstd.twin.frames import Array
 
 MOST_BOXES = 24
 """Of one mesh: two lines of a program's head each."""
@@ -15,25 +16,64 @@ _SMALLEST_CUT = 4.0  # mm: a box with no side longer is not cut any further
 _ENOUGH = 0.85  # of a box filled by its two halves: no cut would take much off it
 
 
-def covering_solids(
-    path: str | Path, name: str, T_face_mesh: Array, on: str = "", most: int = MOST_BOXES
-) -> list[Solid]:
-    """Upright boxes whose union holds the surface of a mesh: nothing gets into it but through them.
+@dataclass(frozen=True, eq=False)
+class DrawnBody:
+    """A body from a mesh file: read once, wherever it stands.
+
+    Attributes:
+        boxes: Lowest and highest corners of boxes that hold its surface, (B, 2, 3), mm.
+        corners: Of its triangles, (V, 3), mm.
+        triangles: Corners of each, (F, 3); none where the mesh encloses no volume.
+    """
+
+    boxes: Array
+    corners: Array
+    triangles: np.ndarray
+
+    def solids(self, name: str, T_face_mesh: Array, on: str = "") -> tuple[Solid, ...]:
+        """Its boxes, numbered, as upright bodies.
+
+        Args:
+            name: Of the body.
+            T_face_mesh: Where it stands in the frame of the table's face, turned about z alone.
+            on: Axis that carries it.
+        """
+        return tuple(
+            _box(low, high, f"{name}.{i}", T_face_mesh, on)
+            for i, (low, high) in enumerate(self.boxes, start=1)
+        )
+
+
+def read_drawn_body(path: str | Path, most: int = MOST_BOXES) -> DrawnBody:
+    """A mesh, and upright boxes whose union holds its surface: nothing gets in but through them.
 
     The box that promises most is cut in the middle of its longest side, and each half shrunk to
     what it holds of the surface, until there are enough of them.
 
     Args:
         path: STL file, mm.
-        name: Of the body; its boxes are numbered.
-        T_face_mesh: Where the mesh stands in the frame of the table's face, turned about z alone.
-        on: Axis that carries it.
         most: Boxes at most.
 
     Raises:
         BadFile: No mesh, or an empty one.
     """
-    triangles = _triangles(Path(path))
+    import trimesh
+
+    whole = _triangles(Path(path))
+    corners, back = np.unique(whole.reshape(-1, 3), axis=0, return_inverse=True)
+    triangles = back.reshape(-1, 3)
+    mesh = trimesh.Trimesh(corners, triangles, process=False)
+    is_closed = mesh.is_watertight and mesh.is_winding_consistent and mesh.volume > 0.0
+    parts = sorted(_cover(whole, most), key=_volume, reverse=True)
+    return DrawnBody(
+        boxes=np.array([[part.min(axis=(0, 1)), part.max(axis=(0, 1))] for part in parts]),
+        corners=corners,
+        triangles=triangles if is_closed else triangles[:0],
+    )
+
+
+def _cover(triangles: Array, most: int) -> list[Array]:
+    """The triangles in lots, one for each box."""
     boxes = [triangles]
     done: list[Array] = []
     while boxes and len(boxes) + len(done) < most:
@@ -46,22 +86,7 @@ def covering_solids(
                 done.append(whole)
                 continue
         boxes += halves
-    turn = float(np.arctan2(T_face_mesh[1, 0], T_face_mesh[0, 0]))
-    return [
-        _box(part, f"{name}.{i}", T_face_mesh, turn, on)
-        for i, part in enumerate(sorted([*boxes, *done], key=_volume, reverse=True), start=1)
-    ]
-
-
-def closed_mesh(path: str | Path, T_face_mesh: Array) -> tuple[Array, np.ndarray] | None:
-    """Corners (V, 3) and triangles (F, 3) of a mesh file; None where it encloses no volume."""
-    corners, back = np.unique(_triangles(Path(path)).reshape(-1, 3), axis=0, return_inverse=True)
-    import trimesh
-
-    mesh = trimesh.Trimesh(corners, back.reshape(-1, 3), process=False)
-    if not (mesh.is_watertight and mesh.is_winding_consistent and mesh.volume > 0.0):
-        return None
-    return apply(T_face_mesh, corners), back.reshape(-1, 3)
+    return [*boxes, *done]
 
 
 def _triangles(path: Path) -> Array:
@@ -108,13 +133,19 @@ def _volume(triangles: Array) -> float:
     return float(np.prod(np.maximum(sides, 0.1)))
 
 
-def _box(triangles: Array, name: str, T_face_mesh: Array, turn: float, on: str) -> Solid:
-    """The box round them, where it stands; rounded outwards to what a program states."""
-    low, high = triangles.min(axis=(0, 1)) - 1e-3, triangles.max(axis=(0, 1)) + 1e-3
+def _box(low: Array, high: Array, name: str, T_face_mesh: Array, on: str) -> Solid:
+    """A box where it stands; rounded outwards to what a program states."""
+    low, high = low - 1e-3, high + 1e-3
     middle = T_face_mesh[:3, :3] @ (0.5 * (low + high)) + T_face_mesh[:3, 3]
     half = 0.5 * (high - low) + 1e-3
     x, y, z = (float(v) for v in middle)
     return Solid(
-        name, (float(half[0]), float(half[1])), False, z - float(half[2]), z + float(half[2]),
-        x, y, turn, on,
-    )  # fmt: skip
+        name=name,
+        half_size=(float(half[0]), float(half[1])),
+        low=z - float(half[2]),
+        high=z + float(half[2]),
+        x=x,
+        y=y,
+        turn=float(np.arctan2(T_face_mesh[1, 0], T_face_mesh[0, 0])),
+        on=on,
+    )

@@ -11,7 +11,7 @@ import numpy as np
 
 from matstd.artefact.layout import Blank
 from matstd.artefact.reach.touchable import ROUNDING, Mask, ProbeReach
-from matstd.twin.frames import Array, fixed_xyz
+from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 from matstd.twin.units import DEG
 
@@ -143,10 +143,3 @@ def spread_poses(poses: Array, count: int) -> Array:
     """Some of the poses, spread over their list without the rhythm of its grid."""
     spread: IntArray = np.unique((np.arange(count) * 0.618034 % 1.0 * len(poses)).astype(np.int64))
     return poses[spread]
-
-
-def turned(T_table_artefact: Array, angles: tuple[float, float, float]) -> Array:
-    """The same place, turned to fixed angles about x, y, z, rad; (4, 4)."""
-    T = T_table_artefact.copy()
-    T[:3, :3] = fixed_xyz(np.array(angles))
-    return T

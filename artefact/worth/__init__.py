@@ -21,7 +21,6 @@ from matstd.artefact.worth.touch_choice import (
     pose_quota,
     poses_within,
     some_touches,
-    table_poses,
     touches_to_choose_from,
 )
 from matstd.artefact.worth.touch_criterion import (
@@ -29,6 +28,7 @@ from matstd.artefact.worth.touch_criterion import (
     CriterionOptions,
     criterion_for,
     random_touches,
+    setup_parameters,
 )
 from matstd.artefact.worth.touch_curves import TouchCurve, touch_curve
 
@@ -51,8 +51,8 @@ __all__ = [
     "pose_quota",
     "poses_within",
     "random_touches",
+    "setup_parameters",
     "some_touches",
-    "table_poses",
     "touch_curve",
     "touches_to_choose_from",
     "visibility",

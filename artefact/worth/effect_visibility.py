@@ -15,8 +15,6 @@ from matstd.artefact.worth.touch_criterion import Criterion
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, columns
 
-__all__ = ["VISIBLE", "Visibility", "survival", "visibility"]
-
 
 @dataclass(frozen=True, eq=False)
 class Visibility:
@@ -24,19 +22,13 @@ class Visibility:
 
     Attributes:
         effects: With a survival above `VISIBLE` in the free touches.
-        hidden: Effects that no touches could tell from the geometric model.
     """
 
     effects: tuple[Effect, ...]
-    hidden: tuple[Effect, ...]
 
     def shown(self, criterion: Criterion, chosen: Requests) -> int:
         """How many of the effects some touches show."""
-        return int(np.sum(self.survival_in(criterion, chosen) > VISIBLE))
-
-    def survival_in(self, criterion: Criterion, chosen: Requests) -> Array:
-        """Share of the length of every effect's signature that survives in some touches, (E,)."""
-        return survival(criterion, list(self.effects), chosen)
+        return int(np.sum(survival(criterion, list(self.effects), chosen) > VISIBLE))
 
 
 def visibility(criterion: Criterion, free: Requests) -> Visibility:
@@ -49,10 +41,7 @@ def visibility(criterion: Criterion, free: Requests) -> Visibility:
     touches = criterion.reach.touches(free)
     tried = library(touches)
     left = survival(criterion, tried, free)
-    return Visibility(
-        tuple(e for e, s in zip(tried, left, strict=True) if s > VISIBLE),
-        tuple(e for e, s in zip(tried, left, strict=True) if s <= VISIBLE),
-    )
+    return Visibility(tuple(e for e, s in zip(tried, left, strict=True) if s > VISIBLE))
 
 
 def survival(criterion: Criterion, effects: list[Effect], chosen: Requests) -> Array:

@@ -63,17 +63,16 @@ class TouchOptions:
     proof: int = 110
 
 
-def table_poses(criterion: Criterion, wanted: int) -> Array:
+def poses_within(chain: Chain, rotary: Array, wanted: int) -> Array:
     """Table poses to choose from: a grid of rotary readings in whole degrees, (K, R), rad.
 
     The values of each later axis are shifted from one value of the earlier ones to the next, so
     that the whole grid holds many different readings of each.
-    """
-    return poses_within(criterion.reach.chain, criterion.rotary, wanted)
 
-
-def poses_within(chain: Chain, rotary: Array, wanted: int) -> Array:
-    """The same for smallest and largest readings of the rotary axes, (R, 2), rad.
+    Args:
+        chain: The machine.
+        rotary: Smallest and largest readings of the rotary axes, (R, 2), rad.
+        wanted: Number of poses that will be chosen; the grid has about six times as many.
 
     Raises:
         NotReachable: Limits without room to approach a reading from both sides.

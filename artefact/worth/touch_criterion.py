@@ -13,7 +13,6 @@ from dataclasses import dataclass, field, replace
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.artefact.body import Standard
 from matstd.artefact.layout import Blank
@@ -34,7 +33,7 @@ from matstd.twin.errors import DesignError, NotReachable
 from matstd.twin.frames import Array, apply
 from matstd.twin.machine import Family
 from matstd.twin.model import Model, traits
-from matstd.twin.record import Touches, at_poses
+from matstd.twin.record import IntArray, Touches, at_poses
 from matstd.twin.units import DEG
 
 SETUP_SD = (1.0, 5e-3)
@@ -280,7 +279,7 @@ def _scales(
     if not set(model.names) <= set(population.model.names):
         raise DesignError("machines can be drawn for the errors of a population alone")
     scale = drawn_scales(population, draws, rng, model)
-    scale[:, _is_setup(model)] = 1.0
+    scale[:, setup_parameters(model, "w")] = 1.0
     return scale
 
 
@@ -311,18 +310,17 @@ def _at(
     ]
 
 
-def _is_setup(model: Model) -> NDArray[np.bool_]:
-    """Parameters of the workpiece's set-up, (P,)."""
+def setup_parameters(model: Model, links: str = "wt") -> IntArray:
+    """Parameters of the set-up of the workpiece (w), the tool (t) or both."""
     symbols = [traits(effect).symbol for effect, _ in model.parameters]
-    return np.array(
-        [s is not None and s.family is Family.SETUP and s.link == "w" for s in symbols], dtype=bool
-    )
+    mine = [s is not None and s.family is Family.SETUP and s.link in links for s in symbols]
+    return np.flatnonzero(mine)
 
 
 def _with_free_setup(model: Model) -> Array:
     """Prior standard deviations with the set-up of the workpiece as good as unknown."""
     prior_sd = model.prior_sd.copy()
-    for i in np.flatnonzero(_is_setup(model)):
+    for i in setup_parameters(model, "w"):
         prior_sd[i] = SETUP_SD[int(model.parameters[i][1].unit == "rad")]
     return prior_sd
 

@@ -17,7 +17,6 @@ from matstd.diagnosis.drift import (
     kept,
     lead,
     offered,
-    read_beams,
     read_law,
     read_log,
     read_probed,
@@ -77,7 +76,7 @@ class DriftLaws(Displayed):
         sensor_noise: Noise on temperatures that the laws were judged with, too, K.
 
     Example:
-        >>> found = learn_drift(["drift.csv"], network=False)
+        >>> found = learn_drift(["drift.csv"])
         >>> any(one is found.best for one in found.judged)
         True
     """
@@ -140,11 +139,9 @@ def learn_drift(
     train_until: float | None = None,
     own_zeros: bool = False,
     step: float = STEP,
-    beams: str | Path | None = None,
     sensor_noise: float | None = None,
     probe_every: float | None = None,
     u: float = 1.0 * UM,
-    network: bool = True,
     progress: Progress = silent,
 ) -> DriftLaws:
     """Laws of a thermal drift, judged by what was held out.
@@ -155,11 +152,9 @@ def learn_drift(
         train_until: Time of a single log from which the rest is held out, s; 70 % without it.
         own_zeros: Displacements of every log count from a zero of its own.
         step: Of the laws, s.
-        beams: Bodies with section and sensors, for estimates by bending beams.
         sensor_noise: Judge the laws also with so much noise on temperatures, K.
         probe_every: Judge the chosen law also with the drift probed after such times, s.
         u: Standard uncertainty of a probed drift, mm.
-        network: Whether the neural network is among the laws.
         progress: Called with what is being done.
 
     Raises:
@@ -168,7 +163,7 @@ def learn_drift(
         DesignError: Too few rows, or logs that do not go together.
 
     Example:
-        >>> found = learn_drift(["drift.csv"], network=False)
+        >>> found = learn_drift(["drift.csv"])
         >>> len(found.train), len(found.held)
         (68, 29)
     """
@@ -182,7 +177,7 @@ def learn_drift(
         if value is not None and not low <= value / unit <= high:
             raise BadArgument(name, f"{value / unit:g}", f"{low:g} to {high:g}")
     record, train, held = _record(logs, held_out, train_until, own_zeros, step)
-    laws = offered(record, read_beams(beams, record) if beams else (), network)
+    laws = offered(record)
     noise = sensor_noise
     noisy = record.with_noise(noise, np.random.default_rng(1)) if noise else None
     judged = judge(record, train, held, laws, progress, noisy)
@@ -265,7 +260,7 @@ class DriftPrediction(Displayed):
         u: Their standard uncertainties, (N, K).
 
     Example:
-        >>> learn_drift(["drift.csv"], network=False).save("laws")
+        >>> learn_drift(["drift.csv"]).save("laws")
         >>> predict_drift("laws/thermal.json", "drift.csv").save("prediction")
     """
 
@@ -298,7 +293,7 @@ def predict_drift(
         BadFile: A file that cannot be read, or a log without the sensors of the law.
 
     Example:
-        >>> learn_drift(["drift.csv"], network=False).save("laws", force=True)
+        >>> learn_drift(["drift.csv"]).save("laws", force=True)
         >>> predict_drift("laws/thermal.json", "drift.csv").predicted.shape
         (97, 1)
     """

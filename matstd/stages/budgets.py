@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import Standard
-from matstd.artefact.brief import Project, Task
+from matstd.artefact.brief import Brief, Task
 from matstd.artefact.certify import like_task, misplaced, on_faces
 from matstd.artefact.reach import Requests
 from matstd.artefact.worth import Calibration
@@ -83,27 +83,27 @@ def places_of(
 
 
 def virtual_budgets(
-    project: Project,
+    brief: Brief,
     standard: Standard,
-    known: Calibration,
     programs: Sequence[Path],
     machine: VirtualMachine,
     rng: np.random.Generator,
 ) -> tuple[dict[str, TaskUncertainty], Visits]:
-    """Budgets of the project's task from visits on the twin, before and after identification.
+    """Budgets of the brief's task from visits on the twin, before and after identification.
 
     The true standard is beside its calibration as much as that allows, and clamped anew for every
     visit. The model is identified from the balls of the first.
     """
+    known = brief.options.criterion.calibration
     true = misplaced(standard, known, rng)
     stands = [
         replace(machine, setup_error=pose(rotation(rng.normal(0.0, b, 3)), rng.normal(0.0, a, 3)))
-        for a, b in [CLAMPED] * project.visits
+        for a, b in [CLAMPED] * brief.study.visits
     ]
     runs = [c.run for c in visits(programs, true, stands, rng, calibrated=standard)]
     held_back = np.where(on_faces(standard, runs[0].touches), "test", "train")
-    fit = fit_run(replace(runs[0], split=held_back), project.population.expected())
+    fit = fit_run(replace(runs[0], split=held_back), brief.population.expected())
     count = len(fit.model.parameters)
     learnt = fit.model, Prior(fit.theta[:count], np.zeros((count, count)))
     models = {PLAIN: None, "with the identified model": learnt}
-    return budgets(runs, standard, known, project.task, models)
+    return budgets(runs, standard, known, brief.task, models)

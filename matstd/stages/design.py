@@ -4,49 +4,50 @@ Each stage is one call into one room; nothing is computed here.
 """
 
 import shutil
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from matstd.artefact.body import Standard, write_standard
-from matstd.artefact.brief import Project
+from matstd.artefact.brief import Brief
 from matstd.artefact.certify import dmis_program, like_task
 from matstd.artefact.compare import WorstRegions, identifiability_report, worst_regions
+from matstd.artefact.feasibility import check_beside, check_seat, feasibility
 from matstd.artefact.place import Placement, design_standard
 from matstd.cad_out.details import datum_touches, details_of, engraved_on
 from matstd.cad_out.making import Stiffness, making_of, stiffness_of, with_sag, write_making
+from matstd.cad_out.meshes import read_stl
 from matstd.cad_out.verify import Conformity, export_standard
 from matstd.diagnosis.answer import probed_volume, prove, seen_from
 from matstd.diagnosis.files import write_uncertainty
 from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.task import TaskUncertainty, Visits
 from matstd.probe_paths.campaign import Campaign, VirtualMachine, simulate
 from matstd.probe_paths.plan import TouchPlan
-from matstd.probe_paths.stations import all_programs, make_stations, plan_campaign
+from matstd.probe_paths.stations import (
+    all_programs,
+    dialects_of,
+    feeds_of,
+    make_stations,
+    plan_campaign,
+    plan_options_of,
+)
 from matstd.report.drawing import Issuer, write_drawing
 from matstd.report.identifiability import write_identifiability, write_identification
 from matstd.report.pages import Design, Proven
-from matstd.sensitivity.first_order import Workspace, latin_hypercube
+from matstd.report.plots import draw_reach, draw_room
+from matstd.report.style import save
+from matstd.sensitivity.first_order import latin_hypercube
 from matstd.sensitivity.montecarlo import Workers
 from matstd.sensitivity.population import drawn_errors
 from matstd.sensitivity.study import Study
 from matstd.stages.budgets import virtual_budgets
-from matstd.stages.from_project import (
-    blank,
-    clampings,
-    dialect,
-    dialects,
-    feeds,
-    placement_options,
-    plan_options,
-    probe_reach,
-    probes,
-)
-from matstd.stages.reach import check_reach
-from matstd.stages.seat import check_beside, check_seat
-from matstd.stages.space import check_space
-from matstd.stages.streams import streams
+from matstd.stages.refusals import REACH, ROOM
+from matstd.stages.streams import Streams, streams
 from matstd.stages.study_run import study_and_maps
 from matstd.twin.compute import Progress
 from matstd.twin.files import errors_toml, write_run, write_whole
@@ -58,11 +59,11 @@ PROOF_POSES = 2000
 """Poses at which predicted and true volumetric error are compared, none of them probed."""
 
 
-def design(project: Project, folder: Path, progress: Progress, workers: Workers = None) -> Design:
+def design(brief: Brief, folder: Path, progress: Progress, workers: Workers = None) -> Design:
     """Run all stages and write their files into a folder.
 
     Args:
-        project: What shall be designed, for which machine.
+        brief: What is designed, for which machine.
         folder: Empty folder.
         progress: Told what is going on.
         workers: Who draws the random machines of the maps; None for this process.
@@ -70,52 +71,37 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
     Raises:
         DesignError: A stage that cannot do its work; its message says which constraint binds.
     """
-    rng = streams(project.seed)
+    rng = streams(brief.seed)
     progress("reach", 0, 1)
-    check_seat(project)
-    poses = check_reach(project, folder)
-    check_space(project, folder, poses)
-    shutil.copyfile(project.machine_path, folder / "machine.toml")
-    workspace = Workspace(project.chain, project.workspace, project.probe_length)
-    placement = _placement(project, workspace, rng.placement, progress, poses)
-    placement, stiffness = _with_sag(placement, project.standard.down)
-    plans = _plans(project, placement)
+    check_seat(brief)
+    poses = _feasible_poses(brief, folder)
+    if brief.machine_path is not None:
+        shutil.copyfile(brief.machine_path, folder / "machine.toml")
+    placement = design_standard(brief, rng.placement, progress, poses)
+    # refused here rather than after programs and CAD, where no touch is like the user's task
+    proving = placement.criterion.reach.touches(placement.touches)
+    like_task(brief.task, placement.standard, proving)
+    placement, stiffness = _with_sag(placement, brief.down)
+    plans = _plans(brief, placement)
     _write_standard(folder, placement.standard)
     with ThreadPoolExecutor(1) as beside:  # the kernel works in processes of its own
-        cad = beside.submit(_export, project, placement.standard, folder)
-        progress("what can be told apart", 0, 1)
+        cad = beside.submit(_export, brief, placement.standard, folder)
+        progress("identifiability", 0, 1)
         known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
         write_identifiability(folder / "identifiability.json", known)
-        study, maps = study_and_maps(
-            project, workspace, project.poses, folder / "sensitivity", rng, progress, workers
-        )
+        where, maps_in = (brief.workspace, brief.study.poses), folder / "sensitivity"
+        study, maps = study_and_maps(brief, *where, maps_in, rng, progress, workers)
         progress("STEP and STL", 0, 1)
         making = making_of(placement.standard, stiffness)
         write_making(folder / "making.json", making)
         conformity = cad.result()
-    _draw(project, placement.standard, conformity, folder)
+    _draw(brief, placement.standard, conformity, folder)
     progress("probing programs", 0, 1)
-    stations = make_stations(plans, dialects(project), feeds(project))
+    stations = make_stations(plans, dialects_of(brief), feeds_of(brief))
     paths = all_programs(stations).write(folder / "programs")
-    machines = []
-    for seed in range(project.machines):
-        progress("proof on the twin", seed, project.machines)
-        machine = _prove(project, workspace, placement, paths, seed, rng.proof.spawn(1)[0])
-        machines.append(machine)
-    first = machines[0]
-    write_whole(folder / "errors.toml", errors_toml(first.errors))
-    write_run(folder / "run.csv", first.campaign.run, "machine.toml")
-    progress("visits on the twin", 0, 1)
-    known_places = placement_options(project).criterion.calibration
-    twin, task = _twin(project, first.errors), project.task
-    budgets, visits = virtual_budgets(
-        project, placement.standard, known_places, paths, twin, rng.visits
-    )
-    write_uncertainty(folder / "uncertainty.json", task.name, budgets, task.tolerance)
-    proofs = [m.proof for m in machines]
-    found = write_identification(folder / "identification.json", first.fit, proofs)
+    tried = _on_twins(brief, placement, paths, folder, rng, progress)
     return Design(
-        project=project,
+        brief=brief,
         study=study,
         maps=maps,
         placement=placement,
@@ -123,12 +109,47 @@ def design(project: Project, folder: Path, progress: Progress, workers: Workers 
         conformity=conformity,
         making=making,
         stations=stations,
-        machines=tuple(machines),
-        known=known,
-        effective=found.effective,
-        budgets=budgets,
-        visits=visits,
+        machines=tried.machines,
+        identifiability=known,
+        effective=tried.effective,
+        budgets=tried.budgets,
+        visits=tried.visits,
     )
+
+
+class _OnTwins(NamedTuple):
+    """What the programs did on random machines; fields as of `Design`."""
+
+    machines: tuple[Proven, ...]
+    effective: float
+    budgets: Mapping[str, TaskUncertainty]
+    visits: Visits
+
+
+def _on_twins(
+    brief: Brief,
+    placement: Placement,
+    paths: list[Path],
+    folder: Path,
+    rng: Streams,
+    progress: Progress,
+) -> _OnTwins:
+    """Run the programs on random machines, and visit the first again and again for the task."""
+    machines = []
+    for seed in range(brief.study.machines):
+        progress("proof on the twin", seed, brief.study.machines)
+        machine = _prove(brief, placement, paths, seed, rng.proof.spawn(1)[0])
+        machines.append(machine)
+    first = machines[0]
+    write_whole(folder / "errors.toml", errors_toml(first.errors))
+    write_run(folder / "run.csv", first.campaign.run, "machine.toml")
+    progress("visits on the twin", 0, 1)
+    twin, task = _twin(brief, first.errors), brief.task
+    budgets, visits = virtual_budgets(brief, placement.standard, paths, twin, rng.visits)
+    write_uncertainty(folder / "uncertainty.json", task.name, budgets, task.tolerance)
+    proofs = [m.proof for m in machines]
+    found = write_identification(folder / "identification.json", first.fit, proofs)
+    return _OnTwins(tuple(machines), found.effective, budgets, visits)
 
 
 def _write_standard(folder: Path, standard: Standard) -> None:
@@ -144,42 +165,27 @@ def _worst(placement: Placement, study: Study) -> WorstRegions:
     return worst_regions(on_body, placement.proof, study.q, study.volumetric.recurrence)
 
 
-def _export(project: Project, standard: Standard, folder: Path) -> Conformity:
+def _export(brief: Brief, standard: Standard, folder: Path) -> Conformity:
     """STEP, STL, 3MF and glTF of a standard, measured; refused where a clamp stands in it."""
-    who = project.standard
-    made = export_standard(standard, folder, author=who.author, organisation=who.organisation)
-    check_beside(project, standard, folder)
+    made = export_standard(standard, folder, author=brief.author, organisation=brief.organisation)
+    check_beside(brief, standard, read_stl(folder / "standard.stl"))
     return made
 
 
-def _draw(project: Project, standard: Standard, conformity: Conformity, folder: Path) -> None:
+def _draw(brief: Brief, standard: Standard, conformity: Conformity, folder: Path) -> None:
     """The drawing of a standard, with the mass that was measured."""
-    who = project.standard
-    write_drawing(folder, standard, Issuer(who.author, who.organisation, conformity.mass))
+    issuer = Issuer(brief.author, brief.organisation, conformity.mass)
+    write_drawing(folder, standard, issuer)
 
 
-def _placement(
-    project: Project,
-    workspace: Workspace,
-    rng: np.random.Generator,
-    progress: Progress,
-    poses: Array | None = None,
-) -> Placement:
-    """Standard and touches for the project's machine."""
-    placement = design_standard(
-        probe_reach(project),
-        blank(project),
-        workspace,
-        rng,
-        project.population,
-        placement_options(project),
-        progress,
-        poses,
-    )
-    # refused here rather than after programs and CAD, where no touch is like the user's task
-    proving = placement.criterion.reach.touches(placement.touches)
-    like_task(project.task, placement.standard, proving)
-    return placement
+def _feasible_poses(brief: Brief, folder: Path) -> Array:
+    """Table poses to choose from; pictures of what is reached, and of what does not fit."""
+    found = feasibility(brief)
+    save(draw_reach(found.places, brief.chain, brief.blank), folder / REACH)
+    if found.room is not None and not found.room.is_enough:
+        save(draw_room(found.room), folder / ROOM)
+    found.check()
+    return found.poses
 
 
 def _with_sag(placement: Placement, down: str) -> tuple[Placement, Stiffness | None]:
@@ -191,21 +197,20 @@ def _with_sag(placement: Placement, down: str) -> tuple[Placement, Stiffness | N
     return replace(placement, standard=with_sag(standard, stiffness, down)), stiffness
 
 
-def _plans(project: Project, placement: Placement) -> list[tuple[int, TouchPlan]]:
+def _plans(brief: Brief, placement: Placement) -> list[tuple[int, TouchPlan]]:
     """Touches that the placement wants, in the order of a cautious operator, by probe."""
     return plan_campaign(
         placement.standard,
-        project.chain,
-        probes(project),
-        clampings(project),
+        brief.chain,
+        brief.probes,
+        brief.clampings,
         placement.touches,
-        plan_options(project),
+        plan_options_of(brief),
     )
 
 
 def _prove(
-    project: Project,
-    workspace: Workspace,
+    brief: Brief,
     placement: Placement,
     programs: list[Path],
     seed: int,
@@ -213,34 +218,34 @@ def _prove(
 ) -> Proven:
     """Probe one random machine by the text of the programs, identify it, compare with its truth."""
     rng_errors, rng_noise, rng_volume, rng_workspace = rng.spawn(4)
-    population = project.population
+    population = brief.population
     errors = drawn_errors(population, rng_errors)
-    machine = _twin(project, errors)
+    machine = _twin(brief, errors)
     campaign = _held_back(
         simulate(programs, placement.standard, machine, rng_noise), placement.standard
     )
     fit = fit_run(campaign.run, population.expected())
     in_volume = probed_volume(campaign.run, PROOF_POSES, rng_volume)
-    q = latin_hypercube(workspace, PROOF_POSES, rng_workspace)
+    q = latin_hypercube(brief.workspace, PROOF_POSES, rng_workspace)
     believed = campaign.run.touches.setups[0]
-    in_workspace = seen_from(at_poses(project.chain, q, project.probe_length), believed)
+    in_workspace = seen_from(at_poses(brief.chain, q, brief.probe.length), believed)
     return Proven(
         seed=seed,
         errors=errors,
         campaign=campaign,
         fit=fit,
-        proof=prove(fit, errors, project.setup, in_volume),
-        in_workspace=prove(fit, errors, project.setup, in_workspace),
+        proof=prove(fit, errors, brief.setup, in_volume),
+        in_workspace=prove(fit, errors, brief.setup, in_workspace),
     )
 
 
-def _twin(project: Project, errors: list[tuple[Effect, Array]]) -> VirtualMachine:
+def _twin(brief: Brief, errors: list[tuple[Effect, Array]]) -> VirtualMachine:
     """The project's machine with some errors."""
     return VirtualMachine(
-        project.chain,
+        brief.chain,
         lambda touches: contribution(errors, touches),
-        noise=project.noise,
-        dialect=dialect(project),
+        noise=brief.noise,
+        dialect=dialects_of(brief)[0],
     )
 
 

@@ -17,7 +17,7 @@ from typing import NamedTuple, get_args, get_type_hints
 
 import numpy as np
 
-from matstd.artefact.body import Standard
+from matstd.artefact.body import Standard, fitted_sphere
 from matstd.probe_paths.campaign.evaluation import ball_centres
 from matstd.probe_paths.control import LogPart
 from matstd.probe_paths.language import Dialect
@@ -125,7 +125,7 @@ def _change(
         )
     before, after = ball_centres(one, chain, dialect)[rows], ball_centres(other, chain, dialect)
     around = one.heading.setup.T_table_artefact
-    middle, _ = _sphere(before, apply(around, balls[name].centre[None])[0])
+    middle = fitted_sphere(before, apply(around, balls[name].centre[None])[0]).centre
     way = before - middle
     normal = way / np.linalg.norm(way, axis=1, keepdims=True)
     grown = np.linalg.norm(after[again] - middle, axis=1) - np.linalg.norm(way, axis=1)
@@ -178,18 +178,6 @@ def read_heights(part: LogPart, standard: Standard, chain: Chain) -> dict[str, f
     return beside
 
 
-def _sphere(balls: Array, middle: Array) -> tuple[Array, float]:
-    """Centre (3,) and radius of the sphere that ball centres lie on, from a centre that is near."""
-    radius = 0.0
-    for _ in range(5):
-        way = balls - middle
-        far = np.linalg.norm(way, axis=1)
-        A = np.column_stack([way / far[:, None], np.ones(len(balls))])
-        step = np.linalg.lstsq(A, far - radius, rcond=1e-3)[0]
-        middle, radius = middle + step[:3], radius + float(step[3])
-    return middle, radius
-
-
 class EffectiveRadius(NamedTuple):
     """What a calibrated ball tells of the probe's effective radius.
 
@@ -226,11 +214,9 @@ def effective_radii(
         centres = ball_centres(part, chain, dialect)
         around = part.heading.setup.T_table_artefact
         believed = apply(around, ball.sphere(around).centre[None])[0]
-        middle, radius = _sphere(centres, believed)
-        way = centres - middle
-        A = np.column_stack([way / np.linalg.norm(way, axis=1, keepdims=True), np.ones(len(way))])
-        spread = float(np.sqrt(np.linalg.inv(A.T @ A)[3, 3]))
-        excess = radius - ball.radius - part.radius
+        sphere = fitted_sphere(centres, believed)
+        spread = float(np.sqrt(sphere.cofactor[3, 3]))
+        excess = sphere.radius - ball.radius - part.radius
         out.append(EffectiveRadius(part.begin, excess, float(np.hypot(spread * u, ball.u))))
     return out
 

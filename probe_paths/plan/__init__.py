@@ -1,19 +1,20 @@
 """What is touched, in which order, from which side.
 
 In: a standard, a machine, a probe, a set-up, wanted touches. Out: a `TouchPlan` in axis readings,
-with the requests that were refused. Heights and gaps of the tool are worked out here for plan and
-collision check alike (`solid_hull`, `ToolClearance`). A rule for the order of poses goes into
-`order`.
+with the requests that were refused. Gaps of the tool are worked out here for plan and collision
+check alike (`ToolClearance`), heights in `matstd.artefact.tool`. A rule for the order of poses goes
+into `order`.
 """
 
-from matstd.probe_paths.plan.clearance import (
-    SMALLEST_GAP,
-    ToolClearance,
+from matstd.artefact.tool import (
+    Probe,
+    home_readings,
     readings_at,
     solid_hull,
     swing_height,
     top_height,
 )
+from matstd.probe_paths.plan.clearance import SMALLEST_GAP, ToolClearance
 from matstd.probe_paths.plan.frame import LINEAR, ProgramFrame
 from matstd.probe_paths.plan.heading import (
     Heading,
@@ -22,15 +23,8 @@ from matstd.probe_paths.plan.heading import (
     parse_heading,
     stated_serial,
 )
-from matstd.probe_paths.plan.order import (
-    Visit,
-    home_readings,
-    nearest_neighbours,
-    short_order,
-    waypoints,
-)
+from matstd.probe_paths.plan.order import Visit, nearest_neighbours, short_order, waypoints
 from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.probe import Probe
 from matstd.probe_paths.plan.strokes import stroke_gaps
 from matstd.probe_paths.plan.touch_plan import PlanOptions, Refusal, TouchPlan, requests_at
 

@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from matstd.probe_paths.plan.probe import Probe
+from matstd.artefact.tool import Probe
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array, fixed_xyz
 from matstd.twin.machine import Chain, linear_directions, table_to_tool, tip

@@ -16,7 +16,7 @@ import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import TABLE, DatumBall, Solid, Workshop
-from matstd.probe_paths.plan.probe import Probe
+from matstd.artefact.tool import Probe
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import Array, fixed_xyz, fixed_xyz_angles, pose
 from matstd.twin.record import Setup

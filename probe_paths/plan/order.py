@@ -101,11 +101,6 @@ def waypoints(start: Array, end: Array) -> Array:
     return between
 
 
-def home_readings(chain: Chain) -> Array:
-    """Rotary readings (R,) where programs begin and end: zero, or as near as the travel allows."""
-    return np.array([np.clip(0.0, *chain.link(name).range) for name in chain.rotary_axes])
-
-
 def rotary_path(start: Array, stops: list[Visit], end: Array) -> Array:
     """Every rotary position (W, R) of a programme of visits, from `start` to `end`."""
     path = [start[None]]

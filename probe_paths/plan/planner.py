@@ -7,19 +7,19 @@ import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import ProbeReach, Requests, joined
-from matstd.probe_paths.plan.approach import Approaches
-from matstd.probe_paths.plan.clearance import (
-    SMALLEST_GAP,
-    ToolClearance,
+from matstd.artefact.tool import (
+    Probe,
+    home_readings,
     readings_at,
     solid_hull,
     swing_height,
     top_height,
 )
+from matstd.probe_paths.plan.approach import Approaches
+from matstd.probe_paths.plan.clearance import SMALLEST_GAP, ToolClearance
 from matstd.probe_paths.plan.frame import LINEAR, ProgramFrame
 from matstd.probe_paths.plan.heading import rounded_setup, rounded_workshop
-from matstd.probe_paths.plan.order import Visit, home_readings, rotary_path, short_order, visits
-from matstd.probe_paths.plan.probe import Probe
+from matstd.probe_paths.plan.order import Visit, rotary_path, short_order, visits
 from matstd.probe_paths.plan.strokes import Stage, stroke_gaps
 from matstd.probe_paths.plan.touch_plan import GRID, PlanOptions, Refusal, TouchPlan
 from matstd.twin.errors import DesignError, NotReachable, ShapeMismatch

@@ -12,8 +12,8 @@ import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import DatumBall, ProbeReach, Requests, Workshop
+from matstd.artefact.tool import OVERSHOOT, Probe
 from matstd.probe_paths.plan.order import Visit
-from matstd.probe_paths.plan.probe import Probe
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import IntArray, Labels, Setup
@@ -53,7 +53,7 @@ class PlanOptions:
     search: float = ProbeReach.search
     clearance: float = 20.0
     smallest_gap: float = 1.0
-    overshoot: float = 5.0 * DEG
+    overshoot: float = OVERSHOOT
     steepest: float = 90.5 * DEG
     retract: float = 1.0
     anchor: str = ""

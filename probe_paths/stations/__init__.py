@@ -1,11 +1,22 @@
 """One campaign of several probes and several clampings of one standard.
 
-In: the touches that are wanted, the probes and the places of the standard. Out: a `Station` for
+In: a brief's wishes for the programs, the touches that are wanted, the probes and the places of the
+standard. Out: a `Station` for
 every probe in every clamping, with its plan and its programs, in the order in which they are run.
 Their logs are evaluated together (`matstd.probe_paths.campaign.evaluate`).
 """
 
-from matstd.probe_paths.stations.planned import Clamping, plan_campaign
+from matstd.probe_paths.stations.from_brief import dialects_of, feeds_of, plan_options_of
+from matstd.probe_paths.stations.planned import plan_campaign
 from matstd.probe_paths.stations.programmed import Station, all_programs, make_stations, with_tool
 
-__all__ = ["Clamping", "Station", "all_programs", "make_stations", "plan_campaign", "with_tool"]
+__all__ = [
+    "Station",
+    "all_programs",
+    "dialects_of",
+    "feeds_of",
+    "make_stations",
+    "plan_campaign",
+    "plan_options_of",
+    "with_tool",
+]

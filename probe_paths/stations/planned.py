@@ -7,12 +7,12 @@ same places on the standard, at table poses of the first at which they can be to
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from matstd.artefact.body import Standard
-from matstd.artefact.reach import ProbeReach, Requests, Workshop
+from matstd.artefact.reach import Clamping, ProbeReach, Requests
 from matstd.probe_paths.plan import PlanOptions, Probe, Refusal, TouchPlan, plan_touches
 from matstd.twin.errors import NotReachable
 from matstd.twin.machine import Chain
@@ -25,14 +25,6 @@ _POSES_TRIED = 6
 _LINKS = 8
 """Touches on balls that a further probe repeats, at every pose that it visits or else at others:
 twice the four numbers of a stylus."""
-
-
-@dataclass(frozen=True, eq=False)
-class Clamping:
-    """A place of the standard, with what stands beside it there."""
-
-    setup: Setup
-    workshop: Workshop
 
 
 def plan_campaign(

@@ -78,15 +78,15 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
     with ThreadPoolExecutor(1) as beside:  # pictures are rendered in processes of their own
         counted = beside.submit(_times, design)
         standard = _standard_picture(design, folder, remarks)
-        stands = design.project.setup.T_table_artefact
+        stands = design.brief.setup.T_table_artefact
         stl = folder / "standard.stl"
         volumes = draw_study_volumes(design.study, folder / MAPS, remarks, stl, stands)
         on_machine, order = counted.result()
-    chain, body = design.project.chain, design.placement.standard
+    chain, body = design.brief.chain, design.placement.standard
     page = Page(
         title=f"{body.name} for {chain.name}",
         heading=f"{body.name}: material standard for {chain.name}",
-        lead=verdict_of_design(design.placement, design.project.workspace),
+        lead=verdict_of_design(design.placement, design.brief.ranges),
         key=_key(design),
         sections=[
             _opening(design, folder, remarks),
@@ -105,7 +105,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
             Section("Limits of this design", items=_LIMITS),
         ],
         foot=[
-            f"Project `{design.project.path.name}`, seed {design.project.seed}. Deviations are "
+            f"Project `{design.brief.path.name}`, seed {design.brief.seed}. Deviations are "
             "tool side minus workpiece side; uncertainties are standard uncertainties (k = 1)."
         ],
     )
@@ -145,7 +145,7 @@ def _key(design: Design) -> list[KeyFigure]:
         KeyFigure(
             um(own.rms_user),
             f"remaining uncertainty of the tool point in your workspace, rms, after {touches} "
-            f"touches of {um(design.project.noise)} noise (predicted)",
+            f"touches of {um(design.brief.noise)} noise (predicted)",
         ),
         *best,
         KeyFigure(
@@ -165,8 +165,8 @@ def _key(design: Design) -> list[KeyFigure]:
 
 def _opening(design: Design, folder: Path, remarks: Sequence[str]) -> Section:
     """What was designed, and what its user has to know first."""
-    chain, body, plan = design.project.chain, design.placement.standard, design.plan
-    assumed = [*chain.remarks, *standing_remarks(chain, design.project.setup.T_table_artefact)]
+    chain, body, plan = design.brief.chain, design.placement.standard, design.plan
+    assumed = [*chain.remarks, *standing_remarks(chain, design.brief.setup.T_table_artefact)]
     marks = (folder / "machine.toml").read_text(encoding="utf-8").count("# PLACEHOLDER")
     if marks:
         assumed.append(
@@ -192,10 +192,10 @@ def _comparison(design: Design, on_machine: dict[str, float]) -> list[Section]:
     curves = [
         touch_curve(_on(placement.criterion, r.body), r.name, r.touches) for r in placement.rivals
     ]
-    drawn = draw_touch_curves(curves, design.project.noise)
+    drawn = draw_touch_curves(curves, design.brief.noise)
     caption = _CURVES.format(count=len(placement.requests))
     chosen = (
-        f"Criterion of the choice of touches: {criterion_words(design.project.standard)}. "
+        f"Criterion of the choice of touches: {criterion_words(design.brief.options.criterion)}. "
         f"{placement.certificate} of the possible touches on this standard at its table poses; "
         f"the shares refer to table poses. {_SHARES}"
     )

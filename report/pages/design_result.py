@@ -2,8 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
-from matstd.artefact.brief import Project
+from matstd.artefact.body import Standard
+from matstd.artefact.brief import Brief
 from matstd.artefact.compare import IdentifiabilityReport, WorstRegions
 from matstd.artefact.place import Placement
 from matstd.cad_out.making import Making
@@ -16,6 +18,7 @@ from matstd.probe_paths.emit import ProgramSet
 from matstd.probe_paths.plan import TouchPlan
 from matstd.probe_paths.stations import Station, all_programs
 from matstd.sensitivity.study import Study
+from matstd.twin.display import Displayed
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 
@@ -41,12 +44,12 @@ class Proven:
     in_workspace: Proof
 
 
-@dataclass(frozen=True, eq=False)
-class Design:
+@dataclass(frozen=True, eq=False, repr=False)
+class Design(Displayed):
     """Everything that a design run made; the files of the same names hold it.
 
     Attributes:
-        project: What was asked for.
+        brief: What was asked for.
         study: Sensitivities and random machines.
         maps: File and caption of the study's pictures.
         placement: Standard and touches.
@@ -59,9 +62,11 @@ class Design:
         effective: Number of parameters that the first machine's data decide rather than the prior.
         budgets: Uncertainty of the user's task on the first machine, by what corrects results.
         visits: What they rest upon.
+        remarks: What could not be drawn.
+        folder: With the files; None before they are in their place.
     """
 
-    project: Project
+    brief: Brief
     study: Study
     maps: list[tuple[str, str]]
     placement: Placement
@@ -70,10 +75,17 @@ class Design:
     making: Making
     stations: tuple[Station, ...]
     machines: tuple[Proven, ...]
-    known: IdentifiabilityReport
+    identifiability: IdentifiabilityReport
     effective: float
     budgets: Mapping[str, TaskUncertainty]
     visits: Visits
+    remarks: tuple[str, ...] = ()
+    folder: Path | None = None
+
+    @property
+    def standard(self) -> Standard:
+        """The standard."""
+        return self.placement.standard
 
     @property
     def plan(self) -> TouchPlan:

@@ -51,7 +51,7 @@ _CORRELATIONS = (
 
 def identifiability_sections(design: Design) -> list[Section]:
     """Condition, degrees, single errors, combinations, freedoms and correlations."""
-    known = design.known
+    known = design.identifiability
     never = [f for f in known.freedoms if f.first.resolution is Resolution.NEVER]
     resolved = [f for f in known.freedoms if f not in never]
     words = (

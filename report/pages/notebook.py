@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from matstd.artefact.body import Standard
-from matstd.artefact.brief import Project
+from matstd.artefact.brief import Brief
 from matstd.artefact.compare import IdentifiabilityReport
 from matstd.diagnosis.answer import Comparison, Diagnosis
 from matstd.diagnosis.files import SavedModel
@@ -23,6 +23,7 @@ from matstd.diagnosis.residual import rank_variables
 from matstd.report.identifiability import gist
 from matstd.report.maps import draw_regions
 from matstd.report.numbers import microns
+from matstd.report.pages.design_result import Design
 from matstd.report.pages.page import picture
 from matstd.report.plots import draw_fall, draw_over_variables
 from matstd.report.style import save
@@ -105,10 +106,21 @@ def _standard(standard: Standard) -> str:
 
 
 @text.register
-def _project(project: Project) -> str:
+def _brief(brief: Brief) -> str:
     return (
-        f"{project.path.name}: {project.standard.name} for {project.chain.name}, "
-        f"programs for {Path(project.control).name}"
+        f"{brief.path.name}: {brief.options.name} for {brief.chain.name}, "
+        f"programs for {Path(brief.programs.control).name}"
+    )
+
+
+@text.register
+def _design(design: Design) -> str:
+    standard, programs = design.standard, design.programs.programs
+    where = "" if design.folder is None else f", in {design.folder}"
+    return (
+        f"{standard.name} for {design.brief.chain.name}: {len(standard.patches)} freeform faces, "
+        f"{len(standard.spheres)} balls, {len(design.placement.touches)} touches, "
+        f"{len(programs)} programs{where}"
     )
 
 

@@ -53,7 +53,7 @@ def proof_sections(design: Design) -> list[Section]:
     ]
     columns = ("machine", "where", "volumetric error, µm rms", "not predicted, µm rms")
     more = ("stated uncertainty, µm rms", "ratio", "within twice the uncertainty")
-    poses, noise = len(design.machines[0].proof.before), um(design.project.noise)
+    poses, noise = len(design.machines[0].proof.before), um(design.brief.noise)
     drawn = draw_proof([m.in_workspace for m in design.machines])
     return [
         Section(
@@ -67,7 +67,7 @@ def proof_sections(design: Design) -> list[Section]:
 
 def task_sections(design: Design) -> list[Section]:
     """Uncertainty of the user's task on the first machine."""
-    budgets, task = design.budgets, design.project.task
+    budgets, task = design.budgets, design.brief.task
     first = next(iter(budgets.values()))
     words = _TASK.format(
         task=task.name,

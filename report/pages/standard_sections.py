@@ -86,7 +86,7 @@ def comparison_table(design: Design, on_machine: dict[str, float]) -> Table:
         "combinations\ndetermined",
         "effects of the\nlibrary visible",
     ]
-    caption = _RIVALS.format(touches=len(placement.requests), noise=um(design.project.noise))
+    caption = _RIVALS.format(touches=len(placement.requests), noise=um(design.brief.noise))
     own = [i for i, rival in enumerate(placement.rivals) if rival is placement.own]
     return Table(columns, rows, caption, own)
 

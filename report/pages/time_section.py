@@ -26,16 +26,16 @@ _CAPTION = (
 
 def minutes(design: Design) -> dict[str, float]:
     """Minutes on the machine by artefact, by one planner and one clock; nan without a body."""
-    project, placement = design.project, design.placement
+    brief, placement = design.brief, design.placement
     found = {}
     for rival in placement.rivals:
         seconds = np.nan
         if rival.body is not None:
             seconds = probing_time(
                 rival.body,
-                project.chain,
+                brief.chain,
                 design.plan.probe,
-                project.setup,
+                brief.setup,
                 rival.touches,
                 design.plan.options,
             )
@@ -49,9 +49,9 @@ def proof_words(design: Design) -> str:
     They are planned as the programs are, and with each table pose once: half as many motions of
     rotary axes, which then come from one side alone.
     """
-    project, placement, plan = design.project, design.placement, design.plan
+    brief, placement, plan = design.brief, design.placement, design.plan
     once = replace(plan.options, shortest_visit=len(placement.proof) + 1)
-    body, chain, setup = placement.standard, project.chain, project.setup
+    body, chain, setup = placement.standard, brief.chain, brief.setup
     as_planned, quicker = (
         probing_time(body, chain, plan.probe, setup, placement.proof, options) / MINUTE
         for options in (plan.options, once)
@@ -66,7 +66,7 @@ def proof_words(design: Design) -> str:
 
 def order_content(design: Design) -> tuple[Table, str]:
     """Orders in which the same touches could be made, and what the planned one costs."""
-    found = orders(design.plan, design.placement.criterion.model, design.project.noise)
+    found = orders(design.plan, design.placement.criterion.model, design.brief.noise)
     planned, quickest = found[0], min(found, key=lambda order: order.duration)
     axes = design.plan.chain.rotary_axes
     rows = [
@@ -82,7 +82,7 @@ def order_content(design: Design) -> tuple[Table, str]:
     ]
     columns = ("order", "touches", "minutes", "drift, µm/h", "drift over\nthe whole run, µm")
     reversals = [f"reversal of {axis}, µrad" for axis in axes]
-    table = Table((*columns, *reversals), rows, _CAPTION.format(noise=um(design.project.noise)))
+    table = Table((*columns, *reversals), rows, _CAPTION.format(noise=um(design.brief.noise)))
     better = [
         f"the reversal of {axis} by a factor of {there / here:.1f}"
         for axis, here, there in zip(axes, planned.reversal, quickest.reversal, strict=True)

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from matstd.artefact.feasibility import Room
 from matstd.artefact.layout import Blank, least_gap
-from matstd.artefact.place import Room
 from matstd.artefact.reach import ANGLE, Limit, PlacesInReach
 from matstd.report.style import BLUE, INK, RED, figure, plain
 from matstd.twin.machine import Chain

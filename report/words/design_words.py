@@ -8,9 +8,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from matstd.artefact.brief import StandardTable
 from matstd.artefact.compare import ERROR, RISK, WANTED, Rival, WorstRegions
 from matstd.artefact.place import Placement
+from matstd.artefact.worth import CriterionOptions
 from matstd.diagnosis.answer import Proof
 from matstd.diagnosis.fit import Fit
 from matstd.report.numbers import digits, percent, um
@@ -39,15 +39,15 @@ EQUAL = 1.05
 """Ratio up to which two predicted errors count as equal: no user would notice the difference."""
 
 
-def criterion_words(wanted: StandardTable) -> str:
+def criterion_words(wanted: CriterionOptions) -> str:
     """Criterion by which the touches were chosen."""
-    words = [_CRITERIA[wanted.criterion]]
+    words = [_CRITERIA[wanted.name]]
     if wanted.robust_machines:
         which = (
             "" if wanted.robust_share == 1.0 else f"the worst {percent(wanted.robust_share)} of "
         )
         words.append(f"averaged over {which}{wanted.robust_machines} random machines")
-    if wanted.potential and wanted.criterion == "D":
+    if wanted.potential and wanted.name == "D":
         words.append("together with the effects of the library")
     elif wanted.potential:
         words.append(

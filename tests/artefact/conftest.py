@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from matstd.artefact.layout.sites import Blank
+from matstd.artefact.layout.blank import Blank
 from matstd.artefact.reach.probe_clearance import ProbeShape
 from matstd.artefact.reach.touchable import ProbeReach
 from matstd.artefact.worth.touch_criterion import criterion_for

@@ -13,6 +13,7 @@ from matstd.artefact.body.standard_file import read_standard, write_standard
 from matstd.artefact.certify.calibration_fit import calibrated, fitted_ball
 from matstd.artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
 from matstd.artefact.certify.dmis import APPROACH, dmis_program
+from matstd.artefact.tool.probe import Probe
 from matstd.artefact.worth.calibration import Calibration
 from matstd.cad_out.details.detail_list import engraved_on
 from matstd.cad_out.details.places import datum_touches
@@ -25,7 +26,6 @@ from matstd.probe_paths.emit.program import make_programs
 from matstd.probe_paths.emit.writer import Feeds
 from matstd.probe_paths.language.dialect_file import read_dialect
 from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.probe import Probe
 from matstd.probe_paths.plan.touch_plan import PlanOptions
 from matstd.twin.errors import BadFile, NotEnoughData
 from matstd.twin.frames import apply, pose, rotation

@@ -6,10 +6,10 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from matstd.artefact.layout.sites import Blank
+from matstd.artefact.layout.blank import Blank
 from matstd.artefact.worth import ball_choice
 from matstd.artefact.worth.calibration import Calibration
-from matstd.artefact.worth.touch_choice import each_at, face_grid, sphere_grid, table_poses
+from matstd.artefact.worth.touch_choice import each_at, face_grid, poses_within, sphere_grid
 from matstd.information.criteria.posterior import Posterior
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import apply, fixed_xyz, pose
@@ -91,7 +91,7 @@ def test_an_exact_calibration_changes_nothing(criterion, standard, touches):
 def test_placed_balls_stand_apart_and_beat_balls_anywhere(criterion, monkeypatch):
     monkeypatch.setattr(ball_choice, "_PLACES", 150)
     blank, rng = Blank(), np.random.default_rng(3)
-    poses = table_poses(criterion, 12)
+    poses = poses_within(criterion.reach.chain, criterion.rotary, 12)
     places = ball_choice.ball_places(criterion, blank, poses, rng)
 
     def left(spheres):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from sites import Site, patch_of_site, standard_from_sites
 
 from matstd.artefact.body.freeform import OVERHANG, graph_patch
 from matstd.artefact.body.limits import (
@@ -16,7 +17,7 @@ from matstd.artefact.body.limits import (
 )
 from matstd.artefact.body.spline import clamped_knots
 from matstd.artefact.body.standard import Base
-from matstd.artefact.layout.sites import Blank, Fittings, Site, patch_of_site, standard_from_sites
+from matstd.artefact.layout.blank import Blank, Fittings
 from matstd.twin.errors import NotBuildable, ShapeMismatch
 from matstd.twin.units import DEG
 

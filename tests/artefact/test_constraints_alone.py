@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from briefs import brief_of
 
 from matstd.artefact.body.freeform import graph_patch
 from matstd.artefact.body.limits import (
@@ -15,8 +16,9 @@ from matstd.artefact.body.limits import (
     min_concave_radius,
     overhang,
 )
-from matstd.artefact.layout.sites import Blank
-from matstd.artefact.place.placement import PlacementOptions, design_standard
+from matstd.artefact.brief.brief import PlacementOptions
+from matstd.artefact.layout.blank import Blank
+from matstd.artefact.place.placement import design_standard
 from matstd.artefact.reach.probe_clearance import ProbeShape
 from matstd.artefact.reach.touchable import ProbeReach, Requests
 from matstd.artefact.worth.touch_choice import TouchOptions
@@ -229,10 +231,9 @@ LIMITS_OF_USER = {
 def test_contradictory_limits_are_refused_with_the_one_that_binds(chain, limits, what, kind, line):
     reach = replace(ProbeReach(chain, Setup("a"), PROBE, 160.0), **what)
     workspace = Workspace(chain, LIMITS_OF_USER, 160.0)
+    brief = brief_of(reach, workspace, OPTIONS, Blank(limits=limits))
     with pytest.raises(kind, match=line) as caught:
-        design_standard(
-            reach, Blank(limits=limits), workspace, np.random.default_rng(1), options=OPTIONS
-        )
+        design_standard(brief, np.random.default_rng(1))
     assert "\n" not in str(caught.value)
 
 
@@ -242,4 +243,4 @@ def test_a_workspace_out_of_reach_is_refused(chain):
     narrow = Workspace(chain, {**LIMITS_OF_USER, "B": (-109.0 * DEG, -108.0 * DEG)}, 160.0)
     reach = ProbeReach(chain, Setup("a"), PROBE, 160.0)
     with pytest.raises(NotReachable, match="leave no room: they are approached"):
-        design_standard(reach, Blank(), narrow, np.random.default_rng(1), options=OPTIONS)
+        design_standard(brief_of(reach, narrow, OPTIONS), np.random.default_rng(1))

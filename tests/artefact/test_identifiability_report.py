@@ -11,16 +11,15 @@ from matstd.artefact.compare.alternatives import (
     joined_rows,
     machine_rank,
     other_setups,
-    setup_parameters,
     touches_reached_in,
 )
 from matstd.artefact.compare.identifiability import identifiability_report
-from matstd.artefact.layout.sites import Blank
+from matstd.artefact.layout.blank import Blank
 from matstd.artefact.reach.touchable import ProbeReach
-from matstd.artefact.worth.touch_criterion import criterion_for, random_touches
+from matstd.artefact.tool.probe import Probe
+from matstd.artefact.worth.touch_criterion import criterion_for, random_touches, setup_parameters
 from matstd.information.identifiability.estimable_combinations import combinations
 from matstd.information.identifiability.freedoms import Resolution
-from matstd.probe_paths.plan.probe import Probe
 from matstd.report.identifiability.identifiability_file import (
     identifiability_table,
     write_identifiability,
@@ -92,7 +91,7 @@ def test_rank_of_the_machine_is_that_of_its_rows_freed_of_set_ups_and_tools(crit
         second = touches_reached_in(other, requests, rng)[:TOUCHES]
         W = joined_rows(criterion, requests, second, other).W
         P = len(criterion.prior_sd)
-        nuisance = np.concatenate([setup_parameters(criterion), np.arange(P, W.shape[1])])
+        nuisance = np.concatenate([setup_parameters(criterion.model), np.arange(P, W.shape[1])])
         length = np.linalg.norm(W, axis=0)
         scaled = np.where(length > 1e-9 * length.max(), W / np.maximum(length, 1e-300), 0.0)
         free, rest = scaled[:, nuisance], np.delete(scaled, nuisance, axis=1)
@@ -110,7 +109,7 @@ def test_touches_in_a_second_set_up_have_their_own_six_numbers(criterion, reques
         touches_reached_in(other, requests, np.random.default_rng(7))[:50],
     )
     found = joined_rows(criterion, first, second, other)
-    P, of_w = len(criterion.prior_sd), setup_parameters(criterion, "w")
+    P, of_w = len(criterion.prior_sd), setup_parameters(criterion.model, "w")
     assert len(of_w) == 6
     assert found.W.shape == (100, P + 6), name
     assert not found.W[50:, of_w].any()
@@ -130,7 +129,7 @@ def test_a_stylus_that_reaches_nothing_is_said(criterion, requests, monkeypatch)
 def test_combinations_know_nothing_of_the_set_up(criterion, requests):
     """Against the textbook: no prior at all on the set-up, ones on the rest."""
     W = criterion.whitened(requests)
-    free = setup_parameters(criterion)
+    free = setup_parameters(criterion.model)
     unit = ["mm"] * W.shape[1]
     found = combinations(W, criterion.prior_sd, unit, free.tolist())
     kept = np.setdiff1d(np.arange(W.shape[1]), free)
@@ -148,7 +147,7 @@ def test_combinations_know_nothing_of_the_set_up(criterion, requests):
 def test_errors_known_for_themselves(criterion, requests, known):
     W = criterion.whitened(requests)
     left = np.sqrt(np.diag(np.linalg.inv(np.eye(W.shape[1]) + W.T @ W)))
-    setup = set(setup_parameters(criterion).tolist())
+    setup = set(setup_parameters(criterion.model).tolist())
     expected = {
         n for p, n in enumerate(criterion.model.names) if left[p] ** 2 < 0.1 and p not in setup
     }

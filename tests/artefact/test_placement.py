@@ -4,18 +4,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from briefs import brief_of
 
 from matstd.artefact.body.first_contact import contact
 from matstd.artefact.body.limits import Limits, check
 from matstd.artefact.body.patch import Meeting
 from matstd.artefact.body.standard import Base
+from matstd.artefact.brief.brief import PlacementOptions
 from matstd.artefact.compare.power import proof_power, task_normals
-from matstd.artefact.layout.sites import Blank
-from matstd.artefact.place.placement import PlacementOptions, design_standard
+from matstd.artefact.layout.blank import Blank
+from matstd.artefact.place.placement import design_standard
 from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
 from matstd.artefact.reach.touchable import ProbeReach
 from matstd.artefact.worth.potential import library
-from matstd.artefact.worth.touch_choice import TouchOptions, table_poses
+from matstd.artefact.worth.touch_choice import TouchOptions, poses_within
 from matstd.artefact.worth.touch_criterion import CriterionOptions
 from matstd.information.criteria.posterior import Posterior
 from matstd.sensitivity.population.dependence import Group, grouped
@@ -42,7 +44,7 @@ def reach(chain):
 
 @pytest.fixture(scope="module")
 def placement(reach, workspace):
-    return design_standard(reach, Blank(), workspace, np.random.default_rng(3), options=OPTIONS)
+    return design_standard(brief_of(reach, workspace, OPTIONS), np.random.default_rng(3))
 
 
 def test_the_standard_meets_every_limit(placement):
@@ -216,7 +218,7 @@ def test_the_same_seed_gives_the_same_standard(reach, workspace, monkeypatch):
     monkeypatch.setattr("matstd.artefact.place.placement.compare", lambda *_: ((), ()))
     options = PlacementOptions(patches=3, sites=30, choice=TouchOptions(60, 5, 30))
     first, again = (
-        design_standard(reach, Blank(), workspace, np.random.default_rng(3), options=options)
+        design_standard(brief_of(reach, workspace, options), np.random.default_rng(3))
         for _ in range(2)
     )
     np.testing.assert_array_equal(again.requests.point, first.requests.point)
@@ -228,19 +230,19 @@ def test_too_many_patches_for_a_blank_are_refused(reach, workspace):
     options = PlacementOptions(patches=16, sites=60, choice=CHOICE)
     small = Blank(base=Base(half_size=(70.0, 70.0), corner_radius=10.0))
     with pytest.raises(NotBuildable, match="patches"):
-        design_standard(reach, small, workspace, np.random.default_rng(1), options=options)
+        design_standard(brief_of(reach, workspace, options, small), np.random.default_rng(1))
 
 
 def test_a_blank_larger_than_the_table_is_refused(reach, workspace):
     large = Blank(base=Base(half_size=(180.0, 140.0)))
     with pytest.raises(NotBuildable, match="360 x 280 mm is larger than the table, diameter 320"):
-        design_standard(reach, large, workspace, np.random.default_rng(1), options=OPTIONS)
+        design_standard(brief_of(reach, workspace, OPTIONS, large), np.random.default_rng(1))
 
 
 def test_limits_that_nothing_meets_are_named(reach, workspace):
     light = Blank(limits=Limits(max_mass=5.0))
     with pytest.raises(NotBuildable, match=r"no choice of 5 patches .*mass is .* limit 5\.000 kg"):
-        design_standard(reach, light, workspace, np.random.default_rng(1), options=OPTIONS)
+        design_standard(brief_of(reach, workspace, OPTIONS, light), np.random.default_rng(1))
 
 
 def test_a_standard_beyond_the_travel_is_refused(chain, workspace):
@@ -248,34 +250,25 @@ def test_a_standard_beyond_the_travel_is_refused(chain, workspace):
     away[:3, 3] = [2000.0, 0.0, 0.0]
     far = ProbeReach(chain, Setup("a", away), PROBE, LENGTH)
     with pytest.raises(NotReachable, match="every axis within its limits"):
-        design_standard(far, Blank(), workspace, np.random.default_rng(1), options=OPTIONS)
+        design_standard(brief_of(far, workspace, OPTIONS), np.random.default_rng(1))
 
 
-def test_an_unknown_criterion_is_refused(reach, workspace):
+def test_an_unknown_criterion_is_refused():
     with pytest.raises(DesignError, match="criterion 'T', expected one of I, G, D, A, E"):
-        design_standard(
-            reach,
-            Blank(),
-            workspace,
-            np.random.default_rng(1),
-            options=PlacementOptions(criterion=CriterionOptions("T")),
-        )
+        PlacementOptions(criterion=CriterionOptions("T"))
 
 
-def test_poses_keep_room_to_be_approached(reach, chain):
-    class Criterion:
-        rotary = np.array([(-360.0 * DEG, 360.0 * DEG), (-110.0 * DEG, 30.0 * DEG)])
-
-    Criterion.reach = reach
-    poses = table_poses(Criterion, 18)
+def test_poses_keep_room_to_be_approached(chain):
+    rotary = np.array([(-360.0 * DEG, 360.0 * DEG), (-110.0 * DEG, 30.0 * DEG)])
+    poses = poses_within(chain, rotary, 18)
     assert 80 <= len(poses) <= 140
     assert poses[:, 1].min() >= -104.0 * DEG - 1e-9
     assert poses[:, 1].max() <= 24.0 * DEG + 1e-9
     np.testing.assert_allclose(poses / DEG, np.round(poses / DEG), atol=1e-9)
     assert len(np.unique(poses[:, 1])) > 20  # many different readings of B
-    Criterion.rotary = np.array([(0.0, 0.0), (-109.0 * DEG, -108.0 * DEG)])
+    narrow = np.array([(0.0, 0.0), (-109.0 * DEG, -108.0 * DEG)])
     with pytest.raises(NotReachable, match="leave no room: they are approached from both sides"):
-        table_poses(Criterion, 18)
+        poses_within(chain, narrow, 18)
 
 
 class ScalesAreDrawn(Exception):
@@ -294,10 +287,9 @@ def test_groups_of_errors_reach_the_placement(reach, workspace, chain, monkeypat
     options = replace(OPTIONS, criterion=CriterionOptions(robust_machines=6))
     for groups in ([Group(names, correlation=1.0)], [Group(names, correlation=0.0)]):
         population = Population(chain, dependence=grouped(groups))
+        brief = brief_of(reach, workspace, options, errors=population)
         with pytest.raises(ScalesAreDrawn):
-            design_standard(
-                reach, Blank(), workspace, np.random.default_rng(3), population, options
-            )
+            design_standard(brief, np.random.default_rng(3))
     spread = []
     for parameters, scale in drawn:
         columns = [[n in p for p in parameters].index(True) for n in names]

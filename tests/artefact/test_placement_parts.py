@@ -6,17 +6,17 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from sites import spread
 
 from matstd.artefact.body.datum import outline_distance
 from matstd.artefact.body.freeform import graph_patch
 from matstd.artefact.body.limits import Limits, max_slope, min_concave_radius
 from matstd.artefact.body.standard import Material
 from matstd.artefact.compare.comparison import _scatter
+from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.post import post_foot, post_stiffness
 from matstd.artefact.layout.shapes import smooth_heights
 from matstd.artefact.layout.side_by_side import most_side_by_side
-from matstd.artefact.layout.sites import Blank
-from matstd.artefact.layout.spread import spread
 from matstd.artefact.layout.upright import (
     ball_on_post,
     balls_fit,

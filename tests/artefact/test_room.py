@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from matstd.artefact.body.freeform import graph_patch
+from matstd.artefact.feasibility.room import check_room, light_enough, room_among
+from matstd.artefact.feasibility.touched import mutually_probeable, touches_on, untouched
+from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.rival_artefacts import with_spheres
 from matstd.artefact.layout.side_by_side import most_side_by_side
-from matstd.artefact.layout.sites import Blank
 from matstd.artefact.layout.upright import balls_on_posts, faces_beside, freeform_faces
 from matstd.artefact.place.body_choice import BodyChoice
-from matstd.artefact.place.room import check_room, light_enough, room_among
-from matstd.artefact.place.touched import seen_beside, touches_on, untouched
 from matstd.artefact.reach.probe_clearance import ProbeShape
 from matstd.artefact.reach.touchable import ProbeReach, joined
 from matstd.artefact.worth.touch_choice import each_at, sphere_grid
@@ -115,7 +115,7 @@ def test_a_face_behind_a_tall_pillar_is_seen_beside_a_low_one_only():
     )
     tall = replace(low, name="2", T_artefact_patch=pose(t=np.array([100.0, 0.0, 130.0])))
     from_x = np.array([[-90.0 * DEG], [90.0 * DEG]])  # of which one is from the other side
-    seen = seen_beside(FROM_SIDE, STEEP, [low, behind, tall], (), from_x)
+    seen = mutually_probeable(FROM_SIDE, STEEP, [low, behind, tall], (), from_x)
     assert seen.reached.all()
     assert seen.alone.all()
     assert seen.beside[1, 0]
@@ -129,7 +129,7 @@ def test_what_is_seen_alone_is_what_the_touches_say_whatever_number_a_ball_has()
     faces = freeform_faces(STEEP, 6, 12, rng, balls, from_side=True)
     faces = [f for f, ok in zip(faces, faces_beside(faces, balls, STEEP), strict=True) if ok]
     assert {b.name for b in balls} <= {f.name for f in faces}
-    seen = seen_beside(FROM_SIDE, STEEP, faces, balls, AROUND)
+    seen = mutually_probeable(FROM_SIDE, STEEP, faces, balls, AROUND)
     bare = with_spheres(STEEP, [b.centre for b in balls])
     alone = [not untouched(FROM_SIDE, replace(bare, patches=(f,)), AROUND) for f in faces]
     assert 0 < sum(alone) < len(faces)

@@ -12,11 +12,11 @@ from matstd.artefact.body.datum import DatumSphere
 from matstd.artefact.body.freeform import FreeformPatch, graph_patch
 from matstd.artefact.body.standard import STEEL, Base, Standard
 from matstd.artefact.reach.touchable import Requests
+from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.emit.program import ProgramSet, make_programs
 from matstd.probe_paths.emit.writer import Feeds
 from matstd.probe_paths.language.dialect_file import read_dialect
 from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.probe import Probe
 from matstd.probe_paths.plan.touch_plan import PlanOptions, TouchPlan, requests_at
 from matstd.twin.frames import pose, rotation
 from matstd.twin.machine.chain import Axis, Chain, make_chain

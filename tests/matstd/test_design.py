@@ -12,9 +12,10 @@ import rs274
 
 from matstd.artefact.body.limits import Limits
 from matstd.artefact.body.standard_file import read_standard
+from matstd.artefact.brief import project_file
+from matstd.artefact.brief.brief import Brief, PlacementOptions
 from matstd.artefact.brief.project_file import read_project
 from matstd.artefact.compare import comparison
-from matstd.artefact.place.placement import PlacementOptions
 from matstd.artefact.worth import ball_choice
 from matstd.artefact.worth.touch_choice import TouchOptions
 from matstd.artefact.worth.touch_criterion import CRITERIA, CriterionOptions
@@ -25,8 +26,7 @@ from matstd.probe_paths.emit.program import make_programs
 from matstd.probe_paths.language.dialect_file import read_dialect
 from matstd.probe_paths.linuxcnc.replanned import shortened
 from matstd.report.pages import design_page
-from matstd.stages import design, study_run
-from matstd.stages.from_project import blank, placement_options, probe_reach
+from matstd.stages import study_run
 from matstd.twin.errors import BadFile
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.files.run_file import read_run
@@ -62,6 +62,12 @@ def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: in
     return path
 
 
+def with_few_sites(**fields: object) -> Brief:
+    """The brief of a project for which fewer places of faces are tried."""
+    made = Brief(**fields)
+    return replace(made, options=replace(made.options, sites=60))
+
+
 @pytest.fixture(scope="module")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The whole command with fewer candidates, one rival of spheres, one of another shape, no maps
@@ -72,8 +78,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("design")
     out = folder / "out"
     with pytest.MonkeyPatch.context() as patch:
-        fewer = lambda project: replace(placement_options(project), sites=60)  # noqa: E731
-        patch.setattr(design, "placement_options", fewer)
+        patch.setattr(project_file, "Brief", with_few_sites)
         patch.setattr(ball_choice, "_PLACES", 60)
         patch.setattr(comparison, "COUNTS", (4,))
         bodies = comparison.rivals
@@ -243,11 +248,11 @@ def test_what_the_example_only_mentions_is_accepted(
     text = re.sub(rf"(?m)^# (?!{shape})(stylus|body|model|stack)\w* = .*\n", "", text)
     path.write_text(re.sub(r"(?m)^# (?=\[|\w+ = )", "", text))
     project = read_project(path)
-    assert (project.digits, project.tolerance) == (1, pytest.approx(0.1))
-    assert project.expected.dependence is not None
+    assert (project.study.digits, project.study.tolerance) == (1, pytest.approx(0.1))
+    assert project.population.dependence is not None
     chain = project.chain
     assert project.population.shapes_of(chain.symbol("EXX")) == ("linear", "sinusoidal")
-    assert project.expected.ranges.of(chain, chain.symbol("EXC")) == (5.0 * UM, 10.0 * UM)
+    assert project.population.ranges.of(chain, chain.symbol("EXC")) == (5.0 * UM, 10.0 * UM)
 
 
 def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
@@ -257,8 +262,8 @@ def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
     stated = read_project(path)
     path.write_text(re.sub(r"(?s)\[blank\].*?(?=\[setup\.a\])", "", text))
     left_out = read_project(path)
-    assert blank(left_out) == blank(stated)
-    assert probe_reach(left_out).table_radius == probe_reach(stated).table_radius == 160.0
+    assert left_out.blank == stated.blank
+    assert left_out.reach.table_radius == stated.reach.table_radius == 160.0
     for key, value in {
         "base_mm": "[240.0, 200.0]",
         "height_mm": "180.0",
@@ -271,19 +276,19 @@ def test_blank_and_limits_reach_the_placement(tmp_path: Path) -> None:
         text = re.sub(rf"(?m)^{key} = [^#\n]*", f"{key} = {value} ", text)
     path.write_text(text)
     project = read_project(path)
-    made = blank(project)
+    made = project.blank
     assert made.base.half_size == (120.0, 100.0)
     assert made.height == 180.0
     assert max(made.fittings.sphere_heights) < 180.0
     assert made.limits == Limits(9.0, np.pi / 6.0, 3.0, 2.0, 40.0, 130.0)
-    assert probe_reach(project).table_radius == 130.0
+    assert project.reach.table_radius == 130.0
 
 
 def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
     """The defaults are those of the example; every criterion and wish reaches the placement."""
     path = small_project(tmp_path)
     text = path.read_text()
-    assert placement_options(read_project(path)) == PlacementOptions(
+    assert read_project(path).options == PlacementOptions(
         name="FFS-600U", serial="001", patches=3, balls=5, choice=TouchOptions(120, 10, 60)
     )
     plain = re.sub(
@@ -291,13 +296,13 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
     )
     assert "potential" not in re.sub("#.*", "", plain)
     path.write_text(plain)
-    assert placement_options(read_project(path)).criterion == CriterionOptions("I", 0.3)
+    assert read_project(path).options.criterion == CriterionOptions("I", 0.3)
     for criterion in CRITERIA:
         wanted = text.replace('criterion = "I"', f'criterion = "{criterion}"')
         for key, value in (("robust_machines", "8"), ("robust_share", "0.5"), ("potential", "0.1")):
             wanted = re.sub(rf"(?m)^{key} = [\d.]+", f"{key} = {value}", wanted)
         path.write_text(wanted.replace("poses = 10 ", "poses = 12 "))
-        options = placement_options(read_project(path))
+        options = read_project(path).options
         assert options.choice == TouchOptions(120, 12, 60)
         assert options.criterion == CriterionOptions(criterion, 0.1, 8, 0.5)
     assert read_project(path).remarks == ()
@@ -308,7 +313,8 @@ def test_keys_of_older_projects_are_read_and_named(tmp_path: Path) -> None:
     text = path.read_text().replace("robust_machines = 0", "drawn_machines = 8")
     path.write_text(text.replace("robust_share = 1.0", "worst_share = 0.5"))
     project = read_project(path)
-    assert (project.standard.robust_machines, project.standard.robust_share) == (8, 0.5)
+    criterion = project.options.criterion
+    assert (criterion.robust_machines, criterion.robust_share) == (8, 0.5)
     assert [remark.removeprefix(f"{path}: ") for remark in project.remarks] == [
         "standard.drawn_machines is called standard.robust_machines now, and read as that",
         "standard.worst_share is called standard.robust_share now, and read as that",
@@ -321,16 +327,16 @@ def test_the_material_of_a_project(tmp_path: Path) -> None:
     text = path.read_text()
     here = text.index("[material]"), text.index("[blank]")
     bare = text[: here[0]] + text[here[1] :]
-    known = blank(read_project(path)).material
+    known = read_project(path).blank.material
     assert (known.modulus, known.poisson, known.modulus_source) == (200e3, 0.3, "stated")
     path.write_text(bare)
-    usual = blank(read_project(path)).material
+    usual = read_project(path).blank.material
     assert (usual.name, usual.density, usual.modulus) == (known.name, known.density, 200e3)
     assert "Uddeholm" in usual.modulus_source
     old = 'material = "EN AW-5083"\ndensity_kg_m3 = 2660.0\nexpansion_per_K = 23.8e-6\n'
     path.write_text(bare.replace("[standard]\n", f"[standard]\n{old}"))
     project = read_project(path)
-    own = blank(project).material
+    own = project.blank.material
     assert (own.name, own.density, own.expansion) == ("EN AW-5083", 2660 * 1e-9, 23.8e-6)
     assert own.modulus is None
     assert len(project.remarks) == 3
@@ -348,9 +354,9 @@ def test_amplitude_ranges_of_the_project(tmp_path: Path) -> None:
     path.write_text(path.read_text() + ranges)
     project = read_project(path)
     chain = project.chain
-    assert project.expected.ranges.of(chain, chain.symbol("EXX")) == (3.0 * UM, 4.0 * UM)
-    assert project.expected.ranges.of(chain, chain.symbol("EC0Y")) == (1.0 * URAD, 2.0 * URAD)
-    assert project.expected.ranges.of(chain, chain.symbol("EYX")) == (50.0 * UM, 100.0 * UM)
+    assert project.population.ranges.of(chain, chain.symbol("EXX")) == (3.0 * UM, 4.0 * UM)
+    assert project.population.ranges.of(chain, chain.symbol("EC0Y")) == (1.0 * URAD, 2.0 * URAD)
+    assert project.population.ranges.of(chain, chain.symbol("EYX")) == (50.0 * UM, 100.0 * UM)
 
 
 @rs274.is_there

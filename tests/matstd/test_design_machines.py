@@ -7,16 +7,17 @@ import numpy as np
 import pytest
 
 from matstd.artefact.body.limits import check
-from matstd.artefact.brief.project_file import Project, read_project
+from matstd.artefact.brief.brief import Brief
+from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.feasibility.within_travels import travels
+from matstd.artefact.place.placement import design_standard
 from matstd.artefact.worth import ball_choice
+from matstd.artefact.worth.touch_choice import TouchOptions
 from matstd.probe_paths.campaign.order_study import orders
 from matstd.probe_paths.emit.program import make_programs
 from matstd.report.plots.plan_pictures import draw_order
 from matstd.report.style import save
-from matstd.sensitivity.first_order.workspace import Workspace
-from matstd.stages import design as design
-from matstd.stages.from_project import blank, placement_options, probe_reach
-from matstd.stages.reach import PICTURE, check_reach
+from matstd.stages import design
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 MACHINES = {
@@ -32,20 +33,19 @@ MACHINES = {
 TOUCHES = 80
 
 
-def small(name: str) -> Project:
+def small(name: str) -> Brief:
     """One of the examples with few patches, poses and touches, and one machine to prove it on."""
     project = read_project(EXAMPLES / f"{name}.toml")
-    few = project.standard.model_copy(
-        update={
-            "patches": 4,
-            "balls": 7,
-            "poses": 5,
-            "touches": TOUCHES,
-            "proof_touches": 40,
-            "potential": 0.0,
-        }
+    wanted = project.options
+    few = replace(
+        wanted,
+        patches=4,
+        balls=7,
+        sites=60,
+        criterion=replace(wanted.criterion, potential=0.0),
+        choice=TouchOptions(TOUCHES, 5, 40),
     )
-    return replace(project, standard=few, machines=1)
+    return replace(project, options=few)
 
 
 SLOW = frozenset(MACHINES) - {"machines/vertical"}
@@ -60,24 +60,21 @@ def test_a_design_for_every_kind_of_machine(
 ) -> None:
     project = small(name)
     assert project.chain.notation == MACHINES[name]
-    fewer = replace(placement_options(project), sites=60)
-    monkeypatch.setattr(design, "placement_options", lambda _: fewer)
     monkeypatch.setattr(ball_choice, "_PLACES", 60)
     rng_place, rng_proof = np.random.default_rng(project.seed).spawn(2)
-    poses = check_reach(project, tmp_path)
-    assert (tmp_path / PICTURE).stat().st_size > 0
-    workspace = Workspace(project.chain, project.workspace, project.probe_length)
-    placement = design._placement(project, workspace, rng_place, lambda *_: None, poses)
-    check(placement.standard, blank(project).limits)
+    found = travels(project)
+    assert not found.against
+    placement = design_standard(project, rng_place, poses=found.poses)
+    check(placement.standard, project.blank.limits)
     assert len(placement.requests) == TOUCHES
-    assert (probe_reach(project).reasons(placement.standard, placement.requests) == "").all()
+    assert (project.reach.reasons(placement.standard, placement.requests) == "").all()
     ((_, plan),) = design._plans(project, placement)
     found = orders(plan, placement.criterion.model, project.noise)
     assert all(len(order.reversal) == len(project.chain.rotary_axes) for order in found)
     assert all(np.isfinite([o.drift, *o.reversal]).all() and o.duration > 0.0 for o in found)
     save(draw_order(plan), tmp_path / "order.png")
     programs = make_programs(plan).write(tmp_path)
-    machine = design._prove(project, workspace, placement, programs, 0, rng_proof)
+    machine = design._prove(project, placement, programs, 0, rng_proof)
     assert len(machine.campaign.run) == len(plan)
     # what the touches predict: far better than nothing, and as well as they say themselves
     assert machine.proof.factor > 5.0

@@ -8,7 +8,6 @@ from matstd.artefact.reach.touchable import ProbeReach
 from matstd.artefact.worth.touch_criterion import random_touches
 from matstd.cli import main
 from matstd.commands.machine.new import TEMPLATES, template
-from matstd.stages.from_project import probe_reach
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.files.run_file import read_run
 from matstd.twin.library.catalogue import load_user_effects, parse_effect
@@ -30,17 +29,16 @@ def test_a_machine_is_read(tmp_path):
 def test_a_project_is_read_with_the_machine_that_is_written_beside_it(tmp_path):
     project = read_project(written("project", tmp_path))
     assert project.chain.name == "My machine"
-    assert project.poses == 2000
+    assert project.study.poses == 2000
 
 
 def test_the_machine_of_a_new_project_reaches_touches_on_its_standard(tmp_path):
     """What a design begins with: touches that the machine reaches in the volume of the blank."""
     project = read_project(written("project", tmp_path))
-    reach = probe_reach(project)
+    reach = project.reach
     assert isinstance(reach, ProbeReach)
-    rotary = np.array([project.workspace[axis] for axis in project.chain.rotary_axes])
     volume = ((-100.0, -100.0, 30.0), (100.0, 100.0, 150.0))
-    assert len(random_touches(reach, volume, rotary, 200, np.random.default_rng(1))) == 200
+    assert len(random_touches(reach, volume, project.rotary, 200, np.random.default_rng(1))) == 200
 
 
 def test_a_run_is_read_without_a_remark(tmp_path):

@@ -5,8 +5,7 @@ from pathlib import Path
 import pytest
 
 from matstd.artefact.brief.project_file import read_project
-from matstd.probe_paths.plan.probe import Probe
-from matstd.stages.from_project import probe, probe_reach
+from matstd.artefact.tool.probe import Probe
 from matstd.twin.errors import BadFile
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hsm600u.toml"
@@ -30,7 +29,7 @@ def project(folder, keys):
 
 
 def test_without_keys_it_is_the_plain_probe(tmp_path):
-    assert probe(project(tmp_path, "")) == Probe(3.0, 160.0)
+    assert project(tmp_path, "").probe == Probe(3.0, 160.0)
 
 
 def test_the_keys_reach_planner_and_placement(tmp_path):
@@ -41,8 +40,8 @@ def test_the_keys_reach_planner_and_placement(tmp_path):
         stack=((40.0, 1.5), (160.0, 31.0)),
         nose_radius=50.0,
     )
-    assert probe(found) == expected
-    assert probe_reach(found).shape.cylinders == ((40.0, 1.5), (160.0, 31.0), (310.0, 50.0))
+    assert found.probe == expected
+    assert found.reach.shape.cylinders == ((40.0, 1.5), (160.0, 31.0), (310.0, 50.0))
 
 
 @pytest.mark.parametrize(

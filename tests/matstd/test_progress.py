@@ -10,9 +10,25 @@ from matstd.progress import _lines, _State, clock, turns
 
 
 def test_the_rest_takes_as_long_as_its_share() -> None:
-    state = _State("random machines", done=25, total=100, since=100.0)
+    state = _State("random machines", done=25, total=100, since=100.0, reported=130.0)
     assert state.words(130.0) == "random machines: 25 %, about 1:30 min left"
     assert _State("STEP and STL", 0, 1, 0.0).words(9.0) == "STEP and STL"
+
+
+def test_the_time_left_does_not_grow() -> None:
+    """The second step takes ten times as long as the first, and longer than its report foresaw."""
+    state = _State()
+    state.report("placement", 0, 3, 0.0)
+    state.report("placement", 1, 3, 5.0)
+    assert state.words(6.0) == "placement: 33 %, about 9 s left"
+    assert state.words(13.0) == "placement: 33 %, about 2 s left"
+    assert state.words(40.0) == "placement: 33 %"  # overdue
+    state.report("placement", 2, 3, 55.0)
+    assert state.left(56.0) is None  # 26 s by the new pace, 2 s were shown
+    assert state.words(80.5) == "placement: 66 %, about 2 s left"
+    state.report("proof", 1, 2, 90.0)
+    state.report("proof", 1, 2, 100.0)
+    assert state.left(101.0) == 9.0
 
 
 def test_turns_that_nobody_can_foresee_are_counted() -> None:
@@ -33,10 +49,12 @@ def test_a_silent_stage_is_told_too() -> None:
     """Lines come by the clock, not by what the work reports; none comes once it is over."""
     out = io.StringIO()
     with _lines(out, 0.05) as show:
+        show("placement", 0, 4)
+        time.sleep(0.2)
         show("placement", 1, 4)
-        time.sleep(0.4)
+        time.sleep(0.3)
     told = out.getvalue().splitlines()
     assert len(told) >= 2
-    assert all(re.fullmatch(r"\[ *\d+ s\] placement: 25 %, about \d+ s left", t) for t in told)
+    assert re.fullmatch(r"\[ *\d+ s\] placement: 25 %, about \d+ s left", told[-1])
     time.sleep(0.15)
     assert out.getvalue().splitlines() == told

@@ -7,17 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.artefact.brief.project_file import Project, read_project
+from matstd.artefact.brief.brief import Brief
+from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.feasibility import side_by_side
+from matstd.artefact.feasibility.feasible import feasibility
+from matstd.artefact.feasibility.room import check_room, room_for
+from matstd.artefact.feasibility.standing import check_seat
+from matstd.artefact.feasibility.within_travels import _to_rise, travels
 from matstd.artefact.reach.face_of_table import standing_remarks, table_face
 from matstd.artefact.reach.touchable import Requests
 from matstd.artefact.reach.within_reach import ANGLE, places_on, reach_of
 from matstd.cli import main
-from matstd.commands.standard.design import NO_ROOM, REFUSED, refusals
-from matstd.stages import space
-from matstd.stages.from_project import blank, probe_reach
-from matstd.stages.reach import _to_rise, check_reach
-from matstd.stages.seat import check_seat
-from matstd.stages.space import check_space
+from matstd.stages.refusals import NO_ROOM, REFUSED, refusals
 from matstd.twin.errors import BadFile, NotBuildable, NotReachable
 from matstd.twin.frames import fixed_xyz, pose
 from matstd.twin.units import DEG
@@ -43,19 +44,23 @@ def with_setup(line: str) -> dict[str, str]:
 LARGE_TABLE = "\n[workshop.table]\nsides_mm = [4200.0, 4200.0]\n"
 
 
-def refusal(project: Project, folder: Path) -> str:
+def refusal(project: Brief) -> str:
     with pytest.raises(NotReachable) as caught:
-        check_reach(project, folder)
+        feasibility(project).check()
     return str(caught.value)
+
+
+def is_reached(project: Brief) -> bool:
+    return not travels(project).against
 
 
 @pytest.mark.parametrize("name", ["gantry", "upright", "vertical"])
 def test_reach_is_what_every_single_touch_says(name: str) -> None:
     project = read_project(MACHINES / f"{name}.toml")
-    wanted, rng = probe_reach(project), np.random.default_rng(1)
-    limits = [project.workspace[a] for a in project.chain.rotary_axes]
+    wanted, rng = project.reach, np.random.default_rng(1)
+    limits = project.rotary
     poses = np.array([[rng.uniform(*pair) for pair in limits] for _ in range(7)]).reshape(7, -1)
-    point, normal = (v[::9] for v in places_on(blank(project)))
+    point, normal = (v[::9] for v in places_on(project.blank))
     found = reach_of(wanted, point, normal, poses)
     each = Requests(
         np.full(7 * len(point), "place"),
@@ -66,46 +71,42 @@ def test_reach_is_what_every_single_touch_says(name: str) -> None:
     assert np.array_equal(found.reached.ravel(), wanted.is_reachable(each))
 
 
-@pytest.mark.usefixtures("unrendered")
 def test_the_travel_that_binds_is_named_and_enough(tmp_path: Path) -> None:
     """Z ends 150 mm too high; with the travel that the refusal asks for, the design may begin."""
     short = {r"^\[axis.Z\]\nrange = .*": "[axis.Z]\nrange = [-150.0, 0.0]"}
     wishes = {r"^Z = .*\n": ""}
-    told = refusal(read_project(changed(tmp_path, "vertical", wishes, short)), tmp_path)
+    told = refusal(read_project(changed(tmp_path, "vertical", wishes, short)))
     asked = re.search(r"Z would have to go to (-\d+) mm, its travel ends at -150", told)
     assert asked, told
     enough = {next(iter(short)): f"[axis.Z]\nrange = [{asked[1]}.0, 0.0]"}
     project = read_project(changed(tmp_path, "vertical", wishes, enough))
-    assert check_reach(project, tmp_path).shape == (1, 0)
+    assert is_reached(project)
+    assert travels(project).poses.shape == (1, 0)
 
 
-@pytest.mark.usefixtures("unrendered")
 def test_the_nearest_wish_does(tmp_path: Path) -> None:
     far = with_setup("origin_mm = [700.0, 0.0, 0.0]" + LARGE_TABLE)
-    told = refusal(read_project(changed(tmp_path, "vertical", far, {})), tmp_path)
+    told = refusal(read_project(changed(tmp_path, "vertical", far, {})))
     assert "X would have to go to" in told
     place = re.search(r"setup.a.origin_mm = (\[.*?\]) would do", told)
     assert place, told
     near = with_setup(f"origin_mm = {place[1]}" + LARGE_TABLE)
-    check_reach(read_project(changed(tmp_path, "vertical", near, {})), tmp_path)
+    assert is_reached(read_project(changed(tmp_path, "vertical", near, {})))
 
 
-@pytest.mark.usefixtures("unrendered")
 def test_a_standard_that_looks_away_is_told_to_turn(tmp_path: Path) -> None:
     told = refusal(
         read_project(
             changed(tmp_path, "vertical", with_setup("rotation_deg = [180.0, 0.0, 0.0]"), {})
-        ),
-        tmp_path,
+        )
     )
     assert "degrees away from the tool axis, 75 at most" in told
 
 
-@pytest.mark.usefixtures("unrendered")
 def test_z_that_cannot_rise_is_told_before_anything_is_designed(tmp_path: Path) -> None:
     low = {r"^\[axis.Z\]\nrange = .*": "[axis.Z]\nrange = [-500.0, -250.0]"}
     project = changed(tmp_path, "vertical", {r"^Z = .*\n": ""}, low)
-    told = refusal(read_project(project), tmp_path)
+    told = refusal(read_project(project))
     # table at -500, sphere 130 + 12.5 high, ball pole 163 below the gauge point, 20 mm to spare
     assert "Z would have to rise to -174 mm" in told
     assert "retracts to -251 mm" in told
@@ -156,7 +157,6 @@ def test_a_face_that_is_no_table_is_said() -> None:
     assert set(said.values()) == {()}
 
 
-@pytest.mark.usefixtures("unrendered")
 def test_travels_of_a_table_entered_the_other_way_are_told(tmp_path: Path) -> None:
     """Y carries the table: its readings are those of the tool relative to it."""
     machine = {
@@ -166,18 +166,21 @@ def test_travels_of_a_table_entered_the_other_way_are_told(tmp_path: Path) -> No
         r"(?<=^\[axis.C\]\nrange = \[-360.0, 360.0\]\npoint = ).*": "[0.0, -400.0, 0.0]",
     }
     wrong = changed(tmp_path, "trunnion", {r"^Y = .*\n": ""}, machine)
-    told = refusal(read_project(wrong), tmp_path)
+    told = refusal(read_project(wrong))
     assert "axis.Y.range = [-700, -100] of the machine (readings move the tool" in told
     machine[r"(?<=^\[axis.Y\]\nrange = ).*"] = "[-700.0, -100.0]"
-    check_reach(read_project(changed(tmp_path, "trunnion", {r"^Y = .*\n": ""}, machine)), tmp_path)
+    assert is_reached(read_project(changed(tmp_path, "trunnion", {r"^Y = .*\n": ""}, machine)))
+
+
+def with_few_sites(patches, reach, blank, poses, _sites, seed):
+    return room_for(patches, reach, blank, poses, 40, seed)
 
 
 def test_patches_that_do_not_fit_are_told_with_a_picture(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("matstd.stages.design.design_standard", None)  # not begun
-    usual = space.placement_options
-    monkeypatch.setattr(space, "placement_options", lambda p: replace(usual(p), sites=40))
+    monkeypatch.setattr(side_by_side, "room_for", with_few_sites)
     wide = {r"\Z": "\n[limits]\ngap_mm = 120.0\n"}
     path, out = changed(tmp_path, "vertical", wide, {}), tmp_path / "out"
     for _ in range(2):
@@ -201,17 +204,19 @@ def test_patches_that_do_not_fit_are_told_with_a_picture(
 )
 def test_what_would_do_does(tmp_path, monkeypatch, name, limits, told, wish) -> None:
     """A tenth of the usual places are tried: what is refused is, and the wish that is met."""
-    usual = space.placement_options
-    monkeypatch.setattr(space, "placement_options", lambda p: replace(usual(p), sites=40))
-    monkeypatch.setattr(space, "_fewer", lambda *_: ())
+    monkeypatch.setattr(side_by_side, "_fewer", lambda *_: ())
     path = changed(tmp_path, name, {r"\Z": f"\n[limits]\n{limits}\n"}, {})
     project = read_project(path)
+    project = replace(project, options=replace(project.options, sites=40))
     poses = np.linspace(-3.0, 3.0, 12)[:, None] * np.ones(len(project.chain.rotary_axes))
-    with pytest.raises(NotBuildable, match=told) as caught:
-        check_space(project, tmp_path, poses)
-    (words,) = [w for w in caught.value.facts["wishes"] if wish in w]
-    met = project.limits.model_copy(update={wish: float(words.split(" = ")[1])})
-    check_space(replace(project, limits=met), tmp_path, poses)
+    room = side_by_side.room_of(project, poses)
+    with pytest.raises(NotBuildable, match=told):
+        check_room(room)
+    (words,) = [w for w in side_by_side.nearest_that_fits(project, room, poses) if wish in w]
+    key, unit = {"max_mass_kg": ("max_mass", 1.0), "max_slope_deg": ("max_slope", DEG)}[wish]
+    met = replace(project.blank.limits, **{key: float(words.split(" = ")[1]) * unit})
+    other = replace(project, blank=replace(project.blank, limits=met))
+    check_room(side_by_side.room_of(other, poses))
 
 
 def test_a_pose_is_charged_with_the_way_beyond_it(tmp_path: Path) -> None:
@@ -221,7 +226,7 @@ def test_a_pose_is_charged_with_the_way_beyond_it(tmp_path: Path) -> None:
         short = {r"(?<=^\[axis.A\]\nrange = )\[.*?,": f"[{end},"}
         path = changed(tmp_path, "trunnion", {r"^A = .*\n": ""}, short)
         project = read_project(path)
-        rise, _ = _to_rise(project, probe_reach(project), np.array([[0.0, -60.0 * DEG]]))
+        rise, _ = _to_rise(project, project.reach, np.array([[0.0, -60.0 * DEG]]))
         rises.append(rise[0])
     # the rim is 160 mm from the line of A, 50 mm above it
     assert 5.0 < rises[0] - rises[1] < 160.0 * 5.0 * DEG
@@ -265,7 +270,7 @@ def test_a_rotary_range_at_the_end_of_its_travel_is_refused_with_its_numbers(
 def test_limits_bar_what_they_say() -> None:
     project = read_project(MACHINES / "upright.toml")
     poses = np.array([[0.0], [180.0 * DEG]])
-    found = reach_of(probe_reach(project), *places_on(blank(project)), poses)
+    found = reach_of(project.reach, *places_on(project.blank), poses)
     shares = {(m.name, m.upper): share for m, share in found.barred()}
     # faces that look up or away from a horizontal spindle
     assert shares[ANGLE, True] > 0.5

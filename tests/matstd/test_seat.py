@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from matstd.artefact.brief import Project, read_project
+from matstd.artefact.brief import Brief, base_of, read_project
 from matstd.artefact.brief.workshop_tables import BodyTable, TableTable
+from matstd.artefact.feasibility.standing import check_beside, check_seat
+from matstd.cad_out.meshes.mesh import read_stl
 from matstd.cli import main
-from matstd.stages.seat import check_seat
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import pose, rotation
 from matstd.twin.record import Setup
@@ -29,26 +30,21 @@ def test_every_project_of_the_examples_stands(path: Path) -> None:
     check_seat(read_project(path))
 
 
-def example(**limits: float) -> Project:
+def example(**limits: float) -> Brief:
     made = read_project(EXAMPLES / "hsm600u.toml")
-    return replace(
-        made,
-        blank=made.blank.model_copy(update={"base_mm": SIDES}),
-        limits=made.limits.model_copy(update=limits),
-    )
+    return replace(made, blank=replace(made.blank, base=base_of(SIDES)), **limits)
 
 
-def with_table(project: Project, **keys: object) -> Project:
-    table = TableTable.model_validate(keys)
-    return replace(project, workshop=project.workshop.model_copy(update={"table": table}))
+def with_table(project: Brief, **keys: object) -> Brief:
+    return replace(project, table=TableTable.model_validate(keys).solid())
 
 
-def with_bodies(project: Project, *bodies: dict[str, object]) -> Project:
-    made = [BodyTable.model_validate(body) for body in bodies]
-    return replace(project, workshop=project.workshop.model_copy(update={"bodies": made}))
+def with_bodies(project: Brief, *bodies: dict[str, object]) -> Brief:
+    made = [BodyTable.model_validate(body).body(project.path.parent) for body in bodies]
+    return replace(project, bodies=tuple(made))
 
 
-def refusal(project: Project) -> str:
+def refusal(project: Brief) -> str:
     """Of the early stage; empty for none."""
     try:
         check_seat(project)
@@ -123,7 +119,7 @@ def test_clamps_in_the_base_are_those_that_share_volume_with_it(upright: bool) -
         if not (apart or inside):
             continue
         seen[inside] += 1
-        told = refusal(with_bodies(replace(project, setup=Setup("a", T)), body))
+        told = refusal(with_bodies(replace(project, setups=(Setup("a", T),)), body))
         assert ("CLAMP beside the standard" in told) == inside, (body, T, told)
         if inside:
             assert "would do" in told
@@ -137,7 +133,7 @@ def test_standards_over_the_edge_are_those_with_volume_outside(is_disc: bool) ->
     """Of the base, what an outline that is larger by the overhang does not hold."""
     rng, allowed, seen = np.random.default_rng(12), 25.0, {True: 0, False: 0}
     size = {"diameter_mm": 400.0} if is_disc else {"sides_mm": [420.0, 350.0]}
-    project = with_table(example(overhang_mm=allowed), **size)
+    project = with_table(example(overhang=allowed), **size)
 
     def table(more: float) -> trimesh.Trimesh:
         if is_disc:
@@ -161,7 +157,7 @@ def test_standards_over_the_edge_are_those_with_volume_outside(is_disc: bool) ->
             continue
         is_over = outside[allowed + NEAR]
         seen[is_over] += 1
-        told = refusal(replace(project, setup=Setup("a", T)))
+        told = refusal(replace(project, setups=(Setup("a", T),)))
         assert ("beyond the edge" in told) == is_over, (T, told)
         if is_over:
             origin = literal_eval(told.rsplit("origin_mm = ", 1)[1].removesuffix(" would do"))
@@ -186,24 +182,24 @@ def setup_at(x: float, y: float, z: float) -> Setup:
     ],
 )
 def test_distances_by_hand(place: tuple[float, float, float], told: str) -> None:
-    said = refusal(replace(example(), setup=setup_at(*place)))
+    said = refusal(replace(example(), setups=(setup_at(*place),)))
     assert told in said
     origin = literal_eval(said.rsplit("origin_mm = ", 1)[1].removesuffix(" would do"))
-    check_seat(replace(example(), setup=setup_at(*origin)))
+    check_seat(replace(example(), setups=(setup_at(*origin),)))
 
 
 def test_what_carries_a_standard_above_the_table() -> None:
-    high = replace(example(), setup=setup_at(0.0, 0.0, 30.0))
+    high = replace(example(), setups=(setup_at(0.0, 0.0, 30.0),))
     riser = {"name": "RISER", "diameter_mm": 200.0, "height_mm": 30.0}
     assert not refusal(with_bodies(high, riser))
     assert "floats 30.0 mm" in refusal(with_bodies(high, riser | {"at_mm": [400.0, 0.0, 0.0]}))
-    assert not refusal(replace(high, limits=high.limits.model_copy(update={"riser_mm": 30.0})))
+    assert not refusal(replace(high, riser=30.0))
 
 
 def test_every_set_up_is_looked_at() -> None:
     project = example()
     beside = Setup("b", pose(np.eye(3), np.array([500.0, 0.0, 0.0])))
-    assert "setup.b.origin_mm" in refusal(replace(project, further_setups=(beside,)))
+    assert "setup.b.origin_mm" in refusal(replace(project, setups=(project.setup, beside)))
     clamp = {"name": "C", "at_mm": [130.0, 0.0, 0.0], "sides_mm": [40.0, 20.0], "height_mm": 30.0}
     assert "C beside the standard: it reaches 30.0 mm" in refusal(with_bodies(project, clamp))
     assert not refusal(with_bodies(project, clamp | {"setup": "b"}))
@@ -225,8 +221,6 @@ def test_a_mesh_that_surrounds_the_base_is_no_clamp_in_it(tmp_path: Path) -> Non
 
 def test_a_clamp_in_the_finished_standard_is_seen_by_its_mesh(tmp_path: Path) -> None:
     """Above the base, in the middle of a post: the early look cannot know of it."""
-    from matstd.stages.seat import check_beside
-
     post = trimesh.creation.cylinder(radius=12.0, height=100.0).apply_translation([60, 40, 75])
     trimesh.boolean.union([base_mesh(), post], engine="manifold").export(tmp_path / "standard.stl")
 
@@ -240,15 +234,16 @@ def test_a_clamp_in_the_finished_standard_is_seen_by_its_mesh(tmp_path: Path) ->
 
     clamp = {"name": "ARM", "at_mm": [80.0, 40.0, 60.0], "sides_mm": [30.0, 20.0], "height_mm": 9.0}
     project = with_bodies(example(), clamp)
+    mesh = read_stl(tmp_path / "standard.stl")
     check_seat(project)
     with pytest.raises(BadFile, match=r"ARM beside the standard: it reaches 7\.0 mm into POST1"):
-        check_beside(project, Standing, tmp_path)  # type: ignore[arg-type]
+        check_beside(project, Standing, mesh)  # type: ignore[arg-type]
     clear = with_bodies(example(), clamp | {"at_mm": [88.0, 40.0, 60.0]})
-    check_beside(clear, Standing, tmp_path)  # type: ignore[arg-type]
+    check_beside(clear, Standing, mesh)  # type: ignore[arg-type]
 
 
 def test_the_command_refuses_before_it_designs(tmp_path: Path, capsys, monkeypatch) -> None:
-    monkeypatch.setattr("matstd.stages.design.check_reach", None)  # would fail with a traceback
+    monkeypatch.setattr("matstd.stages.design.feasibility", None)  # would fail with a traceback
     text = (EXAMPLES / "hsm600u.toml").read_text(encoding="utf-8")
     machine, task = (EXAMPLES / f for f in ("hsm600u-machine.toml", "task.toml"))
     text = text.replace('"hsm600u-machine.toml"', f'"{machine}"').replace(

@@ -11,7 +11,7 @@ from matstd.artefact.body.standard import Standard
 from matstd.artefact.brief.project_file import read_project
 from matstd.artefact.worth.touch_choice import each_at, sphere_grid
 from matstd.probe_paths.plan.planner import plan_touches
-from matstd.stages.from_project import blank, plan_options, probe, probe_reach
+from matstd.probe_paths.stations.from_brief import plan_options_of
 
 PROJECT = Path(__file__).parents[2] / "examples" / "machines" / "vertical.toml"
 
@@ -19,11 +19,9 @@ PROJECT = Path(__file__).parents[2] / "examples" / "machines" / "vertical.toml"
 @pytest.mark.parametrize("diameter", [2.0, 3.0, 4.0, 6.0, 8.0])
 def test_a_ball_of_any_size_has_room(diameter: float) -> None:
     read = read_project(PROJECT)
-    stated = read.probe
-    stack = [(stated.stack_mm[0][0], diameter * 2.0 / 3.0), *stated.stack_mm[1:]]
-    stated = stated.model_copy(update={"stack_mm": stack, "radius_mm": 0.5 * diameter})
-    project = replace(read, probe=stated)
-    made, wanted = blank(project), probe_reach(project)
+    stack = ((read.probe.stack[0][0], diameter / 3.0), *read.probe.stack[1:])
+    brief = replace(read, probes=(replace(read.probe, stack=stack, radius=0.5 * diameter),))
+    made, wanted = brief.blank, brief.reach
     sphere = DatumSphere("SPH1", np.array([0.0, 0.0, 100.0]), 12.5, 6.0, 9.0, 30.0)
     bare = Standard("bare", "", made.material, made.base, None, (), (sphere,), (), 220.0)
     touches = each_at(sphere, sphere_grid(200), np.zeros((1, 0)))
@@ -33,6 +31,6 @@ def test_a_ball_of_any_size_has_room(diameter: float) -> None:
     # the same part of the sphere for every ball, but for the larger room that large ones may have
     assert free[lean < 55.0].all()
     plan = plan_touches(
-        bare, project.chain, probe(project), project.setup, touches[free], plan_options(project)
+        bare, brief.chain, brief.probe, brief.setup, touches[free], plan_options_of(brief)
     )
     assert plan.refused == () or all(r.request < 0 for r in plan.refused)

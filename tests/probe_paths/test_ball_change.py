@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from matstd.artefact.body import write_standard
+from matstd.artefact.tool.heights import home_readings
 from matstd.cli import main
 from matstd.probe_paths.campaign.ball_change import ball_changes, check_changes
 from matstd.probe_paths.campaign.collisions import check_moves
@@ -17,7 +18,6 @@ from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.emit.program import make_ball
 from matstd.probe_paths.locate.ball_plan import plan_ball
-from matstd.probe_paths.plan.order import home_readings
 from matstd.report.words.probe_words import ball_lines
 from matstd.twin.errors import BadFile, DesignError, NotReachable
 from matstd.twin.frames import pose

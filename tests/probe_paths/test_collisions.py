@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from matstd.artefact.reach.workshop import Workshop
+from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.campaign.collisions import SMALLEST_GAP, check_moves
 from matstd.probe_paths.campaign.evaluation import evaluate
 from matstd.probe_paths.campaign.virtual_run import run_program
@@ -15,7 +16,6 @@ from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.control.steps import Move
 from matstd.probe_paths.plan.clearance import ToolClearance
-from matstd.probe_paths.plan.probe import Probe
 from matstd.probe_paths.plan.strokes import Stage
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import apply, inverse

@@ -22,7 +22,6 @@ from matstd.probe_paths.linuxcnc.replanned import shortened
 from matstd.probe_paths.locate.again import planned_again
 from matstd.probe_paths.locate.ball_plan import plan_ball
 from matstd.report.words.probe_words import ball_lines
-from matstd.stages.from_project import workshop
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import pose, rotation
 from matstd.twin.units import NM, UM
@@ -150,7 +149,7 @@ def test_a_ball_that_cannot_be_is_one_line(keys, reason, tmp_path):
 
 def test_the_ball_of_a_project_stands_in_the_workshop(tmp_path):
     keys = "at_mm = [118.0, 20.0, 70.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 10.0"
-    assert workshop(read_project(_project(tmp_path, keys))).ball == BALL
+    assert read_project(_project(tmp_path, keys)).reach.workshop.ball == BALL
 
 
 def _project(folder, keys):

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.control.interpreter import interpret, read_program, stated_probe
 from matstd.probe_paths.control.steps import Halt, Move, Print, ProbeStep
-from matstd.probe_paths.plan.probe import Probe
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import apply, turn
 from matstd.twin.machine.kinematics import linear_directions, tip

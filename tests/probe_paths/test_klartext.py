@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.language.blocks import Kind
 from matstd.probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
 from matstd.probe_paths.language.klartext import DATUM_SHIFT_OFF, KLARTEXT, PLANE_OFF, plane
@@ -8,7 +9,6 @@ from matstd.probe_paths.language.language import Datum, Touch
 from matstd.probe_paths.language.languages import read_blocks
 from matstd.probe_paths.language.text import signed
 from matstd.probe_paths.plan.heading import Heading, parse_heading, rounded_setup
-from matstd.probe_paths.plan.probe import Probe
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import pose, rotation
 from matstd.twin.record.touches import Setup

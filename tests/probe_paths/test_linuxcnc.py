@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.virtual_run import run_program
 from matstd.probe_paths.control.interpreter import interpret
@@ -25,7 +26,6 @@ from matstd.probe_paths.linuxcnc.machine_config import machine_files
 from matstd.probe_paths.linuxcnc.replanned import shortened
 from matstd.probe_paths.linuxcnc.session import _answer, _listening, installed, run_on_linuxcnc
 from matstd.probe_paths.linuxcnc.twin_contact import TwinContact
-from matstd.probe_paths.plan.probe import Probe
 from matstd.twin.effects.backlash import Backlash
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import pose, rotation

@@ -10,6 +10,7 @@ import pytest
 
 from matstd.api.replanning import feeds_of
 from matstd.artefact.body import Base, contact, write_standard
+from matstd.artefact.tool.probe import Probe
 from matstd.cli import main
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
@@ -25,7 +26,6 @@ from matstd.probe_paths.locate.relief import Relief
 from matstd.probe_paths.locate.search_plan import plan_search
 from matstd.probe_paths.locate.spread import Spread
 from matstd.probe_paths.plan.clearance import ToolClearance
-from matstd.probe_paths.plan.probe import Probe
 from matstd.twin.errors import BadFile, NotEnoughData, NotReachable
 from matstd.twin.frames import fixed_xyz, pose
 from matstd.twin.record.touches import Setup

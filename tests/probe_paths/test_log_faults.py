@@ -329,10 +329,10 @@ def test_a_sphere_beside_its_calibrated_place_is_said(golden, small, chain):
     """0.3 mm, of which the set-up takes up some; a standard in order has no such remark."""
     from pathlib import Path
 
+    from matstd.artefact.tool.probe import Probe
     from matstd.probe_paths.control.interpreter import interpret
     from matstd.probe_paths.emit.program import make_programs
     from matstd.probe_paths.plan.planner import plan_touches
-    from matstd.probe_paths.plan.probe import Probe
     from matstd.probe_paths.plan.touch_plan import PlanOptions
 
     wanted = golden.requests(small, each=6)

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from matstd.artefact.reach.touchable import Requests
+from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.campaign.duration import probing_time
 from matstd.probe_paths.campaign.order_study import _sd_beside, _short_way, _shortest, orders
-from matstd.probe_paths.plan.probe import Probe
 from matstd.probe_paths.plan.touch_plan import PlanOptions
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.record.touches import Setup

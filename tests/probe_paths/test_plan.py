@@ -10,8 +10,9 @@ import pytest
 from matstd.artefact.body.datum import STEM_CLEARANCE, DatumSphere
 from matstd.artefact.reach.touchable import Requests
 from matstd.artefact.reach.workshop import Workshop
+from matstd.artefact.tool.heights import solid_hull, swing_height, top_height
+from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.plan import planner
-from matstd.probe_paths.plan.clearance import solid_hull, swing_height, top_height
 from matstd.probe_paths.plan.order import (
     LONGEST_TURN,
     nearest_neighbours,
@@ -20,7 +21,6 @@ from matstd.probe_paths.plan.order import (
     waypoints,
 )
 from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.probe import Probe
 from matstd.probe_paths.plan.touch_plan import PlanOptions, requests_at
 from matstd.twin.errors import DesignError, NotReachable, ShapeMismatch
 from matstd.twin.frames import apply, fixed_xyz

@@ -10,6 +10,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.evaluation import evaluate
 from matstd.probe_paths.campaign.virtual_run import run_programs
@@ -20,8 +21,7 @@ from matstd.probe_paths.emit.program import make_dry_run, make_programs
 from matstd.probe_paths.language.dialect import Dialect
 from matstd.probe_paths.language.dialect_file import read_dialect
 from matstd.probe_paths.plan.frame import ProgramFrame
-from matstd.probe_paths.plan.probe import Probe
-from matstd.stages.from_project import dialect as words_of
+from matstd.probe_paths.stations.from_brief import dialects_of
 from matstd.twin.effects.geometric import component
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files.machine_file import read_machine
@@ -177,4 +177,4 @@ def test_a_control_without_planes_is_refused(plan, tmp_path):
             encoding="utf-8",
         )
         with pytest.raises(BadFile, match=f"workshop.strategy.*{reason}"):
-            words_of(read_project(path))
+            dialects_of(read_project(path))

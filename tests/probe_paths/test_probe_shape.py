@@ -13,15 +13,16 @@ import pytest
 
 from matstd.artefact.reach.touchable import ProbeReach
 from matstd.artefact.reach.workshop import Solid, Workshop, round_table
+from matstd.artefact.tool.heights import solid_hull, swing_height, top_height
+from matstd.artefact.tool.probe import NOSE_HEIGHT, Probe
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.control.steps import Move, ProbeStep
 from matstd.probe_paths.emit.program import make_programs
 from matstd.probe_paths.emit.writer import Feeds
-from matstd.probe_paths.plan.clearance import ToolClearance, solid_hull, swing_height, top_height
+from matstd.probe_paths.plan.clearance import ToolClearance
 from matstd.probe_paths.plan.heading import Heading, parse_heading
 from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.probe import NOSE_HEIGHT, Probe
 from matstd.probe_paths.plan.touch_plan import PlanOptions
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import apply, turn

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.control.clock import Clock
 from matstd.probe_paths.control.interpreter import interpret
@@ -18,7 +19,6 @@ from matstd.probe_paths.language.dialect import Dialect
 from matstd.probe_paths.language.languages import read_blocks
 from matstd.probe_paths.language.text import MAX_LINE
 from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.probe import Probe
 from matstd.probe_paths.plan.touch_plan import PlanOptions, requests_at
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.machine.chain import Axis, make_chain

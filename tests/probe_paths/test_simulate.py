@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from matstd.artefact.body.standard_file import write_standard
+from matstd.artefact.tool.probe import Probe
 from matstd.cli import main
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.probe_paths.campaign.contact_solver import FIRST_MORNING
 from matstd.probe_paths.emit.program import make_programs
 from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.probe import Probe
 from matstd.probe_paths.plan.touch_plan import PlanOptions
 from matstd.twin.files.run_file import read_run
 from matstd.twin.model.model import Model

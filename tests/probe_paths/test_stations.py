@@ -11,7 +11,9 @@ from scipy.spatial.transform import Rotation
 
 from matstd.api.replanning import by_probe, of_one_setup
 from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.reach.bodies import Clamping
 from matstd.artefact.reach.workshop import Solid, Workshop, round_table
+from matstd.artefact.tool.probe import Probe
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.evaluation import evaluate
@@ -20,9 +22,8 @@ from matstd.probe_paths.control.interpreter import read_program
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.language.dialect import Dialect
 from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.probe import Probe
 from matstd.probe_paths.plan.touch_plan import PlanOptions
-from matstd.probe_paths.stations.planned import Clamping, _reposed, plan_campaign
+from matstd.probe_paths.stations.planned import _reposed, plan_campaign
 from matstd.probe_paths.stations.programmed import all_programs, make_stations, with_tool
 from matstd.twin.effects.setup_error import setup_errors
 from matstd.twin.errors import BadFile, DesignError, NotReachable
@@ -238,8 +239,9 @@ def test_a_project_states_further_probes_and_set_ups(tmp_path):
         "[setup.b]\nrotation_deg = [0.0, 0.0, 90.0]"
     )
     project = read_project(_project(tmp_path, addition))
-    assert [setup.name for setup in project.further_setups] == ["b"]
-    assert [(one.tool, one.stack_mm is not None) for one in project.further_probes] == [(31, True)]
+    assert [setup.name for setup in project.setups] == ["a", "b"]
+    assert project.programs.further_tools == (31,)
+    assert len(project.probes) == 2
 
 
 def _project(folder, addition):

@@ -17,7 +17,7 @@ from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.emit.program import make_programs
 from matstd.probe_paths.language.dialect import Dialect
 from matstd.probe_paths.plan.heading import Sensor
-from matstd.stages.from_project import dialect as words_of
+from matstd.probe_paths.stations.from_brief import dialects_of
 from matstd.twin.errors import BadFile
 from matstd.twin.files.run_file import read_run
 from matstd.twin.files.run_writer import write_run
@@ -129,12 +129,13 @@ def test_a_sensor_that_the_head_does_not_state_is_refused(change, reason, made, 
 )  # fmt: skip
 def test_sensors_that_cannot_be_read_are_one_line(control, keys, reason, tmp_path):
     with pytest.raises(BadFile, match=reason):
-        words_of(read_project(_project(tmp_path, control, keys)))
+        dialects_of(read_project(_project(tmp_path, control, keys)))
 
 
 def test_sensors_of_a_project_reach_the_words(tmp_path):
     keys = "bed = { parameter = 103, factor = 0.1, offset = -5.0 }"
-    assert words_of(read_project(_project(tmp_path, "tnc640", keys))).sensors == SENSORS[1:]
+    (words,) = dialects_of(read_project(_project(tmp_path, "tnc640", keys)))
+    assert words.sensors == SENSORS[1:]
 
 
 def _project(folder, control, keys):

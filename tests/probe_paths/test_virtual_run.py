@@ -9,12 +9,12 @@ from scipy.optimize import brentq, minimize
 
 from matstd.artefact.body.patch import Meeting
 from matstd.artefact.reach.workshop import Workshop, round_table
+from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.virtual_run import Outcome, run_program, run_programs
 from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.emit.program import make_programs
 from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.probe import Probe
 from matstd.probe_paths.plan.touch_plan import PlanOptions, requests_at
 from matstd.twin.effects.geometric import ComponentError
 from matstd.twin.effects.location import LocationError

@@ -45,11 +45,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="time step of the laws, minutes (5)",
     )
     parser.add_argument(
-        "--beams",
-        metavar="BEAMS.toml",
-        help="bodies with section and sensors, for estimates by beam theory",
-    )
-    parser.add_argument(
         "--sensor-noise",
         metavar="K",
         type=float,
@@ -64,7 +59,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--u-um", type=float, default=1.0, help="standard uncertainty of a probed drift, µm (1)"
     )
-    parser.add_argument("--no-network", action="store_true", help="leave out the neural network")
     parser.add_argument(
         "--law", metavar="thermal.json", help="predict with this law of an earlier run; fit nothing"
     )
@@ -76,7 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Compare laws, or predict with one; the folder appears whole or not at all."""
-    if args.law and (args.held_out or args.train_until or args.beams or len(args.logs) > 1):
+    if args.law and (args.held_out or args.train_until or len(args.logs) > 1):
         raise DesignError("expected one LOG.csv and no training options with --law")
     if args.probed and not args.law:
         raise DesignError("expected --law thermal.json with --probed")
@@ -98,11 +92,9 @@ def _compare(args: argparse.Namespace) -> int:
             train_until=None if args.train_until is None else args.train_until * HOUR,
             own_zeros=args.own_zeros,
             step=args.step_min * MINUTE,
-            beams=args.beams,
             sensor_noise=args.sensor_noise,
             probe_every=None if args.probe_every is None else args.probe_every * HOUR,
             u=args.u_um * UM,
-            network=not args.no_network,
             progress=show,
         )
         found.write(folder)

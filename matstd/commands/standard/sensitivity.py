@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from matstd.options import REPORT_FILES, add_pdf, asked_printer, print_report
+from matstd.options import add_pdf
 from matstd.workers import add_scheduler
 
 _STUDY_ONLY = ("draws", "digits", "tolerance_um", "scheduler", "pdf")
@@ -82,22 +82,24 @@ def _table(args: argparse.Namespace) -> int:
 
 def _study(args: argparse.Namespace) -> int:
     """Data, pictures and page of a study; the folder appears whole or not at all."""
-    from matstd.artefact.brief import read_project
     from matstd.console import say_assumed, say_each
-    from matstd.twin.files import results_folder
-    from matstd.workers import connected
+    from matstd.design import Project
+    from matstd.progress import stages
+    from matstd.report.words import study_words
 
-    project, printed_by = read_project(args.source, _settings(args)), asked_printer(args)
-    say_assumed(project.chain)
-    say_each(project.remarks)
-    with results_folder(args.output, args.force, REPORT_FILES) as folder:
-        from matstd.progress import stages
-        from matstd.stages.study_run import study_project
-
-        with stages() as progress, connected(args.scheduler) as workers:
-            told = study_project(project, args.poses, folder, progress, workers)
-            print_report(folder, printed_by)
-    for line in told:
+    project = Project.read(args.source, montecarlo=_settings(args))
+    say_assumed(project.brief.chain)
+    say_each(project.brief.remarks)
+    with stages() as progress:
+        made = project.sensitivity(
+            args.output,
+            args.poses,
+            force=args.force,
+            progress=progress,
+            scheduler=args.scheduler,
+            pdf=bool(args.pdf),
+        )
+    for line in (*made.remarks, *study_words(made.study)):
         print(line)
     print(f"{args.output}: look at report.html")
     return 0

@@ -1,16 +1,17 @@
-"""What of the wanted standard fits and is reached, looked at before anything else is done.
+"""Whether the machine reaches enough of the blank, and which change of the project would do if not.
 
-A refusal says which travel or angle binds, and the nearest wish that could be met.
+A refusal names the travel or angle that binds and the nearest wishes that can be met, each of which
+was tried.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, Standard
-from matstd.artefact.brief import Project
+from matstd.artefact.brief import Brief
+from matstd.artefact.feasibility.standing import RISEN, stands
 from matstd.artefact.reach import (
     ANGLE,
     Limit,
@@ -19,37 +20,22 @@ from matstd.artefact.reach import (
     places_on,
     reach_of,
     spread_poses,
-    turned,
 )
-from matstd.artefact.seat import (
-    seat_height,
-)
-from matstd.artefact.worth import poses_within
-from matstd.probe_paths.plan import (
+from matstd.artefact.seat import seat_height
+from matstd.artefact.tool import (
+    OVERSHOOT,
     home_readings,
     readings_at,
     solid_hull,
     swing_height,
     top_height,
 )
-from matstd.report.plots import draw_reach
-from matstd.report.style import save
-from matstd.stages.from_project import (
-    blank,
-    placement_options,
-    plan_options,
-    probe,
-    probe_reach,
-)
-from matstd.stages.seat import RISEN, lifted, stands
+from matstd.artefact.worth import poses_within
 from matstd.twin.errors import NotReachable
-from matstd.twin.frames import Array
-from matstd.twin.machine import linear_directions
+from matstd.twin.frames import Array, fixed_xyz
+from matstd.twin.machine import Chain, linear_directions
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG
-
-PICTURE = "reach.png"
-"""File of the picture in a folder of results."""
 
 _RISER = 300.0  # mm above the table's face that a wish may lift a standard
 _POSES = 60  # table poses that are tried
@@ -59,9 +45,10 @@ _SCALES = (1.0, 1.25, 1.5, 2.0, 3.0)  # of the shift by which single touches mis
 _LENGTHS = (-100.0, -50.0, -25.0, 25.0, 50.0, 100.0, 200.0)  # mm by which a probe may differ
 _WIDER = 6  # steps in which a rotary range is widened to its travel
 _TURNS = ((-90.0, 0.0, 0.0), (90.0, 0.0, 0.0), (0.0, 90.0, 0.0), (0.0, -90.0, 0.0))  # degrees
-_TOLD = 3  # wishes named in a refusal
+_NAMED = 3  # wishes named in a refusal
 _ROUGH = 20  # table poses, and a third of the places, by which a wish is looked at first
-_TRIED = "place or turn of the set-up, length of the probe or range of a rotary axis"
+TRIED = "place or turn of the set-up, length of the probe or range of a rotary axis"
+"""What `nearest_in_reach` changes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +58,7 @@ class Wish:
     Attributes:
         words: Key and value of the project file.
         size: To tell small changes of one kind from large ones.
-        kind: What is changed; one wish of a kind is told.
+        kind: What is changed; one wish of a kind is named.
         reach: Machine, probe and set-up.
         rotary: Limits of the rotary axes, (R, 2), rad.
     """
@@ -83,30 +70,38 @@ class Wish:
     rotary: Array
 
 
-def check_reach(project: Project, folder: Path) -> Array:
-    """Draw what is reached into a folder, and refuse what cannot be designed.
+@dataclass(frozen=True, eq=False)
+class Travels:
+    """What of a blank the machine reaches.
 
-    Args:
-        project: What is wanted.
-        folder: For the picture.
+    Attributes:
+        tried: Places, table poses, and what is beyond which limit.
+        poses: Table poses to choose from, (K, R), rad: where Z can rise above the standard.
+        against: What binds, in words; empty where enough is reached.
+    """
 
-    Returns:
-        Table poses to choose from, (K, R), rad: those at which Z can rise above the standard.
+    tried: PlacesInReach
+    poses: Array
+    against: str = ""
+
+
+def travels(brief: Brief) -> Travels:
+    """What of a blank the machine reaches, at table poses where Z rises above the standard.
 
     Raises:
-        NotReachable: Fewer places than a standard needs; which limit binds, the nearest wish.
+        NotReachable: Limits of a rotary axis without room to approach a reading from both sides.
     """
-    wanted, rotary = probe_reach(project), _rotary(project)
-    poses = poses_within(project.chain, rotary, placement_options(project).choice.poses)
-    places, enough = places_on(blank(project)), _enough(project)
+    wanted = brief.reach
+    poses = poses_within(brief.chain, brief.rotary, brief.options.choice.poses)
+    places, enough = places_on(brief.blank), _enough(brief)
     tried = reach_of(wanted, *places, spread_poses(poses, _POSES))
     rises = np.ones(len(poses), dtype=bool)
-    if tried.places >= enough:  # else nobody asks whether Z rises above what is not reached
-        to_rise, retract = _to_rise(project, wanted, poses)
+    if tried.places >= enough:  # whether Z rises is of no interest above what is not reached
+        to_rise, retract = _to_rise(brief, wanted, poses)
         rises = to_rise <= retract
         if rises.any():
             tried = reach_of(wanted, *places, spread_poses(poses[rises], _POSES))
-    save(draw_reach(tried, wanted.chain, blank(project)), folder / PICTURE)
+    against = ""
     if not rises.any():
         against = (
             f"Z would have to rise to {np.ceil(to_rise.min()):.0f} mm for the probe to clear "
@@ -115,35 +110,36 @@ def check_reach(project: Project, folder: Path) -> Array:
     elif tried.places < enough:
         pose, asked = tried.wanting(enough)
         at = " ".join(
-            f"{a}{v / DEG:+.0f}" for a, v in zip(project.chain.rotary_axes, pose, strict=True)
+            f"{a}{v / DEG:+.0f}" for a, v in zip(brief.chain.rotary_axes, pose, strict=True)
         )
         against = (
             f"{tried.places} of {len(tried.point)} places of such a standard are within reach, "
             f"{enough} have to be; {f'even at {at} ' if at else ''}"
             f"{' and '.join(_asked(m, v) for m, v in asked)}"
         )
-    else:
-        return poses[rises]
-    found = [wish.words for wish in _nearest(project, wanted, rotary, tried)]
-    nearest = f"{' or '.join(found)} would do" if found else f"no other {_TRIED} alone would do"
-    raise NotReachable(f"{project.path}: {against}; {nearest}")
+    return Travels(tried, poses[rises], against)
 
 
-def _enough(project: Project) -> int:
-    return _PLACES_A_PATCH * placement_options(project).patches
+def nearest_in_reach(brief: Brief, tried: PlacesInReach) -> tuple[str, ...]:
+    """Nearest changes of the project that bring enough within reach, in words; none if none does.
+
+    Args:
+        brief: Of which too little is reached.
+        tried: What is.
+    """
+    return tuple(wish.words for wish in _nearest(brief, tried))
 
 
-def _rotary(project: Project) -> Array:
-    axes = project.chain.rotary_axes
-    return np.array([project.workspace[name] for name in axes]).reshape(-1, 2)
+def _enough(brief: Brief) -> int:
+    return _PLACES_A_PATCH * brief.options.patches
 
 
-def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array, float]:
+def _to_rise(brief: Brief, wanted: ProbeReach, poses: Array) -> tuple[Array, float]:
     """Reading of Z (K,) that a visit of a pose asks for at least, and the one it retracts to, mm.
 
     By what every standard has: its base, and its highest sphere, taken over the middle.
     """
-    made, options, chain = blank(project), plan_options(project), wanted.chain
+    made, programs, chain = brief.blank, brief.programs, wanted.chain
     fit, top = made.fittings, made.base.thickness
     middle = np.array([0.0, 0.0, max(fit.sphere_heights)])
     ball = DatumSphere(
@@ -166,40 +162,39 @@ def _to_rise(project: Project, wanted: ProbeReach, poses: Array) -> tuple[Array,
         blank_height=made.height,
     )
     solid = solid_hull(least, wanted.setup, wanted.workshop)
-    tool = probe(project).at_length(wanted.length)
-    retract = chain.link("Z").range[1] - options.retract
-    to_rise = top_height(chain, poses, solid, tool) + options.clearance
+    tool = brief.probe.at_length(wanted.length)
+    retract = chain.link("Z").range[1] - programs.retract
+    to_rise = top_height(chain, poses, solid, tool) + programs.clearance
     turns = np.flatnonzero(to_rise <= retract)  # the way to the others is of no use
-    home, ends = home_readings(chain), _beyond(project, poses, options.overshoot)
+    home, ends = home_readings(chain), _beyond(brief.chain, poses)
     ways = [swing_height(chain, np.stack([home, ends[i]]), solid, tool)[0] for i in turns]
-    turning = np.array(ways) + 0.5 * options.clearance
+    turning = np.array(ways) + 0.5 * programs.clearance
     to_rise[turns] = np.maximum(to_rise[turns], turning)
     return to_rise, retract
 
 
-def _beyond(project: Project, poses: Array, overshoot: float) -> Array:
+def _beyond(chain: Chain, poses: Array) -> Array:
     """Poses (K, R) with the way beyond them from which they may be approached, where it exists."""
-    travels = [project.chain.link(a).range for a in project.chain.rotary_axes]
+    travels = [chain.link(a).range for a in chain.rotary_axes]
     low, high = np.array(travels).reshape(-1, 2).T
-    home = home_readings(project.chain)
-    out = poses + overshoot * np.where(poses >= home, 1.0, -1.0)
+    out = poses + OVERSHOOT * np.where(poses >= home_readings(chain), 1.0, -1.0)
     beyond: Array = np.where((out >= low) & (out <= high), out, poses)
     return beyond
 
 
-def _fits(project: Project, wish: Wish) -> bool:
+def _fits(brief: Brief, wish: Wish) -> bool:
     """Whether a changed project is within reach; by few places and poses first."""
-    made = blank(project)
-    if not stands(lifted(project, max(_RISER, project.limits.riser_mm)), wish.reach.setup):
+    lifted = replace(brief, riser=max(_RISER, brief.riser))
+    if not stands(lifted, wish.reach.setup):
         return False
-    grid = poses_within(project.chain, wish.rotary, placement_options(project).choice.poses)
+    grid = poses_within(brief.chain, wish.rotary, brief.options.choice.poses)
     for some, step in ((spread_poses(grid, _ROUGH), 3), (spread_poses(grid, _POSES), 1)):
-        point, normal = (v[::step] for v in places_on(made))
-        if reach_of(wish.reach, point, normal, some).places * step < _enough(project):
+        point, normal = (v[::step] for v in places_on(brief.blank))
+        if reach_of(wish.reach, point, normal, some).places * step < _enough(brief):
             return False
-    to_rise, retract = _to_rise(project, wish.reach, some)
+    to_rise, retract = _to_rise(brief, wish.reach, some)
     good = some[to_rise <= retract]
-    return reach_of(wish.reach, point, normal, good).places >= _enough(project)
+    return reach_of(wish.reach, point, normal, good).places >= _enough(brief)
 
 
 def _asked(limit: Limit, value: float) -> str:
@@ -213,13 +208,12 @@ def _asked(limit: Limit, value: float) -> str:
     return f"{limit.name} would have to go to {end:.0f} mm, its travel ends at {limit.at:g}"
 
 
-def _nearest(
-    project: Project, wanted: ProbeReach, rotary: Array, tried: PlacesInReach
-) -> list[Wish]:
+def _nearest(brief: Brief, tried: PlacesInReach) -> list[Wish]:
     """The smallest change of every kind that would do."""
     found: dict[str, Wish] = {}
+    wanted, rotary = brief.reach, brief.rotary
     wishes = [
-        *_moved(project, wanted, rotary, tried),
+        *_moved(brief, tried),
         *_wider(wanted, rotary),
         *_longer(wanted, rotary),
         *_turned(wanted, rotary),
@@ -227,21 +221,20 @@ def _nearest(
     ]
     for wish in sorted(wishes, key=lambda w: w.size):
         try:
-            if wish.kind not in found and _fits(project, wish):
+            if wish.kind not in found and _fits(brief, wish):
                 found[wish.kind] = wish
         except NotReachable:  # no room to approach a reading
             continue
-    return list(found.values())[:_TOLD]
+    return list(found.values())[:_NAMED]
 
 
-def _moved(
-    project: Project, wanted: ProbeReach, rotary: Array, tried: PlacesInReach
-) -> Iterator[Wish]:
+def _moved(brief: Brief, tried: PlacesInReach) -> Iterator[Wish]:
     """Along the axes of the table, and the way by which touches miss their travels."""
+    wanted, rotary = brief.reach, brief.rotary
     chain, T = wanted.chain, wanted.setup.T_table_artefact
     ways = [(d, sign * s) for d in np.eye(3) for sign in (1.0, -1.0) for s in _SHIFTS]
     missed = np.zeros(3)
-    pose, asked = tried.wanting(_enough(project)) if len(tried.poses) else (rotary[:, 0], [])
+    pose, asked = tried.wanting(_enough(brief)) if len(tried.poses) else (rotary[:, 0], [])
     along = linear_directions(chain, readings_at(chain, pose[None]))[0]
     for limit, value in asked:
         if limit.name != ANGLE:
@@ -253,8 +246,8 @@ def _moved(
         place = ", ".join(f"{v + 0.0:.0f}" for v in moved[:3, 3])
         setup = Setup(wanted.setup.name, moved)
         words = f"setup.{setup.name}.origin_mm = [{place}]"
-        up = seat_height(moved, blank(project).base.half_size) - wanted.workshop.table.high
-        if up > max(RISEN, project.limits.riser_mm):
+        up = seat_height(moved, brief.blank.base.half_size) - brief.table.high
+        if up > max(RISEN, brief.riser):
             words += f" with limits.riser_mm = {np.ceil(up):.0f}"
         yield Wish(
             words=words,
@@ -295,8 +288,9 @@ def _longer(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
 
 def _turned(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
     for angles in _TURNS:
-        a, b, c = (v * DEG for v in angles)
-        setup = Setup(wanted.setup.name, turned(wanted.setup.T_table_artefact, (a, b, c)))
+        T = wanted.setup.T_table_artefact.copy()
+        T[:3, :3] = fixed_xyz(np.array(angles) * DEG)
+        setup = Setup(wanted.setup.name, T)
         words = ", ".join(f"{v:g}" for v in angles)
         yield Wish(
             words=f"setup.{setup.name}.rotation_deg = [{words}]",

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.artefact.body import Base, DatumSphere, FreeformPatch, MountingHole, Standard
+from matstd.artefact.feasibility.touched import is_from_side, mutually_probeable, untouched
 from matstd.artefact.layout import (
     Blank,
     Pairs,
@@ -22,7 +23,6 @@ from matstd.artefact.layout import (
     least_mass,
     with_spheres,
 )
-from matstd.artefact.place.touched import is_from_side, seen_beside, untouched
 from matstd.artefact.reach import ProbeReach, reach_of, spread_poses
 from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array
@@ -224,7 +224,7 @@ def _touched(
     """The same if the probe can touch every face, or the most faces that leave each other to it."""
     if not untouched(reach, room.standard, poses):
         return room
-    seen = seen_beside(reach, room.blank, faces, (), poses)
+    seen = mutually_probeable(reach, room.blank, faces, (), poses)
     most, beside, low = replace(room, faces=()), seen.beside.copy(), _lowest(balls)
     for _ in range(_ROUNDS):
         found = room_among(faces, low, room.wanted, room.blank, beside)

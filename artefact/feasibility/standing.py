@@ -3,20 +3,14 @@
 A refusal names the body, by how much it is wrong, and a change of that body that was tried.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 import numpy as np
 
 from matstd.artefact.body import Standard
-from matstd.artefact.brief import BodyTable, Project
-from matstd.artefact.reach import (
-    Solid,
-    closed_mesh,
-    hangs,
-    table_face,
-)
+from matstd.artefact.brief import Brief
+from matstd.artefact.reach import Body, Solid, hangs, table_face
 from matstd.artefact.seat import (
     TOUCHING,
     base_corners,
@@ -26,15 +20,15 @@ from matstd.artefact.seat import (
     overlap,
     seat_height,
 )
-from matstd.cad_out.meshes import read_stl
-from matstd.stages.from_project import blank, solids_of, table_of
 from matstd.twin.errors import BadFile
-from matstd.twin.frames import Array, apply, fixed_xyz, fixed_xyz_angles, inverse, pose, rotation
+from matstd.twin.frames import Array, apply, fixed_xyz, fixed_xyz_angles, inverse, pose
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
 RISEN = 1.0
 """By which a seat may lie above or below what carries it, mm: set-ups are measured."""
+
+Mesh = tuple[Array, np.ndarray]
 
 _OVERHANG, _MORE = 40.0, 5.0
 """Of a base over the edge of the table where nothing is stated, mm, and by how much more than in
@@ -58,7 +52,7 @@ class Fault:
     """A body that stands where it cannot.
 
     Attributes:
-        key: Of the project file.
+        key: Of the brief file.
         found: What stands there.
         words: What is wrong, with the distance.
         way: By which a clamp leaves what it stands in, (3,), mm, in the frame of the face.
@@ -70,86 +64,82 @@ class Fault:
     way: Array = field(default_factory=lambda: np.zeros(3))
 
 
-def check_seat(project: Project) -> None:
+def check_seat(brief: Brief) -> None:
     """Refuse a standard that does not stand on its table, and bodies in its base or in the table.
 
     Raises:
         BadFile: Body and distance, and a change of that body that was tried.
     """
-    _refuse(project, _faults)
+    _refuse(brief, None)
 
 
-def check_beside(project: Project, standard: Standard, folder: Path) -> None:
-    """Refuse bodies that stand in the finished standard, by its mesh.
+def check_beside(brief: Brief, standard: Standard, mesh: Mesh) -> None:
+    """Refuse bodies that stand in the finished standard.
 
     Args:
-        project: What is designed.
+        brief: What is designed.
         standard: As designed.
-        folder: Holds its mesh.
+        mesh: Of it: corners (V, 3) and triangles (F, 3), artefact frame, mm.
 
     Raises:
         BadFile: As of `check_seat`.
     """
-    mesh = read_stl(folder / "standard.stl")
-    _refuse(project, lambda one: [*_faults(one), *_in_standard(one, standard, mesh)])
+    _refuse(brief, (standard, mesh))
 
 
-def stands(project: Project, setup: Setup) -> bool:
-    """Whether a standard in some set-up stands on the table of a project."""
-    return next(_of_setup(project, setup), None) is None
+def stands(brief: Brief, setup: Setup) -> bool:
+    """Whether the standard stands on the table in some set-up."""
+    return next(_of_setup(brief, setup), None) is None
 
 
-def lifted(project: Project, riser: float) -> Project:
-    """The project with a riser of up to some height, mm, under its standard."""
-    return replace(project, limits=project.limits.model_copy(update={"riser_mm": riser}))
-
-
-def _refuse(project: Project, faults: Callable[[Project], list[Fault]]) -> None:
+def _refuse(brief: Brief, finished: tuple[Standard, Mesh] | None) -> None:
     """Raise BadFile for the first fault, with a change that leaves fewer and none of its key."""
-    found = faults(project)
+    found = _faults(brief, finished)
     if not found:
         return
     first = found[0]
-    for words, other in _changes(project, first):
-        left = faults(other)
+    for words, other in _changes(brief, first):
+        left = _faults(other, finished)
         if len(left) < len(found) and all(fault.key != first.key for fault in left):
             helps = f"{words} would do"
             break
     else:
         helps = "no other place of it alone would do of those that were tried"
     more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
-    raise BadFile(project.path, first.key, first.found, f"{first.words}{more}; {helps}")
+    raise BadFile(brief.path, first.key, first.found, f"{first.words}{more}; {helps}")
 
 
-def _faults(project: Project) -> list[Fault]:
-    return [
+def _faults(brief: Brief, finished: tuple[Standard, Mesh] | None) -> list[Fault]:
+    """Of every set-up; with a finished standard also of what stands on its base."""
+    found = [
         fault
-        for setup in (project.setup, *project.further_setups)
-        for fault in (*_of_setup(project, setup), *_of_bodies(project, setup))
+        for setup in brief.setups
+        for fault in (*_of_setup(brief, setup), *_of_bodies(brief, setup))
     ]
+    return found if finished is None else [*found, *_in_standard(brief, *finished)]
 
 
-def _of_setup(project: Project, setup: Setup) -> Iterator[Fault]:
+def _of_setup(brief: Brief, setup: Setup) -> Iterator[Fault]:
     """A standard that hangs, is sunk, floats or stands over the edge."""
-    T, base, table = setup.T_table_artefact, blank(project).base, table_of(project)
+    T, base, table = setup.T_table_artefact, brief.blank.base, brief.table
     key, place = f"setup.{setup.name}", T[:3, 3].round(6).tolist()
     above = seat_height(T, base.half_size) - table.high
     if above < -RISEN:
         words = f"its lowest corner lies {-above:.1f} mm below"
         yield Fault(f"{key}.origin_mm", place, f"a seat on the table's face or above it: {words}")
-    if hangs(project.chain, T):
+    if hangs(brief.chain, T):
         angles = np.round(fixed_xyz_angles(T[:3, :3]) / DEG, 6).tolist()
         words = "a standard that looks towards the tool with every axis at zero: its seat does"
         yield Fault(f"{key}.rotation_deg", angles, words)
     key = f"{key}.origin_mm"
-    if above - project.limits.riser_mm > RISEN and not _is_carried(project, setup):
+    if above - brief.riser > RISEN and not _is_carried(brief, setup):
         yield Fault(
             key,
             place,
             f"a seat on the table's face: it floats {above:.1f} mm above it, and neither "
             "limits.riser_mm nor a body under it carries it",
         )
-    beyond, allowed = over_edge(table, base, T), _overhang(project)
+    beyond, allowed = over_edge(table, base, T), _overhang(brief)
     if beyond > allowed:
         apart = off_table(table, base, T)
         words = f"{beyond:.1f} mm beyond the edge, limits.overhang_mm is {allowed:.1f}"
@@ -160,73 +150,65 @@ def _of_setup(project: Project, setup: Setup) -> Iterator[Fault]:
         yield Fault(key, place, f"a base on the table ([workshop.table]): {words}")
 
 
-def _overhang(project: Project) -> float:
+def _overhang(brief: Brief) -> float:
     """How far a base may reach beyond the edge of the table, mm."""
-    stated = project.limits.overhang_mm
+    stated = brief.overhang
     if stated is not None:
         return stated
-    in_the_middle = over_edge(table_of(project), blank(project).base, np.eye(4))
+    in_the_middle = over_edge(brief.table, brief.blank.base, np.eye(4))
     return max(_OVERHANG, in_the_middle + _MORE)
 
 
-def _is_carried(project: Project, setup: Setup) -> bool:
+def _is_carried(brief: Brief, setup: Setup) -> bool:
     """Whether a stated body reaches up to the seat."""
-    corners = base_corners(blank(project).base, setup.T_table_artefact)
+    corners = base_corners(brief.blank.base, setup.T_table_artefact)
     return any(
         abs(solid.high - corners[:, 2].min()) <= RISEN
         and overlap(solid.corners() + np.array([0.0, 0.0, 2.0 * RISEN]), corners).depth > 0.0
-        for _, body in _bodies(project, setup)
-        for solid in solids_of(project, body)
+        for _, body in _bodies(brief, setup)
+        for solid in body.solids
     )
 
 
-def _bodies(project: Project, setup: Setup) -> Iterator[tuple[int, BodyTable]]:
+def _bodies(brief: Brief, setup: Setup) -> Iterator[tuple[int, Body]]:
     """Bodies that stand beside a standard in some set-up, with their number in the file."""
-    for i, body in enumerate(project.workshop.bodies):
+    for i, body in enumerate(brief.bodies):
         if body.setup in {"", setup.name}:
             yield i, body
 
 
-def _of_bodies(project: Project, setup: Setup) -> Iterator[Fault]:
+def _of_bodies(brief: Brief, setup: Setup) -> Iterator[Fault]:
     """Bodies in the base or in the table, and a ball whose stem stands in the base."""
-    base = base_corners(blank(project).base, setup.T_table_artefact)
-    table, ball = table_of(project), project.workshop.ball
-    for i, body in _bodies(project, setup):
-        key, place = f"workshop.bodies.{i}.at_mm", list(body.at_mm)
-        depth, way = _into(project, body, base)
+    base = base_corners(brief.blank.base, setup.T_table_artefact)
+    table, ball = brief.table, brief.ball
+    for i, body in _bodies(brief, setup):
+        key, place = f"workshop.bodies.{i}.at_mm", list(body.at)
+        depth, way = _into(body, base)
         if depth > TOUCHING:
             words = f"{body.name} beside the standard: it reaches {depth:.1f} mm into its base"
             yield Fault(key, place, words, way)
-        depth, _ = _into(project, body, table.corners(_SIDES))
+        depth, _ = _into(body, table.corners(_SIDES))
         if depth > TOUCHING:
             words = f"{body.name} on the table: it reaches {depth:.1f} mm into it"
             yield Fault(key, place, words, np.array([0.0, 0.0, depth]))
     if ball is not None:
-        (x, y, z), r = ball.at_mm, 0.5 * ball.stem_diameter_mm
-        met = overlap(Solid("stem", (r, r), True, table.high, z, x, y).corners(), base)
+        stem = Solid("stem", (ball.stem, ball.stem), True, table.high, ball.z, ball.x, ball.y)
+        met = overlap(stem.corners(), base)
         if met.depth > TOUCHING:
             words = (
                 f"the ball beside the standard: its stem reaches {met.depth:.1f} mm into its base"
             )
-            yield Fault("workshop.ball.at_mm", list(ball.at_mm), words, np.append(met.aside, 0.0))
+            place = [ball.x, ball.y, ball.z]
+            yield Fault("workshop.ball.at_mm", place, words, np.append(met.aside, 0.0))
 
 
-def _into(project: Project, body: BodyTable, other: Array) -> tuple[float, Array]:
+def _into(body: Body, other: Array) -> tuple[float, Array]:
     """How deep a body reaches into the hull of some corners, mm, and its way out (3,)."""
-    mesh = _mesh(project, body)
-    if mesh is not None:
-        return _extent(common_part(*mesh, other))
-    met = [overlap(solid.corners(_SIDES), other) for solid in solids_of(project, body)]
+    if body.mesh is not None:
+        return _extent(common_part(*body.mesh, other))
+    met = [overlap(solid.corners(_SIDES), other) for solid in body.solids]
     deepest = max(met, key=lambda one: one.depth)
     return deepest.depth, np.append(deepest.aside, 0.0)
-
-
-def _mesh(project: Project, body: BodyTable) -> tuple[Array, Array] | None:
-    """A body's mesh in the frame of the face; None where it is none or encloses nothing."""
-    if body.stl is None:
-        return None
-    turn = rotation(np.array([0.0, 0.0, body.turned_deg * DEG]))
-    return closed_mesh(project.path.parent / body.stl, pose(turn, np.array(body.at_mm)))
 
 
 def _extent(common: Array) -> tuple[float, Array]:
@@ -238,31 +220,29 @@ def _extent(common: Array) -> tuple[float, Array]:
     return float(sides.min()), np.eye(3)[axis] * sides[axis]
 
 
-def _in_standard(
-    project: Project, standard: Standard, mesh: tuple[Array, Array]
-) -> Iterator[Fault]:
+def _in_standard(brief: Brief, standard: Standard, mesh: tuple[Array, Array]) -> Iterator[Fault]:
     """Bodies in what stands on the base: faces, posts and balls, by their mesh."""
-    for setup in (project.setup, *project.further_setups):
+    for setup in brief.setups:
         T_table_artefact = setup.T_table_artefact
         T_face_artefact = inverse(table_face(T_table_artefact)) @ T_table_artefact
         corners = apply(T_face_artefact, mesh[0])
-        for i, body in _bodies(project, setup):
-            own = _mesh(project, body)
-            others = [own] if own else [(s.corners(_SIDES), None) for s in solids_of(project, body)]
+        for i, body in _bodies(brief, setup):
+            own = body.mesh
+            others = [own] if own else [(s.corners(_SIDES), None) for s in body.solids]
             common = np.concatenate([common_part(corners, mesh[1], *other) for other in others])
             depth, way = _extent(common)
             if depth > TOUCHING:
                 near = apply(inverse(T_face_artefact), common.mean(axis=0, keepdims=True))
                 met = min(standard.bodies, key=lambda n: standard.bodies[n].distance(near)[0])
                 words = f"{body.name} beside the standard: it reaches {depth:.1f} mm into {met}"
-                yield Fault(f"workshop.bodies.{i}.at_mm", list(body.at_mm), words, way)
+                yield Fault(f"workshop.bodies.{i}.at_mm", list(body.at), words, way)
 
 
-def _changes(project: Project, fault: Fault) -> Iterator[tuple[str, Project]]:
+def _changes(brief: Brief, fault: Fault) -> Iterator[tuple[str, Brief]]:
     """Other places of a body, the nearest first, each with its words."""
     _, name, *_ = fault.key.split(".")
     if fault.key.startswith("setup."):
-        yield from _seats(project, name)
+        yield from _seats(brief, name)
         return
     away = np.array(fault.found, dtype=float)
     ways = [fault.way, -fault.way, *np.eye(3)[:2], *-np.eye(3)[:2], np.append(away[:2], 0.0)]
@@ -275,36 +255,33 @@ def _changes(project: Project, fault: Fault) -> Iterator[tuple[str, Project]]:
                 place = np.array(fault.found) + np.sign(shift) * np.ceil(np.abs(shift) - 1e-9)
                 place = np.round(place, 1) + 0.0  # as it is written
                 words = f"{fault.key} = {_list(place)}"
-                yield words, _with_body(project, fault.key, place)
+                yield words, _with_body(brief, fault.key, place)
 
 
-def _with_body(project: Project, key: str, place: Array) -> Project:
-    """The project with a body, or the ball, somewhere else."""
-    at, shop = {"at_mm": tuple(map(float, place))}, project.workshop
+def _with_body(brief: Brief, key: str, place: Array) -> Brief:
+    """The brief with a body, or the ball, somewhere else."""
+    x, y, z = map(float, place)
     if key.startswith("workshop.ball"):
-        assert shop.ball is not None
-        return replace(
-            project, workshop=shop.model_copy(update={"ball": shop.ball.model_copy(update=at)})
-        )
-    bodies, i = list(shop.bodies), int(key.split(".")[2])
-    bodies[i] = bodies[i].model_copy(update=at)
-    return replace(project, workshop=shop.model_copy(update={"bodies": bodies}))
+        assert brief.ball is not None
+        return replace(brief, ball=replace(brief.ball, x=x, y=y, z=z))
+    bodies, i = list(brief.bodies), int(key.split(".")[2])
+    bodies[i] = replace(bodies[i], at=(x, y, z))
+    return replace(brief, bodies=tuple(bodies))
 
 
-def _seats(project: Project, name: str) -> Iterator[tuple[str, Project]]:
+def _seats(brief: Brief, name: str) -> Iterator[tuple[str, Brief]]:
     """A set-up on the face, towards the middle of the table as far as needed; or turned over."""
-    setups = [project.setup, *project.further_setups]
+    setups = brief.setups
     k = next(k for k, setup in enumerate(setups) if setup.name == name)
     T = setups[k].T_table_artefact
     face = table_face(T)[:3, :3]
     on_face = face.T @ T[:3, 3]
-    height = table_of(project).high - seat_height(T, blank(project).base.half_size)
-    for angles in _TURNS if hangs(project.chain, T) else ():
+    height = brief.table.high - seat_height(T, brief.blank.base.half_size)
+    for angles in _TURNS if hangs(brief.chain, T) else ():
         setup = Setup(name, pose(fixed_xyz(np.array(angles) * DEG), T[:3, 3]), setups[k].run)
-        if stands(project, setup):
-            others = [*setups[:k], setup, *setups[k + 1 :]]
-            other = replace(project, setup=others[0], further_setups=tuple(others[1:]))
-            yield f"setup.{name}.rotation_deg = {_list(np.array(angles))}", other
+        if stands(brief, setup):
+            words = f"setup.{name}.rotation_deg = {_list(np.array(angles))}"
+            yield words, _with_setup(brief, k, setup)
     for up in (0.0, height):
         low, high, best = 0.0, 1.0, None  # the way to the middle, halved until it is known to 1 %
         for share in (1.0, 0.0, *[None] * _HALVES):
@@ -314,21 +291,24 @@ def _seats(project: Project, name: str) -> Iterator[tuple[str, Project]]:
             moved = T.copy()
             moved[:3, 3] = np.round(face @ place, 1) + 0.0  # as it is written
             setup = replace(setups[k], T_table_artefact=moved)
-            if stands(project, setup):
+            if stands(brief, setup):
                 best, low = setup, share
             else:
                 high = share
             if low == 1.0 or (best is None and share == 0.0):
                 break
         if best is not None:
-            others = [*setups[:k], best, *setups[k + 1 :]]
-            other = replace(project, setup=others[0], further_setups=tuple(others[1:]))
-            yield f"setup.{name}.origin_mm = {_list(best.T_table_artefact[:3, 3])}", other
-    if not hangs(project.chain, T):
-        beyond = float(np.ceil(over_edge(table_of(project), blank(project).base, T)))
-        if off_table(table_of(project), blank(project).base, T) == 0.0 < beyond:
-            limits = project.limits.model_copy(update={"overhang_mm": beyond})
-            yield f"limits.overhang_mm = {beyond:g}", replace(project, limits=limits)
+            words = f"setup.{name}.origin_mm = {_list(best.T_table_artefact[:3, 3])}"
+            yield words, _with_setup(brief, k, best)
+    if not hangs(brief.chain, T):
+        beyond = float(np.ceil(over_edge(brief.table, brief.blank.base, T)))
+        if off_table(brief.table, brief.blank.base, T) == 0.0 < beyond:
+            yield f"limits.overhang_mm = {beyond:g}", replace(brief, overhang=beyond)
+
+
+def _with_setup(brief: Brief, k: int, setup: Setup) -> Brief:
+    """The brief with its set-up number k somewhere else."""
+    return replace(brief, setups=(*brief.setups[:k], setup, *brief.setups[k + 1 :]))
 
 
 def _list(place: Array) -> str:

@@ -56,7 +56,7 @@ class Seen:
     beside: Which
 
 
-def seen_beside(
+def mutually_probeable(
     reach: ProbeReach,
     blank: Blank,
     faces: Sequence[FreeformPatch],

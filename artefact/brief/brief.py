@@ -1,0 +1,250 @@
+"""What a design is asked for, resolved once: everything downstream takes this record.
+
+project.toml, machine.toml, task.toml -> read_project -> Brief -> feasibility, design_standard
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from matstd.artefact.brief.task_file import Task
+from matstd.artefact.layout import Blank
+from matstd.artefact.reach import (
+    Body,
+    Clamping,
+    DatumBall,
+    ProbeReach,
+    Solid,
+    Workshop,
+    round_table,
+)
+from matstd.artefact.tool import Probe
+from matstd.artefact.worth import CriterionOptions, TouchOptions
+from matstd.sensitivity.first_order import Workspace
+from matstd.sensitivity.population import Population
+from matstd.twin.display import Displayed
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.record import Setup
+from matstd.twin.units import UM
+
+_ROOM, _ROOM_OF_BALL = 2.0, 2.0 / 3.0
+"""Largest gap kept round the probe, mm, and the same as a share of the ball's radius."""
+
+
+@dataclass(frozen=True)
+class PlacementOptions:
+    """What is designed, how much is tried, and what for.
+
+    Attributes:
+        name: Type of the standard.
+        serial: Of the piece.
+        patches: Number of freeform patches.
+        balls: Number of balls, fewer where no more find room.
+        sites: Number of random faces to choose from.
+        noise: Standard deviation of one touch, mm.
+        criterion: What faces, balls, poses and touches are chosen for.
+        choice: How many touches at how many table poses.
+    """
+
+    name: str = "FFS"
+    serial: str = ""
+    patches: int = 6
+    balls: int = 13
+    sites: int = 400
+    noise: float = 1.0 * UM
+    criterion: CriterionOptions = field(default_factory=lambda: CriterionOptions(potential=0.3))
+    choice: TouchOptions = field(default_factory=TouchOptions)
+
+
+@dataclass(frozen=True)
+class ProgramSettings:
+    """The control, and how its programs move. What is None is as the dialect has it.
+
+    Attributes:
+        control: Name of a dialect, or a dialect file of the user's own.
+        folder: Of programs and logs on the control.
+        tool: Number of the probe in the tool table.
+        further_tools: Of the probes that make what those before them do not reach.
+        preset: Row of the preset table.
+        height_read: Point whose height a result states: `gauge` or `tip`.
+        clearance: Height of the tool above everything while it moves sideways, mm.
+        retract: Below the upper end of Z's travel, where rotary axes may turn, mm.
+        probing_feed: As it stands in a program, mm/min.
+        approach_feed: Along Z below the clearance height, mm/min.
+        turning_feed: Of the last motion towards a rotary position, degrees/min.
+        touches_per_file: After so many touches the next visit begins a new file.
+        minutes_per_file: A file takes no longer, unless one visit does.
+        dry_run: By how much dry runs are raised, mm.
+        planes: Whether positions are stated in tilted planes.
+        temperatures: Sensors by name: number of the Q parameter, factor and offset of its value.
+    """
+
+    control: str = "itnc530"
+    folder: str | None = None
+    tool: int | None = None
+    further_tools: tuple[int, ...] = ()
+    preset: int | None = None
+    height_read: Literal["gauge", "tip"] | None = None
+    clearance: float = 20.0
+    retract: float = 1.0
+    probing_feed: float = 250.0
+    approach_feed: float = 2000.0
+    turning_feed: float = 1000.0
+    touches_per_file: int = 400
+    minutes_per_file: float = np.inf
+    dry_run: float = 100.0
+    planes: bool = False
+    temperatures: Mapping[str, tuple[int, float, float]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class StudySettings:
+    """Random machines of the maps, and of the proof on the twin.
+
+    Attributes:
+        poses: Number of poses for the maps.
+        draws: Number of random machines for the maps; at most so many where digits are asked for.
+        digits: Significant digits that have to be stable (JCGM 101); 0 for none.
+        tolerance: Volumetric error that users allow, mm; infinite where they state none.
+        machines: Number of random machines of the proof.
+        visits: Number of virtual visits from which the uncertainty of the task is evaluated.
+    """
+
+    poses: int = 2000
+    draws: int = 2000
+    digits: int = 0
+    tolerance: float = np.inf
+    machines: int = 3
+    visits: int = 10
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Brief(Displayed):
+    """A design as it is asked for, in base units.
+
+    Attributes:
+        chain: The machine.
+        ranges: Smallest and largest reading of every axis that the user cares about, mm or rad; an
+            axis left out has its whole travel.
+        errors: Machines that are expected; None for the ordinary ones.
+        probes: The one that the standard is designed for, then those that make what it does not
+            reach.
+        setups: Where the standard stands, the first for the design.
+        table: Its face carries the standard.
+        bodies: Clamps, fixtures, covers.
+        ball: By which the probe is watched; None where there is none.
+        blank: Base, fittings, material and limits of the standard.
+        overhang: How far a base may reach beyond the edge of the table, mm; None for the usual.
+        riser: Height of a riser or pallet under the seat, mm.
+        options: What is designed, and what for.
+        programs: The control.
+        study: Random machines.
+        task: What the user measures; every touch on the faces where he states none.
+        seed: Of all random numbers.
+        down: Where weight pulls to in machine coordinates.
+        author: For the heads of files.
+        organisation: For the heads of files.
+        path: The project file, named in refusals.
+        machine_path: The machine file; None where there is none.
+        remarks: What the user should know of his file.
+    """
+
+    chain: Chain
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    errors: Population | None = None
+    probes: tuple[Probe, ...] = (Probe(),)
+    setups: tuple[Setup, ...] = (Setup("a"),)
+    table: Solid = field(default_factory=round_table)
+    bodies: tuple[Body, ...] = ()
+    ball: DatumBall | None = None
+    blank: Blank = field(default_factory=Blank)
+    overhang: float | None = None
+    riser: float = 0.0
+    options: PlacementOptions = field(default_factory=PlacementOptions)
+    programs: ProgramSettings = field(default_factory=ProgramSettings)
+    study: StudySettings = field(default_factory=StudySettings)
+    task: Task = field(default_factory=Task)
+    seed: int = 0
+    down: str = "-Z"
+    author: str = "not stated"
+    organisation: str = "not stated"
+    path: Path = Path("project.toml")
+    machine_path: Path | None = None
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def probe(self) -> Probe:
+        """That the standard is designed for."""
+        return self.probes[0]
+
+    @property
+    def setup(self) -> Setup:
+        """In which the standard is designed."""
+        return self.setups[0]
+
+    @property
+    def noise(self) -> float:
+        """Standard deviation of one touch, mm."""
+        return self.options.noise
+
+    @property
+    def room(self) -> float:
+        """Gap between the probe above its ball and anything solid, mm.
+
+        The stylus has two thirds of the ball's radius, so that beside a face it has a third of it
+        and never more: what a ball of 3 mm is given would bar a smaller one from every touch.
+        """
+        return min(_ROOM, _ROOM_OF_BALL * self.probe.radius)
+
+    @cached_property
+    def clampings(self) -> tuple[Clamping, ...]:
+        """Set-ups with what stands beside the standard in each."""
+        return tuple(
+            Clamping(
+                setup,
+                Workshop(
+                    self.table,
+                    tuple(
+                        solid
+                        for body in self.bodies
+                        if body.setup in ("", setup.name)
+                        for solid in body.solids
+                    ),
+                    self.ball,
+                ),
+            )
+            for setup in self.setups
+        )
+
+    @cached_property
+    def reach(self) -> ProbeReach:
+        """What the machine reaches in the first set-up."""
+        return ProbeReach(
+            chain=self.chain,
+            setup=self.setup,
+            shape=self.probe.shape,
+            length=self.probe.length,
+            room=self.room,
+            workshop=self.clampings[0].workshop,
+        )
+
+    @cached_property
+    def workspace(self) -> Workspace:
+        """Where the user works."""
+        return Workspace(self.chain, self.ranges, self.probe.length)
+
+    @cached_property
+    def population(self) -> Population:
+        """Machines to draw from."""
+        return self.errors or Population(self.chain)
+
+    @property
+    def rotary(self) -> Array:
+        """Smallest and largest readings of the rotary axes, (R, 2), rad."""
+        limits = [self.workspace.limit(name) for name in self.chain.rotary_axes]
+        return np.array(limits).reshape(-1, 2)

@@ -1,0 +1,81 @@
+"""Changes of a project by which patches that do not fit side by side would, each of them tried."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from matstd.artefact.brief import FEWEST_PATCHES, LEAST_SIDE, Brief, base_of
+from matstd.artefact.feasibility.room import Room, room_for
+from matstd.artefact.layout import WALL_GAP, least_gap
+from matstd.twin.errors import NotBuildable
+from matstd.twin.frames import Array
+from matstd.twin.units import DEG
+
+_LARGER, _SMALLER = (1.1, 1.25, 1.5), (0.95, 0.9, 0.85)  # sides of the blank
+_CLOSER = (0.5, 0.2)  # of the gap
+_STEEPER = (5.0, 15.0, 30.0)  # degrees
+_STEEPEST = 60.0  # degrees, that any face has
+
+
+def room_of(brief: Brief, poses: Array) -> Room:
+    """The patches of a brief that stand side by side, at table poses (K, R), rad."""
+    wanted = brief.options
+    return room_for(wanted.patches, brief.reach, brief.blank, poses, wanted.sites, brief.seed)
+
+
+def nearest_that_fits(brief: Brief, room: Room, poses: Array) -> list[str]:
+    """The smallest change of every kind that would do, in words."""
+    found = []
+    if not room.is_light:  # what the lightest weighs is known
+        found.append(f"limits.max_mass_kg = {np.ceil(10.0 * room.least) / 10.0:g}")
+    kinds = (_fewer, _closer, _steeper, _resized)
+    for wishes in (kind(brief, room) for kind in kinds):
+        for words, other in wishes:
+            try:
+                there = room_of(other, poses)
+            except NotBuildable:
+                continue
+            if there.is_enough and there.is_light:
+                found.append(words)
+                break
+    return found
+
+
+def _fewer(brief: Brief, room: Room) -> Iterator[tuple[str, Brief]]:
+    """As many patches as fit, or one less: each is larger then."""
+    for fewer in (len(room.faces), len(room.faces) - 1):
+        if fewer >= FEWEST_PATCHES and not room.is_enough:
+            other = replace(brief, options=replace(brief.options, patches=fewer))
+            yield f"standard.patches = {fewer}", other
+
+
+def _closer(brief: Brief, room: Room) -> Iterator[tuple[str, Brief]]:
+    """A smaller gap, where it is that which keeps bodies apart and not the cutter."""
+    gap = brief.blank.limits.gap
+    for share in _CLOSER if least_gap(room.blank.limits) > WALL_GAP and not room.is_enough else ():
+        closer = float(round(share * gap))
+        yield f"limits.gap_mm = {closer:g}", _with_limits(brief, gap=closer)
+
+
+def _steeper(brief: Brief, room: Room) -> Iterator[tuple[str, Brief]]:
+    """Faces that look more towards a probe that finds no way to them."""
+    for more in _STEEPER if room.is_hidden else ():
+        if (slope := round(brief.blank.limits.max_slope / DEG, 6) + more) <= _STEEPEST:
+            yield f"limits.max_slope_deg = {slope:g}", _with_limits(brief, max_slope=slope * DEG)
+
+
+def _resized(brief: Brief, room: Room) -> Iterator[tuple[str, Brief]]:
+    """A smaller blank for less mass, a larger one for more room."""
+    factors = () if room.is_hidden else _LARGER if room.is_light else _SMALLER
+    for factor in factors:
+        a, b = (round(factor * 2.0 * half) for half in brief.blank.base.half_size)
+        if min(a, b) >= LEAST_SIDE and max(a, b) <= 2.0 * brief.reach.table_radius:
+            other = replace(brief.blank, base=base_of((a, b)))
+            yield f"blank.base_mm = [{a}, {b}]", replace(brief, blank=other)
+
+
+def _with_limits(brief: Brief, **limits: float) -> Brief:
+    """The brief with other limits of its blank."""
+    blank = brief.blank
+    return replace(brief, blank=replace(blank, limits=replace(blank.limits, **limits)))

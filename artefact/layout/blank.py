@@ -1,0 +1,51 @@
+"""What a standard is made from: base, fittings, material and limits."""
+
+from dataclasses import dataclass, field
+
+from matstd.artefact.body import Base, Limits, Material
+
+
+@dataclass(frozen=True, slots=True)
+class Fittings:
+    """Spheres and holes that every standard gets, wherever there is room for them.
+
+    Attributes:
+        sphere_radius: Of the precision balls, mm.
+        sphere_heights: Of their centres above the seat, one a sphere, mm.
+        post_radius: Of a post at the centre of its ball, mm.
+        stem_radius: Of a stem made by hand at its ball, mm.
+        foot_radius: Of a stem made by hand at the base, mm.
+        hole_count: Number of mounting holes.
+        hole_radius: Of the through hole, mm (M10: 5.5).
+        bore_radius: Of the counterbore, mm (M10: 9).
+        bore_depth: Mm (M10: 11).
+    """
+
+    sphere_radius: float = 12.5
+    sphere_heights: tuple[float, ...] = (65.0, 80.0, 95.0)
+    post_radius: float = 8.0
+    stem_radius: float = 6.0
+    foot_radius: float = 9.0
+    hole_count: int = 4
+    hole_radius: float = 5.5
+    bore_radius: float = 9.0
+    bore_depth: float = 11.0
+
+
+@dataclass(frozen=True, slots=True)
+class Blank:
+    """Everything of a standard that is not its patches.
+
+    Attributes:
+        base: Plate.
+        fittings: Spheres and holes.
+        material: What it is made of.
+        height: Of the blank above the seat, mm.
+        limits: Room that spheres and holes are given.
+    """
+
+    base: Base = field(default_factory=Base)
+    fittings: Fittings = field(default_factory=Fittings)
+    material: Material = field(default_factory=lambda: Material().with_usual_modulus())
+    height: float = 220.0
+    limits: Limits = field(default_factory=Limits)

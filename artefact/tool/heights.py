@@ -1,0 +1,167 @@
+"""Heights of Z at which the tool clears everything that stands on the table."""
+
+from itertools import pairwise, product
+from typing import NamedTuple
+
+import numpy as np
+
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import Workshop, still_frames, table_face
+from matstd.artefact.tool.probe import Probe
+from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.machine import Chain, linear_directions, table_to_tool
+from matstd.twin.record import Labels, Setup
+from matstd.twin.units import DEG
+
+OVERSHOOT = 5.0 * DEG
+"""How far before a rotary position the last motion towards it begins, rad."""
+
+_SWING = 25
+"""Samples of every axis that turns in a move: all turn, in no order that is known. Half a turn is
+cut every 7 degrees, between which nothing within 300 mm of an axis rises by 0.6 mm."""
+
+_CLOSER = 97  # samples where the first ones do not decide: a sixteenth of that rise
+
+
+class SolidHull(NamedTuple):
+    """Balls (points with radii) whose hull holds everything solid, table frame.
+
+    What another axis than the innermost one carries stands in it where that axis takes it while
+    all between it and the table read zero (`on`).
+    """
+
+    points: Array  # (K, 3)
+    radii: Array  # (K,)
+    on: Labels  # (K,), empty for what moves with the table
+
+
+def solid_hull(standard: Standard, setup: Setup, workshop: Workshop) -> SolidHull:
+    """Corners of base, core and columns, the spheres, and the corners of all other bodies."""
+    points = [_box(standard.base.half_size, 0.0, standard.base.thickness)]
+    for column in standard.columns.values():
+        corners = _box(column.patch.half_size, -column.patch.depth, column.top)
+        points.append(apply(column.patch.T_artefact_patch, corners))
+    if standard.core is not None:
+        points.append(_ring(standard.core.high_radius, standard.core.height))
+    solid = np.concatenate(points)
+    centres = np.array([s.centre for s in standard.spheres]).reshape(-1, 3)
+    on_table = apply(setup.T_table_artefact, np.concatenate([solid, centres]))
+    T_table_face = table_face(setup.T_table_artefact)
+    bodies = [apply(T_table_face, body.corners()) for body in workshop.solids]
+    all_points = np.concatenate([on_table, *bodies])
+    radii = np.zeros(len(all_points))
+    radii[len(solid) : len(on_table)] = [s.radius for s in standard.spheres]
+    carried = [""] * len(on_table)
+    for corners, body in zip(bodies, workshop.solids, strict=True):
+        carried += [body.on] * len(corners)
+    return SolidHull(all_points, radii, np.array(carried))
+
+
+def _box(half_size: tuple[float, float], low: float, high: float) -> Array:
+    x, y = half_size
+    return np.array([[a, b, c] for a in (-x, x) for b in (-y, y) for c in (low, high)])
+
+
+def _ring(radius: float, height: float, sides: int = 32) -> Array:
+    angle = np.arange(sides) * (2.0 * np.pi / sides)
+    return np.stack(
+        [radius * np.cos(angle), radius * np.sin(angle), np.full(sides, height)], axis=-1
+    )
+
+
+def readings_at(chain: Chain, rotary: Array) -> Array:
+    """Readings (N, A) with given rotary readings (N, R), rad, and every other axis at zero."""
+    q = np.zeros((len(rotary), len(chain.axes)))
+    q[:, [chain.axis_index(name) for name in chain.rotary_axes]] = rotary
+    return q
+
+
+def top_height(chain: Chain, rotary: Array, solid: SolidHull, probe: Probe) -> Array:
+    """Reading of Z at which the lowest point of the tool is level with the highest obstacle.
+
+    Args:
+        rotary: Readings of the rotary axes, shape (V, R), rad.
+        solid: What stands on the table, table frame.
+        probe: In the spindle.
+
+    Returns:
+        Shape (V,), mm.
+    """
+    q = readings_at(chain, rotary)
+    up = linear_directions(chain, q)[:, :, chain.linear_axes.index("Z")]
+    highest = np.full(len(q), -np.inf)
+    for on, T_still_table in still_frames(solid.on.tolist(), chain, q).items():
+        mine, T_table_still = solid.on == on, inverse(T_still_table)
+        along = np.einsum("vji,vj->vi", T_table_still[:, :3, :3], up)
+        shift = np.einsum("vi,vi->v", up, T_table_still[:, :3, 3])
+        most = (along @ solid.points[mine].T + solid.radii[mine]).max(axis=1)
+        highest = np.maximum(highest, most + shift)
+    T_table_tool = table_to_tool(chain, q)
+    up_in_tool = np.einsum("vji,vj->vi", T_table_tool[:, :3, :3], up)
+    below = (up_in_tool @ probe.outline().T).min(axis=1)
+    below = np.minimum(below, -probe.radius)
+    gauge_to_ball = np.array([0.0, 0.0, -probe.length])
+    level: Array = highest - below - np.einsum("vi,vi->v", up, apply(T_table_tool, gauge_to_ball))
+    return level
+
+
+def swing_height(
+    chain: Chain, path: Array, solid: SolidHull, probe: Probe, allowed: float = np.inf
+) -> Array:
+    """Highest `top_height` along a path of the rotary axes, whichever turns first; from above.
+
+    Between two samples that are d apart a point at a distance r from an axis rises above both by
+    r d^2 / 8 at most, which is added. Where that makes the difference, it is looked at closer.
+
+    Args:
+        path: Rotary readings in order, shape (W, R), rad.
+        solid: What stands on the table, table frame.
+        probe: In the spindle.
+        allowed: Reading of Z that must not be exceeded, mm.
+
+    Returns:
+        Of each of the W - 1 moves, mm.
+    """
+    arms = _arms(chain, solid, probe)
+    highest = np.empty(len(path) - 1)
+    for i, (start, end) in enumerate(pairwise(path)):
+        for samples in (_SWING, _CLOSER):
+            met, rise = _swung(chain, start, end - start, samples, solid, probe, arms)
+            highest[i] = met + rise
+            if met > allowed or highest[i] <= allowed:
+                break
+    return highest
+
+
+def _swung(
+    chain: Chain,
+    start: Array,
+    turn_by: Array,
+    samples: int,
+    solid: SolidHull,
+    probe: Probe,
+    arms: Array,
+) -> tuple[float, float]:
+    """Highest `top_height` at samples of one turn, and how much more it may be between them."""
+    shares = [np.linspace(0.0, 1.0, samples if angle else 1) for angle in turn_by]
+    between = start + np.array(list(product(*shares))) * turn_by
+    rise = float(np.sum(arms * (turn_by / (samples - 1)) ** 2)) / 8.0
+    return float(top_height(chain, between, solid, probe).max(initial=-np.inf)), rise
+
+
+def _arms(chain: Chain, solid: SolidHull, probe: Probe) -> Array:
+    """How far anything that a rotary axis carries is from its axis at most, (R,), mm."""
+    on_table = float((np.linalg.norm(solid.points, axis=1) + solid.radii).max())
+    tool = float(np.linalg.norm(probe.outline(), axis=1).max())
+    arms = []
+    for name in chain.rotary_axes:
+        link = chain.link(name)
+        origin = chain.table_origin if link.carries_workpiece else np.zeros(3)
+        carried = on_table if link.carries_workpiece else tool + probe.length
+        arms.append(carried + float(np.linalg.norm(link.point - origin)))
+    return np.array(arms)
+
+
+def home_readings(chain: Chain) -> Array:
+    """Rotary readings (R,) where programs begin and end: zero, or as near as the travel allows."""
+    return np.array([np.clip(0.0, *chain.link(name).range) for name in chain.rotary_axes])
