@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matstd.api.comparing import Comparison, compare
     from matstd.api.compensating import Compensation, ProgramOptions, compensate
     from matstd.api.diagnosing import Diagnosis, diagnose
+    from matstd.api.drifting import DriftLaws, DriftPrediction, learn_drift, predict_drift
     from matstd.api.effects import register_effects
     from matstd.api.machines import (
         machine_file,
@@ -54,6 +55,7 @@ _PLACES = {
     "api.comparing": ("Comparison", "compare"),
     "api.compensating": ("Compensation", "ProgramOptions", "compensate"),
     "api.diagnosing": ("Diagnosis", "diagnose"),
+    "api.drifting": ("DriftLaws", "DriftPrediction", "learn_drift", "predict_drift"),
     "api.effects": ("register_effects",),
     "api.machines": (
         "machine_file",
@@ -103,6 +105,8 @@ __all__ = [
     "Compensation",
     "DesignError",
     "Diagnosis",
+    "DriftLaws",
+    "DriftPrediction",
     "Effect",
     "Evaluation",
     "Fit",
@@ -124,8 +128,10 @@ __all__ = [
     "compensate",
     "diagnose",
     "evaluate",
+    "learn_drift",
     "machine_file",
     "machine_names",
+    "predict_drift",
     "read_machine",
     "read_model",
     "read_run",
