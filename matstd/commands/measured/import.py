@@ -218,7 +218,7 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     from matstd.commands.measured.kinds import arm, circle, points, positioning
     from matstd.console import say
     from matstd.importers import machine_text
-    from matstd.importers.files import timed_by_rows
+    from matstd.importers.sheets import timed_by_rows
     from matstd.twin.files import refuse_to_overwrite, write_run, write_whole
     from matstd.twin.units import UM
 
