@@ -1,7 +1,7 @@
-"""Placement: where patches go, which way they look, and what touches on them will tell.
+"""Placement: positions and directions of patches, and the information of touches on them.
 
-Sites, table poses and touches are chosen so that the tool point can be predicted best after the
-probing; the same number of touches on other artefacts is the measure of it.
+Sites, table poses and touches are chosen so that the tool point is predicted best after probing.
+The comparison is the same number of touches on other artefacts.
 """
 
 from pathlib import Path

@@ -1,6 +1,6 @@
-"""Virtual probing: a program run on the exact twin of a random machine, and what is learnt of it.
+"""Virtual probing: a program runs on the exact twin of a random machine, and a model is fitted.
 
-The true ball meets the true surface, the log is read back; the proof is at poses nobody probed.
+The true ball meets the true surface, the log is read back; the model is tested at other poses.
 """
 
 import tempfile
@@ -17,7 +17,8 @@ from matstd.diagnosis.fit import fit_run
 from matstd.probe_paths.campaign import VirtualMachine, simulate
 from matstd.probe_paths.emit import make_programs
 from matstd.probe_paths.plan import PlanOptions, Probe, plan_touches, requests_at
-from matstd.report.plots import write_proof_picture
+from matstd.report.plots import draw_proof
+from matstd.report.style import save
 from matstd.sensitivity.population import Population, drawn_errors
 from matstd.twin.files import read_machine
 from matstd.twin.model import contribution
@@ -53,5 +54,5 @@ def main():
 if __name__ == "__main__":
     from PIL import Image
 
-    write_proof_picture(path := MACHINE.parent / "pictures" / "ex08.png", [main()["proof"]])
+    save(draw_proof([main()["proof"]]), path := MACHINE.parent / "pictures" / "ex08.png")
     Image.open(path).resize((840, 336)).save(path)

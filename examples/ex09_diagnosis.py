@@ -1,7 +1,7 @@
-"""Diagnosis: a machine with an effect that its model lacks, and which one it is.
+"""Diagnosis: identify the effect that the model of a machine lacks.
 
-The machine of example 8 gets a backlash of C that nobody told the model of. The diagnosis sees that
-the residuals are not noise, names the effect with its size, and the error falls to the noise.
+The machine of example 8 gets a backlash of C that its model lacks. The diagnosis finds that the
+residuals are not noise, names the effect with its size, and the error falls to the noise.
 """
 
 import numpy as np

@@ -1,6 +1,6 @@
 """Your own effect: a rotary table that lifts while it is clamped after a backward turn.
 
-One frozen class says where it acts and how much; one `Kind` gives it a word, and it can be found.
+One frozen class states where it acts and how much; one `Kind` gives it a word to be found by.
 """
 
 from dataclasses import dataclass
@@ -13,28 +13,25 @@ from matstd.report.words import verdict_sentence
 from matstd.sensitivity.population import Population, drawn_errors
 from matstd.twin.files import read_machine
 from matstd.twin.library import register
-from matstd.twin.model import Kind, Parameter, Term, Where
+from matstd.twin.model import Declared, Kind, Parameter
 from matstd.twin.units import UM
 
 
 @dataclass(frozen=True)
-class ClampLift:
+class ClampLift(Declared):
     """``EZC = h`` where C was last turned backwards, else nothing; h in mm, 1 to 10 um."""
 
-    kind = name = "clamp-lift"
+    kind, acts_on = "clamp-lift", "EZC"
     parameters = (Parameter("lift", "mm", 5 * UM),)
 
-    def terms(self, touches):
-        """A twist of C along its Z, the third of X Y Z A B C."""
-        where = Where("twist", touches.chain.link_index("C"), 2)
-        return (Term(0, where, (touches.last_move("C") < 0).astype(float)),)
+    def amounts(self, touches):
+        """One after a backward turn."""
+        return (touches.last_move("C") < 0,)
 
 
-KIND = Kind(
-    word="clamp-lift", arguments="", formula="EZC = h after a backward turn, else 0", units="h: µm",
-    typical="1 to 10 µm", source="a wedge that clamps",
-    make=lambda chain, arguments: ClampLift(), propose=lambda touches: [ClampLift()],
-    title="lift of the table by its clamp",
+KIND = Kind.of(
+    ClampLift, formula="EZC = h after a backward turn, else 0", units="h: µm",
+    typical="1 to 10 µm", source="a wedge that clamps", title="lift of the table by its clamp",
 )  # fmt: skip
 
 

@@ -50,9 +50,10 @@ def main():
 
 if __name__ == "__main__":
     from matstd.report.compensation import draw_program, program_lines, result_sentence
+    from matstd.report.style import save
 
     results = main()
     plate = results.pop("plate")
     print(*(line for line, _ in program_lines("plate", plate)), sep="\n")
     print(*(f"{name}: {result_sentence(result)}" for name, result in results.items()), sep="\n")
-    draw_program(Path(__file__).parent / "pictures" / "ex11.png", plate)
+    save(draw_program(plate), Path(__file__).parent / "pictures" / "ex11.png")

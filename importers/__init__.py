@@ -10,8 +10,8 @@ what a machine does wrong is the negative of what its controller sees.
     run = positioning_run(test, one_axis_machine("X", test.target), u=0.3 * UM)
 """
 
-from matstd.importers.arms import arm_from_dh, joint_readings, tracker_run
-from matstd.importers.files import machine_text, mapped_run
+from matstd.importers.arms import import_arm
+from matstd.importers.files import import_mapped, machine_text
 from matstd.importers.instruments import (
     circle_machine,
     circle_run,
@@ -20,7 +20,7 @@ from matstd.importers.instruments import (
     read_circle,
     read_positioning,
 )
-from matstd.importers.points import joined_points, linear_machine, points_run, read_points
+from matstd.importers.points import import_points
 from matstd.importers.sheets import Sheet, read_sheet
 
 PARTS = ("sheets", "instruments", "points", "arms", "files")
@@ -28,20 +28,15 @@ PARTS = ("sheets", "instruments", "points", "arms", "files")
 
 __all__ = [
     "Sheet",
-    "arm_from_dh",
     "circle_machine",
     "circle_run",
-    "joined_points",
-    "joint_readings",
-    "linear_machine",
+    "import_arm",
+    "import_mapped",
+    "import_points",
     "machine_text",
-    "mapped_run",
     "one_axis_machine",
-    "points_run",
     "positioning_run",
     "read_circle",
-    "read_points",
     "read_positioning",
     "read_sheet",
-    "tracker_run",
 ]

@@ -14,7 +14,7 @@ def write_found_arm(folder: Path, fit: "Fit", title: str) -> str:
     """Write it, and say what it is good for; nothing, and "", where the machine is no arm."""
     from matstd.diagnosis.geometry import found_arm
     from matstd.importers import machine_text
-    from matstd.report.words import microns
+    from matstd.report.numbers import microns
     from matstd.twin.files import write_whole
 
     arm = found_arm(fit)

@@ -3,13 +3,14 @@
 `grammar` turns the text of Klartext and G-code into blocks, words, values and the order in which
 blocks run. Two readers stand on it: that of our own probing programs, which refuses whatever it
 does not expect (`matstd.probe_paths`), and that of a user's part programs, which keeps whatever
-moves nothing (`matstd.compensation`). `linuxcnc` has what both need of that control: its INI and
-HAL files, and the socket on which its components ask.
+moves nothing (`matstd.compensation`). `linuxcnc` has the
+files of that control: INI, HAL, variables and tools.
 """
 
 from matstd.nc.grammar import Flow, gcode_lines, klartext_blocks, run_order
+from matstd.nc.linuxcnc import Ini
 
-PARTS = ("grammar",)
+PARTS = ("grammar", "linuxcnc")
 """From bottom to top: each imports only from those before it."""
 
-__all__ = ["Flow", "gcode_lines", "klartext_blocks", "run_order"]
+__all__ = ["Flow", "Ini", "gcode_lines", "klartext_blocks", "run_order"]

@@ -1,11 +1,12 @@
-"""Numbers, times, units and columns of files as a reader says them."""
+"""The one way in which the reports write numbers, times, units and columns of files."""
 
 import math
+import re
 
 from matstd.twin.units import DAY, HOUR, MINUTE, UM, URAD
 
 _SPANS = ((DAY, "days", 2.0), (HOUR, "h", 1.5), (MINUTE, "min", 1.5))
-"""Units of time, the longest first, each with the number of it from which it is used."""
+"""Units of time, the longest first, each with the smallest number for which it is used."""
 
 _PLACES = {"px_mm": "x", "py_mm": "y", "pz_mm": "z"}
 _NOUNS = {
@@ -19,7 +20,7 @@ _NOUNS = {
     **{f"F{letter}_N": f"load in {letter}" for letter in "xyz"},
 }
 _SHOWN = {"mm": ("µm", UM), "rad": ("µrad", URAD), "s": ("ms", 1e-3)}
-"""Base unit -> unit that a reader sees, and what one of it is in the base unit."""
+"""Base unit -> unit of the reports, and its size in the base unit."""
 
 _UNITS = (("_mm", "mm"), ("_deg", "deg"), ("_degC", "°C"), ("_N", "N"), ("_rpm", "1/min"))
 
@@ -38,11 +39,11 @@ _SPELT = {
     "um": "µm",
     "deg": "°",
 }
-"""Units as files spell them, with what a reader sees where that is another word."""
+"""Units whose spelling in files differs from that in reports."""
 
 
 def unit_words(unit: str) -> str:
-    """A unit as a reader sees it, from the spelling of files: `um_per_K` is µm/K."""
+    """A unit as the reports write it: `um_per_K` of the files is µm/K."""
     return _SPELT.get(unit, unit)
 
 
@@ -77,6 +78,21 @@ def with_uncertainty(value: float, u: float | None, unit: str = "") -> str:
     return f"{value:.{places}f} ± {u:.{places}f}{tail}"
 
 
+def um(value: float, significant: int = 3) -> str:
+    """A length with so many significant digits.
+
+    Example:
+        >>> um(0.0123456), um(0.0123456, 2)
+        ('12.3 µm', '12 µm')
+    """
+    return f"{digits(value / UM, significant)} µm"
+
+
+def microns(value: float) -> str:
+    """A length in µm to two decimals; a smaller one to two digits."""
+    return f"{value / UM:.2f} µm" if abs(value) >= 0.095 * UM else um(value, 2)
+
+
 def signed(value: float, u: float | None, unit: str = "") -> str:
     """A difference, its sign always shown, to two digits of its uncertainty.
 
@@ -89,7 +105,7 @@ def signed(value: float, u: float | None, unit: str = "") -> str:
 
 
 def time_unit(span: float) -> tuple[float, str]:
-    """The unit (s) in which a span of time is told, and its name."""
+    """The unit in which a span of time is written (s), and its name."""
     for unit, name, least in _SPANS:
         if abs(span) >= least * unit:
             return unit, name
@@ -97,7 +113,7 @@ def time_unit(span: float) -> tuple[float, str]:
 
 
 def span(seconds: float, significant: int = 3) -> str:
-    """A span of time in the unit that a reader would choose.
+    """A span of time in a convenient unit.
 
     Example:
         >>> span(46710.0), span(847.7), span(12.0)
@@ -108,7 +124,7 @@ def span(seconds: float, significant: int = 3) -> str:
 
 
 def noun(column: str) -> str:
-    """What a column of a run file is about.
+    """What a column of a run file holds.
 
     Example:
         >>> noun("B_deg"), noun("T_scaleX_degC"), noun("nz")
@@ -127,14 +143,14 @@ def noun(column: str) -> str:
 
 
 def unit_of(column: str) -> str:
-    """Unit of a column of a run file as a reader sees it, "" where it has none."""
+    """Unit of a column of a run file, "" where it has none."""
     if column == "time_s":
         return "s"
     return next((unit for ending, unit in _UNITS if column.endswith(ending)), "")
 
 
 def quantity(column: str, value: float) -> str:
-    """A value of a column with its unit; times in the unit that a reader would choose.
+    """A value of a column with its unit; times in a convenient unit.
 
     Example:
         >>> quantity("B_deg", 60.0), quantity("time_s", 2400.0), quantity("nz", 0.85)
@@ -148,9 +164,9 @@ def quantity(column: str, value: float) -> str:
 
 
 def condition(column: str, low: float, high: float) -> str:
-    """A range of a column in words; ends that are infinite are open.
+    """A range of a column in words; infinite ends are open.
 
-    A column such as `feature = pad4` holds 1 where that is so, else 0.
+    A column such as `feature = pad4` holds 1 where that is true, else 0.
 
     Example:
         >>> condition("B_deg", 60.0, math.inf), condition("time_s", -math.inf, 2400.0)
@@ -171,7 +187,7 @@ def condition(column: str, low: float, high: float) -> str:
 
 
 def shown(unit: str) -> tuple[str, float]:
-    """Unit in which a report shows a number, and what one of it is in the base unit.
+    """Unit in which reports write a quantity, and its size in the base unit.
 
     Example:
         >>> shown("mm/K")
@@ -189,3 +205,46 @@ def shown(unit: str) -> tuple[str, float]:
 def percent(value: float) -> str:
     """A share in percent."""
     return f"{100.0 * value:.1f} %" if abs(value) < 0.1 else f"{100.0 * value:.0f} %"
+
+
+def p_value(value: float) -> str:
+    """A probability; below 1e-12 its digits mean nothing."""
+    return "< 1e-12" if value < 1e-12 else f"{value:.2g}"
+
+
+def plural(number: int, word: str) -> str:
+    """A number of things: `1 touch`, `2 touches`."""
+    ending = "" if number == 1 else "es" if word.endswith("ch") else "s"
+    return f"{number} {word}{ending}"
+
+
+def capital(words: str) -> str:
+    """Words at the beginning of a sentence; names of columns keep their small letter.
+
+    Example:
+        >>> capital("touches scatter"), capital("time_s is 0")
+        ('Touches scatter', 'time_s is 0')
+    """
+    return words if "_" in words.split(" ", 1)[0] else words[:1].upper() + words[1:]
+
+
+def sentence(words: str) -> str:
+    """A clause of the console as a sentence of a page."""
+    return capital(words) + ("" if words.endswith((".", "?")) else ".")
+
+
+_MINUS = re.compile(r"(?<![^\s(,])-(?=\d)")
+_APART = re.compile(r"(?<=[\d.]) (?=±|[µ%°]|min\b|h\b|mm\b|deg\b)|(?<=±) ")
+"""Spaces between a number and its uncertainty or its unit."""
+
+
+def unbroken(words: str) -> str:
+    """Words whose numbers stay on a line with their uncertainties and units, minus signs as such.
+
+    Example:
+        >>> unbroken("X -3 to 5") == "X \u22123 to 5"
+        True
+        >>> unbroken("lag 11.1 ± 0.5 min") == "lag 11.1\u00a0±\u00a00.5\u00a0min"
+        True
+    """
+    return _APART.sub("\u00a0", _MINUS.sub("\u2212", words))

@@ -74,6 +74,30 @@ def test_links_of_the_pages_lead_somewhere() -> None:
             assert "://" in goal or (file.parent / goal).exists(), f"{file}: {goal}"
 
 
+def anchors(page: Path) -> set[str]:
+    """Anchors of the headings of a page, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", h.lower()).replace(" ", "-") for h in headings}
+
+
+def test_links_to_parts_of_pages_lead_to_headings() -> None:
+    for file in PAGES:
+        for page, part in re.findall(r"\]\(([^)#:]*)#([^)]+)\)", file.read_text(encoding="utf-8")):
+            assert part in anchors(file.parent / page if page else file), f"{file}: {page}#{part}"
+
+
+def test_every_page_is_in_the_index() -> None:
+    """`docs/README.md` links every page of its folder; that of the formats, all of its own."""
+    for folder in (ROOT / "docs", ROOT / "docs" / "formats"):
+        listed = set(re.findall(r"\]\(([\w/]+\.md)", (folder / "README.md").read_text("utf-8")))
+        pages = {page.name for page in folder.glob("*.md")} - {"README.md"}
+        assert pages - listed == set()
+
+
+def test_the_readme_stays_short() -> None:
+    assert (ROOT / "README.md").stat().st_size <= 15_000
+
+
 def test_the_index_of_the_interface_names_what_is_there() -> None:
     """Every part has its chapter, every name in it exists; `make api` brings it up to date."""
     chapter, parts = "", []

@@ -232,5 +232,5 @@ def test_the_python_of_the_readme_runs_as_it_stands(tmp_path, capsys, monkeypatc
     found, compared = capsys.readouterr().out.splitlines()
     assert found.startswith("The model lacks one effect: growth along Z after switching on (")
     assert found in " ".join(text.split())  # as the command says it, some pages before
-    assert compared.endswith("What is left looks like noise.")
+    assert compared.endswith("The residual looks like noise.")
     assert (tmp_path / "model.toml").is_file()

@@ -123,7 +123,7 @@ def test_a_wrong_number_is_named_with_what_to_write(name, mistake, true, tmp_pat
     every = {f["mistake"]: f for f in (first, *first["cannot_be_told_from"])}
     (number,) = every[mistake]["numbers"]
     assert abs(number["change"] - true) < COVERED * number["uncertainty"]
-    start = "cannot be distinguished by this run" if name == "pivot" else "to copy: "
+    start = "this run cannot distinguish these" if name == "pivot" else "to copy: "
     (line,) = [t for t in told.split(" - ") if t.startswith(start) and NUMBERS[name] in t]
     assert line.strip() in quoted(WRONG)
 
@@ -132,7 +132,7 @@ def test_an_axis_the_other_way_is_refused_with_the_line_to_write(tmp_path, capsy
     out = tmp_path / "out"
     assert main(["compare", str(WRONG / "direction.csv"), "--no-report", "-o", str(out)]) == 2
     line = " ".join(capsys.readouterr().err.split())
-    assert "C runs the other way than the machine file says" in line
+    assert "C moves in the direction opposite to that in the machine file" in line
     copied = re.search(r"to copy: \[axis.C\] direction = \[.*?\]", line)
     assert copied[0] in quoted(WRONG)
     assert not out.exists()

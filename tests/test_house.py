@@ -302,6 +302,41 @@ def test_examples_and_benchmarks_enter_by_faces(folder: str) -> None:
                     assert name in VOCABULARY or alias.name in listed, f"{file}: {alias.name}"
 
 
+EFFECTS = ("twin.effects", "twin.thermal", "twin.elastic")
+"""Parts that define effects."""
+
+
+def questions(tree: ast.Module) -> list[tuple[str, int]]:
+    """What a file asks by class or by a string: names in `isinstance`, `match`; flags by name."""
+    found = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.MatchClass):
+            found.append((ast.unparse(node.cls), node.lineno))
+        if not isinstance(node, ast.Call) or len(node.args) < 2:
+            continue
+        if ast.unparse(node.func) in ("isinstance", "issubclass"):
+            names = (n for n in ast.walk(node.args[1]) if isinstance(n, ast.Name | ast.Attribute))
+            found += [(ast.unparse(n).split(".")[-1], node.lineno) for n in names]
+        if ast.unparse(node.func) in ("getattr", "hasattr"):
+            found.append((text_of(node.args[1]), node.lineno))
+    return found
+
+
+def test_effects_are_asked_by_their_traits() -> None:
+    """Above the twin nothing depends on which class an effect is of."""
+    from matstd.twin.model import Traits
+
+    parts = [f for f in IN_ROOM["twin"] if part_of(module_of(f)) in EFFECTS]
+    classes = {n.name for f in parts for n in tree_of(f).body if isinstance(n, ast.ClassDef)}
+    flags = {*Traits.__dataclass_fields__, "inner", "tuned", "tuning", "parameters", "terms"}
+    assert len(classes) > 30
+    for room in ALLOWED.keys() - {"twin"}:
+        for file in IN_ROOM[room]:
+            own = {n.name for n in tree_of(file).body if isinstance(n, ast.ClassDef)}
+            for name, line in questions(tree_of(file)):
+                assert name not in (classes - own) | flags, f"{file}:{line}: asks for {name}"
+
+
 def test_folders_are_small() -> None:
     for folder in {f.parent for f in FILES}:
         count = len(list(folder.glob("*.py")))

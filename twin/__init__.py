@@ -35,6 +35,7 @@ from matstd.twin.record import Run, Touches, at_poses
 PARTS = (
     "machine",
     "record",
+    "fields",
     "model",
     "thermal",
     "elastic",

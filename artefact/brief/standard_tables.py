@@ -192,6 +192,9 @@ def check_material(material: MaterialTable, path: Path) -> None:
             )
 
 
+_TABLE_KEYS = "workshop.table or limits.table_radius_mm"
+
+
 def check_body(
     blank: BlankTable,
     limits: LimitsTable,
@@ -215,12 +218,15 @@ def check_body(
     sides, table = blank.base_mm, 2.0 * table_radius_mm
     if min(sides) < LEAST_SIDE:
         raise BadFile(path, "blank.base_mm", list(sides), "160 mm or more either way")
+    if table < 160.0:
+        expected = "160 mm or more, the smallest base of a standard"
+        raise BadFile(path, _TABLE_KEYS, f"a table of {table:g} mm", expected)
     if max(sides) > table:
         raise BadFile(
             path,
             "blank.base_mm",
             list(sides),
-            f"a blank no larger than the table, {table:g} mm (limits.table_radius_mm)",
+            f"a blank no larger than the table, {table:g} mm ({_TABLE_KEYS})",
         )
     if ball_mm > limits.min_concave_radius_mm:
         raise BadFile(

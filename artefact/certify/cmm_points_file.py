@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import Standard
-from matstd.importers.sheets import MM, Sheet, read_sheet, unit_of_column
+from matstd.importers.sheets import MM, Sheet, bare, read_sheet, unit_of_column
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.record import Labels
@@ -112,9 +112,7 @@ def _feature(name: str, standard: Standard) -> str:
 
 def _bare(column: str) -> str:
     """Name of a column without its unit, in small letters."""
-    unit = unit_of_column(column)
-    text = column if unit is None else re.sub(rf"[\s_\[(/]*{re.escape(unit)}[\])]*\Z", "", column)
-    return text.strip().lower().replace("_", " ")
+    return bare(column).lower().replace("_", " ")
 
 
 def _column(sheet: Sheet, names: tuple[str, ...], what: str) -> int:

@@ -10,11 +10,10 @@ from matstd.artefact.body import ErrorShare, Standard
 from matstd.artefact.reach import Requests
 from matstd.artefact.worth.touch_criterion import Criterion
 from matstd.information.criteria import whitened
-from matstd.twin.effects import ComponentError, LocationError
 from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array
 from matstd.twin.machine import Family, parse_symbol
-from matstd.twin.model import Effect, Model
+from matstd.twin.model import Effect, Model, traits
 
 NAMED = 4
 """Errors named for a patch."""
@@ -39,9 +38,8 @@ def _symbols(model: Model) -> NDArray[np.str_]:
 
 
 def _symbol(effect: Effect) -> str:
-    if isinstance(effect, ComponentError | LocationError):
-        return effect.symbol.name
-    return effect.name
+    own = traits(effect)
+    return own.symbol.name if own.symbol is not None and own.is_ordinary else effect.name
 
 
 def _is_setup(name: str) -> bool:

@@ -15,7 +15,7 @@ import numpy as np
 
 from matstd.twin.frames import Array
 from matstd.twin.library import proposals
-from matstd.twin.model import Effect, Tunable, columns
+from matstd.twin.model import Effect, columns, is_tunable
 from matstd.twin.record import Touches
 
 VISIBLE = 0.3
@@ -37,7 +37,7 @@ def library(touches: Touches) -> list[Effect]:
 
 def _tuned(effect: Effect, touches: Touches) -> Effect:
     """An effect with its inner parameters in the middle of their grids."""
-    if not isinstance(effect, Tunable):
+    if not is_tunable(effect):
         return effect
     return effect.tuned(*(inner.grid[len(inner.grid) // 2] for inner in effect.inner(touches)))
 

@@ -82,10 +82,12 @@ def poses_within(chain: Chain, rotary: Array, wanted: int) -> Array:
         travel = chain.link(name).range
         limits.append((max(low, travel[0] + _OVERSHOOT), min(high, travel[1] - _OVERSHOOT)))
         if limits[-1][0] > limits[-1][1]:
+            short = travel[1] - travel[0] < 2.0 * _OVERSHOOT
             raise NotReachable(
                 f"readings of {name} from {low / DEG:g} to {high / DEG:g} leave no room: they are "
                 f"approached from both sides, {_OVERSHOOT / DEG:g} degrees away, within the travel "
                 f"from {travel[0] / DEG:g} to {travel[1] / DEG:g}"
+                f"{' degrees; is it stated in radians?' if short else ''}"
             )
     if not limits:
         return np.zeros((1, 0))

@@ -32,7 +32,7 @@ from matstd.twin.compute import blocks
 from matstd.twin.errors import DesignError, NotReachable
 from matstd.twin.frames import Array, apply
 from matstd.twin.machine import Family
-from matstd.twin.model import Model
+from matstd.twin.model import Model, traits
 from matstd.twin.record import IntArray, Touches, at_poses
 from matstd.twin.units import DEG
 
@@ -312,7 +312,7 @@ def _at(
 
 def setup_parameters(model: Model, links: str = "wt") -> IntArray:
     """Parameters of the set-up of the workpiece (w), the tool (t) or both."""
-    symbols = [getattr(effect, "symbol", None) for effect, _ in model.parameters]
+    symbols = [traits(effect).symbol for effect, _ in model.parameters]
     mine = [s is not None and s.family is Family.SETUP and s.link in links for s in symbols]
     return np.flatnonzero(mine)
 

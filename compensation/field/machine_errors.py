@@ -21,7 +21,7 @@ from matstd.twin.machine import (
     parse_symbol,
     tip,
 )
-from matstd.twin.model import Effect, contribution
+from matstd.twin.model import Effect, contribution, traits
 from matstd.twin.record import Touches
 from matstd.twin.words import did_you_mean
 
@@ -267,7 +267,7 @@ class MachineErrors:
 
 def group_of(effect: Effect) -> str:
     """What an effect is told as: its symbol where it is a plain error of ISO 230-1."""
-    symbol = getattr(effect, "symbol", None)
+    symbol = traits(effect).symbol
     return symbol.name if symbol is not None and effect.kind in _PLAIN else effect.name
 
 
@@ -278,13 +278,13 @@ _PLAIN = ("geometric", "location")
 def words_of(chain: Chain, effect: Effect) -> set[str]:
     """Every word under which an effect is switched."""
     words = {"all", effect.kind, effect.name, group_of(effect)}
-    symbol = getattr(effect, "symbol", None) or parse_symbol(group_of(effect))
+    symbol = traits(effect).symbol or parse_symbol(group_of(effect))
     if symbol is not None:
         words |= {symbol.link, symbol.name}
         if effect.kind in _PLAIN:
             words.add(error_class(chain, symbol))
-    axis = getattr(effect, "axis", None)
-    return words | ({axis} if isinstance(axis, str) else set())
+    axis = traits(effect).axis
+    return words | ({axis} if axis else set())
 
 
 def _row_space(rows: Array) -> Array:
@@ -306,7 +306,7 @@ def _moves_axis(chain: Chain, where: Where) -> bool:
 
 def _is_of_machine(effect: Effect, at: Touches) -> bool:
     """Whether an effect moves an axis; the errors of a spindle that turns are of no pose."""
-    symbol = getattr(effect, "symbol", None)
+    symbol = traits(effect).symbol
     if symbol is not None and effect.kind in _PLAIN and not at.chain.link(symbol.link).programmed:
         return False
     return any(_moves_axis(at.chain, term.where) for term in effect.terms(at))

@@ -2,7 +2,8 @@
 
 In: a Klartext or G-code program (`read_part_program`) and where its zero stands (`Frame`). Out:
 `Program`: its blocks in their order, every motion with the places of all axes. A new language is a
-module with `read`, `lines`, `comment`, `begin` and `listed`, and its ending in `program`.
+reader and a module that writes (`lines`, `comment`, `begin`, `listed`), and its ending in
+`program`.
 """
 
 from matstd.compensation.part_programs.frame import Frame

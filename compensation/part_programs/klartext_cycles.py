@@ -8,7 +8,6 @@ import re
 from typing import NamedTuple
 
 from matstd.compensation.part_programs.language import Reading
-from matstd.compensation.part_programs.motion import Cycle
 from matstd.nc.grammar import NUMBER
 from matstd.twin.frames import Array
 
@@ -70,40 +69,6 @@ def defined(line: int, block: str, reading: Reading) -> Hole:
     far = max(near, found.get("204", 0.0))
     feed = found.get("206") or reading.feed * reading.feed_unit or PLUNGING
     return Hole(text=text, surface=found["203"], depth=-found["201"], near=near, far=far, feed=feed)
-
-
-def call(
-    line: int,
-    hole: Hole,
-    words: str,
-    turned: tuple[str, ...],
-    reading: Reading,
-    raised: float = 0.0,
-) -> None:
-    """The hole at a place where the axes have just come to.
-
-    Args:
-        line: Of the call.
-        hole: As it was defined.
-        words: What else stands in the block.
-        turned: Rotary axes that it names.
-        reading: Of the program, its axes above the hole.
-        raised: Height that the call adds to the surface, mm.
-
-    Raises:
-        BadFile: A place that is not known, a contour or tool-point control.
-    """
-    z = reading.column(line, "Z")
-    surface = hole.surface + raised + float(reading.offset[z])
-    levels = []
-    for height in (hole.near, -hole.depth, hole.far):
-        place = reading.at.copy()
-        place[z] = surface + height
-        levels.append(place)
-    cycle = Cycle(hole.text, hole.depth, 0)
-    above, bottom, after = levels
-    minutes = (hole.near + hole.depth) / hole.feed
-    reading.hole(line, (above, bottom, after), words, cycle, turned, minutes)
 
 
 def way(start: Array, end: Array, z: int, height: float) -> list[Array]:

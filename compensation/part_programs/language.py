@@ -1,6 +1,7 @@
 """What languages of part programs share: words of a block, the state that they change."""
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -103,6 +104,13 @@ class Reading:
         """A block that stays."""
         self.items.append(Keep(line, text, moves))
 
+    def leave(self, line: int, text: str, letters: Iterable[str] | None) -> None:
+        """A block that moves axes to where no place is known; None stands for all axes."""
+        self.keep(line, text, moves=True)
+        columns = None if letters is None else [self.column(line, a) for a in letters]
+        self.at = self.at.copy()
+        self.at[slice(None) if columns is None else columns] = np.nan
+
     @property
     def linear(self) -> list[int]:
         """Columns of the linear axes."""
@@ -140,12 +148,14 @@ class Reading:
         end: Array,
         is_rapid: bool,
         words: str = "",
-        turned: tuple[str, ...] = (),
+        named: Sequence[str] = (),
         arc: Arc | None = None,
         minutes: float = 0.0,
         cycle: Cycle | None = None,
     ) -> None:
         """A motion, after which the axes stand at its end; arguments as of `Motion`.
+
+        `named` are all axes that the block names.
 
         Raises:
             BadFile: No feed, or a contour beside a tool whose radius nobody has stated.
@@ -168,7 +178,7 @@ class Reading:
             offset=self.offset,
             unit=self.unit,
             words=words,
-            turned=turned,
+            turned=tuple(a for a in named if not self.is_linear(a)),
             arc=arc,
             beside=beside,
             minutes=minutes,
@@ -180,20 +190,24 @@ class Reading:
     def hole(
         self,
         line: int,
-        levels: tuple[Array, Array, Array],
+        place: Array,
+        z: int,
+        heights: tuple[float, float, float],
         words: str,
         cycle: Cycle,
-        turned: tuple[str, ...] = (),
+        named: Sequence[str] = (),
         minutes: float = 0.0,
     ) -> None:
         """The three motions of a cycle.
 
         Args:
             line: Of the file.
-            levels: Places above the hole, at its bottom and after it, (A,) each.
+            place: Where the axes stand above it, (A,).
+            z: Column of Z.
+            heights: Of Z above the hole, at its bottom and after it, mm.
             words: What else stands in the block.
             cycle: Of the second motion.
-            turned: Rotary axes that the block names.
+            named: Axes that the block names.
             minutes: That it takes to the bottom where the feed in force is not its own.
 
         Raises:
@@ -202,11 +216,14 @@ class Reading:
         if self.side or self.tcpm:
             where = "beside a contour" if self.side else "with tool-point control"
             raise self.refusal(line, f"a cycle {where}", "it before or after")
+        levels = [place.copy() for _ in heights]
+        for at, height in zip(levels, heights, strict=True):
+            at[z] = height
         if not all(self.is_known(at, True) for at in levels):
             raise self.refusal(line, "a cycle from where no axis is known to stand", "X, Y and Z")
         above, bottom, after = levels
         self.move(line, above, True, cycle=cycle._replace(block="", ahead=1))
-        self.move(line, bottom, False, words, turned, minutes=minutes, cycle=cycle)
+        self.move(line, bottom, False, words, named, minutes=minutes, cycle=cycle)
         self.move(line, after, True, cycle=cycle._replace(block="", ahead=-1))
 
 

@@ -8,7 +8,7 @@ from types import ModuleType
 
 import numpy as np
 
-from matstd.compensation.part_programs import gcode, klartext
+from matstd.compensation.part_programs import gcode, gcode_reader, klartext, klartext_reader
 from matstd.compensation.part_programs.corners import without_corners
 from matstd.compensation.part_programs.frame import Frame
 from matstd.compensation.part_programs.language import Reading
@@ -20,6 +20,7 @@ from matstd.twin.files import read_any_text
 from matstd.twin.units import DEG
 
 _ENDINGS = {".h": klartext, ".ngc": gcode, ".nc": gcode, ".tap": gcode}
+_READ = {klartext: klartext_reader.read, gcode: gcode_reader.read}
 MARK = "matstd model:"
 """Stands in the head of every compensated program."""
 
@@ -92,7 +93,7 @@ def read_part_program(
         passed=frozenset(passed),
         tcp_functions=tuple(tcp_functions),
     )
-    language.read(text, reading)
+    _READ[language](text, reading)
     items = without_corners(reading.items, reading)
     items = resolved(items, reading, is_square=language is klartext)
     program = Program(path, frame, tuple(items), language)

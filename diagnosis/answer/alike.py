@@ -23,7 +23,7 @@ from matstd.diagnosis.evidence import (
 from matstd.diagnosis.search import refined
 from matstd.twin.effects import usual_distance
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect, Inner, Tunable
+from matstd.twin.model import Effect, Inner, Tunable, is_tunable
 from matstd.twin.numbers import significant
 
 ALIKE = float(np.log(100.0))
@@ -99,7 +99,7 @@ def periods_alike(
     inner = period_of(found.effect, complement)
     if inner is None:
         return found, None
-    assert isinstance(found.effect, Tunable)
+    assert is_tunable(found.effect)
     link = complement.touches.chain.link(inner.over)
     best = _best(found.effect, inner, base, link.pitch)
     if len(best) < 2:
@@ -175,7 +175,7 @@ def _fraction(period: float, pitch: float | None, inner: Inner) -> float:
 
 def period_value(effect: Effect) -> float:
     """Period (mm) or harmonic of an effect that has no other inner parameter."""
-    assert isinstance(effect, Tunable)
+    assert is_tunable(effect)
     return float(next(iter(effect.tuning.values())))
 
 

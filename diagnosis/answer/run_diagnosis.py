@@ -52,11 +52,11 @@ from matstd.diagnosis.search import (
     refined_named,
 )
 from matstd.twin.compute import one_blas_thread
+from matstd.twin.fields import moved_components
 from matstd.twin.library import ordinary_model, parse_effect
-from matstd.twin.model import Effect, Model, moved_components
+from matstd.twin.model import Effect, Model, traits
 from matstd.twin.numbers import rms
 from matstd.twin.record import Run, Touches, with_commanded, without_copies
-from matstd.twin.thermal import ThermalField
 
 PERIODS_PLANNED = 8
 """Periods that look alike, the longest ones, that a plan of touches tells apart."""
@@ -133,7 +133,7 @@ def _diagnosed(
         check_distinct(ResidualSpace.of(task.fit()), added)
     known = {e.name for e in (*task.model.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
-    single = [e for e in library if not getattr(e, "is_shrunk", False)]
+    single = [e for e in library if not traits(e).is_shrunk]
     task, final = found_in(task, added, single, progress)
     if task.model.chain.joints:  # errors of their lines bend like effects that are missing
         task = task.suited((*added, *final.effects))
@@ -143,7 +143,7 @@ def _diagnosed(
     result = _result(task, added, final, progress, rng)
     if choice is None:
         return result
-    fields = [e for e in result.found if isinstance(e, ThermalField)]
+    fields = [e for e in result.found if traits(e).parameter_drives]
     told: tuple[Remark, ...] = (
         *choice_remarks(choice, result.found),
         *(field_shares(result.fit, e) for e in fields),

@@ -23,7 +23,7 @@ from matstd.diagnosis.fit import (
 from matstd.diagnosis.regression import PRIOR_DOF, GrossErrors
 from matstd.diagnosis.search import DiagnosisTask
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect, Inner, Model, Tunable
+from matstd.twin.model import Effect, Inner, Model, Tunable, is_tunable, traits
 
 FREE = 10.0
 """Factor on the stated distributions of the machine's ordinary errors: at the tenth of the stated
@@ -63,7 +63,7 @@ def sizes(
     wider = float(np.sqrt(dof / max(dof - 2.0, 0.5)))
     moved = tuple(ScaledEffect(e, s.scale) for e, s in zip(at, effects, strict=True))
     out = []
-    whole = [getattr(e, "is_told_whole", False) for e in at]
+    whole = [traits(e).is_reported_whole for e in at]
     # what the machine can do alike, if it were free to, leaves nothing of the whole of an effect
     expected = task.fit(moved, gross) if any(whole) else fit
     for i, effect in enumerate(at):
@@ -102,7 +102,7 @@ def _stepped(fit: Fit, effects: Sequence[Effect]) -> list[Effect] | None:
             continue
         place, i = fit.of_effect(tangent.name), names.index(tangent.effect.name)
         effect = out[i]
-        assert isinstance(effect, Tunable)
+        assert is_tunable(effect)
         inner = effect.inner(fit.run.touches)[tangent.index]
         value = list(effect.tuning.values())[tangent.index]
         step = float(fit.theta[place][0])
@@ -124,7 +124,7 @@ def _instants(
     """
     effect = effects[which].effect
     out: dict[int, tuple[float, float]] = {}
-    if not isinstance(effect, Tunable):
+    if not is_tunable(effect):
         return out
     others = [s for k, s in enumerate(effects) if k != which]
     base: EffectSet | None = None

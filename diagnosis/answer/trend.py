@@ -7,8 +7,7 @@ import numpy as np
 
 from matstd.diagnosis.fit import Fit, fit_run
 from matstd.diagnosis.geometry import CHANGED, Estimate, GeometryRow, changed_since, changing
-from matstd.twin.effects import Change
-from matstd.twin.model import Effect, columns
+from matstd.twin.model import Effect, columns, original_of, traits
 from matstd.twin.numbers import rms
 
 
@@ -117,7 +116,7 @@ def single_change(fit: Fit, run: int) -> SingleChange | None:
     """
     touches = fit.run.touches
     beside = changing(fit.model, touches, [run]).effects
-    tried = [e for e in beside if isinstance(e, Change) and len(e.parameters) == 1]
+    tried = [e for e in beside if traits(e).since_run is not None and len(e.parameters) == 1]
     C = columns(tried, touches)
     C = fit.whitener(C) if fit.whitener else C[fit.used] / (fit.u[fit.used, None] * fit.weight)
     left = C - fit.solution.Q @ (fit.solution.Q.T @ C)
@@ -129,11 +128,11 @@ def single_change(fit: Fit, run: int) -> SingleChange | None:
     value, u = (left.T @ fit.solution.residual)[seen] / size[seen], 1.0 / np.sqrt(size[seen])
     clear = np.abs(value) / u
     # a slope of a straightness and a squareness are one thing: the user's word is the second
-    is_place = np.array([tried[i].effect.kind == "location" for i in seen])
+    is_place = np.array([original_of(tried[i]).kind == "location" for i in seen])
     best = int(np.argmax(clear + ALIKE * is_place))
     if clear[best] <= CHANGED:
         return None
-    effect = tried[seen[best]].effect
+    effect = original_of(tried[seen[best]])
     return SingleChange(
         effect, effect.parameters[0].unit, Estimate(float(value[best]), float(u[best]))
     )

@@ -21,7 +21,7 @@ from matstd.diagnosis.evidence import (
 )
 from matstd.diagnosis.regression import GrossErrors
 from matstd.diagnosis.search import WORTH, DiagnosisTask, refined_set
-from matstd.twin.effects import Again
+from matstd.twin.effects import repeat
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Symbol
 from matstd.twin.model import Effect, moving_axes
@@ -138,6 +138,6 @@ def _named(effects: list[Effect]) -> list[Effect]:
     """The second of two lags after one drive by a name of its own."""
     out: list[Effect] = []
     for effect in effects:
-        twin = isinstance(effect, ThermalLag) and any(e.name == effect.name for e in out)
-        out.append(Again(effect) if twin and isinstance(effect, ThermalLag) else effect)
+        second = repeat(effect) if any(e.name == effect.name for e in out) else None
+        out.append(second or effect)
     return out

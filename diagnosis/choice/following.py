@@ -21,8 +21,7 @@ from matstd.diagnosis.regression import Memory
 from matstd.diagnosis.remarks import ChosenByPrediction, FieldShares, Remark, SearchEnded
 from matstd.diagnosis.residual import PatternTests, find_structure
 from matstd.diagnosis.search import DiagnosisTask, Library, Member, Search, SearchState
-from matstd.twin.model import Effect, columns
-from matstd.twin.thermal import LETTERS, ThermalField
+from matstd.twin.model import Effect, columns, traits
 
 LISTED = 6
 """Drives of a field that are told."""
@@ -92,7 +91,7 @@ def _slow(memory: Memory | None, rows: int) -> Memory | None:
 
 
 def _is_shrunk(sized: ScaledEffect) -> bool:
-    return bool(getattr(sized.effect, "is_shrunk", False))
+    return traits(sized.effect).is_shrunk
 
 
 def _wider(sized: ScaledEffect, weight: float) -> ScaledEffect:
@@ -127,14 +126,16 @@ def _chance(choice: Choice) -> float:
     return float(ttest_1samp(gain, 0.0, alternative="greater").pvalue)
 
 
-def field_shares(fit: Fit, effect: ThermalField) -> FieldShares:
+def field_shares(fit: Fit, effect: Effect) -> FieldShares:
     """What every drive of a field explains of the deviations, the most first."""
     theta = fit.theta[fit.of_effect(effect.name)]
     C = columns([effect], fit.run.touches)[fit.used] * theta
-    places = [drive for _ in LETTERS for drive, _ in effect.places]
-    sizes = {d: float(np.std(C[:, [p == d for p in places]].sum(axis=1))) for d in effect.drives}
+    own = traits(effect)
+    places = np.array(own.parameter_drives)
+    drives = dict.fromkeys(own.parameter_drives)
+    sizes = {d: float(np.std(C[:, places == d].sum(axis=1))) for d in drives}
     ranked = sorted(sizes.items(), key=lambda item: -item[1])
-    return FieldShares(effect.axis, tuple(ranked[:LISTED]))
+    return FieldShares(own.axis, tuple(ranked[:LISTED]))
 
 
 def choice_remarks(choice: Choice, found: Sequence[Effect]) -> tuple[Remark, ...]:

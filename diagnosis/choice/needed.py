@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, projected
-from matstd.twin.effects import Again
+from matstd.twin.model import traits
 from matstd.twin.numbers import rms
 from matstd.twin.record import IntArray
 
@@ -48,8 +48,8 @@ def _renumbered(effects: Sequence[ScaledEffect]) -> tuple[ScaledEffect, ...]:
     names = {s.effect.name for s in effects}
     out = []
     for sized in effects:
-        effect = sized.effect
-        if isinstance(effect, Again) and effect.effect.name not in names:
-            sized = replace(sized, effect=effect.effect)
+        own = traits(sized.effect)
+        if own.number > 1 and own.original is not None and own.original.name not in names:
+            sized = replace(sized, effect=own.original)
         out.append(sized)
     return tuple(out)

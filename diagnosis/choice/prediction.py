@@ -30,10 +30,10 @@ from matstd.diagnosis.search import (
     refined_set,
     scaled,
 )
-from matstd.twin.effects import again
+from matstd.twin.effects import repeat
 from matstd.twin.frames import Array
 from matstd.twin.library import proposals
-from matstd.twin.model import Effect
+from matstd.twin.model import Effect, traits
 from matstd.twin.numbers import rms
 from matstd.twin.record import IntArray, Touches
 from matstd.twin.thermal import drives, field
@@ -177,8 +177,8 @@ def _choosers(
     budgets: list[Budget],
 ) -> dict[str, Chooser]:
     """The ways that the candidates leave open, the simplest first; budgets of searches are kept."""
-    single = [e for e in candidates if not getattr(e, "is_shrunk", False)]
-    warm = next((e for e in candidates if getattr(e, "is_shrunk", False)), None)
+    single = [e for e in candidates if not traits(e).is_shrunk]
+    warm = next((e for e in candidates if traits(e).is_shrunk), None)
     out: dict[str, Chooser] = {"nothing": lambda task, gross: ()}
     if {"thermal-lag", "thermal-static"} <= {e.kind for e in single}:
         out["two time constants"] = lambda task, gross: bodies(task, added, gross)
@@ -250,7 +250,7 @@ def named(
         budgets.append(Budget(SETS))
         chosen = scaled(best_set(library, found, budgets[-1])[1])
         found = list(refined_set(complement, chosen))
-        more = [a for s in found if (a := again(s.effect)) is not None]
+        more = [a for s in found if (a := repeat(s.effect)) is not None]
         if not more:
             break
     return needed(complement, found, groups)

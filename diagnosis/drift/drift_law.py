@@ -18,9 +18,10 @@ from matstd.diagnosis.drift.drift_file import SavedLaw, read_law
 from matstd.diagnosis.drift.linear import LinearLaw
 from matstd.diagnosis.drift.record import DriftRecord, is_speed
 from matstd.twin.errors import UnknownEffect
+from matstd.twin.fields import component_symbol
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Symbol
-from matstd.twin.model import Parameter, Term, Title, component_symbol, refusal
+from matstd.twin.model import Parameter, Term, Title, refusal
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG
 from matstd.twin.words import did_you_mean

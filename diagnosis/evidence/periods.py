@@ -57,7 +57,7 @@ def scanned_grids(candidates: Sequence[Effect], complement: ResidualSpace) -> li
             variants = tuple(tuned_variants(effect, complement.touches))
             out.append(Grid(effect, variants, len(variants)))
             continue
-        assert isinstance(effect, Tunable)
+        assert is_tunable(effect)
         periods = strongest(effect, inner, complement, complement.residual)
         kept = tuple(effect.tuned(float(p)) for p in periods)
         out.append(Grid(effect, kept, len(inner.grid)))

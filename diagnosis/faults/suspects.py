@@ -15,7 +15,7 @@ import numpy as np
 from matstd.twin.effects import LocationError, ProbeRadius
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Link
-from matstd.twin.model import Effect
+from matstd.twin.model import Effect, traits
 from matstd.twin.record import Run, Touches, aligned, computed_deviation
 from matstd.twin.units import DEG
 
@@ -141,10 +141,11 @@ def free_sd(effect: Effect) -> Array:
 
 def _moved(t: Touches, effect: Effect, value: float) -> Touches:
     """Touches with one number of the description as it was found."""
-    if isinstance(effect, ProbeRadius):
+    own = traits(effect)
+    if own.stated_number == "radius":
         return replace(t, radius=t.radius + value)
-    assert isinstance(effect, LocationError)
-    symbol = effect.symbol
+    symbol = own.symbol
+    assert symbol is not None
     if symbol.link == "t":  # the ball stands higher than a tool of the stated length has it
         return replace(t, length=t.length - value)
     link = t.chain.link(symbol.link)

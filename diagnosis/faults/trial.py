@@ -27,11 +27,11 @@ from matstd.diagnosis.faults.suspects import (
 from matstd.diagnosis.fit import Fit, fit_run, unit_mistake
 from matstd.diagnosis.geometry import FoundNumber
 from matstd.diagnosis.regression import PRIOR_DOF, solve
-from matstd.twin.effects import SHIFT_SD, TURN_SD, ProbeRadius, body_errors, placing_errors
+from matstd.twin.effects import SHIFT_SD, TURN_SD, body_errors, placing_errors
 from matstd.twin.errors import NotEnoughData
 from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.library import ordinary_model
-from matstd.twin.model import Effect, columns
+from matstd.twin.model import Effect, columns, traits
 from matstd.twin.record import Run, Setup, Touches
 
 TOUCHES = 400
@@ -283,10 +283,9 @@ def _numbers(trial: _Trial) -> Iterator[FoundNumber]:
     """What has to be added to the numbers of the description."""
     values = zip(trial.suspect.free, trial.theta, trial.u, strict=True)
     for effect, value, u in values:
-        name = effect.name.partition("(")[2].removesuffix(")")
-        if isinstance(effect, ProbeRadius):
-            yield FoundNumber("radius", float(value), float(u))
-        elif name == "EZ0t":  # the ball higher up is a shorter tool
+        own = traits(effect)
+        name = own.symbol.name if own.symbol is not None else own.stated_number
+        if name == "EZ0t":  # the ball higher up is a shorter tool
             yield FoundNumber("length", -float(value), float(u))
         else:
             yield FoundNumber(name, float(value), float(u))

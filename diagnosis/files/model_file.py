@@ -24,7 +24,7 @@ from matstd.twin.files import (
 from matstd.twin.frames import Array
 from matstd.twin.library import owner_of, parse_effect
 from matstd.twin.machine import Chain
-from matstd.twin.model import Effect, Model, Tunable
+from matstd.twin.model import Effect, Model, is_tunable
 from matstd.twin.record import Run, Touches, without_copies
 from matstd.twin.units import DEG, UM
 
@@ -311,8 +311,8 @@ def _effect(
         raise BadFile(path, f"{key}.name", entry.name, expected) from error
     if not entry.inner:
         return effect
-    if not isinstance(effect, Tunable) or len(entry.inner) != len(effect.tuning):
-        expected = ", ".join(effect.tuning) if isinstance(effect, Tunable) else "none"
+    if not is_tunable(effect) or len(entry.inner) != len(effect.tuning):
+        expected = ", ".join(effect.tuning) if is_tunable(effect) else "none"
         raise BadFile(path, f"{key}.inner", ", ".join(entry.inner), expected)
     values = []
     for (stored, value), name in zip(entry.inner.items(), effect.tuning, strict=True):

@@ -9,9 +9,8 @@ from scipy.linalg import orth
 
 from matstd.diagnosis.fit.identification import Fit
 from matstd.diagnosis.regression import BoolArray
-from matstd.twin.effects import Overtones, PositionTable
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect, Inner, columns, inner_values
+from matstd.twin.model import Effect, Inner, columns, inner_values, traits
 from matstd.twin.numbers import rms
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG, MINUTE, UM, URAD
@@ -118,14 +117,15 @@ def reported(
     place = fit.of_effect(effect.name)
     theta, covariance = fit.theta[place], fit.covariance[place, place] * wider**2
     out = list(_inner(fit, effect, wider, without_tangent or {}))
-    if getattr(effect, "is_shrunk", False) or getattr(effect, "is_tensor", False):
+    own = traits(effect)
+    if own.is_shrunk or own.is_tensor:
         out.append(explained_rms(fit, effect, theta, covariance))
-    elif getattr(effect, "is_curve", False):
+    elif own.is_curve:
         out += curve_sizes(fit, effect)
     elif len(theta) > 1:
         out.append(size(effect, theta, covariance, _is_seen(fit, place)))
-    if isinstance(effect, Overtones):
-        out += _sines(effect, theta, covariance)
+    if own.wave is not None and own.wave.sines > 1:
+        out += _sines(effect, own.wave.sines, theta, covariance)
     for i, parameter in enumerate(effect.parameters):
         suffix, factor = file_unit(parameter.unit)
         out.append(
@@ -142,9 +142,9 @@ def reported(
     return tuple(out)
 
 
-def _sines(effect: Overtones, theta: Array, covariance: Array) -> Iterator[Reported]:
+def _sines(effect: Effect, sines: int, theta: Array, covariance: Array) -> Iterator[Reported]:
     """Amplitude of every sine of a period, `sine_1` that of the whole one."""
-    for k in range(1, effect.order + 1):
+    for k in range(1, sines + 1):
         own = np.arange(len(theta)) // 2 == k - 1
         one = size(effect, theta, covariance, own)
         yield replace(one, quantity=f"{SINE}{k}", role=Role.COEFFICIENT)
@@ -170,7 +170,8 @@ def curve_sizes(fit: Fit, effect: Effect) -> Sequence[Reported]:
     Over the rows used, in the unit of the component error that it is: an angle of a rotary axis.
     Of a component error it is the whole curve that the model has of it, of a length without its
     straight line, which is a scale or where the standard stands: what is added where a parabola
-    does not suffice has no size of its own. Of others (`is_told_whole`) it is the effect's alone.
+    does not suffice has no size of its own. Of others (`is_reported_whole`) it is that of the
+    effect alone.
     """
     touches = fit.run.touches[fit.used]
     own = _of_same_curve(fit, effect)
@@ -179,7 +180,7 @@ def curve_sizes(fit: Fit, effect: Effect) -> Sequence[Reported]:
     C = columns(own, touches)
     curve, unit = _curve(own, touches)
     lever = np.linalg.norm(C, axis=1) / np.maximum(np.linalg.norm(curve, axis=1), 1e-300)
-    if not getattr(effect, "is_told_whole", False):
+    if not traits(effect).is_reported_whole:
         others = [e for e in fit.effects if e not in own]
         u = fit.u[fit.used][:, None]
         beside = columns(others, touches) / u
@@ -193,9 +194,7 @@ def curve_sizes(fit: Fit, effect: Effect) -> Sequence[Reported]:
     values = np.where(seen, curve @ theta, np.nan)
     across = curve[int(np.nanargmax(values))] - curve[int(np.nanargmin(values))]
     whole = _told("peak_to_valley", unit, float(across @ theta), across, covariance)
-    if isinstance(effect, PositionTable) and effect.by_direction:
-        return [whole, *_reversals(fit, effect)]
-    return [whole]
+    return [whole, *_reversals(fit, effect)]
 
 
 def _of_same_curve(fit: Fit, effect: Effect) -> list[Effect]:
@@ -204,33 +203,36 @@ def _of_same_curve(fit: Fit, effect: Effect) -> list[Effect]:
     Without its straight line where that is a scale or where the standard stands; of an angle it is
     part of the error.
     """
-    symbol = getattr(effect, "symbol", None)
+    symbol = traits(effect).symbol
     placed = ("constant",) if symbol is not None and symbol.is_angular else ("constant", "linear")
     alike = [
         e
         for e in fit.model.effects
         if symbol is not None
         and e.kind == "geometric"
-        and getattr(e, "symbol", None) == symbol
-        and getattr(e, "shape", "") not in placed
+        and traits(e).symbol == symbol
+        and traits(e).distribution not in placed
         and e.name != effect.name
     ]
     return [effect, *alike]
 
 
-def _reversals(fit: Fit, effect: PositionTable) -> Iterator[Reported]:
-    """Reversal of a table by direction, on average over the readings used and at most.
+def _reversals(fit: Fit, effect: Effect) -> Iterator[Reported]:
+    """Reversal of a curve for either direction, on average over the readings used and at most.
 
     The difference of both curves, forward less backward: of a positioning test that of ISO 230-2.
     """
+    own = traits(effect)
+    if own.reversal is None or own.symbol is None:
+        return
     place = fit.of_effect(effect.name)
     theta, covariance = fit.theta[place], fit.covariance[place, place]
     touches = fit.run.touches[fit.used]
-    first = np.unique(np.round(touches.reading(effect.symbol.link), 4), return_index=True)[1]
-    reversal = effect.reversal(touches[first])
+    first = np.unique(np.round(touches.reading(own.symbol.link), 4), return_index=True)[1]
+    reversal = own.reversal(touches[first])
     widest = reversal[int(np.argmax(np.abs(reversal @ theta)))]
     for name, w in (("on_average", reversal.mean(axis=0)), ("at_most", widest)):
-        yield _told(f"reversal_{name}", effect.symbol.unit, float(w @ theta), w, covariance)
+        yield _told(f"reversal_{name}", own.symbol.unit, float(w @ theta), w, covariance)
 
 
 def _curve(effects: Sequence[Effect], touches: Touches) -> tuple[Array, str]:

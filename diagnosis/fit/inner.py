@@ -112,7 +112,7 @@ def tangents(model: Model, touches: Touches, theta: Array) -> list[Tangent]:
         own = tuple(float(v) for v in theta[start : start + count])
         start += count
         for index, inner, value in continuous_inner(effect, touches):
-            assert isinstance(effect, Tunable)
+            assert is_tunable(effect)
             step = STEP * spacing(inner, value)
             if not is_smooth(effect, index, step, touches):
                 continue

@@ -26,10 +26,9 @@ from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.regression import PRIOR_DOF, Solution
-from matstd.twin.effects import Change, ComponentError, LocationError
 from matstd.twin.frames import Array
 from matstd.twin.machine import LETTERS, Chain, error_class
-from matstd.twin.model import Effect, Model
+from matstd.twin.model import Effect, Model, original_of, traits
 from matstd.twin.record import IntArray
 
 FACTORS = (1.0, 1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0)
@@ -78,8 +77,8 @@ def _errors_of(model: Model, kinds: Array) -> list[IntArray]:
     own = [e for e in model.effects for _ in e.parameters]
     for i, (effect, kind) in enumerate(zip(own, kinds, strict=True)):
         if kind != "stays":
-            since, error = getattr(effect, "since", None), getattr(effect, "effect", effect)
-            of.setdefault((since, getattr(error, "symbol", None), kind), []).append(i)
+            symbol = traits(original_of(effect)).symbol
+            of.setdefault((traits(effect).since_run, symbol, kind), []).append(i)
     return [np.array(numbers) for numbers in of.values()]
 
 
@@ -117,16 +116,16 @@ def _gain(K: Array, k: Array, left: float, count: int, of: IntArray, more: float
 
 def _kind(effect: Effect, chain: Chain) -> str:
     """What an error of the ordinary model, or its change, does over its axis."""
-    effect = effect.effect if isinstance(effect, Change) else effect
-    if isinstance(effect, LocationError):
-        return "tilts" if error_class(chain, effect.symbol) == "arm_tilt" else "stays"
-    if not isinstance(effect, ComponentError):
+    error = traits(original_of(effect) if traits(effect).since_run is not None else effect)
+    if error.ordinary_constant is not None:
+        return "tilts" if error_class(chain, error.ordinary_constant) == "arm_tilt" else "stays"
+    symbol = error.ordinary_component
+    if symbol is None:
         return "stays"
-    if effect.shape in ("parabolic", "sinusoidal"):
+    if error.distribution in ("parabolic", "sinusoidal"):
         return "bends"
-    symbol = effect.symbol
-    is_scale = effect.shape == "linear" and LETTERS[symbol.component] == symbol.link[0]
-    return "stays" if is_scale or effect.shape == "constant" else "tilts"
+    is_scale = error.distribution == "linear" and LETTERS[symbol.component] == symbol.link[0]
+    return "stays" if is_scale or error.distribution == "constant" else "tilts"
 
 
 def _evidence(G: Array, g: Array, square: float, count: int, factor: Array) -> float:
@@ -141,7 +140,7 @@ def _evidence(G: Array, g: Array, square: float, count: int, factor: Array) -> f
 
 def widening(effects: Sequence[Effect], factor: float) -> Array:
     """Factor on the prior of every parameter, (P, 1): none where its size was chosen already."""
-    shrunk = [getattr(e, "is_shrunk", False) for e in effects]
+    shrunk = [traits(e).is_shrunk for e in effects]
     each = np.repeat(shrunk, [len(e.parameters) for e in effects])
     return np.where(each, 1.0, factor)[:, None]
 

@@ -27,9 +27,9 @@ import numpy as np
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry.quantities import Functional, Quantity, geometric_effects
-from matstd.twin.effects import LocationError
 from matstd.twin.frames import Array, rotation
 from matstd.twin.machine import Chain, Symbol
+from matstd.twin.model import traits
 
 PARALLEL = 0.05
 """Sine of the angle between two lines below which their distance, not their crossing, is told."""
@@ -88,9 +88,10 @@ def arm_functionals(fit: Fit, joints: Sequence[str]) -> Iterator[Functional]:
     levers = _levers(chain, names)
     weights: dict[tuple[Quantity, str], Array] = {}
     for start, effect in geometric_effects(fit):
-        if isinstance(effect, LocationError) and effect.symbol.link in names:
+        constant = traits(effect).ordinary_constant
+        if constant is not None and constant.link in names:
             ahead, behind = (
-                _measures(_moved(nominal, names, chain, effect.symbol, s), nominal, names)
+                _measures(_moved(nominal, names, chain, constant, s), nominal, names)
                 for s in (STEP, -STEP)
             )
             for key, (_, value) in ahead.items():

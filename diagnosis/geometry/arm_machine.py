@@ -14,10 +14,9 @@ import numpy as np
 
 from matstd.diagnosis.fit import Fit, fit_run
 from matstd.diagnosis.geometry.quantities import geometric_effects
-from matstd.twin.effects import LocationError
 from matstd.twin.frames import Array, apply, rotation
 from matstd.twin.machine import Chain
-from matstd.twin.model import Model
+from matstd.twin.model import Model, traits
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,14 +37,14 @@ class FoundArm:
 def found_arm(fit: Fit) -> FoundArm | None:
     """The arm by the rows of a fit; None where it is none, or where lines make nothing better."""
     chain = fit.model.chain
-    lines = tuple(e for _, e in geometric_effects(fit) if isinstance(e, LocationError))
+    lines = tuple(e for _, e in geometric_effects(fit) if traits(e).ordinary_constant)
     if not chain.joints or not lines:
         return None
     fit = fit_run(fit.run, Model(chain, lines), gross=fit.gross)
     sizes = {
-        (e.symbol.link, e.symbol.component): (start, float(fit.theta[start]))
+        (symbol.link, symbol.component): (start, float(fit.theta[start]))
         for start, e in geometric_effects(fit)
-        if isinstance(e, LocationError)
+        if (symbol := traits(e).ordinary_constant)
     }
     links, after = [], np.eye(4)  # what the zeros of the joints before do to everything behind
     for link in chain.links:

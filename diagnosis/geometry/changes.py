@@ -15,7 +15,7 @@ from matstd.diagnosis.fit import Prior
 from matstd.diagnosis.geometry.quantities import is_geometry
 from matstd.twin.effects import Change
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect, Model
+from matstd.twin.model import Effect, Model, original_of, traits
 from matstd.twin.record import Touches
 
 
@@ -34,17 +34,18 @@ def changing(model: Model, touches: Touches, since: Sequence[int]) -> Model:
 
 def standing(model: Model) -> tuple[Effect, ...]:
     """The effects of a model that are no changes."""
-    return tuple(e for e in model.effects if not isinstance(e, Change))
+    return tuple(e for e in model.effects if traits(e).since_run is None)
 
 
 def changed_since(model: Model) -> tuple[int, ...]:
     """Runs from which on the geometry of a model may differ."""
-    return tuple(sorted({e.index for e in model.effects if isinstance(e, Change)}))
+    since = (traits(e).since_run for e in model.effects)
+    return tuple(sorted({run for run in since if run is not None}))
 
 
 def since_first_run(model: Model) -> Model:
     """The model without changes since an earlier model: what its runs alone can tell."""
-    kept = [e for e in model.effects if not (isinstance(e, Change) and e.index == 0)]
+    kept = [e for e in model.effects if traits(e).since_run != 0]
     return Model(model.chain, tuple(kept))
 
 
@@ -57,8 +58,8 @@ def with_changes(prior: Prior, model: Model) -> Prior:
     for effect in standing(model):
         factors[effect.name] = prior.factor[at : at + len(effect.parameters)]
         at += len(effect.parameters)
-    for change in (e for e in model.effects if isinstance(e, Change)):
-        factor = factors[change.effect.name]
+    for change in (e for e in model.effects if traits(e).since_run is not None):
+        factor = factors[original_of(change).name]
         stated = Prior.of_effects([change])
         prior = prior.joined(Prior(stated.mean, factor[:, None] * stated.root, factor))
     return prior
@@ -66,7 +67,8 @@ def with_changes(prior: Prior, model: Model) -> Prior:
 
 def of_first(prior: Prior, model: Model) -> Prior:
     """Of what is believed of a model, the effects before its first change."""
-    first = next((i for i, (e, _) in enumerate(model.parameters) if isinstance(e, Change)), None)
+    since = [traits(e).since_run for e, _ in model.parameters]
+    first = next((i for i, run in enumerate(since) if run is not None), None)
     return prior if first is None else Prior(prior.mean[:first], prior.root[:first, :first])
 
 
@@ -82,13 +84,14 @@ def state(model: Model, run: int) -> Array:
         at += len(effect.parameters)
     out = np.eye(at)
     for effect in model.effects:
-        if isinstance(effect, Change) and effect.index <= run:
+        since = traits(effect).since_run
+        if since is not None and since <= run:
             k = np.arange(len(effect.parameters))
-            out[places[effect.effect.name] + k, places[effect.name] + k] = 1.0
+            out[places[original_of(effect).name] + k, places[effect.name] + k] = 1.0
     return out
 
 
 def state_of_standing(model: Model, run: int) -> Array:
     """The rows of `state` of the effects that are no changes, (P0, P)."""
-    keep = [not isinstance(e, Change) for e, _ in model.parameters]
+    keep = [traits(e).since_run is None for e, _ in model.parameters]
     return state(model, run)[np.array(keep, dtype=bool)]

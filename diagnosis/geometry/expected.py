@@ -4,8 +4,8 @@ import numpy as np
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry.quantities import geometric_effects
-from matstd.twin.effects import ComponentError
 from matstd.twin.frames import Array
+from matstd.twin.model import traits
 
 
 def expected_size(fit: Fit, weights: Array, stated: Array) -> float:
@@ -24,8 +24,9 @@ def stated_sizes(fit: Fit) -> Array:
     """What the machine file expects of every parameter over what its class has, (P,)."""
     out = np.ones(len(fit.model.parameters))
     for start, effect in geometric_effects(fit):
-        if isinstance(effect, ComponentError) and not effect.symbol.is_angular:
-            expected = fit.model.chain.link(effect.symbol.link).expected
+        symbol = traits(effect).ordinary_component
+        if symbol is not None and not symbol.is_angular:
+            expected = fit.model.chain.link(symbol.link).expected
             if expected is not None:
                 sizes = [p.sd for p in effect.parameters]
                 out[start : start + len(sizes)] = expected / np.array(sizes)

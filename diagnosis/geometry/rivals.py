@@ -15,7 +15,7 @@ from matstd.diagnosis.fit import Fit
 from matstd.twin.effects import LocationError, ProbeRadius
 from matstd.twin.library import ordinary_model
 from matstd.twin.machine import Family
-from matstd.twin.model import Effect, columns
+from matstd.twin.model import Effect, columns, traits
 from matstd.twin.record import Touches
 
 TOUCHES = 1000
@@ -104,7 +104,6 @@ def _numbers(touches: Touches) -> Iterator[Effect]:
 
 
 def _name(effect: Effect) -> str:
-    if isinstance(effect, ProbeRadius):
-        return "radius"
-    name = effect.name.partition("(")[2].removesuffix(")")
+    own = traits(effect)
+    name = own.symbol.name if own.symbol is not None else own.stated_number
     return "length" if name == "EZ0t" else name

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
-from matstd.twin.effects import Again, Harmonic, HigherOrder, PositionTable
 from matstd.twin.frames import Array
+from matstd.twin.model import original_of, traits
 
 EVEN = 2e-3
 """Largest distance of a target from an even spacing, rad: a tenth of a degree."""
@@ -36,17 +36,17 @@ def harmonics_alike(fit: Fit) -> list[HarmonicsAlike]:
     """
     out: list[HarmonicsAlike] = []
     for effect in fit.model.effects:
-        one: object = effect.effect if isinstance(effect, Again) else effect
-        if not isinstance(one, Harmonic | HigherOrder | PositionTable):
+        own = traits(original_of(effect) if traits(effect).number > 1 else effect)
+        if own.harmonic is None or own.symbol is None:
             continue
-        if one.symbol.link not in fit.run.touches.chain.rotary_axes:
+        axis, k = own.symbol.link, round(own.harmonic)
+        if axis not in fit.run.touches.chain.rotary_axes:
             continue
-        n = targets_a_turn(fit.run.touches.reading(one.symbol.link)[fit.used])
-        k = round(one.harmonic) if isinstance(one, Harmonic) else 0
+        n = targets_a_turn(fit.run.touches.reading(axis)[fit.used])
         around = {m * n + side * k for m in (1, 2) for side in (-1, 1)} if k else set()
         others = tuple(h for h in sorted(around - {k}) if h > 0)
         if n:
-            out.append(HarmonicsAlike(one.symbol.link, n, k, others))
+            out.append(HarmonicsAlike(axis, n, k, others))
     return list(dict.fromkeys(out))
 
 

@@ -15,9 +15,9 @@ import numpy as np
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.residual.patterns import variables
-from matstd.twin.effects import PositionTable, normal_in_tool
+from matstd.twin.effects import normal_in_tool
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect, Where, columns, inner_values
+from matstd.twin.model import Effect, Where, columns, inner_values, traits
 from matstd.twin.record import IntArray, Touches
 from matstd.twin.units import DEG
 
@@ -120,9 +120,10 @@ def partial(fit: Fit, effect: Effect) -> Partial:
 
 def _ways(effect: Effect, touches: Touches) -> IntArray:
     """Sign of the last motion of the axis of an effect with a course for either direction, (N,)."""
-    if not (isinstance(effect, PositionTable) and effect.by_direction):
+    own = traits(effect)
+    if own.reversal is None or own.symbol is None:
         return np.zeros(len(touches), dtype=np.int64)
-    return np.sign(touches.last_move(effect.symbol.link)).astype(np.int64)
+    return np.sign(touches.last_move(own.symbol.link)).astype(np.int64)
 
 
 def _split(effect: Effect, touches: Touches, theta: Array) -> tuple[Drawn, Array, Array]:

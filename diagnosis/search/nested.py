@@ -2,13 +2,12 @@
 
 from collections.abc import Iterable
 
-from matstd.twin.effects import PositionTable
-from matstd.twin.model import Effect
+from matstd.twin.model import Effect, traits
 
 
 def would_hold(effect: Effect, members: Iterable[Effect]) -> bool:
     """Whether an effect is a table by direction of what a member is the plain table of."""
-    if not (isinstance(effect, PositionTable) and effect.by_direction):
+    own = traits(effect)
+    if not own.is_table or own.reversal is None:
         return False
-    tables = {m.symbol for m in members if isinstance(m, PositionTable)}
-    return effect.symbol in tables
+    return own.symbol in {traits(m).symbol for m in members if traits(m).is_table}

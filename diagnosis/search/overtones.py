@@ -1,4 +1,4 @@
-"""Waves that are whole fractions of one period, told as one periodic error of that shape."""
+"""Waves that are whole fractions of one period, reported as one periodic error of that shape."""
 
 from collections.abc import Iterator, Sequence
 
@@ -6,8 +6,8 @@ import numpy as np
 
 from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, addition, projected
 from matstd.diagnosis.search.selection import WORTH
-from matstd.twin.effects import MOST_OVERTONES, Again, Overtones, Periodic, usual_distance
-from matstd.twin.model import Effect
+from matstd.twin.effects import MOST_OVERTONES, usual_distance
+from matstd.twin.model import Effect, Wave, original_of, traits
 
 HIGHEST_FOUND = 4
 """The strongest wave of a period is at most its fourth."""
@@ -38,29 +38,30 @@ def with_overtones(
     return best[1]
 
 
-def _combs(complement: ResidualSpace, effect: Effect, period: float) -> Iterator[Overtones]:
+def _combs(complement: ResidualSpace, effect: Effect, period: float) -> Iterator[Effect]:
     """One period with two sines and more, as many as the readings resolve."""
-    wave = _wave(effect)
+    wave, with_sines = _wave(effect), traits(original_of(effect)).with_sines
     assert wave is not None
+    assert with_sines is not None
     q = complement.touches.reading(wave.symbol.link)[complement.used]
     most = min(MOST_OVERTONES, int(period / (2.0 * usual_distance(q))))
     if period < 0.5 * float(np.ptp(q)):
         for order in range(2, most + 1):
-            yield Overtones(wave.symbol, period, order, near=period)
+            yield with_sines(period, order)
 
 
-def _wave(effect: Effect) -> Periodic | None:
+def _wave(effect: Effect) -> Wave | None:
     """The single sine that an effect is, for the second time or not."""
-    one: object = effect.effect if isinstance(effect, Again) else effect
-    return one if isinstance(one, Periodic) and not isinstance(one, Overtones) else None
+    wave = traits(original_of(effect)).wave
+    return wave if wave is not None and wave.sines == 1 else None
 
 
-def _is_fraction(complement: ResidualSpace, effect: Effect, comb: Overtones) -> bool:
+def _is_fraction(complement: ResidualSpace, effect: Effect, sines: Effect) -> bool:
     """Whether an effect is one of the sines of a period, as far as the travel can tell."""
-    wave = _wave(effect)
-    if wave is None or wave.symbol != comb.symbol:
+    wave, comb = _wave(effect), traits(sines).wave
+    if wave is None or comb is None or wave.symbol != comb.symbol:
         return False
     k = round(comb.period / wave.period)
     q = complement.touches.reading(wave.symbol.link)[complement.used]
     apart = abs(1.0 / wave.period - k / comb.period) * float(np.ptp(q))
-    return 1 <= k <= comb.order and apart < 0.5
+    return 1 <= k <= comb.sines and apart < 0.5

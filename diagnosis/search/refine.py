@@ -22,7 +22,7 @@ from matstd.diagnosis.evidence import (
     projected,
 )
 from matstd.diagnosis.fit import continuous_inner, spacing
-from matstd.twin.model import Effect, Tunable
+from matstd.twin.model import Effect, Tunable, is_tunable
 
 POINTS = 9
 """Points of every scan, over one distance of the grid to either side."""
@@ -65,7 +65,7 @@ def _sweep(
 ) -> tuple[Effect, float, float]:
     """Every inner parameter in turn; the effect with its log evidence and its size."""
     for index, inner, _ in continuous_inner(best, base.complement.touches):
-        assert isinstance(best, Tunable)
+        assert is_tunable(best)
         low, high = float(np.min(inner.grid)), float(np.max(inner.grid))
         for level in range(levels):
             before, value = top, list(best.tuning.values())[index]

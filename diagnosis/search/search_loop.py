@@ -40,9 +40,9 @@ from matstd.diagnosis.search.screening import Library
 from matstd.diagnosis.search.selection import Budget, EffectSubset, Search
 from matstd.diagnosis.search.taken_back import foretold
 from matstd.diagnosis.search.task import DiagnosisTask
-from matstd.twin.effects import Again, again
+from matstd.twin.effects import repeat
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect
+from matstd.twin.model import Effect, traits
 from matstd.twin.numbers import rms
 
 ROUNDS = 4
@@ -159,7 +159,7 @@ def search_until_stable(
             tables there are, it holds.
     """
     begun = {s.effect.name for s in start}
-    laws = [e for e in candidates if not getattr(e, "is_table", False) or e.name in begun]
+    laws = [e for e in candidates if not traits(e).is_table or e.name in begun]
     state = _with_further_periods(task, added, laws, progress, start)
     if start or len(laws) == len(candidates):
         return state
@@ -192,9 +192,9 @@ def _with_further_periods(
     for number in range(2, PERIODS + 1):
         state, offered = _as_one_period(task, added, offered, progress, state)
         before = {s.effect.name for s in state.effects}
-        repeat = [e for e in offered if e.name in before and period_of(e, state.library.complement)]
-        first = [e for e in repeat if not isinstance(e, Again)]
-        further = [a for e in first if (a := again(e, number)) is not None]
+        found = [e for e in offered if e.name in before and period_of(e, state.library.complement)]
+        first = [e for e in found if traits(e).number == 1]
+        further = [a for e in first if (a := repeat(e, number)) is not None]
         if not further or not _is_open(state):
             break
         offered += further
@@ -228,7 +228,7 @@ def _as_one_period(
         return state, offered
     kept = {s.effect.name for s in start} - {start[-1].effect.name}
     gone = {s.effect.name for s in state.effects} - kept
-    others = [e for e in offered if e.name not in gone or not isinstance(e, Again)]
+    others = [e for e in offered if e.name not in gone or traits(e).number == 1]
     others.append(start[-1].effect)
     other = _until_gross_errors_stay(task, added, others, progress, start)
     is_taken = start[-1].effect.name in {s.effect.name for s in other.effects}

@@ -1,13 +1,7 @@
 """Serial arms under a laser tracker: joints, reflectors, Denavit and Hartenberg's parameters."""
 
-from matstd.importers.arms.arm_mistakes import coupled, likely_mistake
-from matstd.importers.arms.serial_arm import arm_from_dh, joint_readings, misfit, tracker_run
+from matstd.importers.arms.dh import arm_from_dh
+from matstd.importers.arms.table import ArmTable, read_arm
+from matstd.importers.arms.tracker import ArmImport, import_arm, tracker_run
 
-__all__ = [
-    "arm_from_dh",
-    "coupled",
-    "joint_readings",
-    "likely_mistake",
-    "misfit",
-    "tracker_run",
-]
+__all__ = ["ArmImport", "ArmTable", "arm_from_dh", "import_arm", "read_arm", "tracker_run"]

@@ -2,7 +2,9 @@
 
 import csv
 import io
+import tempfile
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -11,8 +13,19 @@ from pydantic import Field
 
 from matstd.importers.sheets import ANGLES, Sheet, clock_times, has_clock, unit_of_column
 from matstd.twin.errors import BadFile
-from matstd.twin.files import Table, check_format, checked, parse_toml, read_text
+from matstd.twin.files import (
+    Table,
+    check_format,
+    checked,
+    parse_toml,
+    read_machine,
+    read_run,
+    read_text,
+    write_whole,
+)
 from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.record import Run
 
 
 class ColumnTable(Table):
@@ -42,6 +55,51 @@ _TEXT = ("feature", "setup", "pose", "split")
 """Columns of a run that hold names."""
 
 
+@dataclass(frozen=True, eq=False)
+class MappedRun:
+    """A run made by a mapping file.
+
+    Attributes:
+        text: Of its run file.
+        run: As it reads back.
+        left_out: Number of readings without a deviation, which are not in it.
+    """
+
+    text: str
+    run: Run
+    left_out: int
+
+
+def import_mapped(
+    sheet: Sheet, path: str | Path, folder: Path, chain: Chain | None = None
+) -> MappedRun:
+    """A run by a mapping file, read once as the run file that it will be.
+
+    Args:
+        path: The mapping file.
+        folder: Where the run file will stand, from which its head names the machine.
+        chain: The machine; None takes the one that the head names.
+
+    Raises:
+        BadFile: The mapping file's key, or what is wrong in the run that it makes.
+    """
+    text, left_out = mapped_run(sheet, path)
+    if chain is None:
+        named = parse_toml(read_text(path), path)["head"].get("machine")
+        if not isinstance(named, str):
+            raise BadFile(path, "head.machine", "nothing", "the machine file, or --machine")
+        chain = read_machine(folder / named)
+    with tempfile.TemporaryDirectory() as trial:
+        file = Path(trial) / "run.csv"
+        write_whole(file, text)
+        try:
+            return MappedRun(text, read_run(file, chain), left_out)
+        except BadFile as error:
+            where = f"what it makes of {sheet.path}: {error.facts['where']}"
+            expected = str(error.facts["expected"])
+            raise BadFile(path, where, error.facts["found"], expected) from error
+
+
 def mapped_run(sheet: Sheet, path: str | Path) -> tuple[str, int]:
     """Text of a run file from a foreign table and a mapping file.
 
@@ -68,15 +126,13 @@ def mapped_run(sheet: Sheet, path: str | Path) -> tuple[str, int]:
     table = checked(MappingTable, data, path)
     blocks = _blocks(table, path)
     each = [
-        {
-            name: _cells(sheet, name, how, f"{where}.{name}", path)
-            for name, (how, where) in b.items()
-        }
+        {name: _cells(sheet, name, how, f"{key}.{name}", path) for name, (how, key) in b.items()}
         for b in blocks
     ]
     if table.rows and "pose" not in each[0]:
         each = [{**b, "pose": [str(i) for i in range(len(sheet))]} for b in each]
-    lines = [line for i in range(len(sheet)) for line in ([c[i] for c in b.values()] for b in each)]
+    lines = [line for row in zip(*(zip(*b.values(), strict=True) for b in each), strict=True)
+             for line in row]  # fmt: skip
     names = list(each[0])
     kept = lines
     if "dev_um" in names:
@@ -84,9 +140,7 @@ def mapped_run(sheet: Sheet, path: str | Path) -> tuple[str, int]:
     out = io.StringIO()
     head = {"format": "run/1", **table.head}
     out.writelines(f"# {line}".rstrip() + "\n" for line in tomli_w.dumps(head).splitlines())
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(names)
-    writer.writerows(kept)
+    csv.writer(out, lineterminator="\n").writerows([names, *kept])
     return out.getvalue(), len(lines) - len(kept)
 
 

@@ -64,7 +64,6 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
     """A circular test from a table: a row a reading, or a row an angle and a column a run.
 
     Places `X` and `Y` from the centre, as of a grid plate, may stand for angles and deviations.
-
     Runs are those of a column of directions, or of columns named for theirs (CCW, CW, G3, G2,
     gegen, im Uhrzeigersinn), else of angles that rise or fall.
 

@@ -1,17 +1,20 @@
 """Lists of nominal and measured coordinates, of parts and of calibrated plates."""
 
-from matstd.importers.points.other_frame import in_measured_frame, in_nominal_frame, measured_frames
-from matstd.importers.points.point_list import PointList, joined_points, misplaced
-from matstd.importers.points.points import linear_machine, points_run, read_points
+from matstd.importers.points.point_list import PointList, joined_points
+from matstd.importers.points.reading import read_points
+from matstd.importers.points.runs import (
+    PointsImport,
+    import_points,
+    linear_machine,
+    points_run,
+)
 
 __all__ = [
     "PointList",
-    "in_measured_frame",
-    "in_nominal_frame",
+    "PointsImport",
+    "import_points",
     "joined_points",
     "linear_machine",
-    "measured_frames",
-    "misplaced",
     "points_run",
     "read_points",
 ]

@@ -131,7 +131,7 @@ def _scalars(at: Mapping[str, Sequence[Reading]], start: float) -> list[tuple[in
     ]
     table = np.column_stack([time, *columns])
     whole = np.flatnonzero(np.isfinite(table).all(axis=1))
-    rows = [(leader[k].line, [repr(float(v)) for v in table[k]]) for k in whole]
+    rows = [(leader[k].line, [repr(float(v)) for v in table[k]]) for k in whole.tolist()]
     return [(leader[0].line, ["time [s]", *at]), *rows]
 
 

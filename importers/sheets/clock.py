@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from datetime import date
 
 import numpy as np
 
@@ -61,22 +62,23 @@ def _of_day(match: re.Match[str]) -> float:
 
 
 def _days(sheet: Sheet, dates: Sequence[str]) -> Array:
-    """Days since some day of every date, (N,); 0 where there is none."""
+    """Days since the first date of every date, (N,); 0 where there is none, or all are one day."""
     if len(set(dates) - {""}) < 2:
         return np.zeros(len(dates))
-    parts = np.array([[int(p) for p in re.split(r"[-./]", d)] if d else [0, 0, 0] for d in dates])
-    year_first = any(len(re.split(r"[-./]", d)[0]) == 4 for d in dates if d)
-    if year_first:
+    parts = np.array([[int(p) for p in re.split(r"[-./]", d or "0-0-0")] for d in dates])
+    is_year_first = any(re.match(r"\d{4}", d) for d in dates)
+    if is_year_first:
         year, month, day = parts.T
     elif any("/" in d for d in dates) and parts[:, :2].max() <= 12:
         both = f"{next(d for d in dates if d)!r}, day or month first"
         raise BadFile(sheet.path, "dates", both, "dates such as 2024-05-31 or 31.5.2024")
     else:
         day, month, year = parts.T if parts[:, 1].max() <= 12 else parts[:, [1, 0, 2]].T
-    there = year > 0
-    out = np.zeros(len(dates))
-    of = [np.datetime64(f"{y:04d}-{m:02d}-{d:02d}") for y, m, d in zip(
-        np.where(year < 100, year + 2000, year)[there], month[there], day[there], strict=True
-    )]  # fmt: skip
-    out[there] = (np.array(of) - of[0]).astype(float)
-    return out
+    year = np.where(year < 100, year + 2000, year)
+    ymd = zip(dates, year.tolist(), month.tolist(), day.tolist(), strict=True)
+    try:
+        days = [date(y, m, d).toordinal() if text else None for text, y, m, d in ymd]
+    except ValueError as error:
+        raise BadFile(sheet.path, "dates", str(error), "dates such as 2024-05-31") from error
+    first = next(day for day in days if day is not None)
+    return np.array([0.0 if day is None else float(day - first) for day in days])

@@ -55,8 +55,7 @@ def read_sheet(path: str | Path, name: str | None = None, names: Sequence[str] =
     path = Path(path)
     if path.suffix.lower() in WORKBOOKS:
         return _workbook(path, name, names)
-    rows = _text_rows(path)
-    sheet = _table(path, rows, names)
+    sheet = _table(path, _text_rows(path), names)
     if sheet is None:
         raise BadFile(path, "file", "no table of numbers", "a header and rows of numbers below it")
     return sheet
@@ -144,6 +143,7 @@ def _table(path: Path, rows: Sequence[Row], names: Sequence[str]) -> Sheet | Non
         return None
     above = [i for i in range(first) if sum(c != "" for c in rows[i][1]) >= 2]
     width = max(len(row) for _, row in rows[first:])
+    rows = [(line, [*row, *[""] * (width - len(row))]) for line, row in rows]
     if not above and not names and isinstance(rows[first][1][0], str):
         names = [f"column {i + 1}" for i in range(width)]  # rows have names, as columns have else
     if not above and not names:
@@ -151,20 +151,24 @@ def _table(path: Path, rows: Sequence[Row], names: Sequence[str]) -> Sheet | Non
         raise BadFile(path, f"line {rows[first][0]}", "numbers", expected)
     if names and len(names) != width:
         raise BadFile(path, "table", f"{width} columns", f"{len(names)}, as --columns names them")
-    header = tuple(names) or _header([list(rows[i][1]) for i in above[-3:]], width)
+    header = tuple(names) or _header([rows[i][1][:width] for i in above[-3:]])
     begin = first if names else above[-1] + 1
     data, others = _data_rows(rows[begin:])
-    title = [" ".join(str(c) for c in row if c != "") for _, row in rows[: max(begin - 1, 0)]]
     blocks = _blocks(rows, {line for line, _ in data})
     return Sheet(
         path=path,
         columns=header,
-        cells=tuple((*row, *[""] * (width - len(row))) for _, row in data),
+        cells=tuple(tuple(row) for _, row in data),
         lines=tuple(line for line, _ in data),
-        title=tuple(title),
+        title=tuple(_words(row) for _, row in rows[: max(begin - 1, 0)]),
         left_out=tuple(sorted([*others, *passed_over])),
         above=tuple(blocks[line] for line, _ in data),
     )
+
+
+def _words(row: Sequence[str | float]) -> str:
+    """Cells of a row as a text."""
+    return " ".join(str(c) for c in row if c != "")
 
 
 def _blocks(rows: Sequence[Row], data: set[int]) -> dict[int, str]:
@@ -177,7 +181,7 @@ def _blocks(rows: Sequence[Row], data: set[int]) -> dict[int, str]:
             block, words = "\n".join(words) if words else block, []
             out[line] = block
         else:
-            words.append(" ".join(str(c) for c in row if c != ""))
+            words.append(_words(row))
     return out
 
 
@@ -193,27 +197,24 @@ def _data_rows(rows: Sequence[Row]) -> tuple[list[Row], list[int]]:
         filled = [(i, c) for i, c in enumerate(row) if c != ""]
         if _is_data(row):
             cells = list(row)
-            if heading is not None and heading[0] < len(cells) and cells[heading[0]] == "":
+            if heading is not None and cells[heading[0]] == "":
                 cells[heading[0]] = heading[1]
             data.append((line, cells))
         elif len(filled) == 1 and isinstance(filled[0][1], str):
             heading = (filled[0][0], filled[0][1])
         else:
             others.append(line)
-    return _without_footers(data, others)
+    footers = _footers(data)
+    return [pair for pair in data if pair[0] not in footers], sorted([*others, *footers])
 
 
-def _without_footers(data: list[Row], others: list[int]) -> tuple[list[Row], list[int]]:
-    """Rows without those of means and limits, which have a word in the first column of numbers."""
-    width = max((len(row) for _, row in data), default=0)
-    for i in range(width):
-        words = [len(row) > i and isinstance(row[i], str) and row[i] != "" for _, row in data]
-        numbers = sum(len(row) > i and isinstance(row[i], float) for _, row in data)
-        if numbers > MOSTLY * len(data):
-            others = sorted([*others, *(ln for (ln, _), w in zip(data, words, strict=True) if w)])
-            data = [pair for pair, w in zip(data, words, strict=True) if not w]
-            break
-    return data, others
+def _footers(data: Sequence[Row]) -> set[int]:
+    """Lines of means and limits, which have a word in the first column of numbers."""
+    for cells in zip(*(row for _, row in data), strict=True):
+        if sum(isinstance(c, float) for c in cells) > MOSTLY * len(cells):
+            lines = (line for line, _ in data)
+            return {n for n, c in zip(lines, cells, strict=True) if isinstance(c, str) and c}
+    return set()
 
 
 def _begins_table(rows: Sequence[Row], i: int) -> bool:
@@ -233,19 +234,17 @@ def _is_data(row: Sequence[str | float]) -> bool:
     return numbers >= 2 and 2 * numbers >= len(filled)
 
 
-def _header(rows: list[list[str | float]], width: int) -> tuple[str, ...]:
+def _header(rows: Sequence[Sequence[str | float]]) -> tuple[str, ...]:
     """Names of the columns: the last row of names, with the rows above where names stand twice.
 
     A cell in an upper row counts for the columns up to the next, as in merged cells. A row of units
     alone is put behind the names above it.
     """
     names = [[f"{c:g}" if isinstance(c, float) else c for c in row] for row in rows]
-    names = [row[:width] + [""] * (width - len(row)) for row in names]
     last = names.pop()
     if names and all(is_unit(n) for n in last if n):
-        last = [
-            f"{a} [{b.strip('[]() ')}]" if b else a for a, b in zip(names.pop(), last, strict=True)
-        ]
+        pairs = zip(names.pop(), last, strict=True)
+        last = [f"{name} [{unit.strip('[]() ')}]" if unit else name for name, unit in pairs]
     filled = [n for n in last if n]
     if not names or len(set(filled)) == len(filled):
         return tuple(last)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from matstd.twin.effects import HigherOrder
 from matstd.twin.frames import Array
 from matstd.twin.machine import Family, Link, Symbol
-from matstd.twin.model import Model, columns
+from matstd.twin.model import Model, columns, traits
 from matstd.twin.record import Touches
 
 HIGHEST = 8
@@ -54,7 +54,7 @@ def supported_degrees(model: Model, touches: Touches, W: Array, noise: float) ->
         W: Their whitened rows with the set-up free, (N, P).
         noise: Standard deviation of a touch, mm.
     """
-    symbols = [getattr(effect, "symbol", None) for effect, _ in model.parameters]
+    symbols = [traits(effect).symbol for effect, _ in model.parameters]
     out = []
     for symbol in model.chain.symbols:
         link = model.chain.link(symbol.link)

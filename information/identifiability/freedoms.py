@@ -7,7 +7,7 @@ from enum import Enum
 from typing import NamedTuple
 
 from matstd.twin.machine import Chain, Family, Symbol, parse_symbol
-from matstd.twin.model import Effect, Parameter
+from matstd.twin.model import Effect, Parameter, traits
 
 _SHAPED = re.compile(r"geometric\((\w+),([^,)]+)\)\Z")
 _ORDER = ("linear", "parabolic", "sinusoidal", "sinusoidal@90")
@@ -91,7 +91,7 @@ class FreedomFamily:
 
 def reason(members: Sequence[int], parameters: Parameters, chain: Chain) -> Reason | None:
     """What makes the members of a freedom alike, from what they are."""
-    symbols = [getattr(parameters[p][0], "symbol", None) for p in members]
+    symbols = [traits(parameters[p][0]).symbol for p in members]
     known = [s for s in symbols if isinstance(s, Symbol)]
     if len(known) < len(members):
         is_setup = any(parameters[p][0].kind == "setup" for p in members)

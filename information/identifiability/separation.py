@@ -29,6 +29,7 @@ from matstd.information.identifiability.nullspace import (
 )
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Symbol
+from matstd.twin.model import traits
 from matstd.twin.units import UM, URAD
 
 _KEPT = 1e-6  # part of its length that a gauge direction must show in richer touches to be resolved
@@ -131,7 +132,7 @@ def identifiability(
 
 def _convention(parameters: Parameters, p: int) -> tuple[int, int]:
     """Rank of a parameter among those by which a freedom is named: low ones are left out first."""
-    symbol = getattr(parameters[p][0], "symbol", None) if parameters else None
+    symbol = traits(parameters[p][0]).symbol if parameters else None
     if not isinstance(symbol, Symbol):
         is_setup = bool(parameters) and parameters[p][0].kind == "setup"
         return (-2 if is_setup else 3, -p)
@@ -139,7 +140,7 @@ def _convention(parameters: Parameters, p: int) -> tuple[int, int]:
         return (-2 if symbol.link == "w" else -1, -p)
     if symbol.family is Family.LOCATION:
         return (2 - int(symbol.is_angular), -p)
-    still = getattr(parameters[p][0], "shape", "") == "constant"
+    still = traits(parameters[p][0]).distribution == "constant"
     return (0 if still else 3 if symbol.is_angular else 4, -p)
 
 

@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from matstd.artefact.body import Standard
-from matstd.twin.effects import StylusError, setup_errors
+from matstd.twin.effects import further_styli, setup_errors
 from matstd.twin.frames import Array
 from matstd.twin.library import ordinary_model
 from matstd.twin.model import Model
@@ -124,11 +124,12 @@ def _displaced_feature(run: Run, residual: Array) -> list[str]:
 def _stylus_lines(run: Run) -> list[str]:
     """How every stylus but the first stands beside its calibration, by the same model."""
     t = run.touches
-    free = setup_errors(t)
+    styli = further_styli(t)
+    free = (*(e for e in setup_errors(t) if e not in styli), *styli)
     model = Model(t.chain, (*ordinary_model(t.chain).effects, *free))
     sd = np.array([p.sd for effect in model.effects for p in effect.parameters])
     A, end, out = np.zeros((0, len(sd))), len(sd), []
-    for stylus in reversed([one for one in free if isinstance(one, StylusError)]):
+    for stylus in reversed(styli):
         if not len(A):
             A = np.concatenate([model.columns(t) * sd / run.u[:, None], np.eye(len(sd))])
             y = np.concatenate([run.deviation / run.u, np.zeros(len(sd))])

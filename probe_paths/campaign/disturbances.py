@@ -16,9 +16,8 @@ import numpy as np
 from matstd.twin.files import SensorRecord
 from matstd.twin.frames import Array
 from matstd.twin.machine import Contribution
-from matstd.twin.model import Effect, contribution
+from matstd.twin.model import Effect, contribution, traits
 from matstd.twin.record import Setup, Touches
-from matstd.twin.thermal import ThermalLag
 
 Disturbance = Callable[[Touches], Contribution]
 
@@ -46,7 +45,7 @@ def effects_over_record(
     if record is None:
         return lambda touches: contribution(effects, touches)
     start = begin or record.begin
-    driven = [pair for pair in effects if isinstance(pair[0], ThermalLag) and pair[0].drive]
+    driven = [pair for pair in effects if traits(pair[0]).needs_history]
     others = [pair for pair in effects if pair not in driven]
 
     def disturbance(touches: Touches) -> Contribution:

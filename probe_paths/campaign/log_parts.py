@@ -143,7 +143,7 @@ def _check_design(part: LogPart, standard: Standard) -> None:
         if told != ours:
             raise BadFile(
                 part.path, "CALIBRATION", told,
-                f"{ours}, the hash of all faces and places of '{standard.name}'",
+                f"{ours}, the hash of '{standard.name}': the log is of another design",
             )  # fmt: skip
 
 

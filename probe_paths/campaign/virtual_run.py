@@ -196,6 +196,17 @@ def _run(contacts: ContactSolver, begin: float) -> VirtualRun:
 
 
 def _check_standard(program: ReadProgram, standard: Standard) -> None:
+    if program.heading.standard != standard.name:
+        raise DesignError(
+            f"{program.path}: written for standard '{program.heading.standard}', "
+            f"found '{standard.name}'"
+        )
+    serial = stated_serial(standard.serial)
+    if program.heading.serial and program.heading.serial != serial:
+        raise DesignError(
+            f"{program.path}: written for serial number {program.heading.serial}, this standard "
+            f"has {serial or 'none'}"
+        )
     names = list(program.heading.touched(standard).features)
     for number, name in program.features.items():
         if not 0 < number <= len(names) or names[number - 1] != name:
@@ -203,17 +214,6 @@ def _check_standard(program: ReadProgram, standard: Standard) -> None:
                 f"{program.path}: feature {number} is {name} in the program; standard "
                 f"'{standard.name}' has {', '.join(f'{i + 1} {n}' for i, n in enumerate(names))}"
             )
-    if program.heading.standard != standard.name:
-        raise DesignError(
-            f"{program.path}: made for standard '{program.heading.standard}', "
-            f"this one is '{standard.name}'"
-        )
-    serial = stated_serial(standard.serial)
-    if program.heading.serial and program.heading.serial != serial:
-        raise DesignError(
-            f"{program.path}: made for serial number {program.heading.serial}, this standard has "
-            f"{serial or 'none'}"
-        )
 
 
 class _Control:

@@ -38,7 +38,7 @@ _CALIBRATED: Mapping[Datum, Callable[[State], float]] = {
 
 def system_datum(block: Block, state: State) -> float:
     """Calibration of the probe, number of the tool, positions, end of Z, basic rotation."""
-    frame, system = state.frame, language_of(state.path).SYSTEM
+    frame, system = state.frame, language_of(state.path).system
     datum = next((d for d, text in system.items() if text == block.word("datum")), None)
     places = {Datum(f"{kind}{a}"): a for a in frame.letters for kind in ("", _PRESET)}
     known = {*_CALIBRATED, *places, *([] if state.tool is None else [Datum.TOOL])}
@@ -59,7 +59,7 @@ def read_datum(block: Block, state: State) -> None:
     """Execute a read of a system datum; where a rotary axis stands is known by its parameter."""
     q = int(block.word("q"))
     state.write(block, q, system_datum(block, state))
-    system = language_of(state.path).SYSTEM
+    system = language_of(state.path).system
     for letter in state.frame.chain.rotary_axes:
         if block.word("datum") == system.get(Datum(letter)):
             state.reached[q] = letter, 0.0

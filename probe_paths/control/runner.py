@@ -79,7 +79,7 @@ class Runner:
         self.name, self.folder = name, ""
         self.source = masks
         self.masks: dict[str, tuple[MaskLine, ...]] = {}
-        form = language_of(path).LOG
+        form = language_of(path).log
         rotary, remarks = frame.chain.rotary_axes, head.log_lines
         self.sensed = {sensor.parameter: sensor for sensor in head.sensors}
         texts = [head_mask(form, name, remarks)]
@@ -342,7 +342,7 @@ class Runner:
                 self.path,
                 f"line {block.line}",
                 repr(block.text),
-                f"{language_of(self.path).SAYS.retract_max}, and no other move, after a touch "
+                f"{language_of(self.path).says.retract_max}, and no other move, after a touch "
                 "without contact",
             )
 
@@ -354,5 +354,5 @@ class Runner:
                     self.path,
                     f"line {touch.line}",
                     f"touch {touch.number} without a log line",
-                    f"{language_of(self.path).SAYS.printed} with its results",
+                    f"{language_of(self.path).says.printed} with its results",
                 )

@@ -101,7 +101,7 @@ class State:
     @property
     def says(self) -> Says:
         """How the program's language says what a refusal asks for."""
-        return language_of(self.path).SAYS
+        return language_of(self.path).says
 
     def refusal(self, block: Block, found: str, expected: str) -> BadFile:
         """The one clear line about a block."""
@@ -112,7 +112,7 @@ class State:
         missing = [
             name
             for name, there in (
-                ("M5", self.is_spindle_off or "M5" not in language_of(self.path).RESET),
+                ("M5", self.is_spindle_off or "M5" not in language_of(self.path).reset),
                 (self.says.reset, self.is_tcpm_off),
                 (self.says.plane, self.is_plane_off),
                 (self.says.shift, self.shift_off == set("XYZ")),
@@ -138,7 +138,7 @@ class State:
 
         A test takes the planned reading off the one that was read, and has both limits.
         """
-        if not language_of(self.path).TESTS_TURNS:
+        if not language_of(self.path).tests_turns:
             return
         for letter in self.frame.chain.rotary_axes:
             if not {(letter, False), (letter, True)} <= self.turn_tested:

@@ -110,7 +110,7 @@ def check_cycles(blocks: Sequence[Block], path: Path) -> None:
     """Cycles 4 and 7 stand in four blocks, in order and together; raises BadFile."""
     for before, block in pairwise(blocks):
         is_in_7 = before.kind in (Kind.SHIFT_NAME, Kind.SHIFT)
-        if block.kind is Kind.SHIFT and not is_in_7 and language_of(path).HAS_MASKS:
+        if block.kind is Kind.SHIFT and not is_in_7 and language_of(path).has_masks:
             raise BadFile(path, f"line {block.line}", repr(block.text), "CYCL DEF 7.0 before it")
     expected = 0
     for block in blocks:

@@ -28,7 +28,7 @@ class FirstWriter(Writer):
         blocks = [
             k.begin(name),
             *self._first_remarks(row, duration),
-            *k.RESET,
+            *k.reset,
             self.retract,
             k.tool_call(self.dialect.tool),
             k.preset(self.dialect.preset),
@@ -39,10 +39,10 @@ class FirstWriter(Writer):
             *self._in_air(row, visit.height),
             *self._on_ball(row, visit.pose),
             self.retract,
-            k.WAIT,
+            k.wait,
             *(k.read(q, Datum(a)) for q, a in self._places()),
             self._print(f"{name}.A", name),
-            k.PROGRAM_STOP,
+            k.program_stop,
             k.label(Label.NO_CONTACT, "NO CONTACT"),
             k.retract_max(self.top),
             k.stop_with_error(ErrorText.TOUCH_POINT_INACCESSIBLE),
@@ -78,7 +78,7 @@ class FirstWriter(Writer):
         """Calibration of the probe, tool and preset."""
         k = self.language
         return [
-            k.WAIT,
+            k.wait,
             k.read(Q.PROBE_RADIUS, Datum.RADIUS),
             k.read(Q.PROBE_LENGTH, Datum.LENGTH),
             k.read(Q.OFFSET_X, Datum.OFFSET_X),

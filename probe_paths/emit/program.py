@@ -201,7 +201,7 @@ def make_first(
         DesignError: A control of another language.
     """
     dialect = dialect or Dialect()
-    if not LANGUAGES[dialect.language].HAS_MASKS:
+    if not LANGUAGES[dialect.language].has_masks:
         raise DesignError(f"a commissioning program in {dialect.language}: expected klartext")
     remark = f"COMMISSIONING: ONE TOUCH IN AIR, ONE ON BALL {plan.feature[0]}"
     special = Special(FIRST, (remark,), is_first=True)
@@ -222,7 +222,7 @@ class _Maker:
     ) -> None:
         self.plan, self.dialect, self.clock = plan, dialect, clock
         self.language = LANGUAGES[dialect.language]
-        form, rotary = self.language.LOG, plan.chain.rotary_axes
+        form, rotary = self.language.log, plan.chain.rotary_axes
         self.shared = shared_masks(form, dialect.log_decimals, rotary, dialect.sensors)
         self.masks = dict(self.shared)
         self.is_first = special is not None and special.is_first
@@ -234,7 +234,7 @@ class _Maker:
     def printed_masks(self) -> dict[str, str]:
         """Mask files, where the control has them."""
         only_own = [name for name in self.masks if not (self.is_first and name in self.shared)]
-        return {name: self.masks[name] for name in only_own} if self.language.HAS_MASKS else {}
+        return {name: self.masks[name] for name in only_own} if self.language.has_masks else {}
 
     def programs(self, parts: list[list[int]]) -> tuple[Program, ...]:
         """One program of each part."""
@@ -249,7 +249,7 @@ class _Maker:
         )
 
     def _program(self, name: str, title: str, part: list[int]) -> Program:
-        form, remarks = self.language.LOG, self.writer.heading.log_lines
+        form, remarks = self.language.log, self.writer.heading.log_lines
         rotary = self.plan.chain.rotary_axes if self.is_first else None
         self.masks[f"{name}.A"] = head_mask(form, name, remarks, rotary, self.dialect.log_decimals)
         # the head states the duration, which is known once the program has been read back
@@ -263,7 +263,7 @@ class _Maker:
         touches = 1 if self.is_first else touches
         return Program(
             name=name,
-            ending=self.language.ENDING,
+            ending=self.language.ending,
             text=text,
             touches=int(touches),
             duration=duration,
@@ -272,7 +272,7 @@ class _Maker:
 
     def _read(self, name: str, text: str) -> ReadProgram:
         """A program, read back from its text."""
-        plan, path = self.plan, Path(f"{name}{self.language.ENDING}")
+        plan, path = self.plan, Path(f"{name}{self.language.ending}")
         data, masks = text.encode("ascii"), self.masks.get
         return interpret(data, path, masks, plan.chain, plan.probe, self.dialect)
 

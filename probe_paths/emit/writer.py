@@ -104,7 +104,7 @@ class Writer:
         self.language = LANGUAGES[dialect.language]
         is_first = special is not None and special.is_first
         tilted = dialect.is_tilted and not is_first
-        self.tilting = self.language.TILTING if tilted and dialect.has_planes else None
+        self.tilting = self.language.tilting if tilted and dialect.has_planes else None
         if tilted and self.tilting is None:
             raise DesignError("coordinates of tilted planes: the control has no PLANE SPATIAL")
         self.frame = ProgramFrame(plan.chain, plan.probe)
@@ -153,7 +153,7 @@ class Writer:
             here = visit.rotary
         main += self._finish(name)
         called = self._subprograms(name)
-        body = [*called, *main] if k.SUBPROGRAMS_FIRST else [*main, *called]
+        body = [*called, *main] if k.subprograms_first else [*main, *called]
         return k.listed([*head, *body, k.end(name)])
 
     def _remarks(self, rows: IntArray, duration: float) -> list[str]:
@@ -191,13 +191,13 @@ class Writer:
     def _reset(self, visits: int) -> list[str]:
         k, dialect = self.language, self.dialect
         start = [k.comment(f"START AT VISIT 1 TO {visits}:"), k.assign(Q.START, 1)]
-        first = [*start, k.structure("RESET"), *k.RESET, self.retract, k.tool_call(dialect.tool)]
+        first = [*start, k.structure("RESET"), *k.reset, self.retract, k.tool_call(dialect.tool)]
         return [*first, k.preset(dialect.preset), self.retract, *self._home()]
 
     def _home(self) -> list[str]:
         """Rotary axes to where every program begins and ends, the way that unwinds them."""
         k, home = self.language, home_readings(self.plan.chain)
-        return [*k.UNWIND, *([k.line(self._words(home), None)] if self.rotary else [])]
+        return [*k.unwind, *([k.line(self._words(home), None)] if self.rotary else [])]
 
     def _words(self, rotary: Array) -> dict[str, float]:
         """Words of rotary readings (R,), in the order in which the control shows its axes."""
@@ -209,7 +209,7 @@ class Writer:
         k = self.language
         log = [
             k.structure("LOG THE PROBE"),
-            k.WAIT,
+            k.wait,
             k.read(Q.PROBE_RADIUS, Datum.RADIUS),
             k.read(Q.PROBE_LENGTH, Datum.LENGTH),
             k.read(Q.OFFSET_X, Datum.OFFSET_X),
@@ -221,7 +221,7 @@ class Writer:
         return [
             *(log if self.raised is None else []),
             k.structure("TEST PROBE, PRESET AND MACHINE"),
-            *([] if self.raised is None else [k.WAIT]),
+            *([] if self.raised is None else [k.wait]),
             *(block for test in self.tests for block in self._tested(test)),
         ]
 
@@ -245,14 +245,14 @@ class Writer:
         """What stops the program where a test fails; the number of the label is the alarm."""
         k = self.language
         alarms = {test.label: test.what for test in reversed(self.tests)}
-        if self.rotary and k.TESTS_TURNS:
+        if self.rotary and k.tests_turns:
             alarms[Label.TURNED] = "a rotary axis is not where it was sent"
         return [
             block
             for label, what in sorted(alarms.items())
             for block in (
                 k.label(label, f"ALARM {label:d}: {what.upper()}"),
-                k.OPERATOR_STOP,
+                k.operator_stop,
                 k.stop_with_error(ErrorText.INPUT_VALUE_INCORRECT),
             )
         ]
@@ -268,7 +268,7 @@ class Writer:
         if self.rotary:
             out += [k.turn(self._words(place)) for place in waypoints(here, visit.before)]
             out.append(k.line(self._words(visit.rotary), self.feeds.turning))
-            out += self._reached(visit.rotary) if k.TESTS_TURNS else []
+            out += self._reached(visit.rotary) if k.tests_turns else []
         out += self._plane(visit)
         sides = zip((Q.SIDE_1, Q.SIDE_2), visit.side, strict=False)
         return [*out, k.assign(Q.POSE, visit.pose + 1), *(k.assign(q, s) for q, s in sides)]
@@ -278,7 +278,7 @@ class Writer:
         words = self._words(rotary)
         tests = turn_tests(self.language, self.frame)
         planned = (test._replace(planned=words[str(test.datum)]) for test in tests)
-        return [self.language.WAIT, *(block for test in planned for block in self._tested(test))]
+        return [self.language.wait, *(block for test in planned for block in self._tested(test))]
 
     def _flat(self) -> list[str]:
         """End of a tilted plane, before the table turns."""
@@ -343,9 +343,9 @@ class Writer:
 
     def _finish(self, name: str) -> list[str]:
         k, printed = self.language, self._print(f"{SharedMask.END}.A", name)
-        logged = [k.WAIT, printed] if self.raised is None else []
+        logged = [k.wait, printed] if self.raised is None else []
         end = [k.structure("END"), self.retract, *logged]
-        return [*end, *self._flat(), *self._home(), k.PROGRAM_STOP]
+        return [*end, *self._flat(), *self._home(), k.program_stop]
 
     def _subprograms(self, name: str) -> list[str]:
         """Look at the status and log; retract and stop where there was no contact."""
@@ -353,9 +353,9 @@ class Writer:
         missed = [
             k.label(Label.NO_CONTACT, "NOTRIGGER: NO CONTACT"),
             k.retract_max(self.top),
-            k.WAIT,
+            k.wait,
             self._print(f"{SharedMask.NO_CONTACT}.A", name),
-            k.OPERATOR_STOP,
+            k.operator_stop,
             k.stop_with_error(ErrorText.TOUCH_POINT_INACCESSIBLE),
         ]
         if self.raised is not None:
@@ -363,10 +363,10 @@ class Writer:
         return [
             k.label(Label.LOG, "CHECK AND LOG ONE TOUCH"),
             k.jump_if_less(Q.STATUS, 0, Label.NO_CONTACT),
-            k.WAIT,
+            k.wait,
             *(k.read(q, Datum(a)) for q, a in places),
             self._print(f"{SharedMask.POINT}.A", name),
-            k.LABEL_END,
+            k.label_end,
             *missed,
             *self._alarms(),
         ]

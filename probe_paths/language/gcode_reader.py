@@ -8,6 +8,7 @@ from matstd.nc.grammar import SIGNED
 from matstd.probe_paths.language import gcode as g
 from matstd.probe_paths.language.blocks import Block, Kind, physical_lines
 from matstd.probe_paths.language.dialect import TOOL_LENGTH, Label, Q
+from matstd.probe_paths.language.language import SKIP
 from matstd.probe_paths.language.text import parameter
 from matstd.twin.errors import BadFile
 
@@ -152,7 +153,7 @@ class _Reader:
     def _skip(self, match: re.Match[str], text: str) -> Block:
         """Begin or end of a visit that may be skipped."""
         self.i += 1
-        number = int(match[1]) - g.SKIP
+        number = int(match[1]) - SKIP
         if not Label.is_behind(number):
             raise BadFile(self.path, f"line {self.i}", repr(text), "an IF or ENDIF of our programs")
         label: Words = {"label": str(number)}

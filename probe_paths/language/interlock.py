@@ -62,7 +62,7 @@ def turn_tests(language: Language, frame: ProgramFrame) -> list[Interlock]:
 
     `planned` is the reading of the visit and stands in the program.
     """
-    axes = frame.chain.rotary_axes if language.TESTS_TURNS else ()
+    axes = frame.chain.rotary_axes if language.tests_turns else ()
     rows = ((Label.TURNED, f"turn of {a}", Datum(a), None, 0.0, ANGLE_LIMIT) for a in axes)
     return [Interlock(*row) for row in rows]
 
@@ -91,7 +91,7 @@ def interlocks(language: Language, frame: ProgramFrame, is_first: bool = False) 
     for datum in (Datum.TOOL_X, Datum.TOOL_Y):
         rows.append((Label.TOOL_OFFSET, datum.value, datum, None, 0.0, OFFSET_LIMIT))
     tests = [Interlock(*row) for row in rows]
-    known = {None, *language.SYSTEM}
+    known = {None, *language.system}
     tests = [test for test in tests if test.datum in known and test.work in known]
     if not is_first:
         return tests

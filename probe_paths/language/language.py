@@ -1,17 +1,25 @@
-# ruff: noqa: D102  (what a function means stands at that of `klartext`)
-"""What every language of a control can say: the closed list of blocks, spelt by each in its way.
+"""The closed list of blocks that our programs consist of, as each language spells them.
 
-A language is a module with these names. Its reader makes the same `Block`s of its text whichever
-language it is, so that interpreter, collision check and twin know one list and no control.
+A language is a table of forms (`klartext`, `gcode`). Its reader makes the same `Block`s of its text
+whichever language it is, so that interpreter, collision check and twin know one list and no
+control.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
-from matstd.probe_paths.language.dialect import Dialect
+from matstd.probe_paths.language.dialect import TOOL_LENGTH, Dialect
 from matstd.probe_paths.language.masks import LogForm, MaskLine
+from matstd.probe_paths.language.text import (
+    axis_words,
+    checked_line,
+    checked_name,
+    parameter,
+    signed,
+)
+from matstd.twin.errors import DesignError
 
 
 class Datum(StrEnum):
@@ -113,47 +121,197 @@ class Says:
     back: str
 
 
-class Language(Protocol):
-    """Blocks as text; what each means stands at the functions of `klartext`."""
+@dataclass(frozen=True, kw_only=True)
+class Language:
+    """Spelling of every block.
 
-    ENDING: str
-    LINE_END: str
-    SAYS: Says
-    SYSTEM: Mapping[Datum, str]
-    TESTS_TURNS: bool
-    RESET: Sequence[str]
-    UNWIND: Sequence[str]
-    TILTING: Tilting | None
-    WAIT: str
-    LABEL_END: str
-    OPERATOR_STOP: str
-    PROGRAM_STOP: str
-    LOG: LogForm
-    HAS_MASKS: bool
-    SUBPROGRAMS_FIRST: bool
+    Coordinates carry a sign and four decimals always, which is the resolution of the controls, so
+    that what is planned, printed and read back is the same number.
 
-    def begin(self, name: str) -> str: ...
-    def end(self, name: str) -> str: ...
-    def comment(self, text: str) -> str: ...
-    def structure(self, text: str) -> str: ...
-    def stock(self, low: Sequence[float], high: Sequence[float]) -> list[str]: ...
-    def line(self, position: Mapping[str, float], feed: float | None = None) -> str: ...
-    def turn(self, position: Mapping[str, float]) -> str: ...
-    def retract(self, z: float) -> str: ...
-    def retract_max(self, z: float) -> str: ...
-    def tool_call(self, number: int) -> str: ...
-    def preset(self, row: int) -> str: ...
-    def read(self, q: int, datum: Datum) -> str: ...
-    def assign(self, q: int, value: float) -> str: ...
-    def difference(self, q: int, minuend: int, subtrahend: float) -> str: ...
-    def minus(self, q: int, other: int) -> str: ...
-    def jump_if_less(self, q: int, limit: float, label: int) -> str: ...
-    def jump_if_greater(self, q: int, limit: float, label: int) -> str: ...
-    def skip_if_greater(self, q: int, limit: float, label: int) -> str: ...
-    def skipped(self, label: int) -> str: ...
-    def stop_with_error(self, number: int) -> str: ...
-    def printed(self, mask: str, lines: Sequence[MaskLine], target: str) -> str: ...
-    def probe_vector(self, dialect: Dialect, result: int, touch: Touch) -> list[str]: ...
-    def label(self, number: int, remark: str = "") -> str: ...
-    def call(self, number: int) -> str: ...
-    def listed(self, blocks: Sequence[str]) -> str: ...
+    Attributes:
+        ending: Of the name of a program file.
+        line_end: Of its lines.
+        longest: Characters of a line that is emitted.
+        forms: Text of every block by the name of its method, with places in braces.
+        stock_forms: Of the blocks of the raw part, which the control draws.
+        sign: Letter before the number of a parameter.
+        tool_length: Parameter with the length of the called tool, as in the tool table.
+        system: How each system datum is addressed.
+        says: How refusals name what they ask for.
+        log: How the control prints clock and counters.
+        printed: Block that appends lines to a log, from the mask file, its lines, and the target.
+        lines: Lines of the file from all blocks.
+        reset: Blocks that begin a program: nothing that an earlier one left acts afterwards.
+        wait: Block that stops the look-ahead: system data are read where the machine stands.
+        unwind: Blocks before rotary axes go home the way that the numbers state.
+        tilting: Of planes square to the tool; None where the language has none.
+        label_end: End of a subprogram.
+        operator_stop: Waits for the operator.
+        program_stop: Ends the program.
+        has_masks: The lines of the log stand in mask files, not in the program.
+        subprograms_first: They stand before the program itself.
+        tests_turns: The control may take another way or end of a turn than its word states.
+    """
+
+    ending: str
+    line_end: str
+    longest: int
+    forms: Mapping[str, str]
+    sign: str
+    tool_length: str
+    system: Mapping[Datum, str]
+    says: Says
+    log: LogForm
+    printed: Callable[[str, Sequence[MaskLine], str], str]
+    lines: Callable[[Sequence[str]], list[str]]
+    reset: Sequence[str]
+    wait: str
+    label_end: str
+    operator_stop: str
+    stock_forms: Sequence[str] = ()
+    program_stop: str = "M30"
+    unwind: Sequence[str] = ()
+    tilting: Tilting | None = None
+    has_masks: bool = False
+    subprograms_first: bool = False
+    tests_turns: bool = False
+
+    def _form(self, form: str, /, **words: object) -> str:
+        return self.forms[form].format(**words)
+
+    def _jump(self, form: str, q: int, limit: float, label: int, number: int) -> str:
+        fn, than = (12, "LT") if form == "less" else (11, "GT")
+        words = {"fn": fn, "than": than, "limit": parameter(limit), "number": number}
+        return self._form("skip" if form == "skip" else "test", q=q, label=label, **words)
+
+    def begin(self, name: str) -> str:
+        """First block of a program in millimetres."""
+        return self._form("begin", name=checked_name(name))
+
+    def end(self, name: str) -> str:
+        """Last block of a program in millimetres."""
+        return self._form("end", name=checked_name(name))
+
+    def comment(self, text: str) -> str:
+        """Comment block; in Klartext a tilde at its end would continue it on the next line."""
+        if text.rstrip().endswith("~"):
+            raise DesignError(f"comment '{text}' ends in ~, which continues a block")
+        return f";{text}"
+
+    def structure(self, text: str) -> str:
+        """Heading, which the control shows in its view of the program."""
+        return self._form("structure", text=text)
+
+    def stock(self, low: Sequence[float], high: Sequence[float]) -> list[str]:
+        """Blocks of the raw part: simulation graphics only."""
+        corners = (axis_words(dict(zip("XYZ", c, strict=True))) for c in (low, high))
+        return [f.format(corner=c) for f, c in zip(self.stock_forms, corners, strict=False)]
+
+    def line(self, position: Mapping[str, float], feed: float | None = None) -> str:
+        """Straight line to a position.
+
+        Args:
+            position: Coordinate by axis letter, mm or degrees.
+            feed: mm/min (degrees/min for rotary axes alone), whole numbers; None is rapid.
+        """
+        name = "rapid" if feed is None else "fed"
+        return self._form(name, axes=axis_words(position), feed=feed)
+
+    def turn(self, position: Mapping[str, float]) -> str:
+        """Rapid move of rotary axes, the shorter way where the control has a choice."""
+        return self._form("turn", axes=axis_words(position))
+
+    def retract(self, z: float) -> str:
+        """Z to a reading of the machine, where rotary axes may turn."""
+        return self._form("retract", axes=axis_words({"Z": z}))
+
+    def retract_max(self, z: float) -> str:
+        """The same after a touch without contact: to the end of the travel."""
+        return self._form("retract_max", axes=axis_words({"Z": z}))
+
+    def tool_call(self, number: int) -> str:
+        """Call of the probe; never with a spindle speed."""
+        return self._form("tool_call", number=number)
+
+    def preset(self, row: int) -> str:
+        """Activation of a row of the preset table, or of G54 to G59."""
+        return self._form("preset", row=row, system=53 + row)
+
+    def read(self, q: int, datum: Datum) -> str:
+        """Read a system datum into a parameter."""
+        return self._form("read", q=q, datum=self.system[datum])
+
+    def assign(self, q: int, value: float) -> str:
+        """Set a parameter; whole numbers are written without decimals."""
+        return self._form("assign", q=q, value=parameter(value))
+
+    def parameter(self, q: int) -> str:
+        """Name of a parameter."""
+        return self.tool_length if q == TOOL_LENGTH else f"{self.sign}{q:d}"
+
+    def difference(self, q: int, minuend: int, subtrahend: float) -> str:
+        """A parameter less a number."""
+        words = {"minuend": self.parameter(minuend), "value": signed(subtrahend)}
+        return self._form("difference", q=q, **words)
+
+    def minus(self, q: int, other: int) -> str:
+        """A parameter less another one."""
+        return self._form("minus", q=q, other=other)
+
+    def jump_if_less(self, q: int, limit: float, label: int) -> str:
+        """Go to a label when a parameter is less than a number."""
+        return self._jump("less", q, limit, label, 100 + label)
+
+    def jump_if_greater(self, q: int, limit: float, label: int) -> str:
+        """Go to a label when a parameter is greater than a number."""
+        return self._jump("greater", q, limit, label, 200 + label)
+
+    def skip_if_greater(self, q: int, limit: float, label: int) -> str:
+        """Go on behind a part of the program when a parameter is greater than a number."""
+        return self._jump("skip", q, limit, label, SKIP + label)
+
+    def skipped(self, label: int) -> str:
+        """End of a part that may be skipped."""
+        return self._form("skipped", label=label, number=SKIP + label)
+
+    def stop_with_error(self, number: int) -> str:
+        """End the program with one of the control's error texts, or a message."""
+        return self._form("stop_with_error", number=number)
+
+    def probe_vector(self, dialect: Dialect, result: int, touch: Touch) -> list[str]:
+        """One touch.
+
+        Args:
+            dialect: Its spelling, and the second touch of a control without a latch.
+            result: First of four consecutive parameters: X, Y, Z and status.
+            touch: Its numbers.
+        """
+        x, y, z = map(signed, touch.direction)
+        back, distance, feed = signed(touch.back), signed(touch.distance), f"{touch.feed:.0f}"
+        slow, step = f"{dialect.slow_feed:.0f}", signed(dialect.step_back)
+        words = {"x": x, "y": y, "z": z, "back": back, "distance": distance, "feed": feed}
+        words |= {"slow": slow, "step": step, "cycle": dialect.cycle_name}
+        text = self._form("touch", result=result, word=dialect.distance_word, **words)
+        return text.split("\n")
+
+    def label(self, number: int, remark: str = "") -> str:
+        """Start of a subprogram."""
+        name = "label_remarked" if remark else "label"
+        return self._form(name, label=number, remark=remark)
+
+    def call(self, number: int) -> str:
+        """Call of a subprogram."""
+        return self._form("call", label=number)
+
+    def listed(self, blocks: Sequence[str]) -> str:
+        """The whole file.
+
+        Raises:
+            DesignError: A line too long or not ASCII, or a block that starts the spindle.
+        """
+        lines = [checked_line(line, self.longest) for line in self.lines(blocks)]
+        return self.line_end.join(lines) + self.line_end
+
+
+SKIP = 1000
+"""Added to the number of a label where tests have numbers: those of other tests are below."""

@@ -4,20 +4,21 @@ from collections.abc import Mapping
 from os.path import splitext
 from pathlib import Path
 
-from matstd.probe_paths.language import gcode, klartext
 from matstd.probe_paths.language.blocks import Block, read_klartext
 from matstd.probe_paths.language.dialect import Dialect
+from matstd.probe_paths.language.gcode import GCODE
 from matstd.probe_paths.language.gcode_reader import read_gcode
+from matstd.probe_paths.language.klartext import KLARTEXT
 from matstd.probe_paths.language.language import Language
 
-LANGUAGES: Mapping[str, Language] = {"klartext": klartext, "gcode": gcode}
+LANGUAGES: Mapping[str, Language] = {"klartext": KLARTEXT, "gcode": GCODE}
 """By the name that dialects give."""
 
 
 def language_of(path: str | Path) -> Language:
     """Language of a program file, by the ending of its name."""
     # asked at every block of a program, and a path takes ten times as long to make
-    return gcode if splitext(path)[1].lower() == gcode.ENDING else klartext
+    return GCODE if splitext(path)[1].lower() == GCODE.ending else KLARTEXT
 
 
 def read_blocks(data: bytes, path: str | Path, dialect: Dialect | None = None) -> list[Block]:
@@ -31,6 +32,6 @@ def read_blocks(data: bytes, path: str | Path, dialect: Dialect | None = None) -
     Raises:
         BadFile: Whatever is not in the closed list of the language, or not a whole text.
     """
-    if language_of(path).ENDING == gcode.ENDING:
+    if language_of(path) is GCODE:
         return read_gcode(data, path)
     return read_klartext(data, path, dialect or Dialect())

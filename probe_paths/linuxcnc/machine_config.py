@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from matstd.nc.linuxcnc import net, tool_table, variables
 from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.linuxcnc.latch import PERIOD
 from matstd.probe_paths.plan import Probe, ProgramFrame
@@ -48,19 +49,11 @@ def machine_files(chain: Chain, probe: Probe, dialect: Dialect, socket: str) -> 
     }
     axes = [_axis(chain, letter, i) for i, letter in enumerate(letters)]
     offsets = [frame.reading(a, 0.0) - (probe.tool_length if a == "Z" else 0.0) for a in "XYZ"]
-    variables = [(5161 + i, 0.0) for i in range(9)] + [(5181 + i, 0.0) for i in range(9)]
-    variables += [(5210, 0.0)] + [(5211 + i, 0.0) for i in range(9)] + [(5220, 1.0)]
-    for system in range(9):
-        rest = [0.0] * 7  # A to W, and the rotation
-        values = [*(offsets if system == dialect.preset - 1 else [0.0] * 3), *rest]
-        variables += [(5221 + 20 * system + i, v) for i, v in enumerate(values)]
     return {
         "machine.ini": _text("machine.ini").format(**numbers) + "".join(axes),
         "machine.hal": _text("machine.hal").format(**numbers, positions=_positions(len(letters))),
-        "machine.var": "".join(f"{number}\t{value:.6f}\n" for number, value in variables),
-        "tool.tbl": (
-            f"T{dialect.tool} P{dialect.tool} Z{probe.tool_length:.6f} D{2.0 * probe.radius:.6f}\n"
-        ),
+        "machine.var": variables({dialect.preset: offsets}),
+        "tool.tbl": tool_table(dialect.tool, probe.tool_length, probe.radius),
     }
 
 
@@ -86,10 +79,14 @@ def _axis(chain: Chain, letter: str, joint: int) -> str:
 
 
 def _positions(joints: int) -> str:
-    """Every joint is where it is told to be, at once."""
-    lines = []
-    for i in range(joints):
-        summed = _SUMMED[i] if i < len(_SUMMED) else ""
-        to = f"joint.{i}.motor-pos-fb prober.joint-{i} {summed}".rstrip()
-        lines.append(f"net position-{i} joint.{i}.motor-pos-cmd => {to}")
-    return "\n".join(lines)
+    """Every joint is where it is commanded to be, at once."""
+    return "\n".join(
+        net(
+            f"position-{i}",
+            f"joint.{i}.motor-pos-cmd",
+            f"joint.{i}.motor-pos-fb",
+            f"prober.joint-{i}",
+            *_SUMMED[i : i + 1],
+        )
+        for i in range(joints)
+    )

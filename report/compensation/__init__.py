@@ -1,4 +1,4 @@
-"""Compensation in words and pictures: what is corrected, what is left, before and after."""
+"""Compensation in words and pictures: errors before and after."""
 
 from matstd.report.compensation.program_picture import draw_program
 from matstd.report.compensation.program_words import program_lines

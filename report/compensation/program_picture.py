@@ -1,13 +1,17 @@
 """The picture of a compensated program: nominal, actual and compensated path, and its errors."""
 
-from pathlib import Path
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from matstd.compensation.programs import Compensated
-from matstd.report.style import BLUE, FAINT, INK, RED, figure, plain, save
+from matstd.report.style import BLUE, FAINT, INK, RED, figure, plain
 from matstd.twin.units import MINUTE, UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SHOWN = 0.06
 """Of the path's size, as which its largest deviation is drawn."""
@@ -16,13 +20,8 @@ POINTS = 6000
 """Points that are drawn at most."""
 
 
-def draw_program(path: str | Path, done: Compensated) -> None:
-    """Draw the path in its widest plane, deviations exaggerated, and their size over time.
-
-    Args:
-        path: PNG.
-        done: The program and its compensation.
-    """
+def draw_program(done: Compensated) -> Figure:
+    """Draw the path in its widest plane, deviations exaggerated, and their size over time."""
     rows = np.unique(np.linspace(0, len(done.q) - 1, min(len(done.q), POINTS)).astype(int))
     drawn = figure(4.2)
     left, right = drawn.subplots(1, 2)
@@ -38,17 +37,17 @@ def draw_program(path: str | Path, done: Compensated) -> None:
     if done.is_cut:
         between = np.maximum(done.between[rows] / UM, 1e-3)
         right.plot(t, between, color=BLUE, lw=0.8, alpha=0.5, label="between line ends")
-        right.axhline(done.tolerance / UM, color=FAINT, lw=0.8, label="lines divided for")
+        right.axhline(done.tolerance / UM, color=FAINT, lw=0.8, label="tolerance of the division")
     if done.u.any():
         at = done.elapsed[done.u_at] / MINUTE
-        right.plot(at, done.u / UM, ":", color=INK, lw=1.2, label="not known by the model (u)")
+        right.plot(at, done.u / UM, ":", color=INK, lw=1.2, label="uncertainty of the model (u)")
     right.set_yscale("log")
     right.set_xlabel("time in min")
     right.set_ylabel("error of the tool point in µm")
     right.legend(fontsize=8, frameon=False)
     for ax in (left, right):
         plain(ax)
-    save(drawn, path)
+    return drawn
 
 
 def _path(ax: Any, done: Compensated, rows: np.ndarray) -> None:

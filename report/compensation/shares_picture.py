@@ -1,16 +1,21 @@
-"""What every error adds along a path: a picture, and lines for the console."""
+"""Contribution of each error along a path: a picture, and lines for the console."""
+
+from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from matstd.compensation.field import Share
 from matstd.report.numbers import with_uncertainty
-from matstd.report.style import INK, NEUTRAL, SOFT, figure, plain, save, series
+from matstd.report.style import INK, NEUTRAL, SOFT, figure, plain, series
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms_length
 from matstd.twin.units import MINUTE, UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 LONGEST = 32
 """Letters of a label."""
@@ -19,11 +24,10 @@ LINES, BARS = 6, 16
 """Errors that are drawn along the path, and as bars, at most."""
 
 
-def draw_shares_along(path: str | Path, time: Array, whole: Array, shares: Sequence[Share]) -> None:
+def draw_shares_along(time: Array, whole: Array, shares: Sequence[Share]) -> Figure:
     """Size of the deviation along the path, of all together and of the largest by themselves.
 
     Args:
-        path: PNG.
         time: At every pose, (N,), s; equal times are drawn by their number.
         whole: Deviation of all together, (N, 3), mm.
         shares: Of each, the largest first.
@@ -51,7 +55,7 @@ def draw_shares_along(path: str | Path, time: Array, whole: Array, shares: Seque
     right.set_xlabel("µm, rms along the path, each by itself")
     plain(left)
     plain(right, "x")
-    save(drawn, path)
+    return drawn
 
 
 def _short(name: str) -> str:
@@ -60,7 +64,7 @@ def _short(name: str) -> str:
 
 
 def share_lines(whole: Array, shares: Sequence[Share], most: int = 8) -> Iterator[str]:
-    """The whole, and the largest of what it is made of."""
+    """The total, and its largest contributions."""
     yield f"all together {with_uncertainty(rms_length(whole) / UM, None, 'µm')} rms"
     for share in shares[:most]:
         yield f"- {share.name} {_size(share)}"

@@ -1,110 +1,149 @@
-"""The page of a compensation: what is corrected, what is left, how to try its sign."""
+"""The page of a compensation: what it corrects, what remains, how to test its sign."""
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
-from matstd.compensation.field import MachineErrors
+from matstd.compensation.field import MachineErrors, Result
 from matstd.compensation.tables import Header, Played
 from matstd.report.compensation.table_pictures import draw_errors_left, draw_shares
-from matstd.report.compensation.table_words import control_title, result_sentence, small
+from matstd.report.compensation.table_words import control_title, extent_of, result_sentence, small
 from matstd.report.numbers import digits, signed, with_uncertainty
-from matstd.report.pages import Picture, write_page
+from matstd.report.pages import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.twin.machine import Chain
 from matstd.twin.numbers import rms_length
 from matstd.twin.units import DEG, UM
 
-PAGE = "report.html"
-PICTURES = "pictures"
+PAGE, PICTURES = "report.html", "pictures"
+
+FEEBLE = 1e-2 * UM
+"""Errors below this size are not listed: 10 nm are below the resolution of the tables."""
+
+_FIGURES = (
+    "All figures are deviations of the tool point in the table frame with the workpiece aligned: "
+    "the best-fit rigid motion is removed, since presets and alignment are determined on the "
+    "machine itself (determine them with the tables active). Each file was read back by an "
+    "independent reader and applied on the exact twin, with the estimates of the model as the "
+    "truth; the uncertainty of the model comes in addition."
+)
+_TOOLS = (
+    "This holds for tools whose length and offset are set relative to the probe of the "
+    "measurement. For other tools add {u} µm rms: a run with one probe cannot distinguish the "
+    "position of the probe in the spindle from the lines of the rotary axes."
+)
+_TEST = (
+    "Zero an indicator at the datum, then read it at {place} against a straight gauge. The change "
+    "is exact; the other figures carry the uncertainty of the model. If the indicator changes in "
+    "the opposite direction (sign wrong), write the tables again with `--opposite {name}`."
+)
 
 
 def write_compensation_page(
     folder: str | Path, errors: MachineErrors, head: Header, done: Sequence[Played], title: str
 ) -> None:
-    """Draw the pictures of tables and write their page, which stands alone.
+    """Write `report.html` and its pictures into a folder.
 
     Args:
-        folder: Where `report.html` and the folder `pictures` go.
+        folder: For the page.
         errors: Of the machine.
         head: Of the tables.
         done: Tables of every control.
         title: Name of the model file.
     """
-    place = Path(folder) / PICTURES
-    place.mkdir(parents=True, exist_ok=True)
-    draw_errors_left(place / "left.png", {control_title(p.format): p.result for p in done})
     first = done[0].result
-    write_page(
-        Path(folder) / PAGE,
-        "compensation.html",
-        place=place,
-        title=title,
-        head=head,
-        poses=len(first.q),
-        before=rms_length(first.before) / UM,
-        model_u=first.u_rms / UM,
-        tool_u=first.u_tool / UM,
-        left_out=errors.left_out,
-        controls=[_control(place, p, errors.chain) for p in done],
-        overview=Picture(
-            "left.png", "Error of the tool point over the workspace, before and after."
-        ),
-    )
-
-
-def _control(place: Path, played: Played, chain: Chain) -> dict[str, Any]:
-    """One control: its figures, what it cannot hold, its one-point test."""
-    file = f"{played.format}.png"
-    held = [x for x in played.result.left if x.rms < max(played.interpolation, 1e-2 * UM)]
-    has_picture = len(held) < len(played.result.left)
-    if has_picture:
-        draw_shares(place / file, played.result.left)
-    result = played.result
-    return {
-        "name": played.format,
-        "title": control_title(played.format),
-        "files": ", ".join(played.files),
-        "sentence": result_sentence(result),
-        "after": small(rms_length(result.after) / UM),
-        "expected": small(result.expected / UM, 2),
-        "interpolation": small(played.interpolation / UM, 2),
-        "where": "over the workspace" if played.by_name else "along the axes through the datum",
-        "by_name": played.by_name,
-        "left": [
-            {
-                "name": item.name,
-                "before": digits(item.before / UM),
-                "rms": with_uncertainty(item.rms / UM, item.u / UM or None),
-            }
-            for item in result.left
-            if item.rms > played.interpolation and item.rms > 1e-2 * UM
+    tools = _TOOLS.format(u=digits(first.u_tool / UM, 2)) if first.u_tool > 0.1 * UM else ""
+    names = ", ".join(f"`{name}`" for name in errors.left_out)
+    results = {control_title(p.format): p.result for p in done}
+    overview = "Error of the tool point over the workspace, before and after."
+    page = Page(
+        title=f"Compensation with {title}",
+        heading=f"Compensation with {title}",
+        lead=f"{head.machine}; datum {head.datum}; state {head.state}; model {head.model}.",
+        key=_key(first, done),
+        sections=[
+            Section(
+                sentences=[" ".join(filter(None, (_FIGURES, tools)))],
+                pictures=[Picture(f"{PICTURES}/left.png", overview, draw_errors_left(results))],
+                notes=[f"Not errors of the axes, and in no table: {names}."] if names else [],
+            ),
+            *(section for p in done for section in _control(p, errors.chain)),
         ],
-        "picture": has_picture
-        and Picture(file, "Every error by itself: before, and what the table leaves."),
-        "test": _test(played, chain),
-    }
+    )
+    write_page(Path(folder) / PAGE, page)
 
 
-def _test(played: Played, chain: Chain) -> dict[str, Any]:
-    """The one-point test in words."""
+def _key(first: Result, done: Sequence[Played]) -> list[KeyFigure]:
+    before = f"error of the tool point before, rms of {len(first.q)} poses"
+    u = first.u_rms / UM
+    known = (
+        KeyFigure(f"{digits(u, 2)} µm", "standard uncertainty of the model, rms")
+        if u > 0.0
+        else KeyFigure("–", "uncertainty unknown: these errors were stated, not estimated")
+    )
+    after = [
+        KeyFigure(
+            f"{small(rms_length(p.result.after) / UM)} µm",
+            f"remaining with {control_title(p.format)}, rms; "
+            f"expect {small(p.result.expected / UM, 2)} µm",
+        )
+        for p in done
+    ]
+    return [KeyFigure(f"{digits(rms_length(first.before) / UM)} µm", before), known, *after]
+
+
+def _control(played: Played, chain: Chain) -> list[Section]:
+    """One control: its figures, what it cannot represent, its one-point test."""
+    result, least = played.result, max(played.interpolation, FEEBLE)
+    rows = [
+        [e.name, digits(e.before / UM), with_uncertainty(e.rms / UM, e.u / UM or None)]
+        for e in result.left
+        if e.rms > least
+    ]
+    pictures = []
+    if any(e.rms >= least for e in result.left):
+        caption = "Each error by itself: before, and what remains with the table."
+        drawn = draw_shares(result.left)
+        pictures.append(Picture(f"{PICTURES}/{played.format}.png", caption, drawn))
+    caption = "Errors that this format cannot represent, µm rms over the workspace, each by itself"
+    words = (
+        f"{result_sentence(result)}. Interpolation and rounding leave at most "
+        f"{small(played.interpolation / UM, 2)} µm {extent_of(played)}. "
+        f"Files: {', '.join(played.files)}."
+    )
+    return [
+        Section(
+            control_title(played.format),
+            sentences=[words, *([] if rows else ["It represents every error of the model."])],
+            table=Table(("error", "before", "remaining"), rows, caption),
+            pictures=pictures,
+        ),
+        _one_point_test(played, chain),
+    ]
+
+
+def _one_point_test(played: Played, chain: Chain) -> Section:
+    """Readings of an indicator that prove the sign of a table."""
     test = played.acceptance
-    words = []
+    place = []
     for name in chain.programmed_axes:
-        is_rotary = chain.link(name).kind == "rotary"
-        at = test.q[chain.axis_index(name)] / (DEG if is_rotary else 1.0) + 0.0
-        words.append(f"{name} {at:.1f}{'°' if is_rotary else ' mm'}")
-    rows = []
-    for label, values in (
-        ("table off", test.without),
-        ("table on", test.with_table),
-        ("table on, sign wrong", test.wrong_sign),
-    ):
-        u = test.u / UM
-        cells = [_cell(v / UM, s) for v, s in zip(values, u, strict=True)]
-        rows.append({"label": label, "cells": cells})
+        unit, label = (DEG, "°") if chain.link(name).kind == "rotary" else (1.0, " mm")
+        place.append(f"{name} {test.q[chain.axis_index(name)] / unit + 0.0:.1f}{label}")
+    rows = [
+        [label, *(_cell(v / UM, u / UM) for v, u in zip(values, test.u, strict=True))]
+        for label, values in (
+            ("table off", test.without),
+            ("table on", test.with_table),
+            ("table on, sign wrong", test.wrong_sign),
+        )
+    ]
     change = (test.with_table - test.without) / UM
-    rows.append({"label": "change by switching it on", "cells": [_cell(v, 0.0) for v in change]})
-    return {"place": ", ".join(words), "rows": rows}
+    rows.append(["change when switched on", *(_cell(v, 0.0) for v in change)])
+    caption = "Deviation of the tool point relative to the datum, table frame, µm"
+    return Section(
+        "One-point test of the sign",
+        is_part=True,
+        sentences=[_TEST.format(place=", ".join(place), name=played.format)],
+        table=Table(("", "x", "y", "z"), rows, caption),
+    )
 
 
 def _cell(value: float, u: float) -> str:

@@ -1,13 +1,18 @@
-"""Pictures of what compensation leaves: over the workspace, and error by error."""
+"""Pictures of the error after compensation: over the workspace, and error by error."""
+
+from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from matstd.compensation.field import Left, Result
-from matstd.report.style import INK, NEUTRAL, SOFT, figure, nothing, plain, save, series
+from matstd.report.style import INK, NEUTRAL, SOFT, figure, nothing, plain, series
 from matstd.twin.units import UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 BARS = 16
 """Errors that are drawn at most."""
@@ -16,13 +21,8 @@ LEAST = 1e-3
 """µm: a logarithmic scale begins there, at a nanometre."""
 
 
-def draw_errors_left(path: str | Path, results: Mapping[str, Result]) -> None:
-    """Share of the workspace whose error is smaller: before, and after every compensation.
-
-    Args:
-        path: PNG.
-        results: By title; all of the same machine and datum.
-    """
+def draw_errors_left(results: Mapping[str, Result]) -> Figure:
+    """Share of the workspace whose error is smaller: before, and after every compensation."""
     drawn = figure(3.6)
     ax = drawn.subplots()
     first = next(iter(results.values()))
@@ -34,11 +34,11 @@ def draw_errors_left(path: str | Path, results: Mapping[str, Result]) -> None:
             _curve(ax, np.hypot(after, result.u), None, series(k), ":")
     ax.set_xscale("log")
     ax.set_ylim(0.0, 1.0)
-    ax.set_xlabel("error of the tool point, µm (dotted: with what the model does not know)")
+    ax.set_xlabel("error of the tool point, µm (dotted: with the uncertainty of the model)")
     ax.set_ylabel("share of poses below")
     ax.legend(fontsize=8, frameon=False, loc="upper left")
     plain(ax)
-    save(drawn, path)
+    return drawn
 
 
 def _curve(ax: object, size: np.ndarray, label: str | None, colour: str, style: str) -> None:
@@ -47,22 +47,16 @@ def _curve(ax: object, size: np.ndarray, label: str | None, colour: str, style: 
     ax.plot(x, y, style, color=colour, lw=1.4, label=label)  # type: ignore[attr-defined]
 
 
-def draw_shares(path: str | Path, left: Sequence[Left]) -> None:
-    """What one compensation leaves of every error, beside what it was.
-
-    Args:
-        path: PNG.
-        left: Of one compensation, the largest first.
-    """
+def draw_shares(left: Sequence[Left]) -> Figure:
+    """Every error before and after one compensation."""
     shown = [item for item in left[:BARS] if item.before > 0.0]
     if not shown:
-        save(nothing("nothing is left"), path)
-        return
+        return nothing("No error remains.")
     drawn = figure(0.9 + 0.24 * len(shown))
     ax = drawn.subplots()
     y = np.arange(len(shown))[::-1]
     ax.barh(y, [item.before / UM for item in shown], color=NEUTRAL, height=0.7, label="before")
-    ax.barh(y, [item.rms / UM for item in shown], color=series(0), height=0.4, label="left")
+    ax.barh(y, [item.rms / UM for item in shown], color=series(0), height=0.4, label="remaining")
     errors = [item.u / UM for item in shown]
     ax.errorbar(
         [item.rms / UM for item in shown], y, xerr=errors, fmt="none", ecolor=SOFT, capsize=2
@@ -72,4 +66,4 @@ def draw_shares(path: str | Path, left: Sequence[Left]) -> None:
     ax.set_xlabel("µm, rms over the workspace")
     ax.legend(fontsize=8, frameon=False)
     plain(ax, "x")
-    save(drawn, path)
+    return drawn

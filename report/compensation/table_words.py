@@ -1,4 +1,4 @@
-"""What tables of controls correct and leave, in sentences."""
+"""What tables of controls correct and what remains, in sentences."""
 
 from collections.abc import Iterator
 
@@ -17,8 +17,8 @@ _TITLES = {
     "heidenhain": "iTNC 530 positioning tables (.COM)",
 }
 
-TOLD = 5
-"""Errors that a control cannot hold, named on the console."""
+NAMED = 5
+"""Errors that a control cannot represent, named on the console."""
 
 
 def control_title(name: str) -> str:
@@ -27,7 +27,7 @@ def control_title(name: str) -> str:
 
 
 def result_sentence(result: Result) -> str:
-    """Before, after, and what to expect with a model that is not the truth, rms."""
+    """Error before and after, and what to expect in view of the uncertainty of the model, rms."""
     before, after = rms_length(result.before) / UM, rms_length(result.after) / UM
     words = f"{digits(before)} -> {small(after)} µm rms over the workspace"
     worst = np.linalg.norm(result.after, axis=1).max() / UM
@@ -35,7 +35,7 @@ def result_sentence(result: Result) -> str:
     if result.u_rms > NM:
         numbers = (result.u_rms, result.expected_before, result.expected)
         u, was, will = (digits(v / UM, 2) for v in numbers)
-        words += f"; the model is known to {u} µm there, so expect {was} -> {will} µm"
+        words += f"; the uncertainty of the model is {u} µm there, so expect {was} -> {will} µm"
     return words
 
 
@@ -44,22 +44,27 @@ def small(value: float, significant: int = 3) -> str:
     return digits(value, significant) if value >= 1e-3 else "< 0.001"
 
 
+def extent_of(played: Played) -> str:
+    """Where a bound on interpolation holds."""
+    return "over the workspace" if played.by_name else "along the axes through the datum"
+
+
 def held_words(left: Left) -> str:
-    """What is left of one error."""
+    """`EX0C (20.0 ± 3.0 of 21.0 µm remain)`: an error that a control cannot represent."""
     u = left.u / UM if left.u > 0.0 else None
-    return f"{left.name} {with_uncertainty(left.rms / UM, u)} of {digits(left.before / UM)} µm"
+    remaining = with_uncertainty(left.rms / UM, u)
+    return f"{left.name} ({remaining} of {digits(left.before / UM)} µm remain)"
 
 
 def table_lines(played: Played) -> Iterator[tuple[str, bool]]:
     """Lines on the console, and whether each is the first of its control."""
     yield f"{control_title(played.format)}: {result_sentence(played.result)}", True
-    where = "over the workspace" if played.by_name else "along the axes through the datum"
     bound = small(played.interpolation / UM)
-    yield f"- interpolation and rounding leave at most {bound} µm {where}", False
+    yield f"- interpolation and rounding leave at most {bound} µm {extent_of(played)}", False
     held = [left for left in played.result.left if left.rms > max(played.interpolation, 10 * NM)]
     if held:
-        words = ", ".join(held_words(left) for left in held[:TOLD])
-        more = f" and {len(held) - TOLD} more" if len(held) > TOLD else ""
-        yield f"- cannot hold: {words}{more}", False
+        words = ", ".join(held_words(left) for left in held[:NAMED])
+        more = f" and {len(held) - NAMED} more" if len(held) > NAMED else ""
+        yield f"- cannot represent: {words}{more}", False
     else:
-        yield "- holds every error of the model", False
+        yield "- represents every error of the model", False

@@ -30,7 +30,7 @@ _SCALES = (2.0, 1.0, 0.5, 0.2, 0.1)  # of ISO 5455
 _LEFT, _TOP = 44.0, 392.0  # mm of paper: where the views begin
 _ROOM = (318.0, 372.0)  # mm of paper for the three views
 _TABLES = 396.0  # mm of paper: where the tables begin
-_FLAT = 10_000.0  # mm: a ball of 3 mm cannot tell such a face from a plane
+_FLAT = 10_000.0  # mm: a ball of 3 mm cannot distinguish such a face from a plane
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,20 +49,14 @@ class Issuer:
 
 
 def write_drawing(folder: Path, standard: Standard, issuer: Issuer) -> None:
-    """One A2 sheet as PDF and SVG, the same bytes for the same standard.
-
-    Args:
-        folder: For both files.
-        standard: What is drawn.
-        issuer: For the title block.
-    """
+    """One A2 sheet as PDF and SVG, the same bytes for the same standard."""
     import matplotlib
 
     details = details_of(standard)
     sheet = draw_sheet(standard, details, issuer)
-    told: list[dict[str, Any]] = [{"CreationDate": None, "ModDate": None}, {"Date": None}]
+    fixed: list[dict[str, Any]] = [{"CreationDate": None, "ModDate": None}, {"Date": None}]
     with matplotlib.rc_context({"svg.hashsalt": "matstd", "pdf.fonttype": 42}):
-        for name, metadata in zip(DRAWING, told, strict=True):
+        for name, metadata in zip(DRAWING, fixed, strict=True):
             with written_whole(folder / name) as part:
                 sheet.figure.savefig(part, format=name[-3:], metadata=metadata)
 
@@ -162,7 +156,7 @@ def _axes(sheet: Sheet, top: View) -> None:
 
 def _tables(sheet: Sheet, standard: Standard, details: Details) -> float:
     """Faces, balls and holes with their places; returns the height of the lower edge."""
-    rows = [["face", "x", "y", "z", "size", "slope", "R", "proves the model, and of it most"]]
+    rows = [["face", "x", "y", "z", "size", "slope", "R", "tests the model; dominant errors"]]
     rows += [_face_row(patch) for patch in standard.patches]
     title = "Freeform faces (middle, steepest slope, least concave radius between their edges)"
     y = sheet.table(_TABLES, _TOP, (11, 14, 14, 14, 22, 11, 13, 89), rows, title)
@@ -223,7 +217,7 @@ def _face_row(patch: FreeformPatch) -> list[str]:
 def _notes(sheet: Sheet, top: float, standard: Standard, details: Details) -> None:
     sheet.text(_TABLES, top, "Notes", size=3.0)
     words = [*notes_of(standard, details), engraving_words()]
-    words += [f"No room was found for {what}." for what in details.missing]
+    words += [f"Omitted for lack of space: {what}." for what in details.missing]
     faces = ", ".join(f"{letter} = {face}" for letter, face in DATUMS.items())
     words.append(f"Names of faces as in standard.step: {faces}; that model is the definition.")
     for number, note in enumerate(words, 1):

@@ -39,7 +39,7 @@ def draw_seat(sheet: Sheet, view: View, standard: Standard, details: Details) ->
     where = view.at([[0.0, 1.3 * sphere.radius]])[0]
     title = f"{sphere.name} IN ITS SEAT ({_ratio(view.scale)})"
     sheet.text(where[0], where[1] + 6.0, title, size=3.0, ha="center")
-    others = "all balls likewise, land and countersink as in the table"
+    others = "all balls alike; land and countersink as in the table"
     sheet.text(where[0], where[1] + 2.0, others, size=2.2, ha="center")
 
 

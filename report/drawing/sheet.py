@@ -28,7 +28,7 @@ class View:
 
     Attributes:
         x: Of the view's origin, mm of paper.
-        y: Likewise.
+        y: Of the view's origin, mm of paper.
         scale: Paper by part.
     """
 

@@ -1,8 +1,7 @@
-"""The page of a thermal drift: laws beside one another, the chosen one over time."""
+"""The page of a thermal drift: the laws compared, the chosen one over time."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -16,13 +15,25 @@ from matstd.diagnosis.drift import (
 )
 from matstd.report.drift.drift_pictures import draw_drift, draw_laws
 from matstd.report.drift.drift_words import law_title, law_words, together, units_word
-from matstd.report.numbers import digits, span
-from matstd.report.pages import Picture, write_page
+from matstd.report.numbers import digits, percent, sentence, span
+from matstd.report.pages import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.twin.frames import Array
 from matstd.twin.units import HOUR
 
-PAGE = "report.html"
-PICTURES = "pictures"
+PAGE, PICTURES = "report.html", "pictures"
+
+_CHOICE = (
+    "The choice is made within the training hours. Every law, with its orders, sensors and "
+    "weights, is estimated again without each of four blocks and predicts that block as a free "
+    "run. The held-out hours do not influence the choice. One step ahead, with the reading of "
+    "{step} before given, every law looks good, and so does holding the last value, which is no "
+    "law."
+)
+_FOOT = (
+    "Uncertainties are standard uncertainties (k = 1): residual and uncertainty of the "
+    "coefficients, times the factor by which the blocks left out exceeded these. u grows where "
+    "the drives leave the range of the training. Components: {components}. Drives: {drives}."
+)
 
 
 def write_drift_page(
@@ -36,83 +47,112 @@ def write_drift_page(
     title: str,
     probings: Sequence[str] = (),
 ) -> None:
-    """Draw the pictures and write the page, which stands alone.
+    """Write `report.html` and its pictures into a folder.
 
     Args:
-        folder: Where `report.html` and the folder `pictures` go.
+        folder: For the page.
         record: All hours.
         judged: Every law.
         best: The chosen one.
-        hold: What holding the last value leaves one step ahead, (K,).
+        hold: Error one step ahead of holding the last value, (K,).
         train: Rows of the training part.
-        held: Rows that were held out.
+        held: Rows held out.
         title: Names of the logs.
-        probings: Sentences on what probing now and then leaves.
+        probings: Sentences on the error that remains with occasional probing.
     """
-    place = Path(folder) / PICTURES
-    place.mkdir(parents=True, exist_ok=True)
     predicted, u = best.law.predicted(record), best.u(record)
-    draw_drift(place / "drift.png", record, predicted, u, held)
-    draw_laws(place / "laws.png", record, judged, best)
     inside = np.abs((predicted - record.displacement) / u)[held] < 2.0
-    write_page(
-        Path(folder) / PAGE,
-        "thermal.html",
-        place=place,
-        title=title,
-        remarks=record.remarks,
-        unit=units_word(record),
-        components=record.components,
-        drives=record.drives,
-        train_hours=len(train) * record.step / HOUR,
-        held_hours=len(held) * record.step / HOUR,
-        step=span(record.step),
-        best=best,
-        best_title=law_title(best.name),
-        best_words=law_words(best, record),
-        left_out=together(best.left_out, record),
-        free_run=together(best.free_run, record),
-        constant=next(together(j.free_run, record) for j in judged if j.name == "constant"),
-        inside=float(inside.mean()),
-        has_noise=any(j.noisy is not None for j in judged),
-        hold=[digits(v) for v in (together(hold, record), *(hold / record.size))],
-        rows=[_row(j, record, j is best) for j in judged],
-        laws=[_equation(j, record) for j in judged if _is_arx(j)],
-        probings=probings,
-        drift=Picture("drift.png", "Measured, and the free run of the chosen law with ± 2 u."),
-        laws_picture=Picture("laws.png", "A small error one step ahead is no evidence of a law."),
-    )
-
-
-def _row(judged: Judged, record: DriftRecord, is_best: bool) -> dict[str, Any]:
-    """One law: its errors together, and by component."""
-    return {
-        "title": law_title(judged.name),
-        "is_best": is_best,
-        "pole": None if judged.pole is None else f"{judged.pole:.4f}",
-        "cells": [
-            digits(together(v, record)) for v in (judged.one_step, judged.left_out, judged.free_run)
+    unit, hours = units_word(record), record.step / HOUR
+    constant = next(together(j.free_run, record) for j in judged if j.name == "constant")
+    free_run = digits(together(best.free_run, record))
+    drift = draw_drift(record, predicted, u, held)
+    measured = "Measured drift, and the free run of the chosen law with ± 2 u."
+    step_ahead = "A small error one step ahead is no evidence for a law."
+    page = Page(
+        title=f"Thermal drift of {title}",
+        heading=f"Thermal drift of {title}",
+        lead=f"{law_title(best.name)}: {law_words(best, record)}.",
+        key=[
+            KeyFigure(
+                f"{digits(constant)} → {free_run} {unit}",
+                "held-out hours, free run: a constant; the chosen law",
+            ),
+            KeyFigure(
+                f"{digits(together(best.left_out, record))} {unit}",
+                "the chosen law in blocks left out of its training",
+            ),
+            KeyFigure(percent(float(inside.mean())), "of the held-out readings within ± 2 u"),
+            KeyFigure(
+                f"{digits(len(train) * hours)} h + {digits(len(held) * hours)} h",
+                "training; held out",
+            ),
         ],
-        "noisy": "" if judged.noisy is None else digits(together(judged.noisy, record)),
-        "components": [digits(v) for v in judged.free_run / record.size],
-    }
+        sections=[
+            Section(
+                notes=record.remarks, pictures=[Picture(f"{PICTURES}/drift.png", measured, drift)]
+            ),
+            Section(
+                "Comparison of the laws",
+                sentences=[_CHOICE.format(step=span(record.step))],
+                table=_laws(record, judged, best, hold),
+                pictures=[
+                    Picture(f"{PICTURES}/laws.png", step_ahead, draw_laws(record, judged, best))
+                ],
+            ),
+            *_probed(probings),
+            *_equations(record, judged),
+        ],
+        foot=[
+            _FOOT.format(components=", ".join(record.components), drives=", ".join(record.drives))
+        ],
+    )
+    write_page(Path(folder) / PAGE, page)
 
 
-def _is_arx(judged: Judged) -> bool:
-    return isinstance(judged.law, LinearLaw) and isinstance(judged.law.inputs, ArxInputs)
+def _laws(record: DriftRecord, judged: Sequence[Judged], best: Judged, hold: Array) -> Table:
+    """Errors of every law over all components, and those of the held-out hours by component."""
+    has_noise = any(j.noisy is not None for j in judged)
+    noise = ["with noise"] if has_noise else []
+    none = ["–"] * len(record.components)
+    first = digits(together(hold, record))
+    rows = [["last value held", first, "–", "–", *[""] * has_noise, *none]]
+    for j in judged:
+        pole = "" if j.pole is None else f" (unstable: pole {j.pole:.4f})"
+        cells = [digits(together(v, record)) for v in (j.one_step, j.left_out, j.free_run)]
+        noisy = "" if j.noisy is None else digits(together(j.noisy, record))
+        each = [digits(v) for v in j.free_run / record.size]
+        rows.append([law_title(j.name) + pole, *cells, *[noisy] * has_noise, *each])
+    columns = ("law", "one step", "left out", "held out", *noise, *record.components)
+    caption = (
+        f"Root mean square error, {units_word(record)}: over all components; then the held-out "
+        "hours by component"
+    )
+    chosen = [1 + k for k, j in enumerate(judged) if j is best]
+    return Table(columns, rows, caption, chosen)
 
 
-def _equation(judged: Judged, record: DriftRecord) -> dict[str, Any]:
-    """Coefficients of an ARX law, a row for each that multiplies something."""
-    law = judged.law
-    assert isinstance(law, LinearLaw)
-    assert isinstance(law.inputs, ArxInputs)
-    found = arx_coefficients(law, record.step)
-    past = [(f"a{i + 1}", [f"{a:.6f}"] * len(record.units)) for i, a in enumerate(found.a)]
-    rows = [("constant", [digits(v, 4) for v in found.constant / record.size]), *past]
-    for d, drive in enumerate(law.inputs.drives):
-        for k in range(law.inputs.order):
-            label = f"b of {drive} at t" + (f" - {k}" if k else "")
-            rows.append((label, [digits(v, 4) for v in found.b[d, k] / record.size]))
-    times = [span(tau, 2) for tau in law.inputs.time_constants]
-    return {"rows": rows, "times": times}
+def _probed(probings: Sequence[str]) -> list[Section]:
+    words = [sentence(line) for line in probings]
+    return [Section("With occasional probing", sentences=words)] if words else []
+
+
+def _equations(record: DriftRecord, judged: Sequence[Judged]) -> Iterator[Section]:
+    """Coefficients of every ARX law, a row for each term."""
+    for law in (j.law for j in judged):
+        if not isinstance(law, LinearLaw) or not isinstance(law.inputs, ArxInputs):
+            continue
+        found = arx_coefficients(law, record.step)
+        rows = [["constant", *(digits(v, 4) for v in found.constant / record.size)]]
+        rows += [[f"a{i + 1}", *[f"{a:.6f}"] * len(record.units)] for i, a in enumerate(found.a)]
+        for d, drive in enumerate(law.inputs.drives):
+            for k in range(law.inputs.order):
+                label = f"b of {drive} at t" + (f" - {k}" if k else "")
+                rows.append([label, *(digits(v, 4) for v in found.b[d, k] / record.size)])
+        times = " and ".join(span(tau, 2) for tau in law.inputs.time_constants)
+        words = (
+            "y(t) = constant + Σ a_{i} y(t − i) + Σ b_{jk} T_{j}(t − k + 1), steps of "
+            f"{span(record.step)}; time constants {times}."
+        )
+        caption = f"Coefficients, {units_word(record)} per unit of the drive"
+        table = Table(("", *record.components), rows, caption)
+        yield Section("The ARX law as an equation", sentences=[words], table=table)

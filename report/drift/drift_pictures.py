@@ -1,32 +1,35 @@
 """Pictures of a thermal drift: measured and predicted, and the errors of all laws."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from matstd.diagnosis.drift import DriftRecord, IntArray, Judged
 from matstd.report.drift.drift_words import law_title, together
-from matstd.report.style import BLUE, FAINT, INK, NEUTRAL, WASH, figure, plain, save, series
+from matstd.report.style import BLUE, FAINT, INK, NEUTRAL, WASH, figure, plain, series
 from matstd.twin.frames import Array
 from matstd.twin.units import HOUR
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 POINTS = 3000
 """Points of a curve that are drawn at most."""
 
 
 def draw_drift(
-    path: str | Path,
     record: DriftRecord,
     predicted: Array,
     u: Array,
     held: IntArray | None = None,
     has_measured: bool = True,
-) -> None:
+) -> Figure:
     """Every component over time: measured, predicted, and twice its uncertainty.
 
     Args:
-        path: PNG.
         record: All hours.
         predicted: (N, K), base units.
         u: Standard uncertainty, (N, K).
@@ -53,12 +56,10 @@ def draw_drift(
         plain(ax)
     every[0].legend(fontsize=8, frameon=False, ncols=3)
     every[-1].set_xlabel("time in h" + ("; held out on grey" if held is not None else ""))
-    save(drawn, path)
+    return drawn
 
 
-def draw_laws(
-    path: str | Path, record: DriftRecord, judged: Sequence[Judged], best: Judged
-) -> None:
+def draw_laws(record: DriftRecord, judged: Sequence[Judged], best: Judged) -> Figure:
     """One step, left out and held out of every law, as bars."""
     drawn = figure(1.2 + 0.45 * len(judged))
     ax = drawn.subplots()
@@ -76,4 +77,4 @@ def draw_laws(
     ax.set_xlabel("error in µm or µrad, rms over components")
     ax.legend(fontsize=8, frameon=False)
     plain(ax, "x")
-    save(drawn, path)
+    return drawn

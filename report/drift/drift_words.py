@@ -1,4 +1,4 @@
-"""What laws of a thermal drift leave, in sentences."""
+"""Laws of a thermal drift and their errors, in sentences."""
 
 from collections.abc import Iterator, Sequence
 
@@ -30,7 +30,7 @@ def law_title(name: str) -> str:
 
 
 def units_word(record: DriftRecord) -> str:
-    """Unit in which components are told together."""
+    """Unit of the components together."""
     return " and ".join("µm" if u == "mm" else "µrad" for u in dict.fromkeys(record.units))
 
 
@@ -48,7 +48,7 @@ def drift_lines(
         record: All hours.
         judged: Every law.
         best: The chosen one.
-        hold: What holding the last value leaves one step ahead, (K,).
+        hold: Error one step ahead of holding the last value, (K,).
     """
     has_noise = any(j.noisy is not None for j in judged)
     head = f"{'rms over ' + str(len(record.components)) + ' components, ' + units_word(record):<42}"
@@ -64,11 +64,11 @@ def drift_lines(
         if j.pole is not None:
             line += f"  unstable: pole {j.pole:.4f}"
         yield line, j is best
-    yield f"chosen by left-out blocks: {law_title(best.name)}; {law_words(best, record)}", True
+    yield f"chosen by the blocks left out: {law_title(best.name)}; {law_words(best, record)}", True
 
 
 def law_words(judged: Judged, record: DriftRecord) -> str:
-    """Uncertainty of a law, and what it is made of."""
+    """Uncertainty of a law, and its terms."""
     u = judged.u(record)
     words = f"u {digits(together(np.sqrt(np.mean(u**2, axis=0)), record), 2)} {units_word(record)}"
     law = judged.law
@@ -79,20 +79,20 @@ def law_words(judged: Judged, record: DriftRecord) -> str:
 
 
 def clock_line(lead: float) -> str:
-    """Displacements that answer too early."""
+    """Displacements that precede their cause."""
     return (
-        f"the displacements change {span(lead, 2)} before the speed does: set the clocks of both "
-        "alike, heat does not come before what makes it"
+        f"the displacements change {span(lead, 2)} before the speed does: synchronise the clocks "
+        "of both logs"
     )
 
 
 def kept_line(result: Kept, record: DriftRecord, rows: IntArray, every: float) -> str:
-    """What probing now and then leaves, beside the same probings without a law.
+    """Error with occasional probing, with a law and without.
 
     Args:
         result: With the probings.
         record: All hours.
-        rows: Rows that are judged.
+        rows: Rows that are evaluated.
         every: Time between two probings, s.
     """
     left, plain = (
@@ -102,5 +102,5 @@ def kept_line(result: Kept, record: DriftRecord, rows: IntArray, every: float) -
     every_words = f"{every / MINUTE:.0f} min" if every < 120 * MINUTE else span(every)
     return (
         f"probed every {every_words}: {digits(left)} {units_word(record)} held out "
-        f"({digits(plain)} if the probed value is held without a law)"
+        f"({digits(plain)} with the probed value held, without a law)"
     )

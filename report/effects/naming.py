@@ -1,7 +1,7 @@
-"""What effects are called: the words of a workshop first, the name in brackets behind them.
+"""Titles of effects in the words of the workshop, followed by their names in brackets.
 
-An effect that the run cannot tell from others is told as their class: what all of them are, which
-bodies may carry it, what else it may be, and the names.
+An effect that the run cannot distinguish from others is reported as a class: the common title, the
+bodies that may carry it, the alternatives, and the names.
 """
 
 from collections.abc import Sequence
@@ -12,14 +12,14 @@ from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Title, is_tunable
 from matstd.twin.words import listed
 
-TOLD = 4
-"""Bodies, titles or names that are told one by one; of more the first ones."""
+NAMED = 4
+"""Bodies, titles or names that are written out; of more, the first ones."""
 
 _BODIES = {"t": "the tool", "w": "the workpiece", "standard": "the standard", "probe": "the probe"}
 
 
 def effect_title(effect: Effect) -> str:
-    """`reversal of X`, `growth along Z after switching on, carried by B`: one effect in words."""
+    """`reversal of X`, `growth along Z after switching on, carried by B`."""
     return _whole(title_of(effect))
 
 
@@ -39,41 +39,41 @@ def words_of_name(name: str, chain: Chain) -> str:
 
 
 def effect_cell(step: Step) -> tuple[str, str]:
-    """An added effect in a table: what its class has in common, and its name."""
+    """An added effect in a table: the title of its class, and its name."""
     effects = _members(step)
     text, bodies, _ = _class(effects)
     alone = effect_title(effects[0])
     return text if len(bodies) > 1 else alone, _bracket(effects, alone)
 
 
-def class_words(step: Step, told: Sequence[str] = ()) -> str:
+def class_words(step: Step, clauses: Sequence[str] = ()) -> str:
     """An added effect in a sentence: `growth along Z after switching on (12 min; ...) [...]`.
 
     Args:
         step: With an effect.
-        told: Clauses that stand in round brackets behind the title, before those of its class.
+        clauses: In round brackets behind the title, before those of its class.
     """
     effects = _members(step)
     text, bodies, others = _class(effects)
     alone = effect_title(effects[0])
-    clauses = list(told)
+    every = list(clauses)
     if len(bodies) > 1:
-        clauses.append(f"which body carries it cannot be told: {_few(bodies)}")
+        every.append(f"carried by {_few(bodies)}, which this run cannot distinguish")
     if others:
-        clauses.append(f"it may as well be {_few(others)}")
+        every.append(f"or instead {_few(others)}")
     title = text if len(bodies) > 1 else alone
     bracket = _bracket(effects, alone)
-    return " ".join([title, *([f"({'; '.join(clauses)})"] if clauses else []), bracket]).rstrip()
+    return " ".join([title, *([f"({'; '.join(every)})"] if every else []), bracket]).rstrip()
 
 
 def rival_words(step: Step) -> str:
-    """`thermal-lag(EZB) cannot be told from thermal-lag(EZX) and thermal-lag(EZY)`; else empty."""
+    """`thermal-lag(EZB) cannot be distinguished from thermal-lag(EZX)`; empty without rivals."""
     own, *rivals = [e.name for e in _members(step)]
-    return f"{own} cannot be told from {_few(rivals, 'and')}" if rivals else ""
+    return f"{own} cannot be distinguished from {_few(rivals, 'and')}" if rivals else ""
 
 
 def plan_words(plan: Plan) -> str:
-    """What a plan tells apart: `reversal of X [backlash(X)] from reversal of Y [backlash(Y)]`."""
+    """What a plan distinguishes: `reversal of X [backlash(X)] from reversal of Y [backlash(Y)]`."""
     chain = plan.touches.chain
     one, other = plan.tells_apart
     if plan.periods_of:
@@ -81,12 +81,12 @@ def plan_words(plan: Plan) -> str:
         effect = parse_effect(plan.periods_of, chain)
         is_turn = is_tunable(effect) and effect.inner(plan.touches)[0].is_harmonic
         what = f"the harmonics {periods}" if is_turn else f"the periods {periods} mm"
-        return f"{what} of {effect_words(effect)} apart"
+        return f"{what} of {effect_words(effect)}"
     return f"{words_of_name(one, chain)} from {words_of_name(other, chain)}"
 
 
 def _members(step: Step) -> list[Effect]:
-    """The effect of a step with everything that it cannot be told from, the likeliest first."""
+    """The effect of a step with those not distinguished from it, the likeliest first."""
     assert step.effect is not None
     rivals = step.confusion.rivals if step.confusion else ()
     return [step.effect, *(r.effect for r in rivals)]
@@ -110,7 +110,7 @@ def _bodies(titles: Sequence[Title], text: str) -> list[str]:
 
 
 def _whole(title: Title) -> str:
-    """A title with the body that carries the effect where its text does not say it."""
+    """A title with the body that carries the effect, where its text does not name it."""
     text, carrier = title
     is_said = not carrier or carrier in _BODIES or f" of {carrier} " in f"{text} ".replace(",", " ")
     return text if is_said else f"{text}, carried by {carrier}"
@@ -118,9 +118,9 @@ def _whole(title: Title) -> str:
 
 def _few(words: list[str], last: str = "or") -> str:
     """`Z, Y, X or B`, or the first ones and how many more there are."""
-    if len(words) <= TOLD:
+    if len(words) <= NAMED:
         return listed(words, last)
-    return f"{', '.join(words[:TOLD])} {last} {len(words) - TOLD} more"
+    return f"{', '.join(words[:NAMED])} {last} {len(words) - NAMED} more"
 
 
 def _bracket(effects: Sequence[Effect], title: str) -> str:

@@ -1,4 +1,4 @@
-"""What the console tells of geometry, mistakes and changes, line by line."""
+"""Geometry, mistakes and changes on the console, line by line."""
 
 from collections.abc import Sequence
 
@@ -18,14 +18,7 @@ def console_lines(
     faults: Sequence[DescriptionFault],
     trend: Trend | None = None,
 ) -> list[tuple[str, bool]]:
-    """Lines, each with whether a reader should see it first.
-
-    Args:
-        touches: Of the run.
-        geometry: What was learnt of it.
-        faults: Mistakes in its description.
-        trend: What changed between several runs; it stands for what is noted of the geometry.
-    """
+    """Lines, each with whether it should be read first; changes replace the notable quantities."""
     first = [(text, True) for text in fault_sentences(faults)]
     first += [(text, False) for text in copy_lines(touches, geometry, faults)]
     first += [(text, True) for text in trend_lines(trend)]

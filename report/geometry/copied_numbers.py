@@ -1,4 +1,4 @@
-"""Numbers to copy into a machine file or a run, with all others that explain the run equally."""
+"""Numbers to copy into a machine file or a run, with those that explain the run equally."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -30,20 +30,20 @@ class Way:
 def copy_lines(
     touches: Touches, geometry: LearntGeometry | None, faults: Sequence[DescriptionFault]
 ) -> list[str]:
-    """What would have to stand in the files: mistakes undone, and lines of axes far from theirs.
+    """Corrections of the files: mistakes, and lines of axes far from their stated position.
 
-    Errors of a usual size are left to the model, which knows them better than a machine file can.
-    Where several numbers explain the run equally none of them alone is one to copy.
+    Errors of a usual size belong into the model, which describes them better than a machine file.
+    Where several numbers explain the run equally, none of them alone can be recommended.
 
     Args:
-        touches: Of the run, as it is described.
-        geometry: What was learnt of it; None where it could not be fitted.
-        faults: Mistakes that were named, each with those that look alike.
+        touches: Of the run, as described.
+        geometry: Estimated from it; None where it could not be fitted.
+        faults: Mistakes in the description, each with its alternatives.
     """
     corrections = {} if geometry is None else {c.key: c for c in geometry.corrections}
     rows = () if geometry is None else geometry.rows
     groups = [[w for one in (f, *f.alike) for w in _undone(touches, one)] for f in faults]
-    told = {way.key for group in groups for way in group}
+    listed = {way.key for group in groups for way in group}
     far = dict.fromkeys(key_of(row) for row in rows if row.is_beyond_expected or row.is_far)
     keys = [key for key in far if key in corrections]
     if geometry is not None and geometry.together:
@@ -52,16 +52,16 @@ def copy_lines(
         single = [way for group in same for way in group if way.key not in far]
         groups = [group for group in groups if group not in same]
         groups.append([Way("", lines), *single, *(_way(touches, (n,)) for n in geometry.together)])
-        told |= set(keys)
+        listed |= set(keys)
     for key in keys:
-        if key not in told:
+        if key not in listed:
             groups.append([Way(key, correction_line(corrections[key]))])
-            told |= {key, *(w.key for w in _rivals(touches, corrections[key]))}
-    return [_told(touches, group, corrections) for group in groups if group]
+            listed |= {key, *(w.key for w in _rivals(touches, corrections[key]))}
+    return [_alternatives(touches, group, corrections) for group in groups if group]
 
 
 def file_lines(touches: Touches, geometry: LearntGeometry) -> list[str]:
-    """All corrections of the machine file, and below each what explains the run equally."""
+    """All corrections of the machine file; below each, those that explain the run equally."""
     out = []
     for correction in geometry.corrections:
         out.append(correction_line(correction))
@@ -69,14 +69,16 @@ def file_lines(touches: Touches, geometry: LearntGeometry) -> list[str]:
     return out
 
 
-def _told(touches: Touches, group: Sequence[Way], corrections: Mapping[str, Correction]) -> str:
-    """Ways to put one thing right, with all that the run does not distinguish from them."""
+def _alternatives(
+    touches: Touches, group: Sequence[Way], corrections: Mapping[str, Correction]
+) -> str:
+    """Ways to correct one mistake, with all that the run does not distinguish from them."""
     ways = {way.key: way.line for way in group}
     for way in group:
         if way.key in corrections:
             for rival in _rivals(touches, corrections[way.key]):
                 ways.setdefault(rival.key, rival.line)
-    alike = "cannot be distinguished by this run; one of them is wrong, copy one at most: "
+    alike = "this run cannot distinguish these; one of them is wrong, copy one at most: "
     first, *others = ways.values()
     return alike + "; or ".join([first, *others]) if others else f"to copy: {first}"
 
@@ -87,7 +89,7 @@ def _rivals(touches: Touches, correction: Correction) -> Iterator[Way]:
 
 
 def _undone(touches: Touches, fault: DescriptionFault) -> Iterator[Way]:
-    """What a mistake stands in, where it is a number or a direction."""
+    """The correction of a mistake in a number or a direction."""
     if fault.fault is Fault.AXIS_REVERSED:
         for axis in fault.axes:
             d = tuple(float(v) for v in touches.chain.link(axis).direction)
@@ -106,13 +108,13 @@ def _way(touches: Touches, numbers: Sequence[FoundNumber]) -> Way:
         return _line(Correction(f"probe.{name}_mm", (stated,), found, (number.u,)))
     size = with_uncertainty(number.change, number.u, "mm")
     if name[3:] == "t":
-        return Way(name, f"the ball stands {size} beside the tool axis in {name[1]}")
+        return Way(name, f"the ball is {size} off the tool axis in {name[1]}")
     axis, chain = name[3:], touches.chain
     link = chain.link(axis)
     if LETTERS.index(name[1]) == link.own_component:
         if link.kind == "rotary":
             size = with_uncertainty(number.change / DEG, number.u / DEG, "°")
-        return Way(name, f"{axis} is not at zero where it reads zero, by {size}")
+        return Way(name, f"the zero of {axis} is wrong by {size}")
     if name[1] in "ABC":
         omega, u = (v * np.eye(3)[LETTERS.index(name[1]) - 3] for v in (number.change, number.u))
         d = link.direction + np.cross(omega, link.direction)

@@ -3,14 +3,13 @@
 from collections.abc import Sequence
 
 from matstd.diagnosis.faults import DescriptionFault, Fault
-from matstd.report.numbers import digits, with_uncertainty
-from matstd.report.words import microns
+from matstd.report.numbers import digits, microns, with_uncertainty
 from matstd.twin.units import DEG
 from matstd.twin.words import listed
 
 
 def fault_sentences(faults: Sequence[DescriptionFault]) -> list[str]:
-    """One sentence for each mistake, with what else would explain the run as well."""
+    """One sentence for each mistake, with the alternatives that explain the run equally."""
     return [_sentence(fault) for fault in faults]
 
 
@@ -20,24 +19,23 @@ def _sentence(fault: DescriptionFault) -> str:
     names = [_what(f) for f in (fault, *fault.alike)]
     either = "either " if len(names) > 1 else ""
     before, after = fault.test_rms
-    was = f"{microns(before)} held out as described"
+    was = f"{microns(before)} as described"
     if fault.widened[0] > 1.0:
-        was += f", with errors {digits(fault.widened[0], 2)} times those expected of such a machine"
+        was += f", with errors {digits(fault.widened[0], 2)} times the expected ones"
     return (
-        f"the description looks wrong: {either}{listed(names, 'or')}. Without that mistake the "
-        f"run fits to {microns(after)} held out ({was}); nothing was changed"
+        f"the description looks wrong: {either}{listed(names, 'or')}. With this corrected, the "
+        f"held-out error is {microns(after)} ({was}); nothing was changed"
     )
 
 
 _MISTAKES = {
-    Fault.AXIS_REVERSED: "{axes} runs the other way than the machine file says",
+    Fault.AXIS_REVERSED: "{axes} moves in the direction opposite to that in the machine file",
     Fault.AXES_SWAPPED: "the columns of {axes} are exchanged",
-    Fault.ROTARY_ORDER: "{axes} stand in the chain in the other order (it fits with {chain})",
-    Fault.OTHER_SIDE: "{axes} stands on the other side of the chain (it fits with {chain})",
+    Fault.ROTARY_ORDER: "{axes} are in the wrong order in the chain ({chain} fits)",
+    Fault.OTHER_SIDE: "{axes} is on the wrong side of the chain ({chain} fits)",
     Fault.RADIANS: "readings of {axes} are radians, not degrees",
     Fault.NORMALS_INWARD: "the normals point into the standard",
-    Fault.MINUTES: "touches follow each other in less than a second: time_s looks like minutes, "
-    "not seconds",
+    Fault.MINUTES: "touches are less than a second apart: time_s looks like minutes",
 }
 
 
@@ -46,13 +44,13 @@ def _what(fault: DescriptionFault) -> str:
     axes = listed(list(fault.axes))
     match fault.fault:
         case Fault.TOOL_LENGTH:
-            return f"the tool is {_by(fault, 'longer', 'shorter')} than probe.length_mm says"
+            return f"the tool is {_by(fault, 'longer', 'shorter')} than probe.length_mm"
         case Fault.BALL_RADIUS:
             return f"the ball's radius is {_by(fault, 'larger', 'smaller')} than probe.radius_mm"
         case Fault.PIVOT:
             return f"axis.{axes}.point is wrong by {_numbers(fault)}"
         case Fault.ZERO:
-            return f"{axes} is not at zero where it reads zero, by {_numbers(fault)}"
+            return f"the zero of {axes} is wrong by {_numbers(fault)}"
     return _MISTAKES[fault.fault].format(axes=axes, chain=fault.notation)
 
 
@@ -65,11 +63,11 @@ def _by(fault: DescriptionFault, more: str, less: str) -> str:
 
 def _numbers(fault: DescriptionFault) -> str:
     """`2.01 ± 0.08 mm in X`; angles in degrees."""
-    told = []
+    out = []
     for number in fault.numbers:
         letter = number.name[1]
         if letter in "ABC":
-            told.append(with_uncertainty(number.change / DEG, number.u / DEG, "°"))
+            out.append(with_uncertainty(number.change / DEG, number.u / DEG, "°"))
         else:
-            told.append(f"{with_uncertainty(number.change, number.u, 'mm')} in {letter}")
-    return listed(told)
+            out.append(f"{with_uncertainty(number.change, number.u, 'mm')} in {letter}")
+    return listed(out)

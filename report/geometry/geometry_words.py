@@ -1,4 +1,4 @@
-"""The machine's geometry in words: what was learnt, what it does, what changed."""
+"""The geometry of the machine in words: estimates, their effect over the travel, changes."""
 
 from dataclasses import dataclass
 
@@ -11,15 +11,14 @@ from matstd.diagnosis.geometry import (
     Quantity,
     Rung,
 )
-from matstd.report.numbers import digits, with_uncertainty
-from matstd.report.words import microns
+from matstd.report.numbers import digits, microns, with_uncertainty
 from matstd.twin.units import UM, URAD
 from matstd.twin.words import listed
 
 _UNITS = {"mm": ("µm", UM), "rad": ("µrad", URAD), "1": ("ppm", 1e-6)}
 
 _TURNS = {"A": "X", "B": "Y", "C": "Z"}
-"""Direction about which a letter turns."""
+"""Direction of the rotation that a letter denotes."""
 
 ARM = (
     Quantity.JOINT_ZERO,
@@ -27,29 +26,29 @@ ARM = (
     Quantity.LINK_TWIST,
     Quantity.JOINT_OFFSET,
 )
-"""What the calibration of a serial arm finds."""
+"""Results of the calibration of a serial arm."""
 
 USUAL = (Quantity.SQUARENESS, Quantity.SCALE, *ARM)
-"""What a reader asks for first, of a machine tool and of a serial arm."""
+"""The most requested quantities of a machine tool and of a serial arm."""
 
 SPANS = (Quantity.STRAIGHTNESS, Quantity.ANGULAR, Quantity.ROTARY_MOTION)
-"""What is a curve, told by its peak to valley."""
+"""Curves, reported by their peak to valley."""
 
 NOTED = 8
-"""Quantities that are told on the console."""
+"""Quantities reported on the console."""
 
 
 @dataclass(frozen=True, slots=True)
 class GeometryLine:
-    """One row of the table as a reader sees it.
+    """One row of the table.
 
     Attributes:
         name: `squareness of Y to X (EC0Y)`.
-        value: `3 ± 2 → 41 ± 2 µrad`, or that the run does not determine it.
-        at_ends: What it does over the travel.
-        expected: What was expected.
-        note: Beyond expected, changed, shared with what.
-        is_noted: Whether the note says something that a reader should see first.
+        value: `3 ± 2 → 41 ± 2 µrad`; empty where the run does not determine it.
+        at_ends: Its effect over the travel.
+        expected: Its expected size.
+        note: Whether it exceeds its expected size, has changed, or shares its signature.
+        is_noted: Whether the note should be read first.
     """
 
     name: str
@@ -58,6 +57,11 @@ class GeometryLine:
     expected: str
     note: str
     is_noted: bool
+
+    @property
+    def is_determined(self) -> bool:
+        """Whether the run determines the quantity."""
+        return bool(self.value)
 
 
 def geometry_lines(geometry: LearntGeometry) -> list[GeometryLine]:
@@ -101,24 +105,24 @@ def _line(row: GeometryRow) -> GeometryLine:
     expected = f"{digits(row.expected / factor, 2)} {unit}"
     name = quantity_name(row)
     if not row.is_determined:
-        shared = f"; shared with {listed(list(row.shared_with))}" if row.shared_with else ""
+        shared = f"; same signature as {listed(list(row.shared_with))}" if row.shared_with else ""
         return GeometryLine(
             name=name,
-            value="not determined",
+            value="",
             at_ends="",
             expected=expected,
-            note=f"the run leaves {digits(row.estimate.u / factor, 2)} {unit} open{shared}",
+            note=f"± {digits(row.estimate.u / factor, 2)} {unit}{shared}",
             is_noted=False,
         )
     notes = []
     if row.is_beyond_expected or row.is_far:
         size = row.usual if row.is_far and row.usual is not None else row.expected
-        notes.append(f"beyond what was expected (± {digits(size / factor, 2)} {unit})")
+        notes.append(f"larger than expected (± {digits(size / factor, 2)} {unit})")
     if row.has_changed and row.change is not None:
         notes.append(f"changed by {_value(row.change.value, row.change.u, factor, unit)}")
     is_noted = bool(notes)
     at_ends = _value(row.at_ends.value, row.at_ends.u, UM, "µm")
-    # of an instrument of angles, whose arm is a metre, both are one figure
+    # an instrument of angles has an arm of one metre: both figures are the same
     is_same = row.unit == "mm" or at_ends.removesuffix("µm") == value_words(row).removesuffix(
         "µrad"
     )
@@ -145,7 +149,7 @@ def value_words(row: GeometryRow) -> str:
 
 
 def shown_unit(unit: str) -> tuple[str, float]:
-    """Unit in which a quantity is told, and one of it in the base unit."""
+    """Unit in which a quantity is reported, and its size in the base unit."""
     return _UNITS[unit]
 
 
@@ -160,32 +164,30 @@ def _value(value: float, u: float, factor: float, unit: str) -> str:
 
 
 def noted_lines(geometry: LearntGeometry) -> list[str]:
-    """What of the geometry a reader should see first: changes, and what exceeds expectations.
+    """The most important quantities: those that changed or exceed their expected size.
 
-    Without such, squareness and scales, zeros of joints and lengths of links, the clearest first;
-    of a run that tells none of them, whatever it does tell.
+    Without any, squareness and scales, zeros of joints and lengths of links, the clearest first;
+    without these, all that the run determines.
     """
     noted = [r for r in geometry.rows if r.has_changed or _is_beyond(r) or _is_of_arm(r)]
     if not noted:
         known = [r for r in geometry.rows if r.is_determined]
         noted = [r for r in known if _is_usual(r)] or known
     by_size = sorted(noted, key=lambda r: (not r.has_changed, -r.at_ends.value))
-    told = [_noted(r) for i, r in enumerate(by_size) if i < NOTED or r.is_far]
-    more = len(noted) - len(told)
-    told += [f"and {more} more in the table"] if more > 0 else []
+    lines = [_noted(r) for i, r in enumerate(by_size) if i < NOTED or r.is_far]
+    more = len(noted) - len(lines)
+    lines += [f"and {more} more in the table"] if more > 0 else []
     if any(step.rung is Rung.MODEL for step in geometry.ladder) and not any(
         r.has_changed for r in noted
     ):
-        told.insert(
-            0,
-            "the geometry is no longer that of the model, though no quantity by itself changed "
-            "beyond chance",
+        lines.insert(
+            0, "the geometry differs from the model, but no single quantity changed beyond chance"
         )
-    return told
+    return lines
 
 
 def far_lines(geometry: LearntGeometry) -> list[str]:
-    """Lines of rotary axes that are not where the machine file has them."""
+    """Lines of rotary axes far from their position in the machine file."""
     return [_noted(row) for row in geometry.rows if row.is_far]
 
 
@@ -204,16 +206,16 @@ def _is_beyond(row: GeometryRow) -> bool:
 
 
 def _is_of_arm(row: GeometryRow) -> bool:
-    """Whether it is a zero or a length of an arm that stands clear of its uncertainty.
+    """Whether it is a zero or a length of an arm that clearly exceeds its uncertainty.
 
-    Whoever calibrates an arm enters them all, of whatever size.
+    All of these are entered in the control of an arm, whatever their size.
     """
     is_clear = abs(row.estimate.value) > CLEAR * row.estimate.u
     return row.quantity in ARM and row.is_determined and is_clear
 
 
 def _is_usual(row: GeometryRow) -> bool:
-    """Whether a reader asks for it first; of a rotary axis that is where it stands."""
+    """Whether it is requested most; for a rotary axis that is its positioning."""
     is_positioning = row.quantity is Quantity.ROTARY_MOTION and row.symbol[1] == row.axes[0][0]
     return row.quantity in USUAL or is_positioning
 

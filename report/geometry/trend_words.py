@@ -1,4 +1,4 @@
-"""What changed between several runs, in words."""
+"""Changes between several runs, in words."""
 
 from collections.abc import Sequence
 
@@ -6,20 +6,18 @@ from matstd.diagnosis.answer import Trend
 from matstd.diagnosis.geometry import CHANGED, Estimate, GeometryRow
 from matstd.report.effects import effect_title
 from matstd.report.geometry.geometry_words import USUAL, estimate_words, quantity_name, shown_unit
-from matstd.report.numbers import digits
-from matstd.report.words import microns
+from matstd.report.numbers import digits, microns
 from matstd.twin.units import UM
 
-TOLD = 4
-"""Changes of one run that are told in a sentence, the largest over the travel first."""
-
+NAMED = 4
+"""Changes of one run that a sentence lists, the largest over the travel first."""
 
 NEARLY = 3.0
-"""Standard uncertainties from which a change that does not pass is told all the same."""
+"""Standard uncertainties from which a change below the limit is mentioned."""
 
 
 def change_sentences(trend: Trend) -> list[str]:
-    """A sentence for every run but the first: what changed into it, or what would have shown."""
+    """A sentence for every run but the first: its changes, or the smallest detectable ones."""
     names = [run.name for run in trend.runs]
     out = []
     for i in range(1, len(names)):
@@ -29,36 +27,36 @@ def change_sentences(trend: Trend) -> list[str]:
         between = f"from {names[earlier]} to {names[i]}"
         rows = changed_rows(trend, i)
         if i not in trend.changed:
-            nothing = f"nothing of the geometry changed{_clearest(trend.rows, i)}"
-            out.append(f"{between} {nothing}{_would_have(trend.rows, i)}")
+            nothing = f"no change of the geometry was detected{_clearest(trend.rows, i)}"
+            out.append(f"{between} {nothing}{_detectable(trend.rows, i)}")
         elif not rows:
             out.append(f"{between} the geometry changed{_alone(trend, i)}")
         else:
-            told = [_changed(row, i) for row in rows[:TOLD]]
-            more = f"; and {len(rows) - TOLD} more in the table" if len(rows) > TOLD else ""
-            out.append(f"{between} {'; '.join(told)}{more}")
+            changes = [_changed(row, i) for row in rows[:NAMED]]
+            more = f"; and {len(rows) - NAMED} more in the table" if len(rows) > NAMED else ""
+            out.append(f"{between} {'; '.join(changes)}{more}")
     return out
 
 
 def trend_lines(trend: Trend | None) -> list[str]:
-    """What the console tells of several runs; nothing of a single one."""
+    """Lines on several runs for the console; none for a single run."""
     return [] if trend is None else [*change_sentences(trend), _left_out(trend)]
 
 
 def _left_out(trend: Trend) -> str:
-    """How well every run is predicted by the others."""
+    """Error of each run as predicted from the others."""
     known = [(run.name, run.left_out) for run in trend.runs if run.left_out is not None]
     errors = [f"{name} {microns(error)}" for name, error in known]
-    return f"each run predicted by the others, its set-ups fitted: {', '.join(errors)} rms"
+    return f"each run predicted from the others, with its set-ups fitted: {', '.join(errors)} rms"
 
 
 def _alone(trend: Trend, run: int) -> str:
-    """What changed if only one thing did, where no quantity is clear while all may change."""
+    """The single change that would explain a run in which no quantity changed clearly."""
     single = trend.alone.get(run)
     if single is None:
-        return ", though no quantity by itself beyond chance"
+        return ", but no single quantity beyond chance"
     size = estimate_words(single.size, single.unit)
-    return f"; if only one of its errors did, {effect_title(single.effect)} by {size}"
+    return f"; if only one error changed, {effect_title(single.effect)} by {size}"
 
 
 def changed_rows(trend: Trend, run: int) -> list[GeometryRow]:
@@ -68,7 +66,7 @@ def changed_rows(trend: Trend, run: int) -> list[GeometryRow]:
 
 
 def _at_ends(row: GeometryRow, run: int) -> float:
-    """What a change does over the travel, mm."""
+    """Effect of a change over the travel, mm."""
     step = row.steps[run - 1]
     return 0.0 if step is None else abs(step.value) * row.lever
 
@@ -88,24 +86,22 @@ def _last(course: Sequence[Estimate | None]) -> Estimate | None:
 
 
 def _clearest(rows: Sequence[GeometryRow], run: int) -> str:
-    """What nearly changed: a reader who expects it shall see it before it is denied."""
+    """The change nearest to the limit, so that a user who expects it sees its size."""
     steps = [(row, row.steps[run - 1]) for row in rows]
     near = [(abs(s.value) / s.u, row, s) for row, s in steps if s is not None and s.u > 0.0]
     clear, row, step = max(near, key=lambda one: one[0], default=(0.0, None, None))
     if clear <= NEARLY or row is None or step is None:
         return ""
-    return (
-        f" beyond chance, though {quantity_name(row)} may have, by {estimate_words(step, row.unit)}"
-    )
+    return f"; {quantity_name(row)} may have changed by {estimate_words(step, row.unit)}"
 
 
-def _would_have(rows: Sequence[GeometryRow], run: int) -> str:
-    """The smallest change of a squareness or a scale that would have been told."""
+def _detectable(rows: Sequence[GeometryRow], run: int) -> str:
+    """The smallest detectable changes of squareness and scales."""
     seen = []
     for row in rows:
         step = row.steps[run - 1]
         if row.quantity in USUAL and step is not None:
             unit, factor = shown_unit(row.unit)
             least = digits(CHANGED * step.u / factor, 2)
-            seen.append(f"{quantity_name(row)} by {least} {unit}")
-    return f"; these runs would have shown {', '.join(seen)}" if seen else " that these runs show"
+            seen.append(f"{quantity_name(row)} {least} {unit}")
+    return f"; detection limits of these runs: {', '.join(seen)}" if seen else ""

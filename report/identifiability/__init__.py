@@ -1,7 +1,7 @@
-"""What touches can and cannot know of a machine, in words and in the files that carry them.
+"""What touches can and cannot determine of a machine, in words and in result files.
 
-Names of parameters in plain words, combinations that are known, freedoms with what makes and what
-would resolve them; `identifiability.json` and `identification.json`.
+Names of parameters, known combinations, freedoms with their causes and remedies;
+`identifiability.json` and `identification.json`.
 """
 
 from matstd.report.identifiability.identifiability_file import write_identifiability

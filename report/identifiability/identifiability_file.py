@@ -1,4 +1,4 @@
-"""identifiability.json: what a design's touches can and cannot know."""
+"""identifiability.json: what the touches of a design can and cannot determine."""
 
 from dataclasses import asdict
 from pathlib import Path
@@ -87,15 +87,14 @@ def _alternative(other: Alternative) -> dict[str, Any]:
 
 
 def _alternative_words(other: Alternative) -> str:
-    """What another stylus length or set-up would buy."""
+    """Benefit of another stylus length or set-up."""
     if not other.is_possible:
         return f"{other.name}: {other.refusal}"
     gained, ratio = other.rank_gained, other.variance_ratio
-    seen = f"{gained} more combinations of machine errors" if gained else "no combination more is"
+    seen = f"{gained or 'no'} additional combinations of machine errors visible"
     change = f"{100 * abs(ratio - 1.0):.0f} % {'less' if ratio < 1.0 else 'more'}"
     return (
-        f"{other.name}: {seen} seen; mean predicted variance of the tool point {change} at equal "
-        "touches"
+        f"{other.name}: {seen}; mean predicted variance of the tool point {change} at equal touches"
     )
 
 

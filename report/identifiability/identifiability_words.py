@@ -1,7 +1,7 @@
-"""What touches can and cannot tell apart, in the words of a metrologist.
+"""Sentences on what touches can and cannot distinguish.
 
-Where the members of a gauge freedom have different units its equation says what one unit of the
-first looks like, `1 µrad of squareness of Y about Z (EC0Y) = - 0.3 µm of linear straightness of Y
+Where the members of a gauge freedom have different units, its equation states the equivalent of one
+unit of the first, `1 µrad of squareness of Y about Z (EC0Y) = - 0.3 µm of linear straightness of Y
 in X (EXY)`.
 """
 
@@ -24,7 +24,7 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 
 NAMED = 4
-"""Most parameters that are written out in the words of a combination."""
+"""Parameters of a combination that are written out at most."""
 
 SHARE = 0.1
 """A parameter below this share of the largest weight is left out of the words."""
@@ -35,13 +35,13 @@ _SHAPES = {"sinusoidal": "sine", "sinusoidal@90": "cosine"}
 
 
 def gist(known: IdentifiabilityReport) -> str:
-    """What a design's touches can know, in two sentences."""
+    """What the touches of a design determine, in two sentences."""
     gauge = known.gauge
     never = sum(f.resolution is Resolution.NEVER for f in gauge.freedoms)
     return (
-        f"{known.touches} touches see {gauge.rank} independent combinations of {gauge.parameters} "
-        f"parameters. Of the {len(gauge.freedoms)} that stay free, {never} are free on every "
-        f"workpiece and fixed by convention"
+        f"{known.touches} touches determine {gauge.rank} independent combinations of "
+        f"{gauge.parameters} parameters. Of the {len(gauge.freedoms)} that remain free, {never} "
+        "are free on every workpiece and fixed by convention"
     )
 
 
@@ -74,26 +74,26 @@ def family_words(family: FreedomFamily, chain: Chain) -> str:
 
 
 def reason_words(freedom: Freedom) -> str:
-    """What makes the members of a freedom alike; nothing where it is not known."""
+    """Why the members of a freedom have the same signature; "" where that is unknown."""
     return freedom.reason.value if freedom.reason else ""
 
 
 def resolution_words(freedom: Freedom) -> str:
-    """What would tell the members of a freedom apart; nothing where nothing was tried."""
+    """What would distinguish the members of a freedom; "" where nothing was tried."""
     if freedom.resolution is Resolution.UNTRIED:
         return ""
     return freedom.resolved_by or freedom.resolution.value
 
 
 def group_words(members: Sequence[str], known: int) -> str:
-    """How many combinations of confounded parameters the touches see."""
-    return f"{len(members)} parameters, {known} combinations of which are seen"
+    """Number of visible combinations of confounded parameters."""
+    return f"{len(members)} parameters, of which {known} combinations are visible"
 
 
 def pair_words(pair: Pair, names: Sequence[str]) -> str:
-    """What a tie means: `EXX and EX0C (r = -0.980): only their sum is known`."""
+    """Meaning of a correlation: `EXX and EX0C (r = -0.980): only their sum is known`."""
     known, sign = ("difference", ">") if pair.r > 0.0 else ("sum", "<")
-    # nothing is known to be tied for good: a full one is never shown
+    # a correlation is estimated, so that 1.000 would claim too much
     number = f"r = {pair.r:+.3f}" if abs(pair.r) < _FULL else f"r {sign} {np.sign(pair.r) * 0.999}"
     return f"{names[pair.first]} and {names[pair.second]} ({number}): only their {known} is known"
 
@@ -121,7 +121,7 @@ def combination_words(
         names: Of the parameters.
         units: Base units of the parameters.
         weights: Shape (P,), the leading one's is one.
-        importance: Weights in units of what is expected of each parameter, (P,).
+        importance: Weights in units of the expected size of each parameter, (P,).
     """
     order = np.argsort(-np.abs(importance), kind="stable")
     kept = [k for k in order if abs(importance[k]) >= SHARE * abs(importance[order[0]])]

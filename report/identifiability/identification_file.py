@@ -1,4 +1,4 @@
-"""identification.json: what was estimated, how sure it is, and what can never be known."""
+"""identification.json: estimates, their uncertainties, and what cannot be determined."""
 
 from collections.abc import Sequence
 from pathlib import Path

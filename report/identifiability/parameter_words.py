@@ -1,4 +1,4 @@
-"""Names of parameters in the words of the trade: `location(EC0C)` is the zero position of C."""
+"""Names of parameters in words: `location(EC0C)` is the zero position of C."""
 
 import re
 
@@ -10,7 +10,7 @@ _SINE = re.compile(r"sinusoidal(?:,([\d.]+))?(?:@(-?[\d.]+))?\Z")
 
 
 def in_words(name: str, chain: Chain) -> str:
-    """What a parameter is, with its symbol in brackets; a name of another kind as it is.
+    """A parameter in words, with its symbol in brackets; other names unchanged.
 
     Args:
         name: As in `Model.names`: `location(EC0C)`, `geometric(EXX,linear)`, `setup(a): rz`.

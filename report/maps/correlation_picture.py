@@ -1,4 +1,4 @@
-"""Heat map of the correlations that are left after the touches."""
+"""Heat map of the correlations after the fit."""
 
 from __future__ import annotations
 
@@ -17,12 +17,7 @@ _SHOWN = 34  # parameters: their names stay readable in print
 
 
 def draw_ties(ties: Ties, most: int = _SHOWN) -> Figure:
-    """Correlations of the parameters of the largest groups, each group in a frame of its own.
-
-    Args:
-        ties: As `matstd.information.identifiability.correlation.ties` gives them.
-        most: Number of parameters that are shown; a group that would pass it is cut short.
-    """
+    """Correlations of the parameters of the largest groups, each group in a frame of its own."""
     from matplotlib.patches import Rectangle
 
     order: list[int] = []

@@ -25,12 +25,7 @@ _TOTAL: dict[str, Any] = {"marker": "D", "ms": 4.5, "linestyle": "none"}
 def draw_regions(
     chain: Chain, regions: Sequence[Region], totals: RegionTotals | None = None
 ) -> Figure:
-    """Bars of the largest shares of variance in every region, coloured by the link they belong to.
-
-    Args:
-        regions: As `matstd.sensitivity.shares.workspace_regions.regions` gives them.
-        totals: What the errors do to |d|, drawn as diamonds with twice their standard error.
-    """
+    """Bars of the largest shares of variance in every region, coloured by link."""
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 

@@ -1,4 +1,4 @@
-"""Pictures of S: how strongly, and where, the tool point feels every error parameter."""
+"""Pictures of S, the sensitivity of the tool point to every error parameter."""
 
 from __future__ import annotations
 

@@ -29,11 +29,6 @@ def draw_maps(
 ) -> list[tuple[str, str]]:
     """Draw every map of a study into a folder.
 
-    Args:
-        folder: For the pictures.
-        rng: Source of the random machines that show what errors do to the length |d|; None to do
-            without.
-
     Returns:
         File name and caption of each.
     """
@@ -42,30 +37,30 @@ def draw_maps(
         (
             "sensitivity.png",
             overview(study),
-            "Sensitivity S of the tool point to every error parameter, smallest to largest over "
-            "the workspace. A translation counts once everywhere; an angle by its lever arm. "
+            "Sensitivity S of the tool point to every error parameter, minimum to maximum over "
+            "the workspace. S of a translation is one everywhere, that of an angle its lever arm. "
             "Exact to first order.",
         ),
         (
             "sensitivity_maps.png",
             maps_of_S(study),
-            "Sensitivity of the parameters for which it depends on the pose, each over the one or "
-            "two readings it depends on most; other readings in the middle of the workspace.",
+            "Sensitivities that depend on the pose, each over the one or two readings with the "
+            "largest influence; other readings in the middle of the workspace.",
         ),
         (
             "volumetric_sections.png",
             _volumetric_sections(study),
             "Volumetric error over pairs of readings, all other readings as in the worst pose "
-            f"({_pose_words(study)}). Above: 95 % of the machines stay below. Below: share of the "
-            "machines for which a pose is among the worst 5 % of the workspace; 5 % would be "
-            f"chance. {sampled}",
+            f"({_pose_words(study)}). Above: 95 % quantile over machines. Below: share of the "
+            "machines for which a pose is among the worst 5 % of the workspace (5 % by chance). "
+            f"{sampled}",
         ),
         (
             "volumetric_rotary.png",
             draw_rotary(study),
             "Four points of the workpiece while the table turns and the linear axes follow; a "
             "point is named by the linear readings that reach it with the table level. Above: "
-            "volumetric error, 95 % quantile. Below: S of errors that matter, at the last of the "
+            "volumetric error, 95 % quantile. Below: S of dominant errors, at the last of the "
             f"points. Grey: beyond the travel. {unsampled(study)}",
         ),
         (
@@ -81,7 +76,7 @@ def draw_maps(
         (
             "variance_shares.png",
             _shares(study),
-            "The same over the whole workspace, with more of the parameters.",
+            "The same over the whole workspace, with more parameters.",
         ),
     ]
     for name, drawn, _ in maps:
@@ -103,8 +98,8 @@ def _regions(study: Study, rng: np.random.Generator | None) -> tuple[Figure, str
     return draw_regions(study.chain, found, totals), (
         f"{words} Diamonds: total effect on the length |d|, interactions included, with twice its "
         f"standard error (Monte Carlo: {totals.machines} pairs of random machines, seed "
-        f"{totals.seed}, at {totals.poses} poses of every region); these make more than 100 % "
-        "together, because the errors interact in a length."
+        f"{totals.seed}, at {totals.poses} poses of every region). Their sum exceeds 100 %, "
+        "because the errors interact in a length."
     )
 
 
@@ -122,7 +117,7 @@ def _volumetric_sections(study: Study) -> Figure:
     """P95 of |d| and recurrence over pairs of readings."""
     sections = study.sections
     if not sections:
-        return nothing("Fewer than two readings have room to move.")
+        return nothing("Fewer than two readings can move.")
     drawn = figure(4.6)
     grid = drawn.subplots(2, len(sections), squeeze=False)
     kinds: list[tuple[list[Array], float, str, str]] = [
@@ -147,7 +142,7 @@ def _volumetric_axes(study: Study) -> Figure:
     """|d| against every reading."""
     free = study.workspace.open_axes
     if not free:
-        return nothing("No reading has room to move.")
+        return nothing("No reading can move.")
     drawn = figure(3.0)
     grid = drawn.subplots(1, len(free), sharey=True, squeeze=False)[0]
     v = study.volumetric
@@ -193,7 +188,7 @@ def _shares(study: Study) -> Figure:
     axes.set_xlim(left=0.0)
     axes.set_xlabel(
         "share of the variance of the deviation in %   "
-        f"(the {len(order)} shown make {100.0 * mean[order].sum():.0f} % together)"
+        f"(the {len(order)} shown: together {100.0 * mean[order].sum():.0f} %)"
     )
     plain(axes, "x")
     axes.spines["left"].set_visible(False)

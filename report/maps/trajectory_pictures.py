@@ -11,9 +11,9 @@ from matstd.report.style import INK, figure, plain, reading_label, save, series
 from matstd.report.words import sampling_words
 from matstd.sensitivity.montecarlo import Volumetric
 from matstd.sensitivity.study import AlongPath, Study, Trajectory
-from matstd.twin.effects import ComponentError
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
+from matstd.twin.model import Effect, traits
 from matstd.twin.numbers import rms
 from matstd.twin.units import UM, URAD
 
@@ -43,8 +43,8 @@ def axis_effect_picture(effect: AlongPath) -> tuple[Figure, str]:
     first = effect.dominant[0] if effect.dominant else "nothing"
     caption = (
         f"Effect of {_words(effect)} along a trajectory ({path.name}, {len(path.q)} poses), exact: "
-        f"at most {effect.size.max() / UM:.1f} µm, {rms(effect.size) / UM:.1f} µm rms; the "
-        f"largest part is made by {first}."
+        f"at most {effect.size.max() / UM:.1f} µm, {rms(effect.size) / UM:.1f} µm rms; {first} "
+        "contributes most."
     )
     return drawn, caption
 
@@ -53,11 +53,6 @@ def statistics_picture(
     path: Trajectory, found: Volumetric, closed_p95: Array
 ) -> tuple[Figure, str]:
     """Volumetric error of random machines along a trajectory.
-
-    Args:
-        path: The trajectory.
-        found: Statistics at its poses.
-        closed_p95: The 95 % quantile as if all errors were normal, (N,), mm.
 
     Returns:
         The figure and its caption.
@@ -120,20 +115,18 @@ def _words(effect: AlongPath) -> str:
     return ", ".join(parts) + (" and others" if len(effect.errors) > 8 else "")
 
 
-def _error_words(chain: Chain, effect: object, size: float) -> str:
-    symbol = getattr(effect, "symbol", None)
+def _error_words(chain: Chain, effect: Effect, size: float) -> str:
+    own = traits(effect)
+    symbol = own.symbol
     if symbol is None:
-        return str(getattr(effect, "name", effect))
+        return effect.name
     value = f"{size / URAD:.3g} µrad" if symbol.is_angular else f"{size / UM:.3g} µm"
-    shape = f", {effect.shape}" if isinstance(effect, ComponentError) else ""
+    shape = f", {own.distribution}" if own.distribution else ""
     return f"{symbol.name} ({value}{shape})"
 
 
 def draw_path(study: Study, folder: Path) -> list[tuple[str, str]]:
     """Draw what random machines and single axes do along the trajectory of a study.
-
-    Args:
-        folder: For the pictures.
 
     Returns:
         File name and caption of each; none where nothing moves.

@@ -1,7 +1,7 @@
-"""HTML pages, each in one file that loads nothing from anywhere; what results show in a notebook.
+"""HTML pages, each in one file that loads nothing from anywhere; notebook displays of results.
 
-`write_page` renders a template of `templates/`; a module for each page turns a result into the
-numbers, rows and pictures that its template shows.
+A page is a list of `Section`s (sentences, table, pictures) under a verdict and key figures;
+`write_page` renders every page in the same way and writes its tables as CSV and workbook.
 """
 
 from matstd.report.pages.compare_page import write_compare_page
@@ -11,16 +11,20 @@ from matstd.report.pages.diagnosis_page import write_diagnosis_page
 from matstd.report.pages.notebook import drawing
 from matstd.report.pages.page import write_page
 from matstd.report.pages.pdf import Printer, printer, write_pdf
-from matstd.report.pages.residual_section import Picture
+from matstd.report.pages.section import KeyFigure, Page, Picture, Section, Table
 from matstd.report.pages.setup_page import write_setup_page
 from matstd.report.pages.study_page import write_study_page
 from matstd.report.pages.uncertainty_page import write_uncertainty_page
 
 __all__ = [
     "Design",
+    "KeyFigure",
+    "Page",
     "Picture",
     "Printer",
     "Proven",
+    "Section",
+    "Table",
     "drawing",
     "printer",
     "write_compare_page",

@@ -1,4 +1,4 @@
-"""The page of a comparison: what a model leaves of a run, where, and what that varies with."""
+"""The page of a comparison: the residual of a model, where it occurs, what it depends on."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -7,22 +7,49 @@ import numpy as np
 
 from matstd.diagnosis.answer import Comparison
 from matstd.diagnosis.fit import Reported
-from matstd.report.geometry import fault_sentences, geometry_section
+from matstd.report.geometry import fault_sentences
+from matstd.report.numbers import digits, microns, p_value, sentence
+from matstd.report.pages.geometry_section import geometry_sections
 from matstd.report.pages.page import write_page
-from matstd.report.pages.residual_section import (
-    Picture,
-    gross_rows,
+from matstd.report.pages.run_sections import (
+    extent,
+    group_section,
+    on_standard,
+    outlier_section,
     pattern_pictures,
-    region_rows,
-    residual_pictures,
-    setting,
+    region_section,
+    residual_sections,
+    run_foot,
 )
-from matstd.report.plots import draw_on_standard, is_spread
-from matstd.report.words import comparison_sentence, learnt_lines, remark_sentence, structure_words
+from matstd.report.pages.section import KeyFigure, Page, Section, Table
+from matstd.report.words import (
+    comparison_sentence,
+    learnt_lines,
+    remark_sentence,
+    stated_noise,
+    structure_words,
+)
 from matstd.twin.units import UM
 
 PAGE = "report.html"
-PICTURES = "pictures"
+PATTERNS = 12
+"""Patterns that the table lists."""
+
+_PREDICTED = (
+    "The machine is as estimated before this run; only the set-ups of the standard were estimated "
+    "from it. Uncertainties include that of the prediction."
+)
+_FITTED = (
+    "The whole model was fitted to this run: {count} parameters with the set-ups. The residual is "
+    "what the model cannot represent."
+)
+_PATTERNS = (
+    "Patterns beyond chance, the most certain first; probabilities are corrected for the number of "
+    "tests"
+)
+_NO_PATTERN = (
+    "No dependence beyond chance on any variable, pair of variables, wave in time, feature or pose."
+)
 
 
 def write_compare_page(
@@ -32,47 +59,88 @@ def write_compare_page(
     rng: np.random.Generator,
     told: Mapping[str, Sequence[Reported]] | None = None,
 ) -> Path:
-    """Draw the pictures of a comparison and write its page, which stands alone.
+    """Write `report.html` and its pictures into a folder.
 
     Args:
         found: The comparison.
-        folder: Where `report.html` and the folder `pictures` go.
-        title: What was compared: the name of the run file.
-        rng: Shuffles residuals, to show what chance looks like.
+        folder: For the page.
+        title: Name of the run file.
+        rng: Shuffles residuals, to show what chance produces.
         told: Numbers of effects as the model file keeps them, by name.
     """
-    folder = Path(folder)
-    place = folder / PICTURES
-    place.mkdir(parents=True, exist_ok=True)
-    on_standard = []
-    if is_spread(found.run.touches):
-        draw_on_standard(place / "on_standard.png", (("measured minus predicted", found.fit),))
-        on_standard.append(Picture("on_standard.png", "Touched points in the standard's frame."))
-    z = found.normalised if found.is_prediction else None
-    worst = found.worst
-    write_page(
-        folder / PAGE,
-        "compare.html",
-        place=place,
-        title=title,
-        found=found,
-        sentence=comparison_sentence(found),
-        faults=fault_sentences(found.faults),
-        remarks=[remark_sentence(r) for r in found.remarks],
-        where=region_rows(found.where),
-        structure=[{"words": structure_words(s), "p": s.p_value} for s in found.structure],
-        learnt_lines=learnt_lines(found.learnt, told or {}) if found.learnt else [],
-        um=UM,
-        on_standard=on_standard,
-        pictures=residual_pictures(place, "residual", found.fit, z),
-        patterns=pattern_pictures(place, found.fit, found.structure, rng),
-        gross=gross_rows(found.fit),
-        geometry=geometry_section(found.run.touches, found.geometry),
-        worst_line=int(found.run.line[worst]),
-        worst_um=float(found.residual[worst]) / UM,
-        worst_normalised=float(found.normalised[worst]),
-        replicates=found.fit.noise.replicates,
-        replicates_dof=found.fit.noise.replicates_dof,
-        **setting(found.run, found.fit),
+    page = Page(
+        title=f"Comparison of {title}",
+        heading=f"{title} against the model",
+        lead=comparison_sentence(found),
+        key=_key(found),
+        sections=[
+            _opening(found, told or {}),
+            region_section(found.where, "Where the model fails"),
+            Section(pictures=on_standard(found.run.touches, ("measured − predicted", found.fit))),
+            *geometry_sections(found.run.touches, found.geometry),
+            *_patterns(found, title, rng),
+            Section("Residuals by pose and by feature"),
+            group_section(f"{len(found.poses)} table poses", found.poses),
+            group_section(f"{len(found.features)} features", found.features),
+            outlier_section(found.fit),
+        ],
+        foot=run_foot(found.run, title),
     )
-    return folder / PAGE
+    path = Path(folder) / PAGE
+    write_page(path, page)
+    return path
+
+
+def _key(found: Comparison) -> list[KeyFigure]:
+    run, noise, worst = found.run, found.fit.noise, found.worst
+    scatter = ""
+    if noise.replicates is not None:
+        size = noise.replicates * stated_noise(run) / UM
+        scatter = f"; {size:.2f} µm in {noise.replicates_dof} replicates"
+    times = digits(abs(found.normalised[worst]), 2)
+    return [
+        KeyFigure(
+            f"{digits(found.rms_measured / UM)} → {found.rms / UM:.2f} µm",
+            "rms measured; rms of the residual",
+        ),
+        KeyFigure(digits(found.chi2_ratio), "chi-square per degree of freedom"),
+        KeyFigure(
+            f"{found.residual[worst] / UM:+.2f} µm",
+            f"worst touch, line {run.line[worst]}: {times} u",
+        ),
+        KeyFigure(microns(stated_noise(run)), f"stated noise{scatter}"),
+        KeyFigure(str(len(run)), f"touches{extent(run.touches)}"),
+    ]
+
+
+def _opening(found: Comparison, told: Mapping[str, Sequence[Reported]]) -> Section:
+    """What was fitted, mistakes in the description, remarks."""
+    fitted = _FITTED.format(count=len(found.fit.parameters))
+    learnt = learnt_lines(found.learnt, told) if found.learnt else []
+    return Section(
+        sentences=[_PREDICTED if found.is_prediction else fitted, *learnt],
+        notes=[
+            *(f"**{sentence(words)}**" for words in fault_sentences(found.faults)),
+            *(sentence(remark_sentence(remark)) for remark in found.remarks),
+        ],
+    )
+
+
+def _patterns(found: Comparison, title: str, rng: np.random.Generator) -> list[Section]:
+    """What the residual depends on, in a table and in pictures."""
+    heading = "Variables that the residual depends on"
+    z = found.normalised if found.is_prediction else None
+    residuals = residual_sections("residual", found.fit, z)
+    if not found.structure:
+        return [Section(heading, sentences=[_NO_PATTERN]), *residuals]
+    rows = [[structure_words(s), p_value(s.p_value)] for s in found.structure[:PATTERNS]]
+    which = f"To identify the physical effect: `matstd diagnose {title} -o OUT`"
+    return [
+        Section(
+            heading,
+            table=Table(("pattern", "probability by chance"), rows, _PATTERNS),
+            pictures=pattern_pictures(found.fit, found.structure, rng),
+            notes=[which],
+        ),
+        *residuals,
+    ]

@@ -1,11 +1,9 @@
-"""The part of a design page that says what the touches can and cannot tell apart."""
+"""The section of a design page on what the touches can and cannot distinguish."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby
-from pathlib import Path
-from typing import Any
 
-from matstd.artefact.compare import Alone, IdentifiabilityReport
+from matstd.artefact.compare import IdentifiabilityReport
 from matstd.information.identifiability import STRONG, Degree, FreedomFamily, Resolution, ties
 from matstd.report.identifiability import (
     combination_words,
@@ -18,54 +16,60 @@ from matstd.report.identifiability import (
     short,
 )
 from matstd.report.maps import draw_ties
-from matstd.report.numbers import shown
+from matstd.report.numbers import capital, digits, shown
 from matstd.report.pages.design_result import Design
-from matstd.report.pages.page import digits
-from matstd.report.style import save
+from matstd.report.pages.section import Picture, Section, Table
 from matstd.twin.machine import Chain, Link
 from matstd.twin.units import DEG
 
 CORRELATION = "correlation.png"
-"""Picture of the parameters that the touches tie together."""
 
-_SHOWN_COMBINATIONS = 20
-_SHOWN_TIES = 12  # pairs; the others are folded
-_COMPONENTS = 6
+_COMBINATIONS = 20  # of the table
+_TIES = 12  # pairs that are not folded
+_OPEN = 12  # rows up to which a table is unfolded
+
+_DEGREES = (
+    "Degrees over the whole travel of a linear axis, harmonics of a rotary one, that the touches "
+    "determine to half of their expected size, with all lower ones and all other errors free; and "
+    "the standard uncertainty of the last. Degree 1 is missing where a location error or the "
+    "set-up has the same signature"
+)
+_ALTERNATIVES = (
+    "Effect of measuring half of the touches in another way; each set-up has its own unknown "
+    "place, each stylus its own unknown offset. Reach and travel are checked, collisions are not"
+)
+_NEVER = (
+    "{count} combinations. They keep their expected values by convention: the datum of a set-up, "
+    "the preset of a tool and the zeros of the axes absorb them."
+)
+_CORRELATIONS = (
+    "Correlations after the fit of the parameters in the largest groups; each group is framed. "
+    "They follow from the touches and the stated error ranges alone and are the same for every "
+    "machine."
+)
 
 
-def known_content(design: Design, folder: Path) -> dict[str, Any]:
-    """What the part shows; draws its picture.
-
-    Args:
-        design: What was made.
-        folder: The results.
-    """
+def identifiability_sections(design: Design) -> list[Section]:
+    """Condition, degrees, single errors, combinations, freedoms and correlations."""
     known = design.identifiability
     never = [f for f in known.freedoms if f.first.resolution is Resolution.NEVER]
     resolved = [f for f in known.freedoms if f not in never]
-    names = [short(name) for name in known.model.names]
-    units = [parameter.unit for _, parameter in known.model.parameters]
-    return {
-        "known": known,
-        "gist": gist(known),
-        "effective": design.effective,
-        "conditions": _conditions(known),
-        "degree_rows": _degree_rows(known),
-        "alone": [_alone(a, known.chain) for a in known.alone],
-        "combinations": [
-            {
-                "words": _with_minus(combination_words(names, units, c.weights, c.importance)),
-                "u": _size(c.u, c.unit),
-                "gain": c.gain,
-            }
-            for c in known.combinations[:_SHOWN_COMBINATIONS]
-        ],
-        "resolved": _by_cause(resolved, known.chain),
-        "never": _by_cause(never, known.chain),
-        "resolved_count": sum(f.count for f in resolved),
-        "never_count": sum(f.count for f in never),
-        **_ties(design, folder),
-    }
+    words = (
+        f"{gist(known)}. The data, rather than the expected errors of such a machine, determine "
+        f"{digits(design.effective)} combinations; {len(known.alone)} machine errors are known "
+        "individually. The other errors do not impair the prediction of the tool point, but no "
+        "single one of them can be stated."
+    )
+    return [
+        Section("What the touches can distinguish", sentences=[words], table=_conditions(known)),
+        Section("Supported degrees of the error functions", is_part=True, table=_degrees(known)),
+        *_single_errors(known),
+        Section("Best known combinations", is_part=True, table=_combinations(known)),
+        _resolved(known, resolved),
+        Section(table=_alternatives(known)),
+        *_never(known.chain, never),
+        *_ties(design),
+    ]
 
 
 def _size(value: float, unit: str) -> str:
@@ -73,23 +77,20 @@ def _size(value: float, unit: str) -> str:
     return f"{digits(value / factor, 2)} {label}"
 
 
-def _alone(alone: Alone, chain: Chain) -> dict[str, str]:
-    expected, u = _size(alone.expected, alone.unit), _size(alone.u, alone.unit)
-    return {"words": in_words(alone.name, chain), "expected": expected, "u": u}
-
-
-def _conditions(known: IdentifiabilityReport) -> list[tuple[str, str]]:
+def _conditions(known: IdentifiabilityReport) -> Table:
     gauge = known.gauge
     found = {
-        "every column brought to length one": gauge.condition,
+        "columns scaled to length one": gauge.condition,
         "parameters in units of their expected sizes": gauge.condition_prior,
         "parameters in µm and µrad": gauge.condition_raw,
     }
-    return [(words, _rounded(value)) for words, value in found.items()]
+    caption = "Condition number of the touches: largest over smallest visible singular value"
+    rows = [[words, _rounded(value)] for words, value in found.items()]
+    return Table(("scaling", "condition number"), rows, caption)
 
 
 def _rounded(value: float) -> str:
-    """A large number with the digits that make sense, `15 000`."""
+    """A large number to two digits, `15 000`."""
     return f"{float(f'{value:.2g}'):,.0f}".replace(",", "\u202f")
 
 
@@ -98,62 +99,142 @@ def _with_minus(words: str) -> str:
     return words.replace("= - ", "= −").replace(" - ", " − ")
 
 
-def _degree_rows(known: IdentifiabilityReport) -> list[dict[str, Any]]:
-    """A row an axis, a cell a component error."""
+def _degrees(known: IdentifiabilityReport) -> Table:
+    """A row for each axis, a cell for each component error."""
     by_symbol = {d.symbol: d for d in known.degrees}
     rows = []
     for axis in known.readings:
         link = known.chain.link(axis)
-        symbols = [f"E{letter}{axis}" for letter in "XYZABC"[:_COMPONENTS]]
-        rows.append(
-            {
-                "axis": axis,
-                "what": "degrees" if link.kind == "linear" else "harmonics",
-                "touched": _span(link, known.readings[axis]),
-                "travel": _span(link, link.range),
-                "cells": [_cell(by_symbol[s]) if s in by_symbol else ("", "") for s in symbols],
-            }
-        )
-    return rows
+        what = "degrees" if link.kind == "linear" else "harmonics"
+        touched = f"{_span(link, known.readings[axis])}\n{_span(link, link.range)}"
+        cells = [_degree(by_symbol.get(f"E{letter}{axis}")) for letter in "XYZABC"]
+        rows.append([f"{axis}, {what}", touched, *cells])
+    ways = [f"{how} {letter}" for how in ("along", "about") for letter in "XYZ"]
+    return Table(("axis", "touched,\nof a travel of", *ways), rows, _DEGREES)
 
 
 def _span(link: Link, limits: Sequence[float]) -> str:
     unit, label = (1.0, "mm") if link.kind == "linear" else (DEG, "°")
-    low, high = (f"{v / unit:.0f}".replace("-", "−") for v in limits)
+    low, high = (f"{v / unit:.0f}" for v in limits)
     return f"{low} to {high} {label}"
 
 
-def _cell(degree: Degree) -> tuple[str, str]:
-    """Degrees that are supported, and how well the last is."""
+def _degree(degree: Degree | None) -> str:
+    """Degrees that are supported, and the uncertainty of the last."""
+    if degree is None:
+        return ""
     if not degree.supported:
-        return "–", ""
+        return "–"
     first, last = degree.supported[0], degree.supported[-1]
     which = f"{first}" if first == last else f"{first} to {last}"
-    return which, f"± {_size(degree.u, degree.unit)}"
+    return f"{which}\n± {_size(degree.u, degree.unit)}"
 
 
-def _by_cause(freedoms: Sequence[FreedomFamily], chain: Chain) -> list[dict[str, Any]]:
-    """Freedoms under what would resolve them and what makes them, in the order of their firsts."""
+def _single_errors(known: IdentifiabilityReport) -> list[Section]:
+    table = Table.of(
+        known.alone,
+        {
+            "error": lambda a: in_words(a.name, known.chain),
+            "expected, standard deviation": lambda a: _size(a.expected, a.unit),
+            "remaining standard uncertainty": lambda a: _size(a.u, a.unit),
+        },
+    )
+    count = len(table.rows)
+    fold = f"{count} errors whose variance the touches reduce at least tenfold"
+    return [
+        Section("Individually known errors", is_part=True),
+        Section(fold=fold, is_unfolded=count <= _OPEN, table=table),
+    ]
+
+
+def _combinations(known: IdentifiabilityReport) -> Table:
+    names = [short(name) for name in known.model.names]
+    units = [parameter.unit for _, parameter in known.model.parameters]
+    shown_ones = known.combinations[:_COMBINATIONS]
+    return Table.of(
+        shown_ones,
+        {
+            "combination": lambda c: _with_minus(
+                combination_words(names, units, c.weights, c.importance)
+            ),
+            "standard uncertainty": lambda c: _size(c.u, c.unit),
+            "expected over remaining": lambda c: digits(c.gain, 2),
+        },
+        f"The {len(shown_ones)} most certain of {len(known.combinations)} combinations that the "
+        "touches determine better than the expected errors do, with unknown set-up and tool; "
+        "scaled to the first error",
+    )
+
+
+def _by_cause(freedoms: Sequence[FreedomFamily], chain: Chain) -> Iterator[tuple[str, str, str]]:
+    """Freedoms, one a line, with what causes them and what would resolve them."""
 
     def cause(family: FreedomFamily) -> tuple[str, str]:
         return resolution_words(family.first), reason_words(family.first)
 
     order = list(dict.fromkeys(map(cause, freedoms)))
     ranked = sorted(freedoms, key=lambda f: order.index(cause(f)))
+    for (by, why), members in groupby(ranked, key=cause):
+        yield "\n".join(_with_minus(family_words(f, chain)) for f in members), why, by
+
+
+def _resolved(known: IdentifiabilityReport, resolved: Sequence[FreedomFamily]) -> Section:
+    title = "Combinations that these touches cannot distinguish, but others could"
+    if not resolved:
+        words = "None: other touches leave the same combinations free."
+        return Section(title, is_part=True, sentences=[words])
+    count = sum(f.count for f in resolved)
+    rows = [list(row) for row in _by_cause(resolved, known.chain)]
+    return Section(
+        title,
+        is_part=True,
+        sentences=[f"{count} of the {len(known.gauge.freedoms)} free combinations."],
+        table=Table(("indistinguishable", "reason", "distinguished by"), rows),
+    )
+
+
+def _alternatives(known: IdentifiabilityReport) -> Table:
+    rows = [
+        [a.name, str(a.rank_gained), digits(a.variance_ratio)]
+        if a.is_possible
+        else [a.name, str(a.refusal), ""]
+        for a in known.alternatives
+    ]
+    ratio = "variance of the predicted tool point\nrelative to as many touches as now"
+    columns = ("second half measured with", "additional visible\ncombinations of errors", ratio)
+    return Table(columns, rows, _ALTERNATIVES)
+
+
+def _never(chain: Chain, never: Sequence[FreedomFamily]) -> list[Section]:
+    title = "Combinations that no touch on a workpiece can distinguish"
+    words = _NEVER.format(count=sum(f.count for f in never))
     return [
-        {
-            "resolved_by": by,
-            "why": why,
-            "words": [_with_minus(family_words(f, chain)) for f in members],
-        }
-        for (by, why), members in groupby(ranked, key=cause)
+        Section(title, is_part=True, sentences=[words]),
+        *(
+            Section(sentences=[f"**{capital(why)}:**"], items=lines.split("\n"))
+            for lines, why, _ in _by_cause(never, chain)
+        ),
     ]
 
 
-def _ties(design: Design, folder: Path) -> dict[str, Any]:
-    """Which parameters the touches tie together, short of never telling them apart."""
+def _ties(design: Design) -> list[Section]:
+    """Parameters that the touches correlate without confounding them."""
     fit = design.machines[0].fit
     found = ties(fit.covariance, [short(name) for name in fit.names])
-    save(draw_ties(found), folder / CORRELATION)
     words = [pair_words(pair, found.names) for pair in found.pairs]
-    return {"ties": found, "tied": words, "ties_limit": STRONG, "ties_first": _SHOWN_TIES}
+    intro = (
+        f"{len(found.pairs)} pairs of parameters remain correlated beyond {STRONG} after the fit, "
+        f"in {len(found.groups)} groups. Difference and sum are in units of the standard "
+        "deviations of the parameters."
+    )
+    more = len(words) - _TIES
+    return [
+        Section(
+            "Correlated parameters",
+            is_part=True,
+            sentences=[intro],
+            pictures=[Picture(CORRELATION, _CORRELATIONS, draw_ties(found))],
+        ),
+        Section(items=words[:_TIES]),
+        *([Section(fold=f"{more} more pairs", items=words[_TIES:])] if more > 0 else []),
+    ]

@@ -22,11 +22,12 @@ from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.residual import rank_variables
 from matstd.report.identifiability import gist
 from matstd.report.maps import draw_regions
+from matstd.report.numbers import microns
 from matstd.report.pages.design_result import Design
 from matstd.report.pages.page import picture
 from matstd.report.plots import draw_fall, draw_over_variables
 from matstd.report.style import save
-from matstd.report.words import comparison_sentence, microns, study_words, verdict_sentence
+from matstd.report.words import comparison_sentence, study_words, verdict_sentence
 from matstd.sensitivity.shares import regions
 from matstd.sensitivity.study import Study
 from matstd.twin.display import Displayed, Tabular, html, text
@@ -131,12 +132,12 @@ def drawing(result: object) -> Callable[[Path], None] | None:
 
 @drawing.register
 def _over_variables(found: Comparison) -> Callable[[Path], None]:
-    return lambda path: draw_over_variables(path, found.fit, rank_variables(found.fit))
+    return lambda path: save(draw_over_variables(found.fit, rank_variables(found.fit)), path)
 
 
 @drawing.register
 def _fall(found: Diagnosis) -> Callable[[Path], None]:
-    return lambda path: draw_fall(path, found)
+    return lambda path: save(draw_fall(found), path)
 
 
 @drawing.register

@@ -1,39 +1,51 @@
-"""Report pages: one self-contained HTML file each, nothing loaded from anywhere."""
+"""Pages as HTML: one self-contained file each, which loads nothing from anywhere."""
 
 import base64
 import re
+from collections.abc import Sequence
+from functools import partial
+from itertools import groupby
 from pathlib import Path
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup, escape
 
-from matstd.report.effects import effect_title
-from matstd.report.numbers import digits as digits
-from matstd.report.numbers import percent, signed
-from matstd.report.pages.tables import write_tables
+from matstd.report.numbers import unbroken
+from matstd.report.pages.section import Heading, Page, Section, Table
+from matstd.report.pages.tables import unmarked, write_tables
+from matstd.report.style import save
 from matstd.twin.files import write_whole
 from matstd.twin.versions import versions
 from matstd.twin.words import in_own_unit
 
-_MINUS = re.compile(r"(?<![^\s(,])-(?=\d)")
-_APART = re.compile(r"(?<=[\d.]) (?=±|[µ%°]|min\b|h\b|mm\b|deg\b)|(?<=±) ")
-"""Spaces between a number and its uncertainty or its unit."""
-
-_HEADING = re.compile(r"<h2>(.*?)</h2>", re.S)
-_TAG = re.compile(r"<[^>]+>")
-
 FEWEST = 3
 """Sections from which a page has a table of contents."""
 
+_MARKS = (
+    (re.compile(r"\*\*(.+?)\*\*"), r"<b>\1</b>"),
+    (re.compile(r"_\{(\w+)\}"), r"<sub>\1</sub>"),
+    (re.compile(r"\[([^\]]+)\]\(([\w./#-]+)\)"), r'<a href="\2">\1</a>'),
+    (re.compile(r"\n"), "<br>"),
+)
+_NUMBER = re.compile(r"[<±+\-−]?\s?\d")
 
-def write_page(path: str | Path, template: str, **content: object) -> None:
-    """Render a template of `report/pages/templates` into one file, and its tables beside it.
 
-    Args:
-        path: The page; written whole or not at all.
-        template: Name of the template, which extends `page.html`.
-        content: What it shows; a missing name is our own mistake and raises.
+def write_page(path: str | Path, page: Page) -> None:
+    """Save the pictures of a page, render it into one file, and write its tables beside it.
+
+    The page is written whole or not at all.
     """
+    folder = Path(path).parent
+    for picture in (p for section in page.sections for p in section.pictures):
+        if picture.figure is not None:
+            (folder / picture.file).parent.mkdir(parents=True, exist_ok=True)
+            save(picture.figure, folder / picture.file)
+    write_whole(path, in_own_unit(rendered(page, folder)))
+    write_tables(folder, page)
+
+
+def rendered(page: Page, folder: Path) -> str:
+    """The HTML of a page whose pictures lie in a folder."""
     environment = Environment(
         loader=PackageLoader("matstd.report.pages"),
         autoescape=select_autoescape(["html"]),
@@ -42,39 +54,77 @@ def write_page(path: str | Path, template: str, **content: object) -> None:
         lstrip_blocks=True,
     )
     environment.filters |= {
-        "digits": digits,
-        "effect_title": effect_title,
-        "percent": percent,
-        "p_value": p_value,
-        "opening": opening,
-        "unbroken": unbroken,
-        "with_contents": with_contents,
+        "marked": marked,
+        "unmarked": unmarked,
+        "is_number": lambda cell: bool(_NUMBER.match(cell)),
+        "heading_rows": heading_rows,
+        "numeric": numeric,
+        "picture": lambda file: picture(folder / file),
     }
-    environment.globals |= {"signed": signed, "picture": picture, "versions": versions}
-    write_whole(path, in_own_unit(environment.get_template(template).render(**content)))
-    write_tables(path)
+    sections = with_addresses(page.sections)
+    contents = [(address, section.title) for section, address in sections if address]
+    template = environment.get_template("page.html")
+    return template.render(
+        page=page,
+        sections=sections,
+        contents=contents if len(contents) >= FEWEST else (),
+        versions=versions(),
+    )
 
 
-def opening(words: str) -> str:
-    """Words at the beginning of a sentence; names of columns keep their small letter.
+def with_addresses(sections: Sequence[Section]) -> list[tuple[Section, str]]:
+    """Sections with the address to which the contents lead; empty below a section's title."""
+    titled = [s for s in sections if s.title and not s.is_part]
+    slugs = [re.sub(r"[^a-z0-9]+", "-", s.title.lower()).strip("-") for s in titled]
+    if len(set(slugs)) < len(slugs):
+        slugs = [f"{slug}-{k}" for k, slug in enumerate(slugs)]
+    address = {id(section): slug for section, slug in zip(titled, slugs, strict=True)}
+    return [(section, address.get(id(section), "")) for section in sections]
+
+
+def marked(words: str) -> Markup:
+    """Words with their marks as HTML.
 
     Example:
-        >>> opening("touches scatter"), opening("time_s is 0")
-        ('Touches scatter', 'time_s is 0')
+        >>> print(marked("`a-1` < **b**"))
+        <code>a-1</code> &lt; <b>b</b>
     """
-    return words if "_" in words.split(" ", 1)[0] else words[:1].upper() + words[1:]
+    out = []
+    for k, part in enumerate(words.split("`")):
+        html = str(escape(part))
+        if k % 2:
+            out.append(f"<code>{html}</code>")
+            continue
+        html = unbroken(html)
+        for pattern, by in _MARKS:
+            html = pattern.sub(by, html)
+        out.append(html)
+    return Markup("".join(out))  # escaped above
 
 
-def unbroken(words: str) -> str:
-    """Words whose numbers stay on a line with their uncertainties and units, minus signs as such.
+def numeric(table: Table) -> list[bool]:
+    """Columns in which numbers are the rule."""
+    columns = ([cell for cell in column if cell] for column in zip(*table.rows, strict=True))
+    return [2 * sum(bool(_NUMBER.match(c)) for c in cells) > len(cells) for cells in columns]
 
-    Example:
-        >>> unbroken("X -3 to 5") == "X \u22123 to 5"
-        True
-        >>> unbroken("lag 11.1 ± 0.5 min") == "lag 11.1\u00a0±\u00a00.5\u00a0min"
-        True
-    """
-    return _APART.sub("\u00a0", _MINUS.sub("\u2212", words))
+
+def heading_rows(columns: Sequence[Heading]) -> list[list[tuple[str, int, int, int]]]:
+    """Rows of headings: words, index of the column, columns and rows that each cell spans."""
+    is_grouped = any(isinstance(c, tuple) for c in columns)
+    first: list[tuple[str, int, int, int]] = []
+    second: list[tuple[str, int, int, int]] = []
+    for group, members in groupby(enumerate(columns), key=partial(_group, columns)):
+        cells = list(members)
+        if isinstance(cells[0][1], tuple):
+            first.append((group, cells[0][0], len(cells), 1))
+            second += [(column[1], k, 1, 1) for k, column in cells]
+        else:
+            first += [(str(column), k, 1, 1 + is_grouped) for k, column in cells]
+    return [first, second] if is_grouped else [first]
+
+
+def _group(columns: Sequence[Heading], cell: tuple[int, Heading]) -> str:
+    return cell[1][0] if isinstance(cell[1], tuple) else f"column {cell[0]}"
 
 
 def picture(path: str | Path) -> str:
@@ -82,37 +132,3 @@ def picture(path: str | Path) -> str:
     path = Path(path)
     kind = {".png": "image/png", ".svg": "image/svg+xml"}[path.suffix]
     return f"data:{kind};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
-
-
-def p_value(value: float) -> str:
-    """A probability; what is beyond all doubt is not given more digits than it has."""
-    return "< 1e-12" if value < 1e-12 else f"{value:.2g}"
-
-
-def with_contents(body: str) -> Markup:
-    """The sections of a page with an address each, below a list of links to them.
-
-    What stands before the first heading (verdict, key figures) stays before the list.
-
-    Args:
-        body: HTML whose sections begin with `<h2>`.
-
-    Example:
-        >>> print(with_contents("<p>Verdict.</p><h2>One</h2><h2>Two</h2><h2>Three</h2>")[:78])
-        <p>Verdict.</p><nav aria-label="Contents"><ol>
-        <li><a href="#one">One</a></li>
-    """
-    titles = [_TAG.sub("", title).strip() for title in _HEADING.findall(body)]
-    addresses = [re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-") for title in titles]
-    if len(set(addresses)) < len(addresses):
-        addresses = [f"{address}-{k}" for k, address in enumerate(addresses)]
-    todo = iter(addresses)
-    named = _HEADING.sub(lambda found: f'<h2 id="{next(todo)}">{found[1]}</h2>', body)
-    if len(titles) < FEWEST:
-        return Markup(named)  # our own template, escaped where it was filled
-    links = "\n".join(
-        f'<li><a href="#{address}">{escape(Markup(title))}</a></li>'
-        for address, title in zip(addresses, titles, strict=True)
-    )
-    head, first, rest = named.partition("<h2 ")
-    return Markup(f'{head}<nav aria-label="Contents"><ol>\n{links}\n</ol></nav>\n{first}{rest}')

@@ -6,10 +6,18 @@ from pathlib import Path
 from matstd.probe_paths.campaign import setup_tolerance
 from matstd.probe_paths.language import LANGUAGES, Label, Q, interlocks
 from matstd.probe_paths.locate import Companions
-from matstd.probe_paths.plan import SMALLEST_GAP, Heading, ProgramFrame, calibration_hash
+from matstd.probe_paths.plan import (
+    SMALLEST_GAP,
+    Heading,
+    ProgramFrame,
+    TouchPlan,
+    calibration_hash,
+)
 from matstd.probe_paths.stations import Station
+from matstd.report.numbers import plural
 from matstd.report.pages.page import write_page
-from matstd.report.plots import write_setup_picture
+from matstd.report.pages.section import Page, Picture, Section, Table
+from matstd.report.plots import draw_setup
 from matstd.report.scenes import PLAYBACK, write_playback
 from matstd.twin.frames import fixed_xyz_angles
 from matstd.twin.units import DEG, MINUTE
@@ -28,18 +36,37 @@ _REMEDY = {
     Label.ZERO_1: "the rotary axis in the preset's row",
     Label.ZERO_2: "the rotary axis in the preset's row",
 }
+_CAMPAIGN = (
+    "Stations in their order; all logs are evaluated together. Between set-ups the standard is "
+    "clamped anew; every line has its own sheet"
+)
+_PLACE = "Pose of the standard in the table frame (origin: table centre, rotary axes at zero)"
+_TOLERANCE = (
+    "Largest offset of the standard from this pose, in either direction, at which no touch is "
+    "lost; tested on the twin with 60 touches, one direction at a time"
+)
+_CLEARANCE = (
+    "The programs keep a clearance of {gap:g} mm where everything stands as stated. A standard "
+    "with a larger offset may be hit: align it better, or state its actual pose in the project."
+)
+_ALARMS = (
+    "A program that stops shows the label at which it stopped. Before number {missed} can occur, "
+    "nothing has been touched"
+)
+_COMMON_STEPS = (
+    "First run in single block with the override low, up to the first touch. Then hold a hand over "
+    "the ball in the air: the program must retract and stop.",
+    "Compare the place of the first touch with the drawing before you continue.",
+)
 
 
 def write_setup_page(
-    folder: Path,
-    stations: Sequence[Station],
-    number: int,
-    others: Companions,
+    folder: Path, stations: Sequence[Station], number: int, others: Companions
 ) -> Path:
-    """Write the sheet of a station with its drawing and playback; the path of the page.
+    """Write the sheet of a station with its drawing and playback; returns the path of the page.
 
     Args:
-        folder: To be made.
+        folder: Created if it does not exist.
         stations: Of the campaign, in their order.
         number: Of the station, from 0.
         others: Programs that are run before its own.
@@ -48,50 +75,195 @@ def write_setup_page(
     plan, programs, dialect = station.plan, station.programs, station.dialect
     page, picture, playback = (_named(name, station, number) for name in (PAGE, PICTURE, PLAYBACK))
     folder.mkdir(parents=True, exist_ok=True)
-    write_setup_picture(folder / picture, plan)
     write_playback(folder / playback, plan, programs, dialect)
-    T = plan.setup.T_table_artefact
-    tests = interlocks(LANGUAGES[dialect.language], ProgramFrame(plan.chain, plan.probe))
-    heading = Heading(
-        standard=plan.standard.name,
-        setup=plan.setup,
-        probe=plan.probe,
-        workshop=plan.options.workshop,
+    standard, many = plan.standard, len(stations) > 1
+    serial = f", serial {standard.serial}" if standard.serial else ""
+    which = f", set-up {station.setup} with tool {dialect.tool}" if many else ""
+    workshop = Heading(
+        standard=standard.name, setup=plan.setup, probe=plan.probe, workshop=plan.options.workshop
+    ).workshop_hash
+    drawing = (
+        "Blue: the standard and its spheres, with its own x and y. Red: clamps and fixtures that "
+        "the programs avoid. The programs do not know any object that is not drawn here."
     )
-    tolerance = setup_tolerance(plan)
-    write_page(
-        folder / page,
-        "setup.html",
-        picture_file=folder / picture,
-        standard=plan.standard,
-        chain=plan.chain,
-        probe=plan.probe,
-        workshop=plan.options.workshop,
-        dialect=dialect,
-        origin=T[:3, 3].tolist(),
-        angles=(fixed_xyz_angles(T[:3, :3]) / DEG).tolist(),
-        calibration=calibration_hash(plan.standard),
-        workshop_hash=heading.workshop_hash,
-        programs=[(p.name, p.touches, p.duration / MINUTE) for p in programs.programs],
-        minutes=programs.duration / MINUTE,
-        visits=len(plan.visits),
-        refused=[str(refusal) for refusal in plan.refused],
-        alarms=[(int(t.label), t.what, f"{t.limit:g}", _REMEDY[t.label]) for t in tests],
-        others=others,
-        playback=playback,
-        stations=stations,
-        here=station,
-        sheets=[_named(PAGE, one, i) for i, one in enumerate(stations)],
-        within_deg=round(others.spread.angle / DEG, 3),
-        start=int(Q.START),
-        missed=int(Label.NO_CONTACT),
-        tolerance=tolerance,
-        clearance=SMALLEST_GAP,
-    )
+    content = Page(
+        title=f"Set-up of {standard.name}",
+        heading=f"Set-up sheet: {standard.name}{serial} on {plan.chain.name}{which}",
+        lead=(
+            f"{plural(len(programs.programs), 'program')}, {len(plan.visits)} visits of table "
+            f"poses, about {programs.duration / MINUTE:.0f} min. Calibration "
+            f"`{calibration_hash(standard)}`, workshop `{workshop}`, as in the head of every "
+            "program and log."
+        ),
+        key=(),
+        sections=[
+            Section(pictures=[Picture(picture, drawing, draw_setup(plan))]),
+            *([_campaign(stations, number)] if many else []),
+            *_mount(plan),
+            *_probe(station),
+            *_run(station, others, playback),
+            _alarms(plan, station),
+            *([Section("Omitted touches", items=list(map(str, plan.refused)))]
+              if plan.refused else []),
+        ],
+        foot=["Limits in mm; those of angles in degrees."],
+    )  # fmt: skip
+    write_page(folder / page, content)
     return folder / page
 
 
+def _campaign(stations: Sequence[Station], number: int) -> Section:
+    """All stations, with their sheets."""
+    rows = []
+    for k, one in enumerate(stations):
+        sheet, programs = _named(PAGE, one, k), one.programs.programs
+        rows.append(
+            [
+                str(one.setup),
+                str(one.dialect.tool),
+                " ".join(f"`{p.name}`" for p in programs),
+                str(sum(p.touches for p in programs)),
+                f"{one.programs.duration / MINUTE:.0f}",
+                "this one" if k == number else f"[{sheet}]({sheet})",
+            ]
+        )
+    columns = ("set-up", "tool", "programs", "touches", "about, in min", "sheet")
+    return Section("Campaign", table=Table(columns, rows, _CAMPAIGN))
+
+
+def _mount(plan: TouchPlan) -> list[Section]:
+    """Where the standard stands, how exactly, and what holds it."""
+    T, tolerance = plan.setup.T_table_artefact, setup_tolerance(plan)
+    angles = fixed_xyz_angles(T[:3, :3]) / DEG
+    bodies = [body.name for body in plan.options.workshop.bodies]
+    held = f"{', '.join(bodies)} as drawn" if bodies else "no clamp is stated; use the base screws"
+    columns = [f"{a} in mm" for a in "xyz"] + [f"about {a} in °" for a in "xyz"]
+    place = [*(f"{v + 0.0:.3f}" for v in T[:3, 3]), *(f"{v + 0.0:.4f}" for v in angles)]
+    limits = [f"{tolerance[letter]:g}" for letter in "XYZABC"]
+    return [
+        Section("Mount", table=Table(columns, [place], _PLACE)),
+        Section(
+            table=Table(columns, [limits], _TOLERANCE),
+            notes=[
+                f"Clamp from outside the faces and spheres: {held}. The table must be free to turn "
+                "with Z retracted."
+            ],
+            warnings=[_CLEARANCE.format(gap=SMALLEST_GAP)],
+        ),
+    ]
+
+
+def _probe(station: Station) -> list[Section]:
+    """Entries of tool table and preset, dimensions of the probe."""
+    probe, dialect = station.plan.probe, station.dialect
+    rows = [
+        ["tool", f"T{dialect.tool}, no spindle speed; the programs stop the spindle"],
+        [
+            "length in the tool table, to the far pole of the ball, in mm",
+            f"{probe.tool_length:.4f}",
+        ],
+        ["radius of the ball in mm", f"{probe.radius:.4f}"],
+        ["preset", f"row {dialect.preset}: table centre, rotary axes at zero, no basic rotation"],
+    ]
+    if dialect.folder:
+        rows.append(["folder of programs, masks and logs", f"`{dialect.folder}`"])
+    cylinders = [[f"{end:.1f}", f"{2.0 * radius:.1f}"] for end, radius in probe.stack]
+    cylinders.append(["nose of the spindle", f"{2.0 * probe.nose_radius:.1f}"])
+    caption = "Cylinders of the probe from the centre of the ball upwards; measure yours"
+    return [
+        Section("Probe and control", table=Table(("what", "value"), rows)),
+        Section(table=Table(("up to, in mm", "diameter in mm"), cylinders, caption)),
+    ]
+
+
+def _run(station: Station, others: Companions, playback: str) -> list[Section]:
+    """The programs, and the steps from loading to the logs."""
+    rows = [
+        [f"`{p.name}`", str(p.touches), f"{p.duration / MINUTE:.0f}"]
+        for p in station.programs.programs
+    ]
+    shown = (
+        f"[{playback}]({playback}), beside this sheet, plays the programs: table, standard, clamps "
+        "and probe over every motion, with line and touch."
+    )
+    return [
+        Section("Run", table=Table(("program", "touches", "about, in min"), rows)),
+        Section(sentences=[shown], items=_steps(others), is_ordered=True),
+    ]
+
+
+def _steps(others: Companions) -> list[str]:
+    dry = others.dry_run.programs[0]
+    return [
+        "Load programs and masks. The control must not mark any block as an error.",
+        "Calibrate the probe; clean standard and ball.",
+        _search_step(others),
+        *_first_steps(others),
+        f"Run `{dry.name}` from the folder of this sheet: all motions of the programs, up to "
+        f"{others.raised:g} mm higher and without a touch, {dry.duration / MINUTE:.0f} min.",
+        _ball_step(others),
+        *_COMMON_STEPS,
+        f"Keep the log of every program, including one that stopped. Restart that program at the "
+        f"visit in which it stopped: `Q{int(Q.START)}` in its head is the number of that visit "
+        "(the program still turns to the visits before it, without a touch). Give all its logs to "
+        "`matstd evaluate`.",
+    ]
+
+
+def _search_step(others: Companions) -> str:
+    if others.search is None:
+        return f"There is no search program for a standard in another pose: {others.no_search}."
+    search = others.search.programs[0]
+    return (
+        f"If the standard stands within {others.spread.distance:g} mm and "
+        f"{round(others.spread.angle / DEG, 3):g}° of its pose, but not within 1 mm: run "
+        f"`{search.name}` from the folder of this sheet (at most "
+        f"{search.duration / MINUTE + 0.5:.0f} min), then `matstd replan` with its log. It writes "
+        "these programs for the actual pose of the standard."
+    )
+
+
+def _first_steps(others: Companions) -> list[str]:
+    """The commissioning program, where the control may need it."""
+    if others.first is None:
+        return []
+    first = others.first.programs[0]
+    return [
+        f"On a control that has not run these programs before: first run `{first.name}` from the "
+        "folder of this sheet, with the standard in its pose, in single block with the override "
+        f"low. It has {first.blocks} blocks with every word that the other programs use: one touch "
+        "in the air, after which it must continue, and one on a ball. From its log, "
+        "`matstd evaluate` determines which Z the control returns. If it stops at label 93, "
+        "length of the tool, basic rotation or preset differ from those below; at "
+        "`FN 14: ERROR= 1014` the control returns another touch status than the programs expect."
+    ]
+
+
+def _ball_step(others: Companions) -> str:
+    if others.ball is None:
+        return f"There is no ball to compare the probe before and after: {others.no_ball}."
+    ball = others.ball.programs[0]
+    return (
+        f"Run `{ball.name}` from the folder of this sheet before the first program, again after "
+        f"the last one, and whenever you stop for longer: {ball.touches} touches on one ball, "
+        f"{ball.duration / MINUTE + 0.5:.0f} min. From its logs, `matstd evaluate` reports how far "
+        "the ball has moved and whether the probe has changed, and rejects measurements between "
+        "which the probe has changed."
+    )
+
+
+def _alarms(plan: TouchPlan, station: Station) -> Section:
+    """What every alarm tests, and what to check."""
+    missed, frame = int(Label.NO_CONTACT), ProgramFrame(plan.chain, plan.probe)
+    tests = interlocks(LANGUAGES[station.dialect.language], frame)
+    lost = "a touch met nothing; Z is up, the log contains all touches so far"
+    rows = [[str(missed), lost, "", "pose of the standard; is the probe switched on?"]]
+    rows += [[str(int(t.label)), t.what, f"{t.limit:g}", _REMEDY[t.label]] for t in tests]
+    columns = ("alarm", "test", "tolerance", "check")
+    return Section("Alarms", table=Table(columns, rows, _ALARMS.format(missed=missed)))
+
+
 def _named(file: str, station: Station, number: int) -> str:
-    """Name of a file of a station; those after the first are told by set-up and tool."""
+    """Name of a file of a station; after the first they bear set-up and tool."""
     stem, _, ending = file.rpartition(".")
     return file if number == 0 else f"{stem}_{station.setup}_T{station.dialect.tool}.{ending}"

@@ -1,12 +1,13 @@
-"""The sensitivity part of a report: maps in order, maps in three dimensions, regions in words."""
+"""Sensitivities on a page: maps, maps in three dimensions, dominant errors of every region."""
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from matstd.report.numbers import digits, um
 from matstd.report.pages.page import write_page
+from matstd.report.pages.section import KeyFigure, Page, Picture, Section, Table
 from matstd.report.scenes import Scene, draw_volumes
 from matstd.report.words import dominant_words, place_words, sampling_words, unsampled
 from matstd.sensitivity.shares import regions
@@ -36,6 +37,8 @@ _ALIKE = 0.98  # correlation of two maps of S that show the same
 Shown = tuple[str, str]
 """File and caption of a picture."""
 
+_VARIANCE = "Errors that make half of the variance, region by region (exact to first order)"
+
 
 def write_study_page(
     study: Study, folder: Path, pictures: Sequence[Shown], project: str = ""
@@ -43,53 +46,70 @@ def write_study_page(
     """Write report.html of a study by itself, with its maps in three dimensions.
 
     Args:
-        folder: The results; the pictures lie in it.
-        pictures: File and caption of those that are drawn already, in any order.
-        project: What the study was made from, for the foot of the page.
+        study: The study.
+        folder: The results, with the pictures.
+        pictures: File and caption of those that exist already, in any order.
+        project: Source of the study, for the foot of the page.
 
     Returns:
-        What could not be drawn and why, one line each; the page says it too.
+        What could not be drawn and why, one line each; the page states it too.
     """
     remarks: list[str] = []
     shown = [*pictures, *draw_study_volumes(study, folder, remarks)]
-    write_page(
-        folder / "report.html",
-        "sensitivity.html",
-        folder=folder,
-        remarks=[*study.chain.remarks, *remarks],
-        source=project,
-        **study_content(study, shown),
+    chain, v = study.chain, study.volumetric
+    page = Page(
+        title=f"Sensitivities of {chain.name}",
+        heading=f"Sensitivities of {chain.name}",
+        lead=f"Chain `{chain.notation}`, {len(chain.symbols)} error parameters.",
+        key=[
+            KeyFigure(um(float(v.mean.mean())), "mean volumetric error over the workspace"),
+            KeyFigure(um(float(v.p95.mean())), "95 % quantile over machines, mean over the poses"),
+            KeyFigure(um(float(v.p95.max())), "95 % quantile over machines at the worst pose"),
+        ],
+        sections=[Section(warnings=[*chain.remarks, *remarks]), *study_sections(study, shown)],
+        foot=[
+            *([f"Made from `{project}`."] if project else []),
+            "Deviations are tool side minus workpiece side; uncertainties are standard "
+            "uncertainties (k = 1) unless stated otherwise.",
+        ],
     )
+    write_page(folder / "report.html", page)
     return remarks
 
 
-def study_content(study: Study, pictures: Sequence[Shown]) -> dict[str, Any]:
-    """What the template `study.html` shows.
+def study_sections(
+    study: Study, pictures: Sequence[Shown], place: str = "", title: str = ""
+) -> list[Section]:
+    """Sampling, every map, and the errors that dominate in each region.
 
     Args:
+        study: The study.
         pictures: File and caption of every map.
+        place: Folder of the maps as seen from the page, with a slash at its end.
+        title: Of the section.
     """
     v, names = study.volumetric, [s.name for s in study.chain.symbols]
-    place = {name: i for i, name in enumerate(_ORDER)}
-    return {
-        "chain": study.chain,
-        "study": study,
-        "sampling": sampling_words(v),
-        "study_maps": sorted(pictures, key=lambda shown: place.get(shown[0], len(_ORDER))),
-        "study_poses": len(study.q),
-        "study_mean_um": float(v.mean.mean()) / UM,
-        "study_p95_um": float(v.p95.mean()) / UM,
-        "study_worst_um": float(v.p95.max()) / UM,
-        "exact_um": study.exact.rms / UM,
-        "regions": [
-            {
-                "words": place_words(r.place),
-                "rms_um": r.rms / UM,
-                "errors": dominant_words(r, names),
-            }
-            for r in regions(study.population, study.workspace)
-        ],
-    }
+    order = {name: i for i, name in enumerate(_ORDER)}
+    shown = sorted(pictures, key=lambda one: order.get(one[0], len(_ORDER)))
+    rows = [
+        [place_words(r.place), digits(r.rms / UM), dominant_words(r, names)]
+        for r in regions(study.population, study.workspace)
+    ]
+    words = (
+        f"{sampling_words(v)}; {len(study.q)} poses of the workspace; linear, parabolic and "
+        f"sinusoidal errors. Averaged over the poses, the mean volumetric error is "
+        f"{um(float(v.mean.mean()))} and its 95 % quantile over machines "
+        f"{um(float(v.p95.mean()))}; at the worst pose the quantile is {um(float(v.p95.max()))}. "
+        "All figures are first order: the exact product differs by "
+        f"{um(study.exact.rms, 2)} rms, measured on {study.exact.machines} machines at "
+        f"{study.exact.poses} poses."
+    )
+    maps = [Picture(f"{place}{name}", caption) for name, caption in shown]
+    columns = ("region", "volumetric error, µm rms", "errors")
+    return [
+        Section(title, sentences=[words], pictures=maps),
+        Section(table=Table(columns, rows, _VARIANCE)),
+    ]
 
 
 def draw_study_volumes(
@@ -99,16 +119,17 @@ def draw_study_volumes(
     stl: Path | None = None,
     T_table_artefact: Array | None = None,
 ) -> list[Shown]:
-    """Draw volumetric error and S in three dimensions; without OpenGL say so and go on.
+    """Draw volumetric error and S in three dimensions.
 
     Args:
+        study: The study.
         folder: For the pictures.
-        remarks: Takes a line where something cannot be drawn.
+        remarks: Receives a line if they cannot be drawn, as without OpenGL.
         stl: STL file of the standard; None for none.
-        T_table_artefact: Where it stands, (4, 4).
+        T_table_artefact: Pose of the standard, (4, 4).
     """
     if not has_volume(study.workspace):
-        remarks.append("No maps in three dimensions: they need three linear axes with room.")
+        remarks.append("No maps in three dimensions: they need three linear axes that can move.")
         return []
     scenes = {
         folder / ERROR_3D: error_scenes(study, T_table_artefact),
@@ -120,24 +141,24 @@ def draw_study_volumes(
         remarks.append(f"No maps in three dimensions: {error}")
         return []
     stands = (
-        "The standard stands where the readings bring the middle of the probe's ball to it. "
+        "The standard is drawn at the readings at which the centre of the probe's ball meets it. "
         if T_table_artefact is not None
         else ""
     )
     how = (
-        "Colours on the three far sides and on iso-surfaces between them; every map has a scale of "
-        f"its own. {stands}Dash-dotted: the rotary axes."
+        "Colours on the three far sides and on iso-surfaces between them; each map has its own "
+        f"scale. {stands}Dash-dotted: the rotary axes."
     )
     out = [
         (
             ERROR_3D,
-            "Volumetric error over the linear readings, 95 % of the machines stay below: with the "
+            "Volumetric error over the linear readings, 95 % quantile over machines: with the "
             f"table level, and at the rotary readings of the worst pose. {how} {unsampled(study)}",
         )
     ]
     if scenes[folder / S_3D]:
-        words = "S of angular errors over the linear readings, table level: it is the distance "
-        out.append((S_3D, f"{words} from the axis of the rotation. {how} Exact to first order."))
+        words = "S of angular errors over the linear readings, table level: the distance from the "
+        out.append((S_3D, f"{words}axis of the rotation. {how} Exact to first order."))
     return out
 
 

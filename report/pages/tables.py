@@ -1,15 +1,12 @@
-"""The tables of a page as CSV files and as a workbook, beside it.
-
-They are read from the finished page, so that they say what it says, in the units of its headings.
-"""
+"""The tables of a page as CSV files and as a workbook, beside it, in the units of the page."""
 
 import re
-from dataclasses import dataclass, field
-from html.parser import HTMLParser
 from pathlib import Path
 
+from matstd.report.pages.section import Page, Table
 from matstd.twin.files import write_whole, written_whole
 from matstd.twin.text import csv_text
+from matstd.twin.words import in_own_unit
 
 FOLDER, WORKBOOK = "tables", "tables.xlsx"
 """Where they go, beside the page."""
@@ -18,37 +15,21 @@ _LONGEST = 31  # letters of a sheet's name, by the format
 _WIDEST = 60  # letters of a column before its text is cut off on the screen
 _NUMBER = re.compile(r"[+\-−]?(\d+|\d{1,3}( \d{3})+)(\.\d+)?([eE][+\-]?\d+)?")
 _MINUS = re.compile(r"−(?=\d)")
+_MARKS = re.compile(r"`|\*\*|_\{(\w+)\}|\[([^\]]+)\]\([\w./#-]+\)")
 
 
-@dataclass(slots=True)
-class PageTable:
-    """One table of a page.
-
-    Attributes:
-        section: Heading above it.
-        caption: Its caption, "" where it has none.
-        rows: Cells as the page shows them, headings first.
-        headings: Number of rows that are headings.
-    """
-
-    section: str
-    caption: str = ""
-    rows: list[list[str]] = field(default_factory=list)
-    headings: int = 0
+def page_tables(page: Page) -> list[tuple[str, Table]]:
+    """Tables of a page that have rows, in their order, each with the title above it."""
+    found, title = [], ""
+    for section in page.sections:
+        title = section.title or title
+        if section.table is not None and section.table.rows:
+            found.append((title, section.table))
+    return found
 
 
-def page_tables(page: str) -> list[PageTable]:
-    """Tables of a page in their order; cells that span several are repeated in each."""
-    reader = _Reader()
-    reader.feed(page)
-    return [table for table in reader.tables if len(table.rows) > table.headings]
-
-
-def write_tables(page: str | Path) -> list[Path]:
-    """Write every table of a page as CSV, and all of them into one workbook.
-
-    Args:
-        page: HTML file; `tables/` and `tables.xlsx` go into its folder.
+def write_tables(folder: Path, page: Page) -> list[Path]:
+    """Write every table of a page as CSV into `tables/`, and all of them into one workbook.
 
     Returns:
         The files.
@@ -57,29 +38,44 @@ def write_tables(page: str | Path) -> list[Path]:
     from openpyxl.styles import Font
     from openpyxl.utils import get_column_letter
 
-    page = Path(page)
-    book = Workbook()
+    book, out = Workbook(), []
     del book["Sheet"]
-    out = []
-    for number, table in enumerate(page_tables(page.read_text(encoding="utf-8")), start=1):
-        name = f"{number:02d}-{_slug(table.section)}"
-        out.append(page.parent / FOLDER / f"{name}.csv")
-        head, *rows = ([plain(cell) for cell in row] for row in table.rows)
-        write_whole(out[-1], csv_text(head, rows))
+    for number, (title, table) in enumerate(page_tables(page), start=1):
+        headings, rows = _headings(table), [[plain(c) for c in row] for row in table.rows]
+        slug = re.sub(r"[^a-z0-9]+", "-", unmarked(title).lower()).strip("-") or "table"
+        name = f"{number:02d}-{slug}"
+        out.append(folder / FOLDER / f"{name}.csv")
+        head, *others = [*headings, *rows]
+        write_whole(out[-1], csv_text(head, others))
         sheet = book.create_sheet(name[:_LONGEST])
-        for row in ([table.caption], *table.rows):
-            sheet.append([value(plain(cell)) for cell in row])
-        for heading in sheet.iter_rows(min_row=2, max_row=1 + table.headings):
-            for cell in heading:
+        sheet.append([plain(table.caption)])
+        for row in headings:
+            sheet.append(row)
+            for cell in sheet[sheet.max_row]:
                 cell.font = Font(bold=True)
-        for k, column in enumerate(zip(*table.rows, strict=True), start=1):
+        for row in rows:
+            sheet.append([value(cell) for cell in row])
+        for k, column in enumerate(zip(*headings, *rows, strict=True), start=1):
             width = min(max(map(len, column)) + 2, _WIDEST)
             sheet.column_dimensions[get_column_letter(k)].width = width
     if out:
-        out.append(page.parent / WORKBOOK)
+        out.append(folder / WORKBOOK)
         with written_whole(out[-1]) as part:
             book.save(part)
     return out
+
+
+def _headings(table: Table) -> list[list[str]]:
+    """One row of headings, or two where columns form groups."""
+    pairs = [c if isinstance(c, tuple) else (c, c) for c in table.columns]
+    rows = [[plain(pair[k]) for pair in pairs] for k in (0, 1)]
+    return [row for k, row in enumerate(rows) if row and (not k or row != rows[0])]
+
+
+def unmarked(words: str) -> str:
+    """Words of a page without their marks, on one line, in the unit of the instrument."""
+    plain_words = _MARKS.sub(lambda m: m[1] or m[2] or "", words)
+    return in_own_unit(" ".join(plain_words.split()))
 
 
 def plain(cell: str) -> str:
@@ -89,7 +85,7 @@ def plain(cell: str) -> str:
         >>> plain("−21, 62"), plain("13 000"), plain("3 of 400")
         ('-21, 62', '13000', '3 of 400')
     """
-    cell = _MINUS.sub("-", cell)
+    cell = _MINUS.sub("-", unmarked(cell))
     return cell.replace(" ", "") if _NUMBER.fullmatch(cell) else cell
 
 
@@ -101,80 +97,3 @@ def value(cell: str) -> float | str:
         (-12.5, '3 of 4', 'FFS1')
     """
     return float(cell) if _NUMBER.fullmatch(cell) else cell
-
-
-def _slug(text: str) -> str:
-    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-") or "table"
-
-
-class _Reader(HTMLParser):
-    """Collects headings, captions and cells."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.tables: list[PageTable] = []
-        self._section = ""
-        self._text: list[str] | None = None
-        self._spans: dict[tuple[int, int], str] = {}
-        self._cell = (1, 1)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Begin a table, a row, or a text that is kept."""
-        if tag == "table":
-            self.tables.append(PageTable(self._section))
-            self._spans = {}
-        elif tag == "tr":
-            self.tables[-1].rows.append([])
-            self._is_heading = True
-        elif tag in {"h2", "h3", "caption", "th", "td"}:
-            self._text = []
-            told = {key: int(v or 1) for key, v in attrs if key in {"rowspan", "colspan"}}
-            self._cell = told.get("rowspan", 1), told.get("colspan", 1)
-            self._is_heading = tag != "td" and getattr(self, "_is_heading", True)
-        elif tag == "br" and self._text is not None:
-            self._text.append(" ")
-
-    def handle_data(self, data: str) -> None:
-        """Text of a heading, a caption or a cell."""
-        if self._text is not None:
-            self._text.append(data)
-
-    def handle_endtag(self, tag: str) -> None:
-        """Keep what has ended."""
-        if tag in {"h2", "h3", "caption", "th", "td"} and self._text is not None:
-            text, self._text = " ".join("".join(self._text).split()), None
-            if tag in {"h2", "h3"}:
-                self._section = text
-            elif tag == "caption":
-                self.tables[-1].caption = text
-            else:
-                self._keep(text)
-        elif tag == "tr":
-            self._fill()
-            if self._is_heading:
-                self.tables[-1].headings += 1
-        elif tag == "table":
-            _level(self.tables[-1])
-
-    def _keep(self, text: str) -> None:
-        """A cell at the next free place of its row, and what it spans below."""
-        self._fill()
-        row, number = self.tables[-1].rows[-1], len(self.tables[-1].rows) - 1
-        down, across = self._cell
-        for below in range(1, down):
-            for k in range(across):
-                self._spans[number + below, len(row) + k] = text
-        row.extend([text] * across)
-
-    def _fill(self) -> None:
-        """What cells of earlier rows span of this row."""
-        row, number = self.tables[-1].rows[-1], len(self.tables[-1].rows) - 1
-        while (number, len(row)) in self._spans:
-            row.append(self._spans.pop((number, len(row))))
-
-
-def _level(table: PageTable) -> None:
-    """Rows of one length; a row of one heading cell and data is data with a name."""
-    longest = max(map(len, table.rows), default=0)
-    for row in table.rows:
-        row.extend([""] * (longest - len(row)))

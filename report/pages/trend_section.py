@@ -1,83 +1,95 @@
-"""The section of a page that tells how a machine changed over several runs."""
+"""The section of a page on changes of the machine between several runs."""
 
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
 
 from matstd.diagnosis.answer import Trend
 from matstd.diagnosis.geometry import Estimate, GeometryRow
 from matstd.report.geometry import USUAL, change_sentences, estimate_words, quantity_name
-from matstd.report.numbers import digits
+from matstd.report.numbers import digits, sentence
+from matstd.report.pages.section import Picture, Section, Table
 from matstd.report.plots import draw_trend
 from matstd.twin.units import UM
 
 DRAWN = 8
 """Quantities that are drawn, those that changed first; with the errors that makes three rows."""
 
-PICTURE = "trend.png"
+_PICTURE = (
+    "Each run by itself, together with the effects found, with standard uncertainties. Dashed "
+    "line: a change beyond chance. Last panel: error of poses, and of whole runs, that were left "
+    "out and predicted from the rest."
+)
+_RUNS = (
+    "Runs in the order given. A run left out is predicted with the machine of the run before it "
+    "(the first run: with that of the run after it); its set-ups are fitted"
+)
+_QUANTITIES = (
+    "Quantities of the geometry by run, and their changes from the run before, ± standard "
+    "uncertainty. A change is more certain than the difference of two values whose uncertainty "
+    "the runs share"
+)
 
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """A quantity with what changed into every run but the first, and whether beyond chance."""
+    """A quantity with its change into every run but the first, and whether beyond chance."""
 
     row: GeometryRow
     steps: list[Estimate | None]
     has_changed: list[bool]
 
 
-def trend_section(trend: Trend | None, place: Path) -> dict[str, Any] | None:
-    """What `trend.html` needs, its picture drawn; nothing for a single run.
-
-    Args:
-        trend: Of the diagnosis.
-        place: Folder of the pictures.
-    """
+def trend_sections(trend: Trend | None) -> list[Section]:
+    """What changed between the runs; nothing for a single run."""
     if trend is None:
-        return None
+        return []
     later = range(1, len(trend.runs))
     best = {i: trend.known_best(i) for i in later}
-    lines = _first_changed(
+    lines = [
+        _Line(
+            row,
+            [best[i][k].steps[i - 1] for i in later],
+            [best[i][k].has_changed_into(i) for i in later],
+        )
+        for k, row in enumerate(trend.rows)
+        if any(row.course)
+    ]
+    # changes first, then squareness and scales
+    lines.sort(key=lambda n: (not any(n.has_changed), n.row.quantity not in USUAL))
+    drawn = draw_trend(trend, [(n.row, n.has_changed) for n in lines[:DRAWN]])
+    runs = [
         [
-            _Line(
-                row,
-                [best[i][k].steps[i - 1] for i in later],
-                [best[i][k].has_changed_into(i) for i in later],
-            )
-            for k, row in enumerate(trend.rows)
-            if any(row.course)
+            run.name,
+            str(run.touches),
+            *(_um(v) for v in (run.rms, run.test_rms, run.left_out)),
+            _state(trend, i),
         ]
-    )
-    draw_trend(place / PICTURE, trend, [(n.row, n.has_changed) for n in lines[:DRAWN]])
-    return {
-        "sentences": change_sentences(trend),
-        "names": [run.name for run in trend.runs],
-        "picture": PICTURE,
-        "runs": [
-            {
-                "name": run.name,
-                "touches": run.touches,
-                "figures": [_um(v) for v in (run.rms, run.test_rms, run.left_out)],
-                "changed": "held out"
-                if run.is_held_out
-                else "changed"
-                if i in trend.changed
-                else "as before"
-                if i
-                else "",
-            }
-            for i, run in enumerate(trend.runs)
-        ],
-        "rows": [
-            {
-                "name": quantity_name(line.row),
-                "course": [_sized(e, line.row) for e in line.row.course],
-                "steps": [_sized(e, line.row) for e in line.steps],
-                "is_noted": any(line.has_changed),
-            }
-            for line in lines
-        ],
-    }
+        for i, run in enumerate(trend.runs)
+    ]
+    names = [run.name for run in trend.runs]
+    rows = [
+        [quantity_name(n.row), *(_sized(e, n.row) for e in (*n.row.course, *n.steps))]
+        for n in lines
+    ]
+    errors = ("fitted, µm", "poses left out, µm", "run left out, µm")
+    changed = [i for i, n in enumerate(lines) if any(n.has_changed)]
+    columns = ("quantity", *names, *(f"change into {name}" for name in names[1:]))
+    return [
+        Section(
+            "Changes between the runs",
+            sentences=[sentence(words) for words in change_sentences(trend)],
+            pictures=[Picture("pictures/trend.png", _PICTURE, drawn)],
+        ),
+        Section(table=Table(("run", "touches", *errors, "geometry"), runs, _RUNS)),
+        Section(table=Table(columns, rows, _QUANTITIES, changed)),
+    ]
+
+
+def _state(trend: Trend, run: int) -> str:
+    if trend.runs[run].is_held_out:
+        return "held out"
+    if run in trend.changed:
+        return "changed"
+    return "unchanged" if run else ""
 
 
 def _sized(estimate: Estimate | None, row: GeometryRow) -> str:
@@ -86,8 +98,3 @@ def _sized(estimate: Estimate | None, row: GeometryRow) -> str:
 
 def _um(value: float | None) -> str:
     return "" if value is None else digits(value / UM)
-
-
-def _first_changed(lines: list[_Line]) -> list[_Line]:
-    """Quantities by what a reader wants to see: changes, then squareness and scales, then all."""
-    return sorted(lines, key=lambda n: (not any(n.has_changed), n.row.quantity not in USUAL))

@@ -1,8 +1,9 @@
-"""Pictures of what was found: the error falling, rival explanations, and each effect by itself."""
+"""Pictures of a diagnosis: the error falling, rival effects, and each effect alone."""
+
+from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from matstd.diagnosis.fit import MIN_POSES, Fit
 from matstd.diagnosis.regression import BoolArray
 from matstd.diagnosis.residual import Partial, Seen, binned, partial
 from matstd.report.effects import effect_cell, effect_title
-from matstd.report.numbers import noun, shown
+from matstd.report.numbers import microns, noun, shown
 from matstd.report.plots.residual_pictures import kept
 from matstd.report.style import (
     BLUE,
@@ -25,15 +26,16 @@ from matstd.report.style import (
     axis_of,
     figure,
     plain,
-    save,
     series,
 )
-from matstd.report.words import microns
 from matstd.twin.frames import Array
 from matstd.twin.library import parse_effect
 from matstd.twin.model import Effect
 from matstd.twin.numbers import rms
 from matstd.twin.units import UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MOST_BARS = 14
 """Rivals or candidates that get a bar."""
@@ -51,13 +53,8 @@ RATIO = 12.0
 """Between the largest and the smallest error of a fall, from which its scale is logarithmic."""
 
 
-def draw_fall(path: str | Path, diagnosis: Diagnosis) -> None:
-    """Error of fitted and of held-out touches, step by step, against the noise.
-
-    Args:
-        path: PNG.
-        diagnosis: With one step or more.
-    """
+def draw_fall(diagnosis: Diagnosis) -> Figure:
+    """Error of fitted and of held-out touches, step by step, against the noise."""
     steps = diagnosis.steps
     drawn = figure(3.9)
     ax = drawn.subplots()
@@ -89,7 +86,7 @@ def draw_fall(path: str | Path, diagnosis: Diagnosis) -> None:
     ax.set_ylabel("root mean square error in µm")
     plain(ax, "y")
     drawn.legend(fontsize=8.5, frameon=False, loc="outside upper center", ncols=4)
-    save(drawn, path)
+    return drawn
 
 
 def _held_words(diagnosis: Diagnosis) -> str:
@@ -98,7 +95,7 @@ def _held_words(diagnosis: Diagnosis) -> str:
     t = diagnosis.fit.run.touches
     poses = len(np.unique(np.column_stack([t.setup, t.pose])[diagnosis.fit.used], axis=0))
     what = "table pose" if t.chain.turns_workpiece else "pose" if t.chain.rotary_axes else "place"
-    return f"held out, one {what if poses >= MIN_POSES else 'block'} after the other"
+    return f"held out, one {what if poses >= MIN_POSES else 'block'} at a time"
 
 
 def _step_words(step: Step) -> str:
@@ -135,21 +132,19 @@ def _beside(ax: Any, x: float, y: float, points: float, text: str) -> None:
 
 
 def _noise_lines(ax: Any, fit: Fit, u: float) -> None:
-    """Noise as stated, and as the last model finds it where that is another."""
-    ax.axhline(u, color=INK, lw=1.1, label=f"noise as stated, {microns(u * UM)}")
+    """Stated noise, and the estimated one where that differs."""
+    ax.axhline(u, color=INK, lw=1.1, label=f"stated noise, {microns(u * UM)}")
     if fit.noise.is_wrongly_stated:
         found = u * fit.noise.factor
-        ax.axhline(found, color=INK, lw=1.1, ls="--", label=f"scatter left, {microns(found * UM)}")
+        ax.axhline(
+            found, color=INK, lw=1.1, ls="--", label=f"residual scatter, {microns(found * UM)}"
+        )
 
 
-def draw_candidates(path: str | Path, diagnosis: Diagnosis) -> None:
-    """Evidence of library effects, each by itself added to the starting model.
+def draw_candidates(diagnosis: Diagnosis) -> Figure:
+    """Evidence of library effects, each added alone to the starting model.
 
-    Those that belong to a found effect, or cannot be told from it, bear its colour.
-
-    Args:
-        path: PNG.
-        diagnosis: With at least one candidate.
+    A found effect and those not distinguished from it have one colour.
     """
     shown = [c for c in diagnosis.candidates if np.isfinite(c.log_odds)][:MOST_BARS]
     drawn = figure(1.3 + ROW * max(len(shown), 3))
@@ -162,16 +157,16 @@ def draw_candidates(path: str | Path, diagnosis: Diagnosis) -> None:
         _beside(ax, value, at, 4.0, f"held-out {candidate.test_rms / UM:.3g} µm")
     chain = diagnosis.run.touches.chain
     ax.set_yticks(y, [_named(parse_effect(c.effect, chain)) for c in shown])
-    ax.set_xlabel("evidence for the effect by itself against none: powers of ten of the odds")
+    ax.set_xlabel("evidence for the single effect: powers of ten of the odds against no effect")
     ax.margins(x=0.14)
     ax.set_ylim(-0.7, len(shown) - 0.3)
     plain(ax, "x")
     _class_legend(drawn, diagnosis)
-    save(drawn, path)
+    return drawn
 
 
 def _classes(diagnosis: Diagnosis) -> list[tuple[Effect, tuple[str, ...], str]]:
-    """Every found effect with the names that it cannot be told from, and its colour."""
+    """Every found effect with the names not distinguished from it, and its colour."""
     out = []
     for k, step in enumerate(diagnosis.steps[1:]):
         if step.effect is not None:
@@ -182,7 +177,7 @@ def _classes(diagnosis: Diagnosis) -> list[tuple[Effect, tuple[str, ...], str]]:
 
 
 def _class_colour(diagnosis: Diagnosis, candidate: Candidate) -> str:
-    """Colour of the found effect that a candidate is, or cannot be told from."""
+    """Colour of the found effect that a candidate is, or is not distinguished from."""
     return next((c for _, names, c in _classes(diagnosis) if candidate.effect in names), NEUTRAL)
 
 
@@ -193,7 +188,7 @@ def _class_legend(drawn: Any, diagnosis: Diagnosis) -> None:
     handles = [
         Patch(
             color=colour,
-            label=effect_title(effect) + (" and what looks the same" if names[1:] else ""),
+            label=effect_title(effect) + (" and indistinguishable effects" if names[1:] else ""),
         )
         for effect, names, colour in classes
     ]
@@ -204,16 +199,10 @@ def _class_legend(drawn: Any, diagnosis: Diagnosis) -> None:
         )
 
 
-def draw_rivals(path: str | Path, confusion: ConfusionClass, colour: str = BLUE) -> None:
-    """A found effect against everything that explains the same touches, by its odds.
-
-    Args:
-        path: PNG.
-        confusion: The class of the effect.
-        colour: Of what cannot be told apart.
-    """
-    told = confusion.told_apart[: max(2, MOST_BARS - len(confusion.rivals))]
-    rows = [*confusion.rivals[:MOST_BARS], *told]
+def draw_rivals(confusion: ConfusionClass, colour: str = BLUE) -> Figure:
+    """A found effect against everything that explains the same touches, by its odds."""
+    apart = confusion.told_apart[: max(2, MOST_BARS - len(confusion.rivals))]
+    rows = [*confusion.rivals[:MOST_BARS], *apart]
     names = [_named(e) for e in (confusion.effect, *(r.effect for r in rows))]
     behind = np.array([0.0, *(max(r.log_odds, -CONFUSED) for r in rows)]) / TEN
     alike = 1 + min(len(confusion.rivals), MOST_BARS)
@@ -229,31 +218,24 @@ def draw_rivals(path: str | Path, confusion: ConfusionClass, colour: str = BLUE)
         _beside(ax, value, at, 7.0, f"overlap {100.0 * rival.overlap:.1f} %")
     ax.set_yticks(y, names)
     ax.set_xlabel(
-        "odds in favour of the first, powers of ten (shaded: below 1 : 100, not told apart)"
+        "odds in favour of the first, powers of ten (shaded: below 1 : 100, not distinguished)"
     )
     ax.margins(x=0.12)
     ax.set_ylim(-0.7, len(names) - 0.3)
     plain(ax, "x")
-    save(drawn, path)
+    return drawn
 
 
-def draw_effect(path: str | Path, fit: Fit, effect: Effect, colour: str = BLUE) -> None:
-    """One effect as the run shows it: its course, the touches it explains, and what is left.
-
-    Args:
-        path: PNG.
-        fit: The model with everything in it.
-        effect: As it stands in the fit.
-        colour: Of its course.
-    """
+def draw_effect(fit: Fit, effect: Effect, colour: str = BLUE) -> Figure:
+    """One effect in a run: its course, the touches it explains, and their residuals."""
     found, variable, quantity = shown_partial(partial(fit, effect))
     drawn = figure(3.9)
     left, right = drawn.subplots(1, 2, width_ratios=(1.35, 1.0))
     tested = np.ones(len(found.rows), dtype=bool)
     tested[: int(fit.used.sum())] = False
     for ax, y, title in (
-        (left, found.observed, "residual with the effect put back"),
-        (right, found.observed - found.explained, "residual with the effect in the model"),
+        (left, found.observed, "residual plus effect"),
+        (right, found.observed - found.explained, "residual"),
     ):
         _touches(ax, found, y, tested)
         ax.set_title(title, fontsize=9.5, loc="left", color=INK)
@@ -266,7 +248,7 @@ def draw_effect(path: str | Path, fit: Fit, effect: Effect, colour: str = BLUE) 
     right.set_ylim(0.5 * (low - high), 0.5 * (high - low))  # about zero, as large a scale
     left.set_ylabel(quantity)
     left.legend(fontsize=8, frameon=False)
-    save(drawn, path)
+    return drawn
 
 
 def shown_partial(found: Partial) -> tuple[Partial, str, str]:
@@ -297,7 +279,7 @@ def shown_partial(found: Partial) -> tuple[Partial, str, str]:
 
 
 def _limits(found: Partial) -> tuple[float, float]:
-    """Ends of a scale that holds the course and all but a few touches, and what is left besides."""
+    """Ends of a scale that holds the course and all but a few touches and residuals."""
     low, high = np.quantile(found.observed[found.shown], (0.003, 0.997))
     low, high = min(low, float(found.explained.min())), max(high, float(found.explained.max()))
     spread = 2.0 * float(np.quantile(np.abs(found.observed - found.explained)[found.shown], 0.99))

@@ -1,16 +1,20 @@
 """Picture of the form of one patch of the standard, as the touches show it."""
 
-from pathlib import Path
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.regression import BoolArray
-from matstd.report.style import DIVERGING, INK, figure, plain, robust_limit, save
+from matstd.report.style import DIVERGING, INK, figure, plain, robust_limit
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, columns
 from matstd.twin.units import UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 LEVELS = 15
 
@@ -20,14 +24,8 @@ def is_form(fit: Fit, effect: Effect) -> bool:
     return effect.kind == "artefact-form" and int(_on_patch(fit, effect).sum()) > 3
 
 
-def draw_form(path: str | Path, fit: Fit, effect: Effect) -> None:
-    """Form of a patch: touches on the fitted form, and what is left of them.
-
-    Args:
-        path: PNG.
-        fit: The model with the effect in it.
-        effect: The form of one feature, as it stands in the fit.
-    """
+def draw_form(fit: Fit, effect: Effect) -> Figure:
+    """Form of a patch: touches on the fitted form, and their residuals."""
     rows = _on_patch(fit, effect)
     touches = fit.run.touches
     explained = (columns([effect], touches) @ fit.theta[fit.of_effect(effect.name)])[rows] / UM
@@ -41,7 +39,7 @@ def draw_form(path: str | Path, fit: Fit, effect: Effect) -> None:
         levels = np.linspace(-limit, limit, LEVELS)
         axes[0].tricontourf(*place.T, explained, levels=levels, extend="both", alpha=0.75, **style)
     for ax, values, title in (
-        (axes[0], explained + left_over, "touches with the effect put back, on the fitted form"),
+        (axes[0], explained + left_over, "residual plus effect, on the fitted form"),
         (axes[1], left_over, "the same touches with the effect in the model"),
     ):
         marks = ax.scatter(*place.T, c=values, s=34.0, edgecolors=INK, linewidths=0.5, **style)
@@ -52,7 +50,7 @@ def draw_form(path: str | Path, fit: Fit, effect: Effect) -> None:
     axes[0].set_ylabel("across the patch in mm")
     bar = drawn.colorbar(marks, ax=list(axes), pad=0.02, shrink=0.9, extend="both")
     bar.set_label("deviation along the normal, µm", fontsize=8.5)
-    save(drawn, path)
+    return drawn
 
 
 def _on_patch(fit: Fit, effect: Effect) -> BoolArray:

@@ -1,8 +1,9 @@
 """Picture of a pattern without a name: a residual over one or two variables, beside pure chance."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,11 +21,13 @@ from matstd.report.style import (
     figure,
     plain,
     robust_limit,
-    save,
 )
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 from matstd.twin.units import UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 NEIGHBOURS = 14
 """Touches over which a map of two variables is averaged."""
@@ -32,24 +35,23 @@ NEIGHBOURS = 14
 BINS = 24
 
 
-def draw_pattern(path: str | Path, fit: Fit, found: Structure, rng: np.random.Generator) -> bool:
-    """What a residual does over the variables of a pattern, and the same residual shuffled.
+def draw_pattern(fit: Fit, found: Structure, rng: np.random.Generator) -> Figure | None:
+    """A residual over the variables of a pattern, and the same residual shuffled.
 
-    The second half is what the first would look like if there were nothing but noise of this size.
+    The shuffled half shows what noise of this size would look like.
 
     Args:
-        path: PNG.
         fit: The model whose residual it is.
         found: The pattern, of one or two variables.
         rng: Shuffles.
 
     Returns:
-        Whether there was something to draw: some tests name no variables of their own.
+        None where the pattern has no variable to draw over.
     """
     known = variables(fit.run.touches)
     known |= {k: v.astype(float) for k, v in groups(fit.run.touches).items()}
     if not 1 <= len(found.variables) <= 2 or not set(found.variables) <= set(known):
-        return False
+        return None
     rows, r, weight = _seen(fit, found.direction)
     names, x = _axes(found, {name: known[name][rows] for name in found.variables})
     word = "the normal" if found.direction == "normal" else found.direction
@@ -65,12 +67,11 @@ def draw_pattern(path: str | Path, fit: Fit, found: Structure, rng: np.random.Ge
         label = f"mean residual of {NEIGHBOURS} neighbours along {word}, µm"
         _maps(drawn, axes, x, [_map(x, values, weight) for values in both], label)
         axes[0].set_ylabel(names[1])
-    for ax, title in zip(axes, ("as measured", "shuffled: what chance makes"), strict=True):
+    for ax, title in zip(axes, ("as measured", "shuffled: pure chance"), strict=True):
         ax.set_xlabel(names[0])
         ax.set_title(title, fontsize=9.5, loc="left", color=INK)
         plain(ax)
-    save(drawn, path)
-    return True
+    return drawn
 
 
 def _axes(found: Structure, known: dict[str, Array]) -> tuple[list[str], Array]:

@@ -1,23 +1,22 @@
 """Pictures of a plan: where the standard is touched, and how the table turns meanwhile."""
 
-from pathlib import Path
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, FreeformPatch
 from matstd.probe_paths.plan import TouchPlan
-from matstd.report.style import BLUE, INK, RED, SOFT, figure, plain, save
+from matstd.report.style import BLUE, INK, RED, SOFT, figure, plain
 from matstd.twin.units import DEG
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def write_touches_picture(path: str | Path, plan: TouchPlan) -> None:
-    """Touched points on the standard seen from above and from the side, coloured by feature kind.
 
-    Args:
-        path: PNG.
-        plan: What is touched.
-    """
+def draw_touches(plan: TouchPlan) -> Figure:
+    """Touched points on the standard from above and from the side, coloured by kind of feature."""
     drawn = figure(4.4)
     top, side = drawn.subplots(1, 2, width_ratios=(1.0, 1.25))
     for ax, (i, j) in ((top, (0, 1)), (side, (0, 2))):
@@ -48,7 +47,7 @@ def write_touches_picture(path: str | Path, plan: TouchPlan) -> None:
     top.set_title("from above", loc="left")
     side.set_title("from the side", loc="left")
     side.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, frameon=False)
-    save(drawn, path)
+    return drawn
 
 
 def _outlines(ax: Any, plan: TouchPlan, i: int, j: int) -> None:
@@ -84,13 +83,8 @@ def _outlines(ax: Any, plan: TouchPlan, i: int, j: int) -> None:
         )
 
 
-def write_order_picture(path: str | Path, plan: TouchPlan) -> None:
-    """Rotary readings over the sequence of touches, with the side of every approach.
-
-    Args:
-        path: PNG.
-        plan: In the order of execution.
-    """
+def draw_order(plan: TouchPlan) -> Figure:
+    """Rotary readings over the sequence of touches, with the side of every approach."""
     axes = plan.chain.rotary_axes
     drawn = figure(1.0 + 1.5 * max(len(axes), 1))
     panels = np.atleast_1d(drawn.subplots(max(len(axes), 1), 1, sharex=True))
@@ -121,4 +115,4 @@ def write_order_picture(path: str | Path, plan: TouchPlan) -> None:
         panels[0].legend(
             loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, frameon=False
         )
-    save(drawn, path)
+    return drawn

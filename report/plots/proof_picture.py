@@ -1,23 +1,22 @@
 """Picture of the proof: volumetric error before and after, pose by pose."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from matstd.diagnosis.answer import Proof
-from matstd.report.style import BLUE, RED, SOFT, figure, plain, save, series
+from matstd.report.style import BLUE, RED, SOFT, figure, plain, series
 from matstd.twin.units import UM
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def write_proof_picture(path: str | Path, proofs: Sequence[Proof]) -> None:
-    """Distributions of |error| before and after, and after against its stated uncertainty.
 
-    Args:
-        path: PNG.
-        proofs: One a simulated machine.
-    """
+def draw_proof(proofs: Sequence[Proof]) -> Figure:
+    """Distributions of |error| before and after, and after against its stated uncertainty."""
     drawn = figure(4.0)
     left, right = drawn.subplots(1, 2, width_ratios=(1.5, 1.0))
     edges = np.geomspace(0.05, 1000.0, 81)
@@ -50,7 +49,7 @@ def write_proof_picture(path: str | Path, proofs: Sequence[Proof]) -> None:
     left.set_title(f"{len(proofs)} random machine{'s' * (len(proofs) > 1)}", loc="left")
     _uncertainty(right, proofs)
     plain(left)
-    save(drawn, path)
+    return drawn
 
 
 def _uncertainty(ax: Any, proofs: Sequence[Proof]) -> None:
@@ -64,6 +63,6 @@ def _uncertainty(ax: Any, proofs: Sequence[Proof]) -> None:
     ax.set_ylim(0.0, 101.0)
     ax.set_xlabel("unpredicted error over its stated standard uncertainty")
     ax.set_ylabel("poses in %")
-    ax.set_title("is the stated uncertainty honest?", loc="left")
+    ax.set_title("check of the stated uncertainty", loc="left")
     ax.legend(fontsize=8, loc="lower right", frameon=False)
     plain(ax)

@@ -21,12 +21,7 @@ _COLOURS = "viridis"
 
 
 def draw_reach(reach: PlacesInReach, chain: Chain, blank: Blank) -> Figure:
-    """What is reached by angle and travels, before anything is designed.
-
-    Args:
-        reach: Places, poses, what each touch is beyond.
-        blank: The blank.
-    """
+    """Places within reach by angle and travels, before design."""
     drawn = figure(7.6, layout=None)  # a constrained layout would draw everything twice
     drawn.subplots_adjust(0.07, 0.07, 0.97, 0.89, 0.24, 0.32)
     top, side, poses, limits = drawn.subplots(2, 2).ravel()
@@ -88,7 +83,7 @@ def _poses(drawn: Figure, axes: Axes, reach: PlacesInReach, chain: Chain) -> Non
 def _limits(axes: Axes, reach: PlacesInReach) -> None:
     """Share of all touches, every place at every pose, that each limit bars."""
     barred = reach.barred()
-    axes.set_title("what bars touches", loc="left")
+    axes.set_title("limits that prevent touches", loc="left")
     plain(axes, "x")
     if not barred:
         axes.axis("off")

@@ -1,8 +1,9 @@
 """Pictures of a residual as a sample: over every variable, and against the normal distribution."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,11 +20,13 @@ from matstd.report.style import (
     figure,
     plain,
     robust_limit,
-    save,
 )
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 from matstd.twin.units import UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 MOST_DRAWN = 4000
 """Touches that are drawn as points; means are always over all."""
@@ -36,16 +39,12 @@ def kept(n: int) -> IntArray:
     return np.unique(np.linspace(0, n - 1, min(n, MOST_DRAWN)).astype(int))
 
 
-def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[RankedVariable]) -> None:
+def draw_over_variables(fit: Fit, panels: Sequence[RankedVariable]) -> Figure:
     """Residual against variables: small multiples with one scale.
 
     Grey points are touches, blue ones means with their standard errors; the right-hand scale is in
     units of the stated uncertainty (the median one where rows differ). Means beyond three standard
     errors are red.
-
-    Args:
-        path: PNG.
-        panels: Some of `rank_variables(fit)`.
     """
     rows = fit.used
     r, weight = fit.residual[rows] / UM, 1.0 / fit.run.u[rows] ** 2
@@ -68,7 +67,7 @@ def draw_over_variables(path: str | Path, fit: Fit, panels: Sequence[RankedVaria
         row[0].set_ylabel("residual in µm", fontsize=8.5)
     last = [row[min(COLUMNS, len(panels) - k * COLUMNS) - 1] for k, row in enumerate(axes)]
     _normalised_scale(last, fit)
-    save(drawn, path)
+    return drawn
 
 
 def _panel(ax: Any, values: Array, r: Array, weight: Array, limit: float) -> None:
@@ -104,11 +103,10 @@ def _normalised_scale(axes: list[Any], fit: Fit) -> None:
         right.spines["right"].set_color(LINE)
 
 
-def draw_normal_plot(path: str | Path, fit: Fit, z: Array | None = None) -> None:
+def draw_normal_plot(fit: Fit, z: Array | None = None) -> Figure:
     """Histogram and normal plot of residuals in units of their uncertainty, outliers by line.
 
     Args:
-        path: PNG.
         z: Residuals over their standard uncertainty, (N,); None for `standardised(fit)`.
     """
     z = standardised(fit) if z is None else z
@@ -118,7 +116,7 @@ def draw_normal_plot(path: str | Path, fit: Fit, z: Array | None = None) -> None
     _normal_plot(right, fit, z)
     for ax in (left, right):
         plain(ax)
-    save(drawn, path)
+    return drawn
 
 
 def _histogram(ax: Any, z: Array, factor: float) -> None:
@@ -126,7 +124,7 @@ def _histogram(ax: Any, z: Array, factor: float) -> None:
     edges = np.linspace(-edge, edge, 46)
     ax.hist(np.clip(z, -edge, edge), edges, color=BLUE, alpha=0.35, density=True)
     x = np.linspace(-edge, edge, 400)
-    for sd, style, word in ((1.0, "-", "noise as stated"), (factor, "--", "noise as found")):
+    for sd, style, word in ((1.0, "-", "stated noise"), (factor, "--", "estimated noise")):
         density = np.exp(-0.5 * (x / sd) ** 2) / (sd * np.sqrt(2.0 * np.pi))
         ax.plot(x, density, style, color=INK, lw=1.2, label=word)
     ax.set_xlabel("residual over its stated standard uncertainty")
@@ -152,7 +150,7 @@ def _normal_plot(ax: Any, fit: Fit, z: Array) -> None:
         ax.plot(expected[gross], at, "D", ms=5.0, color=RED, mfc="none", clip_on=False)
         _list_gross(ax, fit)
     ax.set_ylim(-edge, edge)
-    ax.set_xlabel("expected of a normal distribution")
+    ax.set_xlabel("expected for a normal distribution")
     ax.set_ylabel("residual over its stated standard uncertainty")
 
 

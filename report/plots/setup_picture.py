@@ -1,24 +1,23 @@
 """Where standard, clamps and probe stand: the drawing of a set-up sheet."""
 
-from pathlib import Path
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from matstd.artefact.body import Plate
 from matstd.artefact.reach import table_face
 from matstd.probe_paths.plan import TouchPlan
-from matstd.report.style import BLUE, INK, RED, SOFT, figure, plain, save
+from matstd.report.style import BLUE, INK, RED, SOFT, figure, plain
 from matstd.twin.frames import Array, apply, inverse
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
-def write_setup_picture(path: str | Path, plan: TouchPlan) -> None:
-    """Table, standard and clamps from above, and the probe from the side.
 
-    Args:
-        path: PNG.
-        plan: What is set up.
-    """
+def draw_setup(plan: TouchPlan) -> Figure:
+    """Table, standard and clamps from above, and the probe from the side."""
     drawn = figure(4.6)
     top, side = drawn.subplots(1, 2, width_ratios=(1.5, 1.0))
     T_face_table = inverse(table_face(plan.setup.T_table_artefact))
@@ -53,7 +52,7 @@ def write_setup_picture(path: str | Path, plan: TouchPlan) -> None:
     top.set_title("from above, rotary axes at zero", loc="left")
     plain(top)
     _probe(side, plan)
-    save(drawn, path)
+    return drawn
 
 
 def _outline(plate: Plate) -> Array:

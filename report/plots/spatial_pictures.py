@@ -1,7 +1,8 @@
 """Pictures of a residual in space: on the standard, and table pose by table pose."""
 
-from pathlib import Path
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,11 +21,13 @@ from matstd.report.style import (
     figure,
     plain,
     robust_limit,
-    save,
 )
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 from matstd.twin.units import DEG, UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 EXTENT = 1.0
 """Touched points closer together than this (mm) are a place, not a standard."""
@@ -41,15 +44,14 @@ def is_spread(touches: Touches) -> bool:
     return bool(np.sort(np.ptp(touches.point, axis=0))[1] > EXTENT)
 
 
-def draw_on_standard(path: str | Path, fits: tuple[tuple[str, Fit], ...]) -> None:
+def draw_on_standard(fits: tuple[tuple[str, Fit], ...]) -> Figure:
     """Touched points of the standard in space, coloured by residual on one common scale.
 
     Args:
-        path: PNG.
         fits: One model, seen in space and from above; or two models of the same run with a title
             each, such as before and after. What lies in a plane is seen from above alone.
     """
-    drawn = figure(4.2, layout=None)  # what lays out by itself cuts axes in space
+    drawn = figure(4.2, layout=None)  # a constrained layout cuts axes in space
     limit = robust_limit(np.concatenate([f.residual[f.used] / UM for _, f in fits]))
     lies = bool(np.ptp(fits[0][1].run.touches.point[:, 2]) < EXTENT)  # a bed or plate is all seen
     for (title, fit), left in zip(fits, (0.0, 0.435), strict=False):
@@ -69,7 +71,7 @@ def draw_on_standard(path: str | Path, fits: tuple[tuple[str, Fit], ...]) -> Non
     if any(f.gross.rows.any() for _, f in fits):
         handles = drawn.axes[0].get_legend_handles_labels()
         drawn.legend(*handles, loc="lower left", fontsize=8.5, frameon=False)
-    save(drawn, path)
+    return drawn
 
 
 def _from_above(
@@ -128,7 +130,7 @@ def _points(ax: Any, fit: Fit, limit: float, p: Array) -> Any:
 
 
 def _standing(ax: Any, touches: Touches) -> None:
-    """Equal scales, a view, and axes that do not shout."""
+    """Equal scales, a view, and unobtrusive axes."""
     low, high = touches.point.min(axis=0), touches.point.max(axis=0)
     size = np.maximum(high - low, 0.12 * float((high - low).max()))
     middle = 0.5 * (low + high)
@@ -153,13 +155,8 @@ def _few_ticks() -> Any:
     return MaxNLocator(5)
 
 
-def draw_pose_arrows(path: str | Path, fit: Fit) -> None:
-    """Mean residual vector of every table pose: an arrow at its rotary readings, and in order.
-
-    Args:
-        path: PNG.
-        fit: A fit of which `has_poses` is true.
-    """
+def draw_pose_arrows(fit: Fit) -> Figure:
+    """Mean residual vector of every table pose: an arrow at its rotary readings, and in order."""
     rows, vectors, spread = pose_vectors(fit)
     drawn = figure(4.4)
     left, right = drawn.subplots(1, 2, width_ratios=(1.0, 1.15))
@@ -181,7 +178,7 @@ def draw_pose_arrows(path: str | Path, fit: Fit) -> None:
     right.set_ylabel("mean residual in machine directions, µm")
     right.legend(fontsize=8, frameon=False, ncols=3)
     plain(right)
-    save(drawn, path)
+    return drawn
 
 
 def _where(touches: Touches, rows: IntArray) -> tuple[Array, Array, str, str]:
@@ -197,7 +194,7 @@ def _where(touches: Touches, rows: IntArray) -> tuple[Array, Array, str, str]:
     moved = [k for k in known if np.ptp(k[1]) > 1e-6][:2]
     if not moved:
         number = np.arange(1.0, len(rows) + 1.0)
-        moved = [("all at one place", np.zeros(len(rows))), ("table pose, in order", number)]
+        moved = [("single place", np.zeros(len(rows))), ("table pose, in order", number)]
     (y_name, y), (x_name, x) = (moved[0], moved[-1])
     return x, y, x_name, y_name
 
@@ -230,7 +227,7 @@ def _arrows(drawn: Any, ax: Any, fit: Fit, rows: IntArray, vectors: Array, sure:
     title = f"longest arrow: {length:.2g} µm"
     if not sure.all():
         ax.plot(x[~sure], y[~sure], "o", ms=4.5, mfc="none", color=SOFT)
-        title += "; circle: too few touches for one"
+        title += "; circle: too few touches"
     ax.set_title(title, fontsize=9, loc="left", color=INK)
     ax.set_xlabel(x_name)
     ax.set_ylabel(y_name)

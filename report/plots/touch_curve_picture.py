@@ -13,16 +13,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _MARKERS = "osD^vPX*"
-_NOT_A_BODY = "ideal"  # first word of scatter that nobody can touch: dashed
+_NOT_A_BODY = "ideal"  # first word of scatter without a body: dashed
 
 
 def draw_touch_curves(curves: Sequence[TouchCurve], noise: float) -> Figure:
-    """Curves on logarithmic scales, the value at the designed number marked.
-
-    Args:
-        curves: One an artefact, the standard first: it is drawn heavier.
-        noise: Standard deviation of one touch, mm.
-    """
+    """Curves on logarithmic scales, the value at the designed number marked."""
     drawn = figure(4.4)
     left, right = drawn.subplots(1, 2, sharey=True)
     for axes, title, user in ((left, "your workspace", True), (right, "probed volume", False)):
@@ -33,7 +28,7 @@ def draw_touch_curves(curves: Sequence[TouchCurve], noise: float) -> Figure:
         axes.grid(which="both", color=LINE, lw=0.6)
         axes.spines[["top", "right"]].set_visible(False)
         _plain_numbers(axes)
-    left.set_ylabel("tool point not predicted in µm rms")
+    left.set_ylabel("unpredicted tool point error in µm rms")
     handles, labels = left.get_legend_handles_labels()
     drawn.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
     return drawn

@@ -1,15 +1,20 @@
-"""Picture of a machine over several runs: what changed, and how well each run is known."""
+"""Picture of a machine over several runs: changes, and how well each run is predicted."""
+
+from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from matstd.diagnosis.answer import Trend
 from matstd.diagnosis.geometry import GeometryRow
 from matstd.report.geometry import quantity_name, shown_unit
-from matstd.report.style import BLUE, INK, RED, figure, plain, save, series
+from matstd.report.style import BLUE, INK, RED, figure, plain, series
 from matstd.twin.units import UM
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 ACROSS = 3
 """Quantities side by side."""
@@ -18,13 +23,10 @@ HEIGHT = 2.3
 """Of one row of pictures, inch."""
 
 
-def draw_trend(
-    path: str | Path, trend: Trend, rows: Sequence[tuple[GeometryRow, Sequence[bool]]]
-) -> None:
+def draw_trend(trend: Trend, rows: Sequence[tuple[GeometryRow, Sequence[bool]]]) -> Figure:
     """Some quantities over the runs with their standard uncertainties, then the errors of each run.
 
     Args:
-        path: PNG to be written.
         trend: Runs with their figures.
         rows: Quantities to draw, one picture each, with whether each changed into every run but the
             first.
@@ -50,7 +52,7 @@ def draw_trend(
     for k, (label, values) in enumerate(errors.items()):
         shown = [np.nan if v is None else v / UM for v in values]
         axes.plot(range(len(names)), shown, "s-", color=series(k), lw=1.0, ms=4, label=label)
-    axes.set_title("plain error of what was left out", fontsize=9, color=INK)
+    axes.set_title("error of poses and runs left out", fontsize=9, color=INK)
     axes.set_ylabel("µm rms")
     axes.set_ylim(bottom=0.0)
     axes.legend(frameon=False, fontsize=8)
@@ -60,4 +62,4 @@ def draw_trend(
         plain(axes)
     for axes in every[len(rows) + 1 :]:
         axes.set_visible(False)
-    save(drawn, path)
+    return drawn

@@ -1,4 +1,4 @@
-"""Playback of programs: a page that turns table and probe as the text of the programs says.
+"""Playback of programs: a page that moves table and probe by the text of the programs.
 
 The page stands alone: positions of every body between which it goes on evenly, and a few lines that
 draw them. Poses come from the kinematics of the twin, so that the page knows no machine.

@@ -95,7 +95,7 @@ def _face(patch: FreeformPatch) -> Any:
 
 
 def _add_labels(plotter: Any, standard: Standard, eye: Array) -> None:
-    """Names beside whatever faces the eye, above it in the picture."""
+    """Names above the faces that are visible, and beside balls and plane."""
     right, up = _picture_axes(eye)
     places, names = [], []
     for patch in standard.patches:

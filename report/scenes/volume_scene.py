@@ -29,7 +29,7 @@ PIXELS = 900
 """Height and width of one rendered scene."""
 
 COLOURS = "viridis"
-"""Even in lightness, and told apart without red and green."""
+"""Even in lightness, and readable without red and green."""
 
 _VIEW = (0.62, -0.74, 0.46)  # towards the eye: right of and in front of the machine, from above
 _WIDEST = 5.0  # inch, of one scene

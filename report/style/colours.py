@@ -12,8 +12,8 @@ _SERIES = (
     BLUE, ORANGE, GREEN, PURPLE, RED, "#56b4e9",
     "#8c564b", "#999933", "#44546a", "#e78ac3", "#117733", "#b2abd2",
 )  # fmt: skip
-"""The first six are Okabe and Ito's, which colour-blind readers tell apart; more than twelve no
-reader tells apart."""
+"""The first six are Okabe and Ito's, distinguishable by colour-blind readers; more than twelve
+are not distinguishable."""
 
 DIVERGING = "RdBu_r"
 """Map for signed values: red outside, blue inside, white nothing."""

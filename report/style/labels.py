@@ -29,7 +29,7 @@ def axis_of(column: str, values: Array) -> tuple[str, Array]:
         ('B in °', 'time in h')
     """
     if column == "time_s":
-        # two days are better told in hours than in days: the axis has room for two digits
+        # two days are clearer in hours than in days: the axis has room for two digits
         factor, unit = time_unit(min(float(np.max(np.abs(values), initial=1.0)), 86400.0))
         return f"time in {unit}", values / factor
     unit = unit_of(column).replace("deg", "°")

@@ -39,7 +39,7 @@ def save(drawn: Figure, path: str | Path) -> None:
 
 
 def nothing(text: str) -> Figure:
-    """A small figure that says why there is nothing to draw."""
+    """A small figure with the reason why there is nothing to draw."""
     empty = figure(1.0)
     empty.text(0.5, 0.5, text, ha="center", va="center", color=INK)
     return empty

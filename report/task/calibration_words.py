@@ -1,10 +1,10 @@
-"""What a calibration found, for the console."""
+"""Results of a calibration, for the console."""
 
 from collections.abc import Sequence
 
 from matstd.artefact.body import Verdict
 from matstd.artefact.certify import Calibrated, CommonCause
-from matstd.report.numbers import digits
+from matstd.report.numbers import digits, um
 from matstd.twin.units import T_REF, UM, URAD
 
 PPM = 1e-6
@@ -14,18 +14,18 @@ _WARM = 15.0  # K about 20 degC, within which pieces are measured
 
 
 def calibration_lines(found: Calibrated) -> list[str]:
-    """What moved most, every feature with its uncertainty, what was taken for granted."""
+    """The largest deviation, every feature with its uncertainty, assumptions."""
     known = found.standard.known
     assert known is not None
     worst = max(found.moved, key=lambda name: found.moved[name])
     lines = [
         f"{len(known.features)} features of '{found.standard.name}' from {known.source}; "
-        f"farthest from the design is {worst}, by {_um(found.moved[worst])}"
+        f"{worst} deviates most from the design, by {_um(found.moved[worst])}"
     ]
     for name, feature in known.features.items():
         text = (
             f"{name}: {feature.points} points, up to {_um(found.moved[name])} off the design, "
-            f"{_um(found.left[name])} rms left; u of its place {_um(feature.u)}"
+            f"residual {_um(found.left[name])} rms; u of its position {_um(feature.u)}"
         )
         if feature.u_form:
             tilt = f"{digits(feature.u_tilt / URAD, 2)} µrad"
@@ -45,24 +45,24 @@ def verdict_rows(verdicts: Sequence[Verdict]) -> list[tuple[str, ...]]:
 
 
 def refusal_sentence(verdicts: Sequence[Verdict], causes: Sequence[CommonCause]) -> str:
-    """What does not conform, what it has in common, and what to do."""
+    """Nonconforming characteristics, their common cause, and what to do."""
     refused = [v for v in verdicts if v.is_refused]
     worst = sorted(refused, key=lambda v: v.tolerance / abs(v.deviation))
     named = [f"{v.feature} {v.characteristic} {_um(v.deviation)} ({_um(v.tolerance)} allowed)"
              for v in worst[:_NAMED]]  # fmt: skip
     more = f" and {len(refused) - _NAMED} more" if len(refused) > _NAMED else ""
-    why = "; ".join(map(_cause, causes)) or "measure again, or make the feature again"
+    why = "; ".join(map(_cause, causes)) or "measure again, or remake the feature"
     return (
         f"{len(refused)} of {len(verdicts)} characteristics do not conform to the drawing: "
-        f"{', '.join(named)}{more}; {why}; nothing is written, --accept takes the piece as it is"
+        f"{', '.join(named)}{more}; {why}; nothing is written; --accept accepts the piece as it is"
     )
 
 
 def verdict_lines(verdicts: Sequence[Verdict]) -> list[str]:
-    """What was accepted all the same, and what cannot be decided."""
+    """Characteristics accepted in spite of nonconformity, and undecided ones."""
     refused = [f"{v.feature} {v.characteristic}" for v in verdicts if v.is_refused]
     open_ = [f"{v.feature} {v.characteristic}" for v in verdicts if v.state == "cannot be decided"]
-    lines = [f"accepted although not conforming: {', '.join(refused)}"] if refused else []
+    lines = [f"accepted although nonconforming: {', '.join(refused)}"] if refused else []
     if open_:
         lines.append(f"cannot be decided with this uncertainty: {', '.join(open_)}")
     return lines
@@ -73,9 +73,9 @@ def _cause(cause: CommonCause) -> str:
     if cause.kind == "radius":
         way = "large" if cause.value > 0.0 else "small"
         faces = (
-            "the faces stand out as far: the radius of the tip is"
+            "the faces deviate by the same amount: the radius of the tip is"
             if cause.on_faces
-            else "the faces do not follow: balls of another diameter, or the radius of the tip is"
+            else "the faces do not: balls of another diameter, or the radius of the tip is"
         )
         return (
             f"all radii are {_um(abs(cause.value))} too {way}, to within {_um(cause.spread)}, and "
@@ -92,4 +92,4 @@ def _cause(cause: CommonCause) -> str:
 
 
 def _um(value: float) -> str:
-    return f"{digits(value / UM, 2)} µm"
+    return um(value, 2)

@@ -1,4 +1,4 @@
-"""What a standard is made of, in words."""
+"""The material of a standard, in words."""
 
 from matstd.artefact.body import Material
 from matstd.artefact.layout import SOFT
@@ -6,11 +6,11 @@ from matstd.twin.units import GPA
 
 
 def modulus_words(material: Material) -> str:
-    """The modulus that stiffness and sag rest on, or that there is none."""
+    """Young's modulus, as used for stiffness and sag."""
     if material.modulus is None:
         return (
-            f"unknown: no modulus is stated of '{material.name}'; state material.modulus_MPa. "
-            f"Posts are drawn for {SOFT / GPA:g} GPa, no sag is taken off"
+            f"unknown: no modulus is stated for '{material.name}'; state material.modulus_MPa. "
+            f"Posts are designed for {SOFT / GPA:g} GPa, sag is not corrected"
         )
     return (
         f"{material.modulus / GPA:g} GPa, Poisson's ratio {material.poisson:g} of "

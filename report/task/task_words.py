@@ -1,28 +1,27 @@
 """Budgets of a measuring task as sentences and as rows of a table."""
 
 from collections.abc import Mapping
-from typing import Any
 
 from matstd.diagnosis.task import LEVEL, TaskUncertainty, Visits, guarded
-from matstd.report.numbers import digits, percent
+from matstd.report.numbers import digits, percent, plural, um
 from matstd.twin.units import UM
 
 FEW_VISITS = 10
 """Cycles that ISO 15530-3 asks for at least."""
 
 FEW_DOF = 5.0
-"""Degrees of freedom below which U owes a quarter of its size to what is not known of it."""
+"""Degrees of freedom below which a quarter of U or more is due to its own uncertainty."""
 
 
 def task_lines(
     budgets: Mapping[str, TaskUncertainty], tolerance: float | None, visits: Visits
 ) -> list[str]:
-    """The budgets, what they leave of a tolerance, and what has to be known of them.
+    """The budgets, the conformity limits of a tolerance, and the limits of validity.
 
     Args:
         budgets: By what results are corrected with.
         tolerance: Width of the zone, mm; None for none.
-        visits: That they rest upon, for what was left out.
+        visits: The measurements.
     """
     lines = [_budget_sentence(name, one) for name, one in budgets.items()]
     if tolerance is not None:
@@ -30,87 +29,79 @@ def task_lines(
     one = next(iter(budgets.values()))
     if one.faces == 1:
         lines.append(
-            "one face: U holds for workpieces where it stood; how the machine's errors differ "
-            "elsewhere is not in it"
+            "only one face: U holds for workpieces at its place and does not include how the "
+            "errors of the machine differ elsewhere"
         )
     if one.poses == 1:
-        lines.append("one table pose: U holds at it; what turning the table changes is not in it")
+        lines.append(
+            "only one table pose: U holds at this pose and does not include what turning the "
+            "table changes"
+        )
     if (few := min(budgets.values(), key=lambda b: b.dof)).dof < FEW_DOF:
         lines.append(
-            f"{_count(one.faces, 'face')}, {_count(one.poses, 'table pose')} and {one.visits} "
-            f"visits hardly tell how far errors differ, so k is {digits(few.k)}; more of them make "
-            "U smaller"
+            f"{plural(one.faces, 'face')}, {plural(one.poses, 'table pose')} and "
+            f"{one.visits} visits hardly determine how much the errors differ, so k is "
+            f"{digits(few.k)}; more of them reduce U"
         )
     if one.visits < FEW_VISITS:
         lines.append(
             f"{one.visits} visits; ISO 15530-3 asks for {FEW_VISITS} or more on different days, "
-            "the standard clamped anew"
+            "with the standard clamped anew"
         )
     if one.u_w == 0.0:
         lines.append(
-            "nothing is stated of the workpieces, u_w is 0: their form, roughness and expansion "
-            "are not in U ([workpiece] of the task)"
+            "workpiece scatter is not included in U (u_w is 0): state form, roughness and "
+            "expansion of the workpieces under [workpiece] in the task file"
         )
     if visits.lost:
-        lines.append(f"{visits.lost} places that not every visit has were left out")
+        lines.append(f"{plural(visits.lost, 'place')} not measured in every visit: left out")
     if visits.gross:
-        lines.append(f"{visits.gross} places with a gross error in some visit were left out")
+        lines.append(f"{plural(visits.gross, 'place')} with a gross error in a visit: left out")
     return lines
 
 
 def _budget_sentence(name: str, one: TaskUncertainty) -> str:
-    """The expanded uncertainty with everything that it is made of."""
+    """The expanded uncertainty with its contributions."""
     return (
-        f"{name}: U = {_um(one.U)} ({percent(LEVEL)}, k = {digits(one.k)}, "
+        f"{name}: U = {um(one.U)} ({percent(LEVEL)}, k = {digits(one.k)}, "
         f"{digits(one.dof, 2)} degrees of freedom) for results corrected by b = "
-        f"{one.bias / UM:+z.2f} µm, {_um(one.U_uncorrected)} for others; u_cal {_um(one.u_cal)}, "
-        f"u_p {_um(one.u_p)}, u_b {_um(one.u_b)}, u_w {_um(one.u_w)}"
+        f"{one.bias / UM:+z.2f} µm, {um(one.U_uncorrected)} without this correction; u_cal "
+        f"{um(one.u_cal)}, u_p {um(one.u_p)}, u_b {um(one.u_b)}, u_w {um(one.u_w)}"
     )
 
 
 def decision_sentence(name: str, one: TaskUncertainty, tolerance: float) -> str:
-    """What may be said of a workpiece by the rule of ISO 14253-1."""
+    """Limits of conformity and nonconformity by the rule of ISO 14253-1."""
     zone = guarded(tolerance, one.u, one.dof)
-    told = f"{name}, tolerance {_um(tolerance)} (± {digits(0.5 * tolerance / UM)} µm): "
-    beyond = f"beyond ± {_um(zone.rejected)} nonconformity"
+    head = f"{name}, tolerance {um(tolerance)} (± {um(0.5 * tolerance)}): "
+    beyond = f"nonconformity is proved beyond ± {um(zone.rejected)}"
     if zone.accepted <= 0.0:
-        return f"{told}no deviation proves conformity, {beyond} (ISO 14253-1)"
+        return f"{head}conformity cannot be proved, {beyond} (ISO 14253-1)"
     return (
-        f"{told}corrected deviations within ± {_um(zone.accepted)} prove conformity, {beyond} "
-        f"(ISO 14253-1); {percent(zone.share)} of the tolerance is left"
+        f"{head}conformity is proved for corrected deviations within ± {um(zone.accepted)}, "
+        f"{beyond} (ISO 14253-1); {percent(zone.share)} of the tolerance remains"
     )
 
 
-def budget_rows(budgets: Mapping[str, TaskUncertainty]) -> list[dict[str, Any]]:
-    """Rows of the table of budgets, µm."""
+def budget_rows(budgets: Mapping[str, TaskUncertainty]) -> list[list[str]]:
+    """Rows of the table of budgets: results, b, u_cal, u_p, u_b, u_w, k, dof, U twice; µm."""
     return [
-        {
-            "name": name,
-            "b": f"{one.bias / UM:+z.2f}",
-            "u_cal": digits(one.u_cal / UM),
-            "u_p": digits(one.u_p / UM),
-            "u_b": digits(one.u_b / UM),
-            "u_w": digits(one.u_w / UM),
-            "k": digits(one.k),
-            "dof": digits(one.dof, 2),
-            "U": digits(one.U / UM),
-            "U_uncorrected": digits(one.U_uncorrected / UM),
-        }
+        [
+            name,
+            f"{one.bias / UM:+z.2f}",
+            *(digits(u / UM) for u in (one.u_cal, one.u_p, one.u_b, one.u_w)),
+            digits(one.k),
+            digits(one.dof, 2),
+            digits(one.U / UM),
+            digits(one.U_uncorrected / UM),
+        ]
         for name, one in budgets.items()
     ]
 
 
 def measured_sentence(one: TaskUncertainty) -> str:
-    """How much a budget rests upon."""
+    """The measurements on which a budget rests."""
     return (
-        f"{one.places} places on {_count(one.faces, 'face')} at {_count(one.poses, 'table pose')} "
-        f"in {one.visits} visits"
+        f"{one.places} places on {plural(one.faces, 'face')} at "
+        f"{plural(one.poses, 'table pose')} in {one.visits} visits"
     )
-
-
-def _count(number: int, what: str) -> str:
-    return f"{number} {what}" if number == 1 else f"{number} {what}s"
-
-
-def _um(value: float) -> str:
-    return f"{digits(value / UM)} µm"

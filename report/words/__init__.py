@@ -1,23 +1,27 @@
-"""Sentences made from results, for pages and for the console; nothing parses them.
+"""Sentences made from results, for pages and for the console; nothing parses them."""
 
-A module for each room below: what a result says in numbers and names is told here in words with
-units, values with their uncertainty.
-"""
-
-from matstd.report.words.artefact_words import comparison_remarks, criterion_words
-from matstd.report.words.design_words import best_rival, design_lines, proof_line, verdict_of_design
+from matstd.report.words.design_words import (
+    best_rival,
+    comparison_remarks,
+    criterion_words,
+    design_lines,
+    identification_lines,
+    proof_line,
+    verdict_of_design,
+)
 from matstd.report.words.diagnosis_words import (
     comparison_sentence,
+    figures,
     learnt_lines,
     promise_sentence,
     region_words,
     scanned_sentence,
     sizes,
+    stated_noise,
     structure_words,
     values,
     verdict_sentence,
 )
-from matstd.report.words.open_words import microns, stated_noise
 from matstd.report.words.probe_words import ball_lines, located_lines
 from matstd.report.words.remark_words import remark_sentence
 from matstd.report.words.sensitivity_words import (
@@ -36,9 +40,10 @@ __all__ = [
     "criterion_words",
     "design_lines",
     "dominant_words",
+    "figures",
+    "identification_lines",
     "learnt_lines",
     "located_lines",
-    "microns",
     "place_words",
     "promise_sentence",
     "proof_line",

@@ -1,88 +1,107 @@
-"""What is said of a design: what the standard leaves unknown of the machine, and what others leave.
+"""Sentences on a design: what remains unknown of the machine after its touches, and after others.
 
-The user's workspace comes first, because that is where parts are made; the probed volume, the box
-that the ball reaches on the standard, comes second and is named as such.
+The user's workspace comes first, because parts are made there. The probed volume, the box that the
+ball reaches on the standard, comes second.
 """
 
 from collections.abc import Mapping
 
-from matstd.artefact.compare import Rival, WorstRegions
+import numpy as np
+
+from matstd.artefact.compare import ERROR, RISK, WANTED, Rival, WorstRegions
 from matstd.artefact.place import Placement
+from matstd.artefact.worth import CriterionOptions
 from matstd.diagnosis.answer import Proof
 from matstd.diagnosis.fit import Fit
-from matstd.report.numbers import digits
-from matstd.report.words.artefact_words import blind_spots, identification_sentence, proof_sentence
+from matstd.report.numbers import digits, percent, um
 from matstd.twin.numbers import rms
-from matstd.twin.units import DEG, UM
+from matstd.twin.units import DEG
 from matstd.twin.words import listed
 
-COVERED, FAR = 0.5, 3.0
-"""Least share of the workspace of an axis that touches read for nothing to be said; where the
-workspace is known so many times worse than the probed volume, nearly all of it has to be read."""
+_CRITERIA = {
+    "I": "mean variance of the predicted tool point over probed volume and workspace",
+    "G": "largest variance of the predicted tool point at any pose of probed volume and workspace",
+    "D": "volume of the joint uncertainty of the parameters, in units of their expected sizes",
+    "A": "mean variance of the parameters, in units of their expected sizes",
+    "E": "variance of the least well determined error pattern, as it moves the tool point",
+}
 
-_NEARLY_ALL = 0.9
+_NAMED = 4  # effects of low power that are named
 
-AT_20 = "That holds for a standard at 20 °C, or corrected by its known temperature."
-"""What every figure of a design supposes: 1 K of steel is 3 µm over 300 mm."""
+COVERED, NEARLY_ALL, FAR = 0.5, 0.9, 3.0
+"""Share of the workspace of an axis below which the touches do not cover it: half, or nearly all
+where the workspace is known so many times worse than the probed volume."""
+
+AT_20 = "This holds for a standard at 20 °C, or corrected with its known temperature."
+"""Condition of every figure of a design: 1 K of steel is 3 µm over 300 mm."""
 
 EQUAL = 1.05
-"""Ratio of two predicted errors up to which they are called equal: no user would notice it."""
+"""Ratio up to which two predicted errors count as equal: no user would notice the difference."""
+
+
+def criterion_words(wanted: CriterionOptions) -> str:
+    """Criterion by which the touches were chosen."""
+    words = [_CRITERIA[wanted.name]]
+    if wanted.robust_machines:
+        which = (
+            "" if wanted.robust_share == 1.0 else f"the worst {percent(wanted.robust_share)} of "
+        )
+        words.append(f"averaged over {which}{wanted.robust_machines} random machines")
+    if wanted.potential and wanted.name == "D":
+        words.append("together with the effects of the library")
+    elif wanted.potential:
+        words.append(
+            f"with a weight of {percent(wanted.potential)} for the visibility of library effects"
+        )
+    return ", ".join(words)
 
 
 def best_rival(placement: Placement) -> Rival | None:
-    """The other artefact that somebody could build and that leaves least in the workspace."""
+    """The other artefact that can be built and has the smallest error in the workspace."""
     others = [r for r in placement.rivals if r is not placement.own and r.body is not None]
     return min(others, key=lambda r: r.rms_user, default=None)
 
 
 def verdict_of_design(placement: Placement, workspace: Mapping[str, tuple[float, float]]) -> str:
-    """What the standard leaves in the user's workspace, beside the best rival.
-
-    Said as well: axes of which the touches read only a small part.
+    """Error that remains in the user's workspace, beside the best rival, and axes not covered.
 
     Args:
         placement: Standard, touches, rivals.
         workspace: Smallest and largest reading by axis, mm or rad.
     """
-    told = [_left_unknown(placement), _extrapolated(placement, workspace), AT_20]
-    return " ".join(filter(None, told))
+    words = [_remaining(placement), _extrapolated(placement, workspace), AT_20]
+    return " ".join(filter(None, words))
 
 
-def _left_unknown(placement: Placement) -> str:
+def _remaining(placement: Placement) -> str:
     own, rival = placement.own, best_rival(placement)
     text = (
-        f"After probing the {own.name}, {_um(own.rms_user)} rms of the volumetric error stay "
-        f"unknown in your workspace"
+        f"After probing the {own.name}, the tool point is known to {um(own.rms_user)} rms in your "
+        "workspace"
     )
     if rival is None:
         return f"{text} (predicted)."
-    ratio = rival.rms_user / own.rms_user
+    ratio, left = rival.rms_user / own.rms_user, um(rival.rms_user)
     if ratio >= EQUAL:
         return (
-            f"{text}; the best other artefact, {rival.name}, would leave {_um(rival.rms_user)}, "
+            f"{text}; the best other artefact, {rival.name}, would leave {left}, "
             f"{digits(ratio, 2)} times as much (both predicted)."
         )
     if ratio > 1.0 / EQUAL:
-        return (
-            f"{text}, as much as after probing the best other artefact, {rival.name}: "
-            f"{_um(rival.rms_user)}."
-        )
+        return f"{text}; the best other artefact, {rival.name}, is equal: {left} (both predicted)."
     return (
-        f"{text}. That is not the best there: {rival.name} would leave {_um(rival.rms_user)}, "
-        f"{digits(1.0 / ratio, 2)} times less."
+        f"{text}. Another artefact is better there: {rival.name} would leave {left}, "
+        f"{digits(1.0 / ratio, 2)} times less (both predicted)."
     )
 
 
 def _extrapolated(placement: Placement, workspace: Mapping[str, tuple[float, float]]) -> str:
-    """Which axes the touches read over a small part of the workspace; empty for none.
-
-    Beyond its touches a model only carries on the shapes that were assumed for the errors.
-    """
+    """Axes whose workspace the touches do not cover; empty for none."""
     if not workspace:
         return ""
     reach, parts = placement.criterion.reach, []
     q, own = reach.readings(placement.requests), placement.own
-    least = _NEARLY_ALL if own.rms_user > FAR * own.rms else COVERED
+    least = NEARLY_ALL if own.rms_user > FAR * own.rms else COVERED
     for name, (low, high) in workspace.items():
         link, read = reach.chain.link(name), q[:, reach.chain.axis_index(name)]
         first, last = max(low, float(read.min())), min(high, float(read.max()))
@@ -93,44 +112,120 @@ def _extrapolated(placement: Placement, workspace: Mapping[str, tuple[float, flo
     if not parts:
         return ""
     return (
-        f"The touches read only {listed(parts)}: beyond, the model extrapolates, by the shapes "
-        "of errors that were assumed. A narrower workspace, or further set-ups, would tell more."
+        f"The touches cover only {listed(parts)}. Beyond these readings the model extrapolates "
+        "with the assumed shapes of the errors; a smaller workspace or further set-ups reduce the "
+        "uncertainty."
     )
 
 
-def design_lines(
-    placement: Placement,
-    workspace: Mapping[str, tuple[float, float]],
-    worst: WorstRegions | None = None,
-) -> list[str]:
-    """The verdict, what is left in the probed volume, what faces cost or gain, what they see."""
+def design_lines(placement: Placement, workspace: Mapping[str, tuple[float, float]]) -> list[str]:
+    """The verdict, the error in the probed volume, the effect of the faces on identification."""
     own = placement.own
     others = [r for r in placement.rivals if r is not own and r.body is not None]
-    line = f"in the probed volume alone it leaves {_um(own.rms)}"
+    line = f"in the probed volume the tool point is known to {um(own.rms)} rms"
     if others:
         rival = min(others, key=lambda r: r.rms)
-        line += f", the best other artefact there, {rival.name}, {_um(rival.rms)}"
-    told = [f(placement) for f in (identification_sentence, proof_sentence, blind_spots)]
-    told += [_regions_sentence(worst)] if worst is not None else []
-    return [verdict_of_design(placement, workspace), line, *filter(None, told)]
+        line += f"; the best other artefact there, {rival.name}, would leave {um(rival.rms)}"
+    lines = [verdict_of_design(placement, workspace), line, identification_sentence(placement)]
+    return [words for words in lines if words]
 
 
-def _regions_sentence(worst: WorstRegions) -> str:
-    """What the faces see of the poses at which machines are wrong again and again."""
+def identification_lines(placement: Placement, worst: WorstRegions) -> list[str]:
+    """What the freeform faces cost or gain in identification, detect, and miss."""
+    words = (identification_sentence(placement), proof_sentence(placement), blind_spots(placement))
+    return [line for line in (*words, regions_sentence(worst)) if line]
+
+
+def identification_sentence(placement: Placement) -> str:
+    """What the freeform faces cost or gain in identification; empty without rival spheres."""
+    own = placement.own
+    spheres = [r for r in placement.rivals[1:] if r.body is not None and not r.body.patches]
+    if not spheres:
+        return ""
+    best = min(spheres, key=lambda r: r.rms_user)
+    change = own.rms_user / best.rms_user - 1.0
     return (
-        f"Where errors dominate, at the {worst.poses} poses of your workspace that are most often "
-        f"among the worst twentieth ({100 * worst.recurrence:.0f} % of random machines each, on "
-        f"average): touches on the freeform faces alone leave {_um(worst.after)} of the expected "
-        f"{_um(worst.before)}; they see {100 * worst.covered:.0f} % of these poses, with a tenth "
-        "of the error left at most."
+        f"Identification: the freeform faces {'cost' if change > 0.0 else 'gain'} "
+        f"{percent(abs(change))} over your workspace. With the same number of touches, the "
+        f"standard leaves {um(own.rms_user)} rms; {best.name}, placed by the same optimiser, "
+        f"leave {um(best.rms_user)}. The calibration uncertainty of every feature is included."
     )
+
+
+def proof_sentence(placement: Placement) -> str:
+    """Power of the freeform faces to detect a wrong model, compared with more touches on balls."""
+    faces, anywhere = placement.power, placement.power_in_volume
+    balls, of_all = placement.power_of_balls, percent(float(anywhere.power.mean()))
+    return (
+        f"Proof: {faces.touches} touches on the {len(placement.standard.patches)} freeform faces, "
+        f"not used for identification, detect a model that is wrong by {um(ERROR)} rms on surfaces "
+        f"of the same slopes, anywhere in the probed volume, with an average power of "
+        f"{percent(float(faces.power.mean()))} at {percent(RISK)} risk ({percent(WANTED)} or more "
+        f"for {faces.found} of {len(faces.effects)} effects of the library). For errors of this "
+        f"size in any direction the power is {of_all} ({anywhere.found} of "
+        f"{len(anywhere.effects)} effects). The same number of further touches on the balls would "
+        f"detect {balls.found} of these, but they share the calibration on which the model rests, "
+        "and no ball resembles the surface of a workpiece."
+    )
+
+
+def blind_spots(placement: Placement) -> str:
+    """Effects that the faces detect with low power, and whether calibration is the cause.
+
+    Where a face is touched at one table pose, or few, a smooth error displaces the whole face, as
+    the uncertainty of its calibrated position does.
+    """
+    faces, exact = placement.power, placement.power_exact
+    weak = np.flatnonzero(faces.power < WANTED)
+    if not len(weak):
+        return ""
+    order = weak[np.argsort(faces.power[weak])]
+    named = [f"{faces.effects[i]} ({percent(float(faces.power[i]))})" for i in order[:_NAMED]]
+    more = f" and {len(weak) - _NAMED} more" if len(weak) > _NAMED else ""
+    if exact.found - faces.found > 0.5 * len(weak):
+        cause = "a better calibration of the faces would help"
+    elif exact.found > faces.found:
+        cause = "their calibration is one cause, their slopes and places are another"
+    else:
+        cause = "the touches are hardly sensitive to these effects, whatever the calibration"
+    return (
+        f"Power below {percent(WANTED)}: {', '.join(named)}{more}. With exactly known positions of "
+        f"the faces, {exact.found} of {len(exact.effects)} effects would be detected with "
+        f"{percent(WANTED)} or more, {percent(float(exact.power.mean()))} on average: {cause}."
+    )
+
+
+def regions_sentence(worst: WorstRegions) -> str:
+    """Power of the faces at the poses where random machines are most often among the worst."""
+    return (
+        f"At the {worst.poses} poses of your workspace that are most often among the worst 5 % "
+        f"({100 * worst.recurrence:.0f} % of random machines each, on average), touches on the "
+        f"freeform faces alone reduce the expected error from {um(worst.before)} to "
+        f"{um(worst.after)}. At {100 * worst.covered:.0f} % of these poses at most a tenth of the "
+        "error remains."
+    )
+
+
+def comparison_remarks(placement: Placement) -> list[str]:
+    """Limits of the comparison with other artefacts, one line each."""
+    remarks = [
+        f"Not compared with: {name}; this machine cannot make any touch on it."
+        for name in placement.unreachable
+    ]
+    wanted = len(placement.requests)
+    return remarks + [
+        f"{r.name}: only {r.available} different touches are possible; some of the {wanted} "
+        "compared touches are repeated."
+        for r in placement.rivals
+        if r.available < wanted
+    ]
 
 
 def proof_line(number: int, in_workspace: Proof, in_volume: Proof, fit: Fit) -> str:
-    """One simulated machine: what its model does not predict, there and on the faces held back."""
+    """One simulated machine: the error that its model does not predict."""
     held_back = fit.test_rows
     left, noise = (rms(v[held_back]) if held_back.any() else 0.0 for v in (fit.residual, fit.run.u))
-    faces = f"; on the faces held back {_um(left)} rms is left, noise {_um(noise)}" if left else ""
+    faces = f"; residual on the faces held out {um(left)} rms, noise {um(noise)}" if left else ""
     return (
         f"machine {number}: in your workspace {_after(in_workspace)}; "
         f"in the probed volume {_after(in_volume)}{faces}"
@@ -139,10 +234,6 @@ def proof_line(number: int, in_workspace: Proof, in_volume: Proof, fit: Fit) -> 
 
 def _after(proof: Proof) -> str:
     return (
-        f"{_um(proof.rms_before)} rms, not predicted {_um(proof.rms_after)} (stated uncertainty "
-        f"{_um(proof.rms_u)}), {digits(proof.factor, 2)} times smaller"
+        f"{um(proof.rms_before)} rms, not predicted {um(proof.rms_after)} (stated uncertainty "
+        f"{um(proof.rms_u)}), {digits(proof.factor, 2)} times smaller"
     )
-
-
-def _um(value: float) -> str:
-    return f"{digits(value / UM)} µm"

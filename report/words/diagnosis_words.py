@@ -1,4 +1,4 @@
-"""What is said of a run: verdicts with numbers, sizes with uncertainties, what is left."""
+"""Sentences on a run: verdicts with numbers, sizes with uncertainties, residuals."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -10,16 +10,24 @@ from matstd.diagnosis.fit import SINE, Fit, Reported, Role
 from matstd.diagnosis.remarks import OfAnotherRun
 from matstd.diagnosis.residual import Condition, Shape, Side, Structure
 from matstd.report.effects import class_words, words_of_name
-from matstd.report.numbers import condition, digits, noun, span, unit_words, with_uncertainty
-from matstd.report.words.open_words import microns, nearest_clause, stated_noise, undecided_sentence
+from matstd.report.numbers import (
+    condition,
+    digits,
+    microns,
+    noun,
+    span,
+    unit_words,
+    with_uncertainty,
+)
 from matstd.report.words.remark_words import memory_words
 from matstd.twin.library import title_of
 from matstd.twin.numbers import rms
+from matstd.twin.record import Run
 from matstd.twin.units import DEG, UM
 from matstd.twin.words import listed
 
 _WORDS = {
-    "rms": "rms that it explains",
+    "rms": "explained rms",
     "peak_to_valley": "peak to valley",
     "length": "correlation length",
     "tau": "time constant",
@@ -30,27 +38,26 @@ _WORDS = {
 }
 
 _GROUPS = ("feature", "pose", "setup")
-"""Columns that only tell rows apart: nothing grows with them."""
+"""Columns that number rows without an order."""
 
-PERIODS_TOLD = 4
-"""Periods that look alike that are told one by one, the longest ones."""
+PERIODS_NAMED = 4
+"""Indistinguishable periods that are named, the longest ones."""
 
 WITHIN = 0.1
-"""Excess over stated noise below which nothing stands out of it: half a per cent of its size."""
+"""Excess over the stated noise that is not reported: half a per cent of its size."""
 
 HALF = 0.5
-"""Share of the square beyond the stated noise that a pattern must hold to be the reason for it."""
+"""Share of the mean square beyond the stated noise that a pattern must have to explain it."""
 
-ALL_TOLD = 7
-"""Numbers of an effect that are told one by one; of more only the size is."""
-
+ALL_NUMBERS = 7
+"""Numbers of an effect that are written out; of more, only those that sum them up."""
 
 _NUMBERS = {1: 3, 2: 2, 3: 1}
 """Numbers of an effect in the verdict by the number of effects; of more effects only the names."""
 
 
 def named_value(reported: Reported) -> tuple[str, str]:
-    """Name and value of a number of an effect as a reader sees them: `time constant`, `42 ± 3 min`.
+    """Name and value of a number of an effect: `time constant`, `42 ± 3 min`.
 
     Example:
         >>> named_value(Reported("tau", "min", 42.07, 3.32, 60.0, Role.INNER))
@@ -69,7 +76,7 @@ def named_value(reported: Reported) -> tuple[str, str]:
     if reported.quantity == "length" and not reported.unit:
         return words, f"{reported.value:.0%} of the travel"
     if reported.quantity == "harmonic":
-        return words, f"{reported.value:g} a turn"
+        return words, f"{reported.value:g} per turn"
     return words, with_uncertainty(reported.value, reported.u, unit_words(reported.unit))
 
 
@@ -77,34 +84,33 @@ _ORDER = (Role.SIZE, Role.INNER, Role.COEFFICIENT)
 
 
 def values(step: Step) -> list[tuple[str, str]]:
-    """Numbers of an added effect as a reader sees them, its size first.
+    """Numbers of an added effect, its size first.
 
-    Of an effect with many coefficients only what sums them up and its inner parameters are told.
+    Many coefficients are replaced by the numbers that sum them up.
     """
     return number_words(step.reported)
 
 
 def number_words(reported: Sequence[Reported]) -> list[tuple[str, str]]:
-    """The same of the numbers themselves, as a model file keeps them."""
+    """The same from the numbers that a model file keeps."""
     sines = [r for r in reported if r.quantity.startswith(SINE)]
-    told = sorted(reported, key=lambda r: _ORDER.index(r.role))
-    is_curve = any(r.quantity == "peak_to_valley" for r in told)
-    if is_curve or sines or len(told) > ALL_TOLD:
-        told = [r for r in told if r.role is not Role.COEFFICIENT]
-    if is_curve:  # how smooth it was taken to be is in the files
-        told = [r for r in told if r.quantity != "length"]
-    out = [named_value(r) for r in told if (r.quantity, r.value) != ("step", 1.0)]
+    shown = sorted(reported, key=lambda r: _ORDER.index(r.role))
+    is_curve = any(r.quantity == "peak_to_valley" for r in shown)
+    if is_curve or sines or len(shown) > ALL_NUMBERS:
+        shown = [r for r in shown if r.role is not Role.COEFFICIENT]
+    if is_curve:  # its assumed smoothness is in the files
+        shown = [r for r in shown if r.quantity != "length"]
+    out = [named_value(r) for r in shown if (r.quantity, r.value) != ("step", 1.0)]
     return [*out, *([_sine_words(sines)] if sines else [])]
 
 
 def _sine_words(sines: Sequence[Reported]) -> tuple[str, str]:
-    """Amplitudes of the sines of one period in one clause, their uncertainty behind them."""
+    """Amplitudes of the harmonics of one period with their common uncertainty."""
     u = max(r.u or 0.0 for r in sines)
     each = ", ".join(with_uncertainty(r.value, u, "").split(" ± ")[0] for r in sines)
-    least = digits(u, 2)
     return (
-        f"in sines of 1/1 to 1/{len(sines)} of it",
-        f"{each} (± {least}) {unit_words(sines[0].unit)}",
+        f"amplitudes of its harmonics 1 to {len(sines)}",
+        f"{each} (± {digits(u, 2)}) {unit_words(sines[0].unit)}",
     )
 
 
@@ -113,27 +119,32 @@ def sizes(step: Step, most: int) -> str:
     return ", ".join(" ".join(value) for value in values(step)[:most])
 
 
+def stated_noise(run: Run) -> float:
+    """Stated standard uncertainty of a touch, root mean square, mm."""
+    return rms(run.u)
+
+
 def noise_words(fit: Fit) -> str:
-    """The noise as found, and as stated where that is another."""
+    """The noise as estimated, with the stated one where that is another."""
     stated = stated_noise(fit.run)
     found = stated * fit.noise.factor
     remembers = fit.memory is not None and fit.memory.is_filtered
-    after = f" and remembers ({_memory(fit)})" if remembers else ""
+    after = f" and is correlated ({_memory(fit)})" if remembers else ""
     if fit.noise.is_wrongly_stated:
         return f"{microns(found)} (stated: {microns(stated)}){after}"
     return f"{microns(stated)}{after}"
 
 
 def excess(fit: Fit) -> float:
-    """Root mean square of what is left beyond the stated noise, mm."""
+    """Root mean square of the residual beyond the stated noise, mm."""
     stated = stated_noise(fit.run)
     return stated * math.sqrt(max(fit.noise.factor**2 - 1.0, 0.0))
 
 
-def _left(diagnosis: Diagnosis) -> str:
-    """How much is left that is no noise, as a clause: beyond the stated noise, or of what is left.
+def _unexplained(diagnosis: Diagnosis) -> str:
+    """Size of the residual that is not noise: beyond the stated noise, or as a part of it.
 
-    What follows no pattern may be noise that was stated too small.
+    Scatter without a pattern may be noise that was stated too small.
     """
     fit, stated = diagnosis.fit, stated_noise(diagnosis.run)
     beyond = excess(fit)
@@ -141,14 +152,14 @@ def _left(diagnosis: Diagnosis) -> str:
     whole = stated * fit.noise.factor
     if whole**2 * share < HALF * beyond**2 or beyond < WITHIN * stated:
         return (
-            f"of {microns(whole)} rms that are left (noise stated: {microns(stated)}) "
-            f"{microns(whole * math.sqrt(share))}"
+            f"{microns(whole * math.sqrt(share))} of the residual of {microns(whole)} rms "
+            f"(stated noise: {microns(stated)})"
         )
     return f"{microns(beyond)} rms beyond the stated noise of {microns(stated)}"
 
 
 def region_words(conditions: Sequence[Condition]) -> str:
-    """Conditions as a reader says them, `B > 60 deg and time < 40 min`."""
+    """Conditions in words, `B > 60 deg and time < 40 min`."""
     parts = []
     for name in dict.fromkeys(c.variable for c in conditions):
         own = {c.side: c.bound for c in conditions if c.variable == name}
@@ -161,7 +172,7 @@ def region_words(conditions: Sequence[Condition]) -> str:
 
 
 def structure_words(found: Structure) -> str:
-    """What a residual does, as it stands in a table: `varies with X and Y, along Z`."""
+    """A pattern for a table: `varies with X and Y, along Z`."""
     names = listed([noun(name) for name in found.variables])
     along = "the normal" if found.direction == "normal" else found.direction
     match found.shape:
@@ -170,15 +181,15 @@ def structure_words(found: Structure) -> str:
         case Shape.SMOOTH:
             return f"varies with {names}, along {along}"
         case Shape.WAVE:
-            return f"a wave in time, every {span(found.period)}, along {along}"
+            return f"wave in time of period {span(found.period)}, along {along}"
         case Shape.NEIGHBOURS:
-            return f"neighbours in {names} agree"
+            return f"touches that are neighbours in {names} agree"
         case Shape.CROWD:
-            return f"gross errors crowd together in {names}"
+            return f"gross errors are concentrated in {names}"
 
 
 def structure_clause(found: Structure) -> str:
-    """The same as a clause that stands after a colon."""
+    """The same as a clause after a colon."""
     it = "it " if found.shape is Shape.SMOOTH else ""
     return it + structure_words(found)
 
@@ -187,7 +198,7 @@ def _fall(diagnosis: Diagnosis) -> str:
     if diagnosis.choice is not None and not diagnosis.fit.test_rows.any():
         first, best = diagnosis.choice.rules[0], diagnosis.choice.best
         return (
-            f"the plain error of blocks left out, the choice made anew without each, falls from "
+            "the error of blocks left out, with the choice repeated without each, falls from "
             f"{microns(first.error)} to {microns(best.error)}"
         )
     return (
@@ -197,35 +208,35 @@ def _fall(diagnosis: Diagnosis) -> str:
 
 
 def _alike(step: Step, places: Sequence[float]) -> str:
-    """What a period cannot be told from, and where to measure to tell them apart.
+    """Periods that cannot be distinguished from that of an effect, and where to measure.
 
     Args:
-        step: With an effect whose period others look like; others have nothing said.
-        places: Readings of the axis that would tell them apart, mm; empty for none on offer.
+        step: With an effect.
+        places: Readings of the axis that would distinguish them, mm; empty where none would.
     """
     alike = step.confusion.alike if step.confusion else None
     if alike is None:
         return ""
-    told_of = PERIODS_TOLD if len(alike.periods) > PERIODS_TOLD + 1 else None
-    longest = [f"{p:.4g}" for p in alike.periods[:told_of]]
+    most = PERIODS_NAMED if len(alike.periods) > PERIODS_NAMED + 1 else None
+    longest = [f"{p:.4g}" for p in alike.periods[:most]]
     more = len(alike.periods) - len(longest)
     unit, finer = ("", "higher") if alike.is_harmonic else (" mm", "shorter")
-    told = (
+    others = (
         f"{', '.join(longest)}{unit} or one of {more} {finer} ones"
         if more > 0
         else f"{listed(longest, 'or')}{unit}"
     )
-    what_else = f"{'harmonic ' if alike.is_harmonic else ''}{told}"
-    at = f"with steps of {alike.step:g} mm" if alike.step else "with targets that stand so"
-    why = f" (named for the stated pitch of {alike.pitch:g} mm)" if alike.pitch else ""
+    what_else = f"{'harmonic' if alike.is_harmonic else 'a period of'} {others}"
+    at = f"with steps of {alike.step:g} mm" if alike.step else "with these targets"
+    why = f" (chosen for the stated pitch of {alike.pitch:g} mm)" if alike.pitch else ""
     where = listed([f"{p:g}" for p in places])
     reading = "°" if alike.is_harmonic else " mm"
-    what = f": measure at {alike.axis} {where}{reading}" if places else ""
-    return f"{at} it could as well be {what_else}{why}{what}"
+    what = f"; to distinguish them, measure at {alike.axis} {where}{reading}" if places else ""
+    return f"{at} it cannot be distinguished from {what_else}{why}{what}"
 
 
 def _places(diagnosis: Diagnosis, step: Step) -> list[float]:
-    """Three readings, far apart, of the plan that tells the periods of an effect; mm or degrees."""
+    """Three readings, far apart, that distinguish the periods of an effect; mm or degrees."""
     alike = step.confusion.alike if step.confusion else None
     name = step.effect.name if step.effect is not None else ""
     for plan in diagnosis.plans if alike is not None else ():
@@ -237,67 +248,98 @@ def _places(diagnosis: Diagnosis, step: Step) -> list[float]:
 
 
 def _added(diagnosis: Diagnosis, step: Step, most: int) -> str:
-    """An effect with its leading numbers, and whether another one would do as well."""
-    told = [sizes(step, most) if most else "", _alike(step, _places(diagnosis, step))]
-    return class_words(step, [clause for clause in told if clause])
-
-
-def _them(steps: Sequence[Step]) -> str:
-    return "it" if len(steps) == 1 else "them"
+    """An effect with its leading numbers and its rivals."""
+    clauses = [sizes(step, most) if most else "", _alike(step, _places(diagnosis, step))]
+    return class_words(step, [clause for clause in clauses if clause])
 
 
 def _covered(diagnosis: Diagnosis) -> str:
-    """A pattern that the stated noise covers, as a sentence; empty where there is none."""
+    """A pattern within the stated noise, as a sentence; empty where there is none."""
     if not diagnosis.left:
         return ""
     found = max(diagnosis.left, key=lambda s: s.share)
     size = stated_noise(diagnosis.run) * diagnosis.fit.noise.factor * math.sqrt(min(found.share, 1))
     return (
-        f" Of what is left, which the stated noise covers, {microns(size)} are none: "
+        f" Within the stated noise, {microns(size)} of the residual follow a pattern: "
         f"{structure_clause(found)}."
     )
 
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:
-    """The verdict in one plain sentence, with numbers and standard uncertainties."""
+    """The verdict with numbers and standard uncertainties."""
     most = _NUMBERS.get(len(diagnosis.steps) - 1, 0)
     steps = diagnosis.steps[1:]
     named = [_added(diagnosis, s, most) for s in steps if s.is_named]
     found = [_added(diagnosis, s, most) for s in steps if not s.is_named]
     also = f" Added by name: {'; '.join(named)}." if named else ""
+    them = "it" if len(steps) == 1 else "them"
     if diagnosis.verdict is Verdict.MISSING:
         what = "one effect" if len(found) == 1 else f"{len(found)} effects"
         return (
-            f"The model lacks {what}: {'; '.join(found)}.{also} With {_them(steps)} "
+            f"The model lacks {what}: {'; '.join(found)}.{also} With {them} "
             f"{_fall(diagnosis)}; the noise is {noise_words(diagnosis.fit)}.{_covered(diagnosis)}"
         )
     if diagnosis.verdict is Verdict.UNEXPLAINED:
-        words = "; ".join(
-            dict.fromkeys(structure_clause(d.structure) for d in diagnosis.depends_on[:2])
-        )
-        was = "was" if len(steps) == 1 else "were"
-        what = f" Put in {was} {'; '.join([*named, *found])}: {_fall(diagnosis)}." if steps else ""
-        rest = "" if diagnosis.nearest else " that no effect of the library accounts for"
-        return (
-            f"Something is left{rest}: {_left(diagnosis)}. It is not noise: "
-            f"{words or 'it varies with nothing that was recorded'}.{what}"
-            f"{nearest_clause(diagnosis)}"
-        )
+        return _unexplained_sentence(diagnosis, [*named, *found])
     if diagnosis.verdict is Verdict.UNDECIDED:
-        return undecided_sentence(diagnosis)
-    fall = f" With {_them(steps)} {_fall(diagnosis)}." if named else ""
+        return _undecided_sentence(diagnosis)
+    fall = f" With {them} {_fall(diagnosis)}." if named else ""
     return (
-        f"Nothing{' more' if named else ''} is missing that this run could have shown: the error "
+        f"No {'further ' if named else ''}effect is missing that this run could show: the error "
         f"of held-out touches is {microns(diagnosis.fit.test_rms)}, and the noise is "
         f"{noise_words(diagnosis.fit)}.{also}{fall}{_covered(diagnosis)}"
     )
 
 
+def _unexplained_sentence(diagnosis: Diagnosis, added: Sequence[str]) -> str:
+    """The size and the pattern of a residual without a name, and the nearest effects."""
+    words = "; ".join(
+        dict.fromkeys(structure_clause(d.structure) for d in diagnosis.depends_on[:2])
+    )
+    what = f" Added: {'; '.join(added)}; {_fall(diagnosis)}." if added else ""
+    rest = "" if diagnosis.nearest else " that no effect of the library explains"
+    return (
+        f"A residual remains{rest}: {_unexplained(diagnosis)}. It is not noise: "
+        f"{words or 'it varies with no recorded variable'}.{what}{_nearest(diagnosis)}"
+    )
+
+
+def _nearest(diagnosis: Diagnosis) -> str:
+    """The effect nearest to the residual, with the error that it would leave; empty for none."""
+    if not diagnosis.nearest:
+        return ""
+    best, *others = diagnosis.nearest
+    before, after = microns(diagnosis.fit.test_rms), microns(best.test_rms)
+    also = f"; next: {listed([o.effect for o in others])}" if others else ""
+    return (
+        f" The nearest effect is {best.effect} (p = {best.p_value:.0e}), which reduces the error "
+        f'of held-out touches from {before} to {after}; add it with --add "{best.effect}"{also}.'
+    )
+
+
+def _undecided_sentence(diagnosis: Diagnosis) -> str:
+    """That the noise alone would explain the run, if it were large enough."""
+    noise = diagnosis.fit.noise
+    lines = [str(line) for line in sorted(diagnosis.run.line[diagnosis.repeat])]
+    shown = (
+        "no touch was repeated"
+        if noise.replicates is None
+        else f"{noise.replicates_dof} repeated touches show {digits(noise.replicates, 2)} times it"
+    )
+    size = noise.factor * stated_noise(diagnosis.run)
+    return (
+        "This run cannot decide whether an effect is missing: the noise would have to be "
+        f"{microns(size)}, {digits(noise.factor, 2)} times the stated one, and {shown}. Repeat the "
+        f"touches of lines {listed(lines)} three times each under unchanged conditions; a residual "
+        "that recurs is not noise."
+    )
+
+
 def scanned_sentence(found: Sequence[Detectable]) -> str:
-    """Where periods, time constants and the like were looked for; "" where there is none."""
+    """Searched ranges of periods, time constants and the like; "" where there is none."""
     ranges: dict[tuple[str, str], tuple[float, float]] = {}
-    told = (s for d in found if d.size is not None for s in d.scanned)
-    for scan in (s for s in told if s.unit or s.quantity == "harmonic"):
+    scans = (s for d in found if d.size is not None for s in d.scanned)
+    for scan in (s for s in scans if s.unit or s.quantity == "harmonic"):
         key = (_WORDS.get(scan.quantity, scan.quantity), scan.unit)
         low, high = ranges.get(key, (scan.low, scan.high))
         ranges[key] = (min(low, scan.low), max(high, scan.high))
@@ -305,59 +347,59 @@ def scanned_sentence(found: Sequence[Detectable]) -> str:
         f"{name}s of {digits(low)} to {digits(high)}{f' {unit_words(unit)}' if unit else ''}"
         for (name, unit), (low, high) in sorted(ranges.items())
     ]
-    return f"Looked for were {listed(each)}; outside, this run says nothing." if each else ""
+    return f"Searched: {listed(each)}; nothing is known outside these ranges." if each else ""
 
 
 def comparison_sentence(found: Comparison) -> str:
-    """What a model leaves of a run, in plain words with numbers."""
-    made = "predicts" if found.is_prediction else "fitted to the run explains"
-    worst = found.worst
-    left = microns(found.rms)
-    is_better = found.rms <= found.rms_measured
+    """Error of a model on a run, with its worst touch and the pattern of its residual."""
+    worst, left = found.worst, microns(found.rms)
+    after = "after the prediction" if found.is_prediction else "after the fit"
+    more = "" if found.rms <= found.rms_measured else ", more than before"
     text = (
-        f"Of {microns(found.rms_measured)} rms that were measured the model {made} "
-        f"{f'all but {left}' if is_better else f'nothing: {left} are left'}; the noise is stated "
-        f"as {microns(stated_noise(found.run))}, chi-square per degree of freedom is "
-        f"{digits(found.chi2_ratio)}, and the worst touch (line {found.run.line[worst]}) is off by "
+        f"Measured {microns(found.rms_measured)} rms; {left} rms remain {after}{more}. The stated "
+        f"noise is {microns(stated_noise(found.run))}, chi-square per degree of freedom "
+        f"{digits(found.chi2_ratio)}. The worst touch (line {found.run.line[worst]}) deviates by "
         f"{microns(float(found.residual[worst]))}, "
         f"{digits(abs(float(found.normalised[worst])), 2)} times its uncertainty."
     )
     if not found.structure:
-        return f"{text} What is left looks like noise."
-    return f"{text} What is left is not noise: {structure_clause(found.structure[0])}."
+        return f"{text} The residual looks like noise."
+    return f"{text} The residual is not noise: {structure_clause(found.structure[0])}."
 
 
 BROKEN = 1.1
-"""Error over what was promised from which a promise is called broken; the figures themselves
+"""Ratio of error to promise from which a prediction is worse than promised; the figures themselves
 scatter by a few per cent."""
 
 
 def promise_sentence(
     found: Comparison, promised: float, others: Sequence[OfAnotherRun] = ()
 ) -> str:
-    """The error of a prediction beside the one that its model promised (mm), in plain words.
+    """The error of a prediction beside the one that its model promised.
 
     Args:
-        others: What the model has of another run: the promise holds where nothing like it happens.
+        found: The prediction.
+        promised: Error of held-out rows when the model was made, mm.
+        others: Effects of another run in the model, which the promise excludes.
     """
-    word = "worse than" if found.rms > BROKEN * promised else "as good as"
+    word = "worse than promised" if found.rms > BROKEN * promised else "as good as promised"
     expected = rms(found.u[found.counted])
-    elsewhere = (
-        f" At these touches, which are not those that it was made from, {microns(expected)} "
-        "are to be expected of its uncertainty."
-        if expected > BROKEN * promised
-        else ""
-    )
+    elsewhere = ""
+    if expected > BROKEN * promised:
+        elsewhere = (
+            f" At these touches, which differ from those of the model, its uncertainty leads to "
+            f"an expected error of {microns(expected)}."
+        )
     again = float(np.linalg.norm([promised, *(one.share for one in others)]))
-    elsewhere += (
-        f" Where this run had a {listed([title_of(one.effect).text for one in others], 'or a')} as "
-        f"large as there, {microns(again)} would be expected."
-        if again > BROKEN * promised
-        else ""
-    )
+    if again > BROKEN * promised:
+        names = listed([title_of(one.effect).text for one in others], "or a")
+        elsewhere += (
+            f" If this run had a {names} of the same size as that run, an error of "
+            f"{microns(again)} would be expected."
+        )
     return (
-        f"That is {word} was promised: {microns(found.rms)} beside {microns(promised)}, the error "
-        f"of rows that the model had not seen when it was made.{elsewhere}"
+        f"The prediction is {word}: {microns(found.rms)}; promised {microns(promised)}, the error "
+        f"of held-out rows when the model was made.{elsewhere}"
     )
 
 
@@ -366,25 +408,25 @@ def figures(fit: Fit) -> tuple[str, str, str]:
     return f"{fit.rms / UM:.3f}", f"{fit.test_rms / UM:.3f}", digits(fit.noise.chi2_ratio)
 
 
-def learnt_lines(fit: Fit, told: Mapping[str, Sequence[Reported]]) -> list[str]:
-    """What was told of the fit that a model was learnt by: its figures, then its effects.
+def learnt_lines(fit: Fit, numbers: Mapping[str, Sequence[Reported]]) -> list[str]:
+    """Figures and effects of the fit from which a model was estimated.
 
     Args:
-        fit: Made again from the model.
-        told: Numbers of effects as the model file keeps them, by name.
+        fit: Repeated from the model.
+        numbers: Of the effects, by name, as the model file keeps them.
     """
     rms, held_out, chi2 = figures(fit)
     first = (
-        f"As it was learnt from these very rows: fitted {rms} µm, held out {held_out} µm, "
+        f"The model was estimated from these rows: fitted {rms} µm, held out {held_out} µm, "
         f"chi-square per degree of freedom {chi2}."
     )
-    sizes = {name: ", ".join(" ".join(v) for v in number_words(r)) for name, r in told.items()}
+    each = {name: ", ".join(" ".join(v) for v in number_words(r)) for name, r in numbers.items()}
     chain = fit.run.touches.chain
-    return [first, *(f"{words_of_name(name, chain)}: {w}" for name, w in sizes.items() if w)]
+    return [first, *(f"{words_of_name(name, chain)}: {w}" for name, w in each.items() if w)]
 
 
 def _memory(fit: Fit) -> str:
-    """What the noise of a fit remembers; empty for white noise."""
+    """Correlation of the noise of a fit; empty for white noise."""
     memory = fit.memory
     if memory is None:
         return ""

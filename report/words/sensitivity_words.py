@@ -1,4 +1,4 @@
-"""What is said of a study: sampling, volumetric error, the errors that make most of it."""
+"""Sentences on a study: sampling, volumetric error, dominant errors."""
 
 from collections.abc import Sequence
 
@@ -18,11 +18,11 @@ def study_words(study: Study) -> list[str]:
     lines = [
         sampling_words(v),
         f"volumetric error over {len(study.q)} poses: mean {v.mean.mean() / UM:.1f} µm, "
-        f"P95 {v.p95.mean() / UM:.1f} µm, at the worst pose {v.p95.max() / UM:.1f} µm",
+        f"P95 {v.p95.mean() / UM:.1f} µm, P95 at the worst pose {v.p95.max() / UM:.1f} µm",
     ]
     if v.tolerance < float("inf"):
         lines.append(
-            f"beyond {v.tolerance / UM:g} µm: on average {v.exceedance.mean():.1%} "
+            f"more than {v.tolerance / UM:g} µm: on average {v.exceedance.mean():.1%} "
             f"of the machines, {v.exceedance.max():.1%} at the worst pose"
         )
     ranked = ", ".join(f"{name} {share:.1%}" for name, share in study.ranking()[:_SHOWN])
@@ -31,17 +31,17 @@ def study_words(study: Study) -> list[str]:
 
 
 def unsampled(study: Study) -> str:
-    """What has to stand beside a volumetric error that was not sampled."""
+    """Note beside a volumetric error that was not sampled."""
     mean, worst = study.tail
     return (
-        "Without sampling, to first order and as if errors were normally distributed: the 95 % "
-        f"quantile that was sampled at {len(study.q)} poses differs from it by {100.0 * mean:+.1f} "
-        f"% on average, {100.0 * worst:+.1f} % at worst."
+        "Computed to first order for normally distributed errors, without sampling; the 95 % "
+        f"quantile sampled at {len(study.q)} poses differs by {100.0 * mean:+.1f} % on average, "
+        f"{100.0 * worst:+.1f} % at worst."
     )
 
 
 def sampling_words(v: Volumetric) -> str:
-    """What has to stand beside every figure of a Monte Carlo: draws, seed, precision."""
+    """Note beside every Monte Carlo figure: draws, seed, precision."""
     words = (
         f"{v.draws} random machines, seed {v.seed}, mean and P95 to "
         f"± {v.achieved / UM:.2g} µm (95 %) at every pose"
@@ -50,7 +50,7 @@ def sampling_words(v: Volumetric) -> str:
 
 
 def stability_words(stability: Stability) -> str:
-    """Whether as many digits are stable as were asked for."""
+    """Whether the requested number of digits is stable."""
     found = (
         f"{stability.digits} significant digits of the standard deviation after "
         f"{stability.batches} batches (JCGM 101, 7.9.4)"
@@ -58,7 +58,7 @@ def stability_words(stability: Stability) -> str:
     if stability.is_stable:
         return f"stable to {found}"
     if not np.isfinite(stability.ratio):
-        return f"NOT shown to be stable to {found}: one batch tells nothing"
+        return f"NOT shown to be stable to {found}: one batch is no evidence"
     return f"NOT stable to {found}: {stability.ratio:.2g} times the tolerance"
 
 
@@ -77,20 +77,20 @@ def place_words(place: Place) -> str:
 
 
 def dominant_words(region: Region, names: Sequence[str], enough: float = 0.5) -> str:
-    """Which errors make most of the deviation in a region, in one sentence.
+    """Errors that cause most of the deviation in a region.
 
     Args:
         region: The region.
         names: Of the parameters.
-        enough: Share that the named errors make together, at least.
+        enough: Smallest share that the named errors cause together.
     """
     shares = region.mean_shares
     order = region.largest(len(shares))
     if not order:
-        return f"{place_words(region.place)}: no error moves the tool point."
+        return f"{place_words(region.place)}: no error displaces the tool point."
     count = int(np.searchsorted(np.cumsum(shares[order]), enough)) + 1
     kept = order[:count]
     if count == 1:
-        return f"{names[kept[0]]} makes {100.0 * shares[kept[0]]:.0f} % of the variance"
+        return f"{names[kept[0]]} causes {100.0 * shares[kept[0]]:.0f} % of the variance"
     named = ", ".join(f"{names[i]} {100.0 * shares[i]:.0f} %" for i in kept)
-    return f"{named} make {100.0 * shares[kept].sum():.0f} % of the variance together"
+    return f"{named}: together {100.0 * shares[kept].sum():.0f} % of the variance"

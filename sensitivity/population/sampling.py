@@ -14,7 +14,7 @@ from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Ranges, ShapeName, Symbol
 from matstd.twin.machine import shape as shape_function
-from matstd.twin.model import Effect, Model
+from matstd.twin.model import Effect, Model, traits
 
 DRAWS_A_CHILD = 512
 """Machines drawn from one child of a generator: fixed, so that blocks do not change the draws."""
@@ -129,10 +129,10 @@ class Population:
             tuple(
                 effect
                 for effect in self.model.effects
-                if isinstance(effect, ComponentError | LocationError)
+                if (symbol := traits(effect).symbol)
                 and (
-                    effect.sd > 0.0
-                    or (effect.symbol.family is Family.SETUP and effect.symbol.link in free)
+                    effect.parameters[0].sd > 0.0
+                    or (symbol.family is Family.SETUP and symbol.link in free)
                 )
             ),
         )

@@ -5,7 +5,7 @@ import numpy as np
 from matstd.sensitivity.population.sampling import Population, draw
 from matstd.twin.frames import Array
 from matstd.twin.machine import Symbol
-from matstd.twin.model import Model
+from matstd.twin.model import Model, traits
 
 LEAST = 1e-3
 """A drawn error is taken to be at least this part of its expected size: none is known to be nil."""
@@ -29,7 +29,7 @@ def drawn_scales(
     place = {symbol: p for p, symbol in enumerate(chain.symbols)}
     column = []
     for effect, _ in (model or population.model).parameters:
-        symbol = getattr(effect, "symbol", None)
+        symbol = traits(effect).symbol
         assert isinstance(symbol, Symbol)  # every effect of a population is an error parameter
         column.append(place[symbol])
     expected = np.array([population.ranges.sd(chain, symbol) for symbol in chain.symbols])

@@ -15,7 +15,7 @@ from matstd.twin.effects import ComponentError, component
 from matstd.twin.errors import DesignError, OutsideTravel, UnknownAxis
 from matstd.twin.frames import Array
 from matstd.twin.machine import DEFAULT_RANGES, Chain, error_class
-from matstd.twin.model import Effect, Model
+from matstd.twin.model import Effect, Model, traits
 from matstd.twin.record import at_poses
 from matstd.twin.units import UM, URAD
 
@@ -182,7 +182,7 @@ def along_path(trajectory: Trajectory, errors: Sequence[tuple[Effect, Array]]) -
 
 def _short(effect: Effect) -> str:
     """Symbol of an error parameter; the whole name of anything else."""
-    symbol = getattr(effect, "symbol", None)
+    symbol = traits(effect).symbol
     return symbol.name if symbol is not None else effect.name
 
 

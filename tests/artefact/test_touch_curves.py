@@ -80,7 +80,7 @@ def test_the_picture_holds_the_curves_and_marks_the_design():
     assert [ln.get_linestyle() for ln in volume.lines] == ["-", "--"]
     assert volume.get_xscale() == volume.get_yscale() == "log"
     assert volume.get_xlabel() == "touches of 1 µm noise"
-    assert user.get_ylabel() == "tool point not predicted in µm rms"
+    assert user.get_ylabel() == "unpredicted tool point error in µm rms"
     titles = [a.get_title(loc="left") for a in drawn.axes]
     assert titles == ["your workspace", "probed volume"]
     assert [t.get_text() for t in drawn.legends[0].get_texts()] == ["standard", "ideal scatter"]

@@ -158,7 +158,7 @@ def test_the_command_states_both_and_the_limit(bench, errors_file, tmp_path, cap
     inside, ends = data["between_line_ends"]["worst_um"], data["at_line_ends"]["after"]["worst_um"]
     assert ends < 0.6 < 1.0 < inside < 2.2
     assert f"between line ends up to {inside:.2f} µm off the path (line " in said
-    assert "divided until 2.00 µm are left" in said
+    assert "lines were divided down to 2.00 µm" in said
     assert "tool point at line ends" in said
     table = np.genfromtxt(output.with_suffix(".csv"), delimiter=",", names=True)
     assert np.nanmax(table["between_um"]) == pytest.approx(inside, abs=1e-3)

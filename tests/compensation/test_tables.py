@@ -350,7 +350,7 @@ def test_commands(bench, errors_file, tmp_path, capsys):
     command = ["compensate", str(bench), "--errors", str(errors_file), "--tables", str(out)]
     command += ["--tool-length", "160", "--control", "iso230"]
     assert main(command) == 0
-    assert "holds every error" in capsys.readouterr().out
+    assert "represents every error" in capsys.readouterr().out
     assert {p.name for p in out.iterdir()} >= {"iso230", "report.html", "compensation.json"}
     assert main(command) == 2
     assert "already exists" in capsys.readouterr().err

@@ -7,7 +7,7 @@ from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.geometry.arm_machine import found_arm
 from matstd.diagnosis.geometry.learnt import geometry_rows
 from matstd.diagnosis.remarks.run_remarks import JointsStood, remarks
-from matstd.importers.arms.serial_arm import arm_from_dh, joint_readings, tracker_run
+from matstd.importers.arms import arm_from_dh, read_arm, tracker_run
 from matstd.importers.sheets import read_sheet
 from matstd.report.geometry.geometry_words import quantity_name
 from matstd.twin.library.ordinary import ordinary_model
@@ -65,9 +65,9 @@ def learnt(tmp_path_factory):
         text = "\n".join([head, *(",".join(f"{v:.9f}" for v in row) for row in rows)])
         (folder / "log.csv").write_text(text)
         sheet = read_sheet(folder / "log.csv")
-        readings, _ = joint_readings(sheet)
-        chain = chain or arm_from_dh(read_sheet(folder / "dh.csv"), readings)[0]
-        return fit_run(tracker_run(sheet, chain, readings, 0.2 * UM), ordinary_model(chain))
+        table = read_arm(sheet)
+        chain = chain or arm_from_dh(read_sheet(folder / "dh.csv"), table.q)[0]
+        return fit_run(tracker_run(table, chain, 0.2 * UM), ordinary_model(chain))
 
     return made
 

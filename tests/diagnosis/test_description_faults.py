@@ -41,7 +41,7 @@ def test_a_reversed_axis_is_named_though_the_reader_refuses_the_run(texts) -> No
     assert (fault.fault, fault.axes, fault.alike) == (Fault.AXIS_REVERSED, ("C",), ())
     assert fault.test_rms[0] > 1000.0 * fault.test_rms[1]
     (sentence,) = fault_sentences([fault])
-    assert "C runs the other way than the machine file says" in sentence
+    assert "C moves in the direction opposite to that in the machine file" in sentence
     assert "nothing was changed" in sentence
 
 
@@ -103,5 +103,5 @@ def test_the_command_line_names_the_mistake_in_its_refusal(texts, tmp_path, caps
     out = tmp_path / "out"
     assert main(["compare", str(tmp_path / "run.csv"), "-o", str(out), "--no-report"]) == 2
     told = capsys.readouterr().err
-    assert "B runs the other way than the machine file says" in " ".join(told.split())
+    assert "B moves in the direction opposite to that in the machine file" in " ".join(told.split())
     assert not out.exists()

@@ -92,7 +92,7 @@ def test_the_command_writes_a_law_that_predicts_the_same_again(tmp_path, capsys)
     out = tmp_path / "out"
     assert main(["thermal", str(log), "--no-network", "--probe-every", "1", "-o", str(out)]) == 0
     said = capsys.readouterr().out
-    assert "chosen by left-out blocks" in said
+    assert "chosen by the blocks left out" in said
     assert "probed every" in said
     saved = json.loads((out / "thermal.json").read_text())
     left = {law["name"]: law["free_run"] for law in saved["laws"]}

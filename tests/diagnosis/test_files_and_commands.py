@@ -252,7 +252,7 @@ def test_a_model_file_that_was_cut_off_is_refused(saved, tmp_path) -> None:
 def test_compare_writes_what_the_model_leaves(folder, tmp_path, capsys) -> None:
     out = tmp_path / "out"
     assert main(["compare", str(folder / "run.csv"), "-o", str(out), "--no-report"]) == 0
-    assert "What is left is not noise" in " ".join(capsys.readouterr().out.split())
+    assert "The residual is not noise" in " ".join(capsys.readouterr().out.split())
     told = json.loads((out / "comparison.json").read_text(encoding="utf-8"))
     assert told["format"] == "comparison/1"
     assert told["rms_um"] < told["measured_rms_um"]

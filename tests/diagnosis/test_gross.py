@@ -156,4 +156,4 @@ def test_the_error_is_told_both_ways_where_many_stand_out() -> None:
     assert told.left_out
     assert told.touches == bad.sum() == fit.gross.rows.sum()
     assert 5.0 * told.without < told.whole
-    assert "18 of 180 touches stand out (10 %), scattered" in remark_sentence(told)
+    assert "18 of 180 touches are outliers (10 %), scattered" in remark_sentence(told)

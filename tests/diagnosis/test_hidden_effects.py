@@ -65,7 +65,7 @@ def test_nothing_hidden_nothing_found(diagnosed) -> None:
     assert d.left == ()
     assert d.depends_on == ()
     assert d.plans == ()
-    assert verdict_sentence(d).startswith("Nothing is missing")
+    assert verdict_sentence(d).startswith("No effect is missing")
     assert d.fit.standardised_test_rms == pytest.approx(added_noise(*NOTHING[:2]), rel=HELD_OUT)
     assert min(c.p_value for c in d.candidates) > 1e-3
 
@@ -150,7 +150,7 @@ def test_an_effect_outside_the_library_is_called_unexplained(diagnosed) -> None:
     assert "time_s" in [one.variable for one in d.depends_on]
     assert d.left
     assert d.depends_on[0].p_value < 1e-4
-    assert verdict_sentence(d).startswith("Something is left")
+    assert verdict_sentence(d).startswith("A residual remains")
 
 
 def test_below_the_limit_nothing_is_claimed_and_the_limit_is_told(case, diagnosed) -> None:

@@ -40,7 +40,7 @@ def test_touches_of_one_newton_do_not_identify_a_stiffness():
     fit, _ = fitted(1.0, ["stiffness(Z)"])
     (remark,) = said(fit, LoadTooSmall)
     assert remark.load == 1.0 or abs(remark.load - 1.0) < 1e-9
-    assert "1 N bend too little to identify stiffness(Z)" in remark_sentence(remark)
+    assert "1 N are too small to identify stiffness(Z)" in remark_sentence(remark)
 
 
 def test_known_loads_do():

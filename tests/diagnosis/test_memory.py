@@ -193,7 +193,9 @@ def test_noise_that_remembers_is_said_to_and_nothing_is_named(noisy, tmp_path) -
     memory = result.fit.memory
     assert memory is not None
     told = f"correlation {memory.correlation:.2f}"
-    assert f"and remembers ({told}" in verdict_sentence(result)
-    assert any(f"the noise remembers ({told}" in remark_sentence(r) for r in remarks(result.fit))
+    assert f"and is correlated ({told}" in verdict_sentence(result)
+    assert any(
+        f"the noise is correlated ({told}" in remark_sentence(r) for r in remarks(result.fit)
+    )
     write_model(tmp_path / "model.toml", result.fit, "run.csv")
     assert "held_out_um" in (tmp_path / "model.toml").read_text(encoding="utf-8")

@@ -36,7 +36,7 @@ def test_a_triangle_is_one_period_with_its_odd_sines() -> None:
     for k in (1, 2, 3):
         true = 6.0 * 8.0 / np.pi**2 / k**2 * (k % 2)
         assert told[f"sine_{k}"].value == pytest.approx(true, abs=4.0 * told[f"sine_{k}"].u)
-    assert "in sines of 1/1 to 1/" in sizes(result.steps[1], 3)
+    assert "amplitudes of its harmonics 1 to " in sizes(result.steps[1], 3)
 
 
 def test_a_strongest_second_sine_does_not_halve_the_period() -> None:

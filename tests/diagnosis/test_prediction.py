@@ -261,8 +261,8 @@ def test_a_way_that_is_followed_counts_independent_observations(chosen) -> None:
 def test_a_broken_promise_is_said() -> None:
     run = record()
     found = compare(run, ordinary_model(run.touches.chain))
-    assert "worse than was promised" in promise_sentence(found, 0.5 * found.rms)
-    assert "as good as was promised" in promise_sentence(found, found.rms)
+    assert "worse than promised" in promise_sentence(found, 0.5 * found.rms)
+    assert "as good as promised" in promise_sentence(found, found.rms)
 
 
 def test_candidates_are_narrowed_by_kind_and_by_name() -> None:

@@ -82,13 +82,15 @@ def test_where_nothing_changed_it_says_so_and_knows_more() -> None:
     assert both.verdict is Verdict.NONE
     assert both.trend.changed == ()
     (sentence,) = change_sentences(both.trend)
-    assert sentence.startswith("from a to b nothing of the geometry changed; these runs would")
+    assert sentence.startswith(
+        "from a to b no change of the geometry was detected; detection limits of"
+    )
     # 3.5 standard uncertainties are no change, and yet not kept back
     square = row(both.trend.rows, "EC0Y")
     near = replace(square, steps=(replace(square.steps[0], value=3.5 * square.steps[0].u),))
     rows = tuple(near if r is square else r for r in both.trend.rows)
     (sentence,) = change_sentences(replace(both.trend, rows=rows))
-    assert "changed beyond chance, though squareness of Y to X (EC0Y) may have, by " in sentence
+    assert "detected; squareness of Y to X (EC0Y) may have changed by " in sentence
     for run in both.trend.runs:
         assert run.left_out < 3.0 * NOISE
     alone = fit_run(runs["a"], ordinary_model(runs["a"].touches.chain))

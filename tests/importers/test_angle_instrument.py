@@ -162,7 +162,10 @@ def test_harmonics_that_even_targets_confuse_are_listed():
     assert "cannot tell harmonic 45 from 75, 165, 195 or 285" in remark_sentence(alike)
     (curve,) = told(turned(12, 40), "geometric(ECC,2-4)")
     assert curve == HarmonicsAlike("C", 12, 0, ())
-    assert "12 even targets a turn of C show whatever repeats more than 6" in remark_sentence(curve)
+    assert (
+        "12 evenly spaced targets per turn of C show errors that repeat more than 6 times"
+        in remark_sentence(curve)
+    )
 
 
 def told(run, name, *inner):
@@ -183,8 +186,8 @@ def test_a_worm_is_found_at_uneven_targets_and_its_look_alikes_are_told():
     (step,) = few.steps[1:]
     assert 72.0 in step.confusion.alike.periods
     told = verdict_sentence(few)
-    assert "it could as well be harmonic 69, 71, 72, 73 or one of " in told
-    assert "higher ones: measure at C " in told
+    assert "it cannot be distinguished from harmonic 69, 71, 72, 73 or one of " in told
+    assert "higher ones; to distinguish them, measure at C " in told
     assert "°)" in told
 
 

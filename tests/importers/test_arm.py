@@ -7,7 +7,7 @@ import pytest
 
 from matstd.cli import main
 from matstd.diagnosis.fit.identification import fit_run
-from matstd.importers.arms.serial_arm import arm_from_dh, joint_readings, tracker_run
+from matstd.importers.arms import arm_from_dh, read_arm, tracker_run
 from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile, DesignError, NotEnoughData
 from matstd.twin.files.machine_file import read_machine
@@ -94,14 +94,14 @@ def test_the_chain_of_a_table_of_parameters_is_the_arm(tmp_path, modified):
 def test_tracker_and_reflector_are_found_wherever_they_are(tmp_path):
     q = poses()
     sheet = read_sheet(written(tmp_path, seen(q), q))
-    readings, columns = joint_readings(sheet)
-    assert columns[0] == "J1 [deg]"
-    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), readings)
-    run = tracker_run(sheet, chain, readings, 5.0 * UM)
+    table = read_arm(sheet)
+    assert table.joints[0] == "J1 [deg]"
+    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), table.q)
+    run = tracker_run(table, chain, 5.0 * UM)
     np.testing.assert_allclose(run.touches.target[0], turned @ REFLECTOR, atol=1e-5)
     assert np.abs(run.deviation).max() < 1e-5
     assert run.touches.time[3] == 20.0
-    stated = tracker_run(sheet, chain, readings, 5.0 * UM, turned @ REFLECTOR)
+    stated = tracker_run(table, chain, 5.0 * UM, turned @ REFLECTOR)
     assert np.abs(stated.deviation).max() < 1e-5
 
 
@@ -112,7 +112,7 @@ def test_a_reflector_on_either_side_of_the_flange_is_written_and_read(tmp_path, 
     q = poses()
     sheet = read_sheet(written(tmp_path, seen(q), q))
     chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q)
-    run = tracker_run(sheet, chain, joint_readings(sheet)[0], 5.0 * UM)
+    run = tracker_run(read_arm(sheet), chain, 5.0 * UM)
     write_run(tmp_path / "run.csv", run, "none.toml")
     again = read_run(tmp_path / "run.csv", chain)
     np.testing.assert_allclose(again.touches.target, run.touches.target, atol=1e-6)
@@ -128,7 +128,7 @@ def test_sign_of_an_arm_that_is_too_long(tmp_path):
     q = poses()
     sheet = read_sheet(written(tmp_path, seen(q, 1.00002), q))
     chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q)
-    run = tracker_run(sheet, chain, joint_readings(sheet)[0], 5.0 * UM, turned @ REFLECTOR)
+    run = tracker_run(read_arm(sheet), chain, 5.0 * UM, turned @ REFLECTOR)
     middle = run.touches.point.reshape(-1, 3, 3)[:, 0]
     outwards = middle - middle.mean(axis=0)
     dev = run.deviation.reshape(-1, 3)
@@ -167,13 +167,13 @@ def test_what_is_no_arm_is_refused(tmp_path):
     text = table.read_text(encoding="cp1252")
     table.write_text(text.replace("J4", "J5"))
     with pytest.raises(BadFile, match="every joint once"):
-        joint_readings(read_sheet(table))
+        read_arm(read_sheet(table))
     table.write_text(text.replace("X [mm]", "X [mm];X cmd [mm]"))
     chain, _ = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q)
     table.write_text("\n".join(text.splitlines()[:5]) + "\n")
     sheet = read_sheet(table)
     with pytest.raises(DesignError, match="4 poses, expected 6"):
-        tracker_run(sheet, chain, joint_readings(sheet)[0], 5.0 * UM)
+        tracker_run(read_arm(sheet), chain, 5.0 * UM)
 
 
 def several(tmp_path, q, coupling=0.0):
@@ -194,10 +194,9 @@ def several(tmp_path, q, coupling=0.0):
 
 
 def test_several_reflectors_with_torques_and_loads_are_one_run(tmp_path):
-    sheet = several(tmp_path, poses())
-    q, _ = joint_readings(sheet)
-    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q)
-    run = tracker_run(sheet, chain, q, 5.0 * UM)
+    table = read_arm(several(tmp_path, poses()))
+    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), table.q)
+    run = tracker_run(table, chain, 5.0 * UM)
     t = run.touches
     assert len(run) == 6 * POSES - 3
     assert np.abs(run.deviation).max() < 1e-6
@@ -208,7 +207,7 @@ def test_several_reflectors_with_torques_and_loads_are_one_run(tmp_path):
     np.testing.assert_allclose(t.value["tau2_Nm"][:6], 10.5)
     np.testing.assert_allclose(t.force[0], [0.0, 0.0, -30.0])
     assert t.temperature["motor"][0] == 35.0
-    assert sheet.unused == ("state",)
+    assert table.sheet.unused == ("state",)
     write_run(tmp_path / "run.csv", run, "none.toml")
     again = read_run(tmp_path / "run.csv", chain)
     np.testing.assert_allclose(again.touches.target, t.target, atol=1e-6)
@@ -263,10 +262,10 @@ def test_the_order_of_the_rows_gives_times_where_the_user_says_so(tmp_path, caps
 def refused(tmp_path, q, places):
     """What a table of poses is refused with."""
     sheet = read_sheet(written(tmp_path, places, q))
-    readings, _ = joint_readings(sheet)
-    chain, _ = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), readings)
+    table = read_arm(sheet)
+    chain, _ = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), table.q)
     with pytest.raises(NotEnoughData) as refusal:
-        tracker_run(sheet, chain, readings, 5.0 * UM)
+        tracker_run(table, chain, 5.0 * UM)
     return str(refusal.value)
 
 
@@ -334,10 +333,10 @@ def test_a_turn_of_one_joint_says_how_far_from_its_line_the_reflector_is(tmp_pat
 def test_a_stated_reflector_on_a_line_leaves_a_turn_about_it(tmp_path):
     q = on_a_line()
     sheet = read_sheet(written(tmp_path, seen(q), q))
-    readings, _ = joint_readings(sheet)
-    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), readings)
+    table = read_arm(sheet)
+    chain, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), table.q)
     with pytest.raises(NotEnoughData) as refusal:
-        tracker_run(sheet, chain, readings, 5.0 * UM, turned @ REFLECTOR)
+        tracker_run(table, chain, 5.0 * UM, turned @ REFLECTOR)
     said = str(refusal.value)
     assert "leave open a turn of the tracker about X of the table frame; expected poses off" in said
 
@@ -390,4 +389,4 @@ def test_two_columns_of_places_that_nobody_names_are_refused(tmp_path):
     chain, _ = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q)
     sheet = read_sheet(table)
     with pytest.raises(BadFile, match=r"'Z \[mm\]'.*'z \[mm\]'.*one column of measured x, y, z"):
-        tracker_run(sheet, chain, joint_readings(sheet)[0], 5.0 * UM)
+        tracker_run(read_arm(sheet), chain, 5.0 * UM)

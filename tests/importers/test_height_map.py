@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from matstd.importers.points.points import read_points
+from matstd.importers.points import read_points
 from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile
 

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from matstd.importers.points import linear_machine, points_run
 from matstd.importers.points.other_frame import in_measured_frame, in_nominal_frame, measured_frames
 from matstd.importers.points.point_list import PointList
-from matstd.importers.points.points import linear_machine, points_run
 from matstd.twin.errors import DesignError
 from matstd.twin.record.touches import computed_deviation
 from matstd.twin.units import UM

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from matstd.importers.points.points import read_points
+from matstd.importers.points import read_points
 from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile
 from matstd.twin.files.run_file import read_run
@@ -55,7 +55,7 @@ def test_directions_are_taken_and_what_is_not_is_named(imported, capsys):
     of_hole = dict(zip(run.touches.feature, run.touches.last_move("Y"), strict=True))
     assert of_hole == {"H1": 1.0, "H2": -1.0, "H3": 1.0, "H4": -1.0}
     assert not run.touches.last_move("X").any()
-    assert "nothing was taken of: Prüfer" in said
+    assert "not used: Prüfer" in said
 
 
 def test_lists_of_several_years_are_runs_in_their_order(imported, capsys):

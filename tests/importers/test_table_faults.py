@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from matstd.importers.arms.serial_arm import arm_from_dh
+from matstd.importers.arms import arm_from_dh
 from matstd.importers.instruments.positioning import read_positioning
 from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile

@@ -11,11 +11,11 @@ from matstd.cli import main
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.fit.describe import Role
 from matstd.diagnosis.fit.identification import fit_run
-from matstd.importers.arms.serial_arm import arm_from_dh
+from matstd.importers.arms import arm_from_dh
 from matstd.importers.instruments.axis_run import one_axis_machine, positioning_run
 from matstd.importers.instruments.circle import read_circle
 from matstd.importers.instruments.positioning import PositioningTest, read_positioning
-from matstd.importers.points.points import linear_machine, points_run, read_points
+from matstd.importers.points import linear_machine, points_run, read_points
 from matstd.importers.sheets import bare, read_sheet, unit_of_column
 from matstd.twin.errors import BadFile
 from matstd.twin.files.run_file import read_run

@@ -164,7 +164,7 @@ def test_the_page_stands_alone(made: Path) -> None:
     assert "https://" not in page
     assert page.count("data:image/png;base64,") >= 7
     assert "placeholders" in page
-    told = re.search(r"the (\d+) touches that prove take (\d+) minutes, (\d+) with every", page)
+    told = re.search(r"the (\d+) proving touches take (\d+) minutes, or (\d+) with each", page)
     touches, minutes, once = map(int, told.groups())
     with next(made.glob("tables/05-*.csv")).open(encoding="utf-8") as table:
         assert 0 < once <= minutes < max(float(way["minutes"]) for way in csv.DictReader(table))
@@ -202,11 +202,16 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         ("robust_share = 1.0", "robust_share = 0.0", "standard.robust_share"),
         ("robust_share = 1.0", "robust_share = 0.25", "robust_machines = 0"),
         ("poses = 10 ", "poses = 4 ", "standard.poses"),
-        ("touches = 120", "touches = 50", "standard.touches"),
+        ("touches = 120", "touches = 50", "expected a whole number from 100 to 2000"),
         ("poses = 10 ", "poses = 61 ", "found 61 with touches = 120"),
         ("base_mm = [280.0, 280.0]", "base_mm = [360.0, 280.0]", "no larger than the table, 320"),
         ("base_mm = [280.0, 280.0]", "base_mm = [90.0, 280.0]", "160 mm or more"),
         ("table_radius_mm = 160.0", "table_radius_mm = 100.0", "no larger than the table, 200"),
+        (
+            "table_radius_mm = 160.0",
+            "table_radius_mm = 20.0",
+            "160 mm or more, the smallest base of a",
+        ),
         ("max_mass_kg = 60.0", "max_mass_kg = 5.0", "more than 18.3 kg"),
         ("# slot_pitch_mm = 63.0", "slot_pitch_mm = 5.0", "found 5, expected 20 mm or more, or 0"),
         ("\nradius_mm = 3.0", "\nradius_mm = 20.0", "limits.min_concave_radius_mm"),

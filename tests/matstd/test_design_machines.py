@@ -15,7 +15,8 @@ from matstd.artefact.worth import ball_choice
 from matstd.artefact.worth.touch_choice import TouchOptions
 from matstd.probe_paths.campaign.order_study import orders
 from matstd.probe_paths.emit.program import make_programs
-from matstd.report.plots.plan_pictures import write_order_picture
+from matstd.report.plots.plan_pictures import draw_order
+from matstd.report.style import save
 from matstd.stages import design
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -71,7 +72,7 @@ def test_a_design_for_every_kind_of_machine(
     found = orders(plan, placement.criterion.model, project.noise)
     assert all(len(order.reversal) == len(project.chain.rotary_axes) for order in found)
     assert all(np.isfinite([o.drift, *o.reversal]).all() and o.duration > 0.0 for o in found)
-    write_order_picture(tmp_path / "order.png", plan)
+    save(draw_order(plan), tmp_path / "order.png")
     programs = make_programs(plan).write(tmp_path)
     machine = design._prove(project, placement, programs, 0, rng_proof)
     assert len(machine.campaign.run) == len(plan)

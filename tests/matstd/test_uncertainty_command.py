@@ -90,7 +90,7 @@ def test_the_high_face_is_told(place: Path, capsys: pytest.CaptureFixture[str]) 
     said = capsys.readouterr().out
     assert "ISO 15530-3 asks for 10" in said
     assert "u_w is 0" in said
-    assert "2 faces, 5 table poses and 3 visits hardly tell how far errors differ" in said
+    assert "2 faces, 5 table poses and 3 visits hardly determine how much the errors differ" in said
     assert found["k"] > 5.0  # as good as one number tells of two faces
     assert found["U_um"] == pytest.approx(found["k"] * found["u_um"], rel=1e-3)
 
@@ -150,7 +150,7 @@ def test_a_task_chooses_places(place: Path) -> None:
         ("slope_deg = [40.0, 10.0]", "smallest and largest"),
         ("[poses]\nZ_deg = [0.0, 1.0]", "rotary axes"),
         ("[poses]\nA_deg = [0.0, 1.0]", "expected rotary axes of trunnion: C, B"),
-        ("tolerance_um = -3.0", "greater than 0"),
+        ("tolerance_um = -3.0", "a number above 0"),
         ("sloop_deg = [0.0, 1.0]", "slope_deg"),
     ],
 )
@@ -189,7 +189,7 @@ def test_where_hardly_anything_was_touched(
     assert main(["uncertainty", *files[:2], *more]) == 0
     said = capsys.readouterr().out
     assert "10 places on 1 face at 5 table poses in 2 visits" in said
-    assert "one face: U holds for workpieces where it stood" in said
+    assert "only one face: U holds for workpieces at its place" in said
     assert main(["uncertainty", files[2], files[0], *more, "--force"]) == 2
     assert "no touch on a freeform face of standard" in capsys.readouterr().err
 

@@ -11,7 +11,7 @@ import pinocchio as pin
 import pytest
 from made_up import ARM, arm_poses
 
-from matstd.twin.effects.joint_sag import joint_sag
+from matstd.twin.effects.joint_sag import KIND
 from matstd.twin.machine.chain import Axis, Chain, Link, make_chain
 from matstd.twin.machine.contribution import Contribution
 from matstd.twin.machine.kinematics import exact_tip, reach, table_to_tool
@@ -226,7 +226,7 @@ def test_weights_turn_the_joints_of_an_arm_as_gravity_does():
     for i, name in enumerate(ARM.axes):
         if np.abs(holding[:, i]).max() < 1e-9 * scale:
             continue  # an upright line carries no torque
-        effect = joint_sag(ARM, name)
+        effect = KIND.make(ARM, [name])
         theta = np.array([masses[p] for p in effect.places])
         twist = contribution([(effect, theta)], touches).twist[:, ARM.link_index(name), 3:]
         expected = -holding[:, i, None] * ARM.link(name).direction

@@ -121,7 +121,7 @@ def test_a_change_beyond_the_limit_is_refused_and_dirt_is_told(part, small, chai
     (dirty,) = ball_changes([part, replace(part, xyz=one, begin=later)], small, chain, 1.0 * UM)
     check_changes([dirty], 100.0 * UM)
     assert dirty.is_odd
-    assert "dirt on the ball, or a loose stylus" in ball_lines([dirty])[-1]
+    assert "dirt on the ball or a loose stylus" in ball_lines([dirty])[-1]
 
 
 def test_too_few_touches_in_common_and_touches_on_one_side_are_refused(part, small, chain):

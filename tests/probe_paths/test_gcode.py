@@ -16,8 +16,9 @@ from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.control.steps import Halt, Move, Print, ProbeStep
 from matstd.probe_paths.emit.program import make_dry_run
-from matstd.probe_paths.language import gcode
 from matstd.probe_paths.language.dialect_file import read_dialect
+from matstd.probe_paths.language.gcode import GCODE
+from matstd.probe_paths.language.language import Touch
 from matstd.probe_paths.language.languages import read_blocks
 from matstd.twin.errors import BadFile
 from matstd.twin.units import NM, UM
@@ -197,14 +198,14 @@ def _is_taken(lines, chain):
 def test_words_have_one_spelling_at_both_ends():
     """Every function of the language, read back by its reader."""
     d = read_dialect("linuxcnc")
-    touch = gcode.Touch([0.0, 0.6, -0.8], 8.0, 250.0, 5.0)
+    touch = Touch([0.0, 0.6, -0.8], 8.0, 250.0, 5.0)
     blocks = [
-        gcode.begin("ALL"), gcode.label(90, "WHY"), gcode.jump_if_less(1613, 0, 91),
-        gcode.LABEL_END, *gcode.RESET, gcode.tool_call(7), gcode.preset(3), gcode.WAIT,
-        gcode.line({"Z": 1.0}), gcode.line({"B": -30.0}, 1000), gcode.assign(1601, -2.5),
-        *gcode.probe_vector(d, 1610, touch), gcode.PROGRAM_STOP, gcode.end("ALL"),
+        GCODE.begin("ALL"), GCODE.label(90, "WHY"), GCODE.jump_if_less(1613, 0, 91),
+        GCODE.label_end, *GCODE.reset, GCODE.tool_call(7), GCODE.preset(3), GCODE.wait,
+        GCODE.line({"Z": 1.0}), GCODE.line({"B": -30.0}, 1000), GCODE.assign(1601, -2.5),
+        *GCODE.probe_vector(d, 1610, touch), GCODE.program_stop, GCODE.end("ALL"),
     ]  # fmt: skip
-    found = read_blocks(gcode.listed(blocks).encode(), "ALL.ngc")
+    found = read_blocks(GCODE.listed(blocks).encode(), "ALL.ngc")
     preset = next(b for b in found if b.kind.name == "PRESET")
     assert preset.word("row") == "+3"
     path = next(b for b in found if b.kind.name == "PROBE_PATH")

@@ -2,16 +2,18 @@ import numpy as np
 import pytest
 
 from matstd.artefact.tool.probe import Probe
-from matstd.probe_paths.language import klartext as k
 from matstd.probe_paths.language.blocks import Kind
 from matstd.probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
+from matstd.probe_paths.language.klartext import DATUM_SHIFT_OFF, KLARTEXT, PLANE_OFF, plane
 from matstd.probe_paths.language.language import Datum, Touch
 from matstd.probe_paths.language.languages import read_blocks
+from matstd.probe_paths.language.text import signed
 from matstd.probe_paths.plan.heading import Heading, parse_heading, rounded_setup
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import pose, rotation
 from matstd.twin.record.touches import Setup
 
+k = KLARTEXT
 ROUNDING = 1e-6
 """Six decimals of millimetres and degrees in a heading."""
 
@@ -21,13 +23,13 @@ ROUNDING = 1e-6
     [(1.0, "+1.0000"), (-0.00001, "+0.0000"), (-12.34567, "-12.3457"), (0.0, "+0.0000")],
 )
 def test_numbers_carry_sign_and_four_decimals(value, text):
-    assert k.signed(value) == text
+    assert signed(value) == text
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), 1e5, -123456.0])
 def test_numbers_beyond_the_control_are_refused(value):
     with pytest.raises(DesignError, match="beyond the control's range"):
-        k.signed(value)
+        signed(value)
 
 
 @pytest.mark.parametrize("name", ["ms_1", "1MS", "M-1", "A" * 17, ""])
@@ -61,16 +63,16 @@ def test_long_and_foreign_lines_are_refused():
 def test_every_block_of_the_vocabulary_is_one_that_the_parser_knows():
     text = k.listed([
         k.begin("ALL"), k.comment("TEXT"), k.structure("HEAD"), *k.stock([0, 0, 0], [1, 2, 3]),
-        k.TCPM_OFF, k.PLANE_OFF, *k.datum_shift_off(), k.tool_call(7), k.preset(3), k.WAIT,
-        k.plane([0.0, -30.0, 5.0], -30.0),
-        k.line({"Z": -1.0}, words="M91"), k.line({"B": -30.0, "C": 5.0}, 1000, k.SHORTER_WAY),
-        k.SHORTER_WAY, k.SHORTER_WAY_OFF, k.assign(1601, 2), k.assign(1601, -2.5),
+        "M129", PLANE_OFF, *DATUM_SHIFT_OFF, k.tool_call(7), k.preset(3), k.wait,
+        plane([0.0, -30.0, 5.0], -30.0),
+        k.retract(-1.0), k.turn({"B": -30.0, "C": 5.0}), k.line({"B": -30.0}, 1000),
+        "M126", "M127", k.assign(1601, 2), k.assign(1601, -2.5),
         k.read(1601, Datum.OFFSET_X), k.read(1601, Datum.RADIUS), k.call(90),
         *k.probe_vector(Dialect(), 1610, Touch([0.0, 0.6, -0.8], 8.0, 250.0, 5.0)),
-        k.printed("TNC:\\A\\M.A", [], "TNC:\\A\\L.TXT"), k.PROGRAM_STOP, k.label(90, "WHY"),
+        k.printed("TNC:\\A\\M.A", [], "TNC:\\A\\L.TXT"), k.program_stop, k.label(90, "WHY"),
         k.jump_if_less(1613, 0, 91), k.jump_if_greater(1607, 2, 91),
-        k.difference(1607, 114, 163.5), k.minus(1607, 1608), k.SPINDLE_OFF,
-            k.LABEL_END, k.label(91), k.RETRACT_MAX, k.OPERATOR_STOP,
+        k.difference(1607, 114, 163.5), k.minus(1607, 1608), "M5",
+            k.label_end, k.label(91), k.retract_max(0.0), k.operator_stop,
         k.stop_with_error(1014), k.end("ALL"),
     ])  # fmt: skip
     blocks = read_blocks(text.encode("ascii"), "ALL.H")

@@ -168,6 +168,10 @@ def test_another_standard_is_refused(folder, small, capsys):
     write_standard(folder / "standard.toml", replace(small, patches=small.patches[::-1]))
     assert command(folder) == 2
     assert "feature 1 is FF1 in the program" in capsys.readouterr().err
+    (folder / "standard.toml").unlink()
+    write_standard(folder / "standard.toml", replace(small, name="L-2"))
+    assert command(folder) == 2
+    assert "written for standard 'SMALL-1', found 'L-2'" in capsys.readouterr().err
 
 
 def evaluated(folder, *more, logs="logs"):

@@ -5,7 +5,14 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from matstd.report.words.design_words import AT_20, best_rival, design_lines, verdict_of_design
+from matstd.report.words.design_words import (
+    AT_20,
+    best_rival,
+    blind_spots,
+    design_lines,
+    proof_sentence,
+    verdict_of_design,
+)
 from matstd.twin.machine import Chain
 from matstd.twin.units import UM
 
@@ -41,14 +48,20 @@ def placement(own: float, spheres: float, block: float = 9.0, scatter: float = 0
     ("own", "spheres", "said"),
     [
         (1.0, 2.0, "would leave 2.00 µm, 2.0 times as much"),
-        (1.0, 1.01, "as much as after probing the best other artefact, four spheres: 1.01 µm"),
-        (2.0, 1.0, "That is not the best there: four spheres would leave 1.00 µm, 2.0 times less"),
+        (1.0, 1.01, "the best other artefact, four spheres, is equal: 1.01 µm"),
+        (
+            2.0,
+            1.0,
+            "Another artefact is better there: four spheres would leave 1.00 µm, 2.0 times",
+        ),
     ],
 )
 def test_the_verdict_is_on_the_workspace(own: float, spheres: float, said: str) -> None:
     made = placement(own, spheres)
     words = verdict_of_design(made, {})
-    assert words.startswith(f"After probing the standard A, {own:.2f} µm rms")
+    assert words.startswith(
+        f"After probing the standard A, the tool point is known to {own:.2f} µm rms"
+    )
     assert "in your workspace" in words
     assert said in words
 
@@ -62,28 +75,29 @@ def test_scatter_that_nobody_can_build_is_no_rival() -> None:
 
 
 def test_the_probed_volume_comes_second_and_by_name() -> None:
-    first, second, _, proof, _ = design_lines(placement(1.0, 2.0), {})
+    first, second, _ = design_lines(placement(1.0, 2.0), {})
+    proof = proof_sentence(placement(1.0, 2.0))
     assert "160 touches on the 2 freeform faces" in proof
-    assert "power of 95 % on average" in proof
+    assert "average power of 95 %" in proof
     assert "for 1 of 2 effects" in proof
     assert "probed volume" not in first
     assert "probed volume" in second
-    assert "block, 1.11 µm" in second
+    assert "block, would leave 1.11 µm" in second
 
 
 def test_faces_are_weighed_against_spheres_by_what_they_cost_or_gain() -> None:
     gain, cost = (design_lines(placement(own, 1.0), {})[2] for own in (0.5, 1.32))
-    assert "the freeform faces gain 50 % over the user's workspace" in gain
-    assert "the freeform faces cost 32 % over the user's workspace" in cost
-    assert "leaves 1.32 µm rms, four spheres placed by the same optimiser 1.00 µm" in cost
+    assert "the freeform faces gain 50 % over your workspace" in gain
+    assert "the freeform faces cost 32 % over your workspace" in cost
+    assert "leaves 1.32 µm rms; four spheres, placed by the same optimiser, leave 1.00 µm" in cost
 
 
 @pytest.mark.parametrize(
     ("exact", "blame"),
     [
-        ([0.99, 0.97, 0.96, 0.9, 1.0], "a better calibration of the faces is what helps"),
+        ([0.99, 0.97, 0.96, 0.9, 1.0], "a better calibration of the faces would help"),
         ([0.99, 0.9, 0.9, 0.9, 1.0], "their slopes and places are another"),
-        ([0.6, 0.7, 0.5, 0.9, 1.0], "the touches hardly feel these effects"),
+        ([0.6, 0.7, 0.5, 0.9, 1.0], "the touches are hardly sensitive to these effects"),
     ],
 )
 def test_what_the_proof_does_not_find_is_named_with_the_cause(exact, blame) -> None:
@@ -95,12 +109,12 @@ def test_what_the_proof_does_not_find_is_named_with_the_cause(exact, blame) -> N
     made.power_exact = SimpleNamespace(
         touches=160, power=np.array(exact), found=found, effects=names
     )
-    last = design_lines(made, {})[-1]
-    assert last.startswith("Found less surely than 95 %: c (40 %), a (50 %), b (60 %), d (90 %).")
-    assert f"{found} of 5 effects would be found" in last
+    last = blind_spots(made)
+    assert last.startswith("Power below 95 %: c (40 %), a (50 %), b (60 %), d (90 %).")
+    assert f"{found} of 5 effects would be detected" in last
     assert blame in last
     made.power = SimpleNamespace(touches=160, power=np.full(5, 0.96), found=5, effects=names)
-    assert design_lines(made, {})[-1].startswith("Proof: ")
+    assert blind_spots(made) == ""
 
 
 def test_a_workspace_beyond_the_touches_is_told_by_axis(chain: Chain) -> None:
@@ -117,8 +131,8 @@ def test_a_workspace_beyond_the_touches_is_told_by_axis(chain: Chain) -> None:
     asked = {"X": (-400.0, 400.0), "Y": (-100.0, 100.0), "B": (-np.pi / 2.0, 0.0)}
     words = verdict_of_design(made, asked)
     assert (
-        "The touches read only X -100 to 90 mm (workspace -400 to 400) and "
-        "B 0 to 10° (workspace -90 to 0): beyond, the model extrapolates" in words
+        "The touches cover only X -100 to 90 mm (workspace -400 to 400) and "
+        "B 0 to 10° (workspace -90 to 0). Beyond these readings the model extrapolates" in words
     )
     most = {"X": (-120.0, 120.0)}
     assert verdict_of_design(made, most) == verdict_of_design(made, {})

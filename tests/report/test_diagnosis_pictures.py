@@ -13,10 +13,9 @@ from matstd.diagnosis.answer.verdict import Verdict
 from matstd.diagnosis.residual.mean_displacements import has_poses, pose_vectors
 from matstd.diagnosis.residual.partial_residuals import partial, roughness
 from matstd.diagnosis.residual.ranked_variables import binned, rank_variables, standardised
-from matstd.report.numbers import with_uncertainty
+from matstd.report.numbers import p_value, with_uncertainty
 from matstd.report.pages.compare_page import write_compare_page
 from matstd.report.pages.diagnosis_page import write_diagnosis_page
-from matstd.report.pages.page import p_value
 from matstd.report.plots.effect_pictures import (
     draw_rivals,
     shown_partial,
@@ -26,6 +25,7 @@ from matstd.report.plots.spatial_pictures import (
     draw_on_standard,
     is_spread,
 )
+from matstd.report.style import save
 from matstd.report.words.diagnosis_words import (
     named_value,
     region_words,
@@ -75,7 +75,7 @@ def page(written):
 def text_of(page):
     """Words of a page as a reader sees them, white space made even."""
     without = re.sub(r"<style.*?</style>|<[^>]+>", " ", page, flags=re.DOTALL)
-    return re.sub(r"\s+", " ", unescape(without))
+    return re.sub(r"\s+", " ", unescape(without)).replace("−", "-")
 
 
 # what the pictures are computed from
@@ -222,9 +222,9 @@ def test_every_picture_of_the_page_renders(written, warm):
 
 
 def test_a_fit_by_itself_and_rivals_that_coincide_are_drawn(warm, tmp_path):
-    draw_rivals(tmp_path / "picture.png", warm.steps[1].confusion)
+    save(draw_rivals(warm.steps[1].confusion), tmp_path / "picture.png")
     assert is_drawn(tmp_path / "picture.png")
-    draw_on_standard(tmp_path / "picture.png", (("before", warm.start),))
+    save(draw_on_standard((("before", warm.start),)), tmp_path / "picture.png")
     assert is_drawn(tmp_path / "picture.png")
     assert [p.name for p in tmp_path.iterdir()] == ["picture.png"]
 
@@ -235,9 +235,11 @@ def test_a_pattern_is_drawn_over_two_variables_and_over_one(strange, tmp_path):
     for found in compare(strange.run, ordinary_model(strange.run.touches.chain)).structure:
         if len(found.variables) not in shapes:
             shapes.add(len(found.variables))
-            drawn = draw_pattern(path, strange.fit, found, np.random.default_rng(1))
-            assert drawn == (len(found.variables) <= 2)
-            assert not drawn or is_drawn(path)
+            drawn = draw_pattern(strange.fit, found, np.random.default_rng(1))
+            assert (drawn is not None) == (len(found.variables) <= 2)
+            if drawn is not None:
+                save(drawn, path)
+                assert is_drawn(path)
     assert {1, 2} <= shapes
 
 
@@ -282,14 +284,14 @@ def test_verdict_opens_the_page(page, warm):
     assert warm.verdict.value in text
     assert "run & file.csv" in text
     sentence = verdict_sentence(warm)
-    assert text.index(sentence) < text.index("step by step")
+    assert text.index(sentence) < text.index("Error after each step")
     (effect,) = warm.found
     assert effect.name in sentence
     assert f"from {warm.start.test_rms / UM:.2f} µm to {warm.fit.test_rms / UM:.2f} µm" in sentence
 
 
 def test_gross_errors_and_rivals_are_listed(page, warm):
-    tail = text_of(page.split("Touches that stand out</h2>")[1])
+    tail = text_of(page.split("Outliers</h2>")[1])
     fit = warm.fit
     rows = np.flatnonzero(fit.gross.rows)
     assert len(rows) > 2
@@ -297,7 +299,7 @@ def test_gross_errors_and_rivals_are_listed(page, warm):
         t = fit.run.touches
         place = f"{fit.run.line[i]} {t.feature[i]} {t.setups[t.setup[i]].name} {t.pose[i]}"
         assert f"{place} {fit.residual[i] / UM:+.1f} " in tail
-    apart = text_of(page.split("What cannot be told apart</h2>")[1].split("<h2")[0])
+    apart = text_of(page.split("Indistinguishable effects</h2>")[1].split("<h2")[0])
     for rival in warm.steps[1].confusion.rivals[:8]:
         assert rival.effect.name in apart
 
@@ -307,7 +309,7 @@ def test_every_detectable_effect_is_in_the_table(page, warm):
     for found in warm.detectable:
         assert found.effect.name in table
     hidden = [d.effect.name for d in warm.detectable if d.largest is None]
-    assert table.count("never: the model in use imitates it") == len(hidden)
+    assert table.count("never: the model can imitate it") == len(hidden)
 
 
 @pytest.mark.usefixtures("unrendered")
@@ -334,7 +336,7 @@ def test_a_run_without_anything_hidden_says_so(case, tmp_path):
             encoding="utf-8"
         )
     )
-    assert "Nothing is missing that this run could have shown" in text
+    assert "No effect is missing that this run could show" in text
     assert f"{result.fit.test_rms / UM:.2f} µm, and the noise is" in text
 
 
@@ -345,7 +347,7 @@ def test_page_of_a_comparison_has_its_numbers(warm, tmp_path):
     page = path.read_text(encoding="utf-8")
     text = text_of(page)
     assert ANY_ADDRESS.findall(re.sub(r"data:[^\"]+", "", page)) == []
-    assert f"all but {found.rms / UM:.2f} µm" in text
+    assert f"{found.rms / UM:.2f} µm rms remain after the fit" in text
     line = found.run.line[found.worst]
     assert f"line {line}" in text
     for region in found.where:

@@ -7,7 +7,7 @@ from matstd.cad_out.making.cutting import Cutting
 from matstd.cad_out.making.hints import FaceHint
 from matstd.cad_out.making.making_file import Making
 from matstd.cad_out.making.stiffness import Stiffness
-from matstd.report.pages.design_page import _making
+from matstd.report.pages.standard_sections import making_rows
 from matstd.twin.units import DEG
 
 
@@ -33,7 +33,7 @@ def made(mode, sag, out_of_reach=()):
         )
     }
     return dict(
-        _making(
+        making_rows(
             Making(
                 cutting,
                 Stiffness(mode, soft, {"SPH1": 9e3, "SPH2": 8.4e3}, cube=10.0) if mode else None,
@@ -49,7 +49,7 @@ def test_a_stiff_standard_that_a_cutter_reaches_is_told_by_its_figures():
     assert rows["first mode on rigid screws"] == "900 Hz"
     assert rows["Young's modulus"] == "71 GPa, Poisson's ratio 0.3 of 'EN AW-5083' (stated)"
     assert rows["sag from upright to lying on its side"] == (
-        "SPH1 0.09 µm at most; taken off by evaluations ([sag] of standard.toml)"
+        "SPH1 0.09 µm at most; corrected by evaluations ([sag] of standard.toml)"
     )
     assert rows["softest ball, in its softest direction"] == (
         "SPH2 8.4 N/µm on its post, plate and pads"
@@ -65,20 +65,21 @@ def test_a_stiff_standard_that_a_cutter_reaches_is_told_by_its_figures():
 
 def test_what_is_beyond_a_limit_is_named():
     rows = made(400.0, {"FF1": 4e-5, "SPH2": 5e-4, "SPH1": 2e-4}, ("FF1 wall",))
-    assert rows["first mode on rigid screws"] == "400 Hz; at least 500 Hz are wanted"
+    assert rows["first mode on rigid screws"] == "400 Hz; required: 500 Hz or more"
     sag = rows["sag from upright to lying on its side"]
-    assert sag.startswith("SPH2 0.50 µm at most; beyond 0.1 µm: SPH1, SPH2; taken off")
+    assert sag.startswith("SPH2 0.50 µm at most; more than 0.1 µm: SPH1, SPH2; corrected")
     assert rows["milling FF1 with 6 mm"].endswith(
         "no single tilt of the axis up to 45° reaches all of it"
     )
     assert next(iter(rows.values())).endswith(
-        "90 % tilted by 45° at most, not at all: FF1 wall; 80 mm out of its holder it reaches all"
+        "90 % tilted by 45° at most, not at all: FF1 wall; with an overhang of 80 mm it reaches "
+        "all of them"
     )
 
 
 def test_without_a_modulus_nothing_is_said_of_stiffness():
     rows = made(None, {"FF1": 4e-5})
     assert rows["first mode, stiffness and sag"].startswith(
-        "unknown: no modulus is stated of 'EN AW-5083'; state material.modulus_MPa"
+        "unknown: no modulus is stated for 'EN AW-5083'; state material.modulus_MPa"
     )
     assert not {"Young's modulus", "first mode on rigid screws"} & set(rows)

@@ -28,32 +28,33 @@ def step(*names):
 
 def test_a_class_that_differs_in_its_body_alone_is_told_as_one() -> None:
     assert class_words(step(*LAGS), ["time constant 12 min"]) == (
-        "growth along Z after switching on (time constant 12 min; which body carries it cannot be "
-        "told: Z, Y, X or B) [thermal-lag(EZZ) or one of 3 more]"
+        "growth along Z after switching on (time constant 12 min; carried by Z, Y, X or B, which "
+        "this run cannot distinguish) [thermal-lag(EZZ) or one of 3 more]"
     )
     assert effect_cell(step(*LAGS)) == (
         "growth along Z after switching on",
         "[thermal-lag(EZZ) or one of 3 more]",
     )
     assert rival_words(step(*LAGS)) == (
-        "thermal-lag(EZZ) cannot be told from thermal-lag(EZY), thermal-lag(EZX) and "
+        "thermal-lag(EZZ) cannot be distinguished from thermal-lag(EZY), thermal-lag(EZX) and "
         "thermal-lag(EZB)"
     )
 
 
 def test_what_else_it_may_be_is_told_beside_the_bodies() -> None:
     assert class_words(step("backlash(X)", "geometric(EXX,3)")) == (
-        "reversal of X (it may as well be positioning error of X) [backlash(X) or geometric(EXX,3)]"
+        "reversal of X (or instead positioning error of X) [backlash(X) or geometric(EXX,3)]"
     )
     words = class_words(step(*LAGS[:2], "drift", "backlash(X)"))
     assert (
-        "cannot be told: Z or Y; it may as well be drift of the set-up or reversal of X)" in words
+        "carried by Z or Y, which this run cannot distinguish; or instead drift of the set-up or "
+        "reversal of X)" in words
     )
 
 
 def test_other_titles_that_share_their_words_are_told_once() -> None:
     words = class_words(step(*LAGS[:2], "thermal-static(EZZ,room)", "thermal-static(EZY,room)"))
-    assert "it may as well be growth along Z with room (carried by Z or Y)) [" in words
+    assert "or instead growth along Z with room (carried by Z or Y)) [" in words
 
 
 def test_an_effect_alone_names_its_body_where_its_title_does_not() -> None:

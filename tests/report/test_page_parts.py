@@ -6,60 +6,99 @@ from pathlib import Path
 
 import openpyxl
 import pytest
+from html_tables import shown_tables
 
-from matstd.diagnosis.choice.prediction import Choice, ChoiceRule
 from matstd.report.pages import pdf
-from matstd.report.pages.page import with_contents
+from matstd.report.pages.page import marked, rendered, write_page
 from matstd.report.pages.pdf import printer, write_pdf
-from matstd.report.pages.tables import page_tables, plain, value, write_tables
+from matstd.report.pages.section import KeyFigure, Page, Section, Table
+from matstd.report.pages.tables import plain, unmarked, value
 from matstd.twin.errors import DesignError, MissingLibrary
+from matstd.twin.words import deviations_in
 
-TEMPLATES = Path(pdf.__file__).parent / "templates"
-PAGE = """<h2>What is <code>left</code></h2>
-<table><caption>Two   lines</caption>
-<tr><th rowspan="2">artefact</th><th colspan="2">left, µm</th></tr>
-<tr><th>rms</th><th>95 %</th></tr>
-<tr><td>block</td><td>1.50</td><td>−2</td></tr>
-<tr><td>spheres<br>four</td><td>3 of 4</td></tr></table>
-<h3>Empty</h3><table><tr><th>name</th></tr></table>
-<table><tr><th>mass</th><td>26 kg</td></tr></table>"""
+LEFT = Table(
+    ("artefact", ("left, µm", "rms"), ("left, µm", "95 %")),
+    [["block", "1.50", "−2"], ["spheres\nfour", "3 of 4", ""]],
+    "Two lines",
+    best=[0],
+)
 
 
-def test_every_section_is_in_the_contents() -> None:
-    body = "<p>Verdict.</p><h2>One</h2>a<h2>Two &amp; three</h2>b<h2>One</h2>"
-    page = str(with_contents(body))
+def page_of(*sections: Section) -> Page:
+    return Page("window", "heading", "Verdict.", [KeyFigure("1 µm", "left", "good")], sections)
+
+
+def test_every_section_is_in_the_contents(tmp_path: Path) -> None:
+    titles = ("One", "Two & three", "One")
+    page = rendered(page_of(Section(sentences=["First."]), *map(Section, titles)), tmp_path)
     links = re.findall(r'<a href="#([^"]+)">([^<]*)</a>', page)
     assert [text for _, text in links] == ["One", "Two &amp; three", "One"]
     assert re.findall(r'<h2 id="([^"]+)"', page) == [address for address, _ in links]
     assert len({address for address, _ in links}) == 3
-    assert page.index("Verdict") < page.index("<nav") < page.index("<h2")
+    assert page.index("Verdict") < page.index("First.") < page.index("<nav") < page.index("<h2")
 
 
-def test_short_pages_have_no_contents() -> None:
-    assert "<nav" not in with_contents("<h2>One</h2><h2>Two</h2>")
+def test_short_pages_have_no_contents(tmp_path: Path) -> None:
+    assert "<nav" not in rendered(page_of(Section("One"), Section("Two")), tmp_path)
 
 
 def test_tables_say_what_the_page_says(tmp_path: Path) -> None:
-    """Cells that span are repeated; numbers are numbers in the workbook; bare headings go."""
-    (tmp_path / "report.html").write_text(PAGE, encoding="utf-8")
-    files = write_tables(tmp_path / "report.html")
-    assert [f.relative_to(tmp_path).as_posix() for f in files] == [
-        "tables/01-what-is-left.csv",
-        "tables/02-empty.csv",
+    """Groups are repeated; numbers are numbers in the workbook; a table without rows goes."""
+    page = page_of(
+        Section("What is `left`", table=LEFT),
+        Section("Empty", table=Table(("name",), [])),
+        Section("Mass", is_part=True, table=Table((), [["mass", "26 kg"]])),
+    )
+    write_page(tmp_path / "report.html", page)
+    files = sorted(p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*.*"))
+    assert files == [
+        "report.html",
         "tables.xlsx",
+        "tables/01-what-is-left.csv",
+        "tables/02-mass.csv",
     ]
-    rows = list(csv.reader(files[0].read_text(encoding="utf-8").splitlines()))
+    rows = list(csv.reader((tmp_path / files[2]).read_text(encoding="utf-8").splitlines()))
     assert rows == [
         ["artefact", "left, µm", "left, µm"],
         ["artefact", "rms", "95 %"],
         ["block", "1.50", "-2"],
         ["spheres four", "3 of 4", ""],
     ]
-    sheet = openpyxl.load_workbook(files[-1]).worksheets[0]
+    sheet = openpyxl.load_workbook(tmp_path / "tables.xlsx").worksheets[0]
     assert sheet["A1"].value == "Two lines"
     assert [cell.value for cell in sheet[4]] == ["block", 1.5, -2]
     assert sheet["A2"].font.bold
     assert not sheet["A4"].font.bold
+    shown, mass = shown_tables((tmp_path / "report.html").read_text(encoding="utf-8"))
+    assert (shown.section, shown.caption, shown.headings) == ("What is left", "Two lines", 2)
+    assert shown.rows == [rows[0], rows[1][1:], ["block", "1.50", "−2"], rows[3]]
+    assert mass.rows == [["mass", "26 kg"]]
+
+
+def test_numbers_stand_to_the_right_and_the_best_row_in_bold(tmp_path: Path) -> None:
+    page = rendered(page_of(Section("One", table=LEFT)), tmp_path)
+    assert '<tr class="best"><td>block</td><td class="n">1.50</td><td class="n">−2</td>' in page
+    assert '<th rowspan="2">artefact</th><th colspan="2">left, µm</th>' in page
+
+
+def test_marks_are_for_the_page_alone() -> None:
+    words = "see [the sheet](setup.html), **u_{cal}** of `a_{b} -1`"
+    assert marked(words) == (
+        'see <a href="setup.html">the sheet</a>, <b>u<sub>cal</sub></b> of <code>a_{b} -1</code>'
+    )
+    assert unmarked("`--opposite` of **u_{cal}** in [the sheet](setup.html)") == (
+        "--opposite of ucal in the sheet"
+    )
+    assert marked("a < b & [backlash(X) or one of 3]") == (
+        "a &lt; b &amp; [backlash(X) or one of 3]"
+    )
+
+
+def test_tables_of_an_angle_instrument_are_in_its_unit(tmp_path: Path) -> None:
+    with deviations_in("µrad"):
+        write_page(tmp_path / "report.html", page_of(Section("One", table=LEFT)))
+    assert "left, µrad" in (tmp_path / "tables" / "01-one.csv").read_text(encoding="utf-8")
+    assert "µm" not in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
 def test_numbers_are_written_as_programs_read_them() -> None:
@@ -67,10 +106,6 @@ def test_numbers_are_written_as_programs_read_them() -> None:
     cells = ["−21, 62", "13\u202f000", "−1 300.5", "1 of 13 000", "27 31", "a − b"]
     found = [value(plain(" ".join(cell.split()))) for cell in cells]
     assert found == ["-21, 62", 13000.0, -1300.5, "1 of 13 000", "27 31", "a − b"]
-
-
-def test_a_row_with_a_heading_cell_is_data() -> None:
-    assert page_tables(PAGE)[-1].rows == [["mass", "26 kg"]]
 
 
 @pytest.fixture
@@ -106,12 +141,3 @@ def test_a_browser_prints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails
         write_pdf(tmp_path / "page.html", tmp_path / "page.pdf", printer())
         assert (tmp_path / "page.pdf").read_text() == "<p>page</p>"
     assert sorted(p.name for p in tmp_path.iterdir() if p.name.startswith(".")) == []
-
-
-def test_the_page_of_a_diagnosis_asks_a_choice_for_what_it_has() -> None:
-    """A choice by prediction stands on few pages: its names are checked against its records."""
-    html = (TEMPLATES / "diagnose.html").read_text(encoding="utf-8")
-    for record, pattern in ((Choice, r"result\.choice\.(\w+)"), (ChoiceRule, r"\bway\.(\w+)")):
-        asked = set(re.findall(pattern, html))
-        assert asked
-        assert asked <= set(dir(record)) | set(record.__dataclass_fields__)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from html_tables import shown_tables
 
 from matstd.artefact.body import Meeting, contact
 from matstd.probe_paths.campaign.tolerance import STEPS_MM, setup_tolerance
@@ -15,7 +16,6 @@ from matstd.probe_paths.locate.beside import companions
 from matstd.probe_paths.locate.spread import Spread
 from matstd.probe_paths.stations.programmed import Station
 from matstd.report.pages.setup_page import PAGE, PICTURE, write_setup_page
-from matstd.report.pages.tables import page_tables
 from matstd.twin.frames import apply, inverse, pose, turn
 from matstd.twin.machine.kinematics import linear_directions, tip
 from matstd.twin.units import DEG
@@ -50,7 +50,7 @@ def test_every_alarm_of_the_programs_is_explained(sheet):
     text, programs = sheet
     alarms = set(re.findall(r"LBL (\d+) ;(?:ALARM|NOTRIGGER)", programs.programs[0].text))
     assert len(alarms) == 10
-    (table,) = [t for t in page_tables(text) if t.section == "Alarms"]
+    (table,) = [t for t in shown_tables(text) if t.section == "Alarms"]
     told = {row[0]: row for row in table.rows[table.headings :]}
     assert set(told) == alarms
     assert all(len(row[-1]) > 10 for row in told.values())
@@ -61,13 +61,13 @@ def test_hashes_programs_and_place_are_those_of_the_head(sheet):
     head = programs.programs[0].text
     for word in ("CALIBRATION", "WORKSHOP"):
         assert re.search(rf";{word} (\w+)", head)[1] in text
-    (table,) = [t for t in page_tables(text) if t.section == "Run"]
+    (table,) = [t for t in shown_tables(text) if t.section == "Run"]
     rows = table.rows[table.headings :]
     assert [(name, int(touches)) for name, touches, _ in rows] == [
         (p.name, p.touches) for p in programs.programs
     ]
-    place = next(t for t in page_tables(text) if t.section == "Mount")
-    found = [float(cell) for cell in place.rows[-1]]
+    place = next(t for t in shown_tables(text) if t.section == "Mount")
+    found = [float(cell.replace("−", "-")) for cell in place.rows[-1]]
     np.testing.assert_allclose(found[:3], [12.0, -8.0, 5.0])
     np.testing.assert_allclose(found[3:], [0.0, 0.0, np.degrees(0.35)], atol=1e-4)
 

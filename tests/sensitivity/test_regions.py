@@ -80,9 +80,9 @@ def test_shares_of_two_constants_by_hand():
     for region in all_of_them:
         assert region.rms == pytest.approx(5 * UM)
         assert region.mean_shares[names.index("EX0X")] == pytest.approx(9 / 25)
-        assert dominant_words(region, names) == "EZ0Z makes 64 % of the variance"
+        assert dominant_words(region, names) == "EZ0Z causes 64 % of the variance"
     words = dominant_words(all_of_them[0], names, enough=0.9)
-    assert words == "EZ0Z 64 %, EX0X 36 % make 100 % of the variance together"
+    assert words == "EZ0Z 64 %, EX0X 36 %: together 100 % of the variance"
 
 
 def test_the_only_error_makes_all_of_the_length():

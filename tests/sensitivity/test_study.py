@@ -79,7 +79,7 @@ def test_pictures_show_something(study, written):
     for name in ("volumetric_sections.png", "volumetric_axes.png"):
         assert sampling_words(study.volumetric) in words[name]  # draws, seed, precision
     assert "1024 pairs of random machines, seed" in words["variance_regions.png"]
-    assert "Without sampling" in words["volumetric_rotary.png"]
+    assert "without sampling" in words["volumetric_rotary.png"]
     for name, caption in maps:
         picture = imread(folder / name)
         assert min(picture.shape[:2]) > 250

@@ -7,7 +7,7 @@ import pytest
 from made_up import gauge_touches
 from scipy.integrate import solve_ivp
 
-from matstd.twin.effects.once_more import Again
+from matstd.twin.effects.repeated import Repeated
 from matstd.twin.errors import BadFile, UnknownEffect
 from matstd.twin.files.run_file import read_run
 from matstd.twin.files.run_writer import write_run
@@ -116,7 +116,7 @@ def test_an_own_column_is_followed_with_a_lag_that_an_integrator_finds(touches) 
 def test_an_effect_stands_twice_with_inner_parameters_of_its_own(touches) -> None:
     first = parse_effect("thermal-lag(EZZ,bed)", touches.chain).tuned(300.0)
     second = parse_effect("thermal-lag(EZZ,bed)#2", touches.chain).tuned(3000.0)
-    assert isinstance(second, Again)
+    assert isinstance(second, Repeated)
     assert (second.name, second.kind) == ("thermal-lag(EZZ,bed)#2", "thermal-lag")
     C = columns([first, second], touches)
     warmth = touches.temperature["bed"] - 20.0

@@ -6,22 +6,15 @@ fit, the search and the reports know it from then on.
 
 from matstd.twin.effects.geometric import ComponentError, HigherOrder, component
 from matstd.twin.effects.location import LocationError
-from matstd.twin.effects.once_more import MARK, Again, Change, again
-from matstd.twin.effects.periodic import (
-    MOST_OVERTONES,
-    Harmonic,
-    Overtones,
-    Periodic,
-    usual_distance,
-)
-from matstd.twin.effects.position_table import PositionTable
+from matstd.twin.effects.periodic import MOST_OVERTONES, usual_distance
 from matstd.twin.effects.probe import ProbeRadius, normal_in_tool
+from matstd.twin.effects.repeated import MARK, Change, Repeated, repeat
 from matstd.twin.effects.setup_error import (
     SHIFT_SD,
     TURN_SD,
     Free,
-    StylusError,
     body_errors,
+    further_styli,
     placing_errors,
     setup_errors,
 )
@@ -31,23 +24,19 @@ __all__ = [
     "MOST_OVERTONES",
     "SHIFT_SD",
     "TURN_SD",
-    "Again",
     "Change",
     "ComponentError",
     "Free",
-    "Harmonic",
     "HigherOrder",
     "LocationError",
-    "Overtones",
-    "Periodic",
-    "PositionTable",
     "ProbeRadius",
-    "StylusError",
-    "again",
+    "Repeated",
     "body_errors",
     "component",
+    "further_styli",
     "normal_in_tool",
     "placing_errors",
+    "repeat",
     "setup_errors",
     "usual_distance",
 ]

@@ -2,24 +2,26 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 
+from matstd.twin.fields import Argument, read_text
 from matstd.twin.frames import Array
-from matstd.twin.machine import Chain
-from matstd.twin.model import Kind, Parameter, Term, Title, Where, check_count
+from matstd.twin.model import Declared, Kind, Parameter, Term, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import UM
 
 FORM_DEGREE = 5
 """Of the polynomial over a patch, 21 coefficients: waves down to the size of the patch."""
+DEGREES = [(i, n - i) for n in range(FORM_DEGREE + 1) for i in range(n, -1, -1)]
+"""Of v and w in every coefficient, by rising degree."""
 FORM_TOUCHES = 30
 """Fewest touches on a patch whose form is proposed: about three for two of its 21 coefficients."""
 
 
 @dataclass(frozen=True)
-class ArtefactForm:
+class ArtefactForm(Declared):
     """The form of one patch deviates smoothly from its calibration.
 
     ``p_i = sqrt(2 i + 1) P_i``, the Legendre polynomials of unit mean square over the touched
@@ -32,38 +34,19 @@ class ArtefactForm:
         patch: Label of the feature in the run file.
     """
 
-    patch: str
+    patch: Annotated[str, Argument("patch", read_text)]
 
-    kind = "artefact-form"
-
-    @property
-    def name(self) -> str:
-        """`artefact-form(pad4)`."""
-        return f"artefact-form({self.patch})"
-
-    @property
-    def _degrees(self) -> list[tuple[int, int]]:
-        n = FORM_DEGREE
-        return [(i, total - i) for total in range(n + 1) for i in range(total, -1, -1)]
-
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(f"form of {self.patch}", "standard")
-
-    @cached_property
-    def parameters(self) -> Sequence[Parameter]:
-        """Coefficients, by rising degree."""
-        return tuple(
-            Parameter(f"P{i}{j}", "mm", 1.5 * UM / np.sqrt(1.0 + i + j)) for i, j in self._degrees
-        )
+    kind, called, carrier = "artefact-form", "form of {patch}", "standard"
+    parameters = tuple(
+        Parameter(f"P{i}{j}", "mm", 1.5 * UM / np.sqrt(1.0 + i + j)) for i, j in DEGREES
+    )
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """A bias along the normal on the patch, nothing elsewhere."""
         rows = np.flatnonzero(touches.feature == self.patch)
         v, w = _legendre(_local(touches.point[rows]))
         out = []
-        for k, (i, j) in enumerate(self._degrees):
+        for k, (i, j) in enumerate(DEGREES):
             amount = np.zeros(len(touches))
             amount[rows] = 0.5 * v[i] * w[j]
             out.append(Term(k, Where("bias"), amount))
@@ -93,32 +76,22 @@ def _legendre(place: Array) -> tuple[list[Array], list[Array]]:
     return out[0], out[1]
 
 
-def make(chain: Chain, arguments: Sequence[str]) -> ArtefactForm:
-    """From the label of the patch."""
-    check_count(KIND.usage, arguments, 1, 1)
-    return ArtefactForm(arguments[0])
-
-
 def propose(touches: Touches) -> Iterable[ArtefactForm]:
     """Every feature with enough touches."""
-    if not touches.instrument.is_ball_on_standard:
-        return
     names, counts = np.unique(touches.feature, return_counts=True)
     for name, count in zip(names, counts, strict=True):
         if name and count >= FORM_TOUCHES:
             yield ArtefactForm(str(name))
 
 
-KIND = Kind(
-    word="artefact-form",
-    arguments="patch",
+KIND = Kind.of(
+    ArtefactForm,
     title="form error of the standard",
     synonyms="calibration error of the standard, waviness, surface form, artefact form",
     formula="bias = sum a_ij p_i(v) p_j(w)/2, i + j <= 5, Legendre over the touched rectangle",
     units="a_ij: µm",
     typical="0.5 to 2 µm, correlated over 20 to 50 mm",
     source="ISO 25178-2 (form); calibration of freeform standards",
-    make=make,
     propose=propose,
-    classes=(ArtefactForm,),
+    when=lambda touches: touches.instrument.is_ball_on_standard,
 )

@@ -2,22 +2,19 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from matstd.twin.frames import Array
-from matstd.twin.machine import LETTERS, Chain, Family, Symbol
-from matstd.twin.model import (
-    Kind,
-    Parameter,
-    Term,
-    Title,
-    Where,
+from matstd.twin.fields import (
     check_count,
-    checked_axis,
     component_symbol,
     moving_axes,
+    read_axis,
+    refusal,
 )
+from matstd.twin.machine import LETTERS, Chain, Family, Symbol
+from matstd.twin.model import Amounts, Declared, Kind, Title, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
@@ -26,7 +23,7 @@ UNFELT = 1e-6
 
 
 @dataclass(frozen=True)
-class Backlash:
+class Backlash(Declared):
     """Reversal of an axis: it stands elsewhere when it comes from the other side.
 
     B is what was reached in the positive direction minus what was reached in the negative one;
@@ -42,15 +39,16 @@ class Backlash:
     component: int
 
     kind = "backlash"
+    usual = (10 * UM, 50 * URAD)
 
-    @property
+    @cached_property
     def name(self) -> str:
         """`backlash(X)`; `backlash(EBX)` of another error than its own."""
         return f"backlash({self.axis if self._is_own else self._symbol.name})"
 
-    @property
+    @cached_property
     def title(self) -> Title:
-        """In the words of those who run machines."""
+        """Reversal of the axis, or of a component error of it."""
         what = self.axis if self._is_own else f"the {self._symbol.title}"
         return Title(f"reversal of {what}", self.axis)
 
@@ -63,16 +61,17 @@ class Backlash:
         return Symbol(self.component, self.axis, Family.COMPONENT)
 
     @property
-    def parameters(self) -> Sequence[Parameter]:
-        """The reversal."""
-        if self.component >= 3:
-            return (Parameter("amplitude", "rad", 50 * URAD),)
-        return (Parameter("amplitude", "mm", 10 * UM),)
+    def is_angular(self) -> bool:
+        """Whether it turns."""
+        return self._symbol.is_angular
 
-    def terms(self, touches: Touches) -> Sequence[Term]:
+    def where(self, chain: Chain) -> Where:
         """A twist of the axis."""
-        where = Where("twist", touches.chain.link_index(self.axis), self.component)
-        return (Term(0, where, 0.5 * touches.last_move(self.axis)),)
+        return chain.twist_of(self._symbol)
+
+    def amounts(self, touches: Touches) -> Amounts:
+        """Half of the reversal to either side."""
+        return (0.5 * touches.last_move(self.axis),)
 
 
 def make(chain: Chain, arguments: Sequence[str]) -> Backlash:
@@ -81,14 +80,15 @@ def make(chain: Chain, arguments: Sequence[str]) -> Backlash:
     if len(arguments[0]) > 2 and arguments[0].startswith("E"):
         symbol = component_symbol(chain, arguments[0])
         return Backlash(symbol.link, symbol.component)
-    axis = checked_axis(KIND.usage, arguments, arguments[0], chain)
+    axis = read_axis(arguments[0], chain, lambda text: refusal(KIND.usage, arguments, text))
     return Backlash(axis, chain.link(axis).own_component)
 
 
 def propose(touches: Touches) -> Iterable[Backlash]:
     """Every axis that was reached from both sides; what of it was measured."""
     for axis in moving_axes(touches):
-        if _both_sides(touches.last_move(axis)):
+        move = touches.last_move(axis)
+        if np.any(move > 0) and np.any(move < 0):
             yield Backlash(axis, measured_component(touches, axis))
 
 
@@ -107,10 +107,6 @@ def measured_component(touches: Touches, axis: str) -> int:
         return own
     kind = slice(3, 6) if touches.instrument.reads_angle else slice(0, 3)
     return (kind.start or 0) + int(np.argmax(felt[kind]))
-
-
-def _both_sides(last_move: Array) -> bool:
-    return bool(np.any(last_move > 0) and np.any(last_move < 0))
 
 
 KIND = Kind(

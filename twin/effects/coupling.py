@@ -3,32 +3,37 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated, Self
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
 
-from matstd.twin.frames import Array
-from matstd.twin.machine import Chain, Family, Symbol
-from matstd.twin.model import (
-    Kind,
-    Parameter,
-    Term,
-    Title,
-    check_count,
-    checked_axis,
-    component_symbol,
+from matstd.twin.fields import (
+    Argument,
+    AxisName,
+    ComponentSymbol,
+    Refuse,
+    components_of,
     moving_axes,
-    refusal,
 )
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.model import Amounts, Declared, Kind, Parameter
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
 DEGREES = ("1", "2", "3", "4")
-"""Of a coupling: more bends no guide, and no run tells."""
+"""Of a coupling: no guide bends in more waves, and no run resolves them."""
+
+
+def _degree(text: str, chain: Chain, refuse: Refuse) -> int:
+    if text not in DEGREES:
+        raise refuse(f"a degree of {', '.join(DEGREES)}")
+    return int(text)
 
 
 @dataclass(frozen=True)
-class Coupling:
+class Coupling(Declared):
     """A component error that depends on the reading of another axis: a bending guide.
 
     The weight of what travels bends the guide it travels on, more in one place of the other axis
@@ -42,17 +47,18 @@ class Coupling:
         degree: n.
     """
 
-    symbol: Symbol
-    other: str
-    degree: int = 1
+    symbol: ComponentSymbol
+    other: AxisName
+    degree: Annotated[int, Argument("degree", _degree)] = 1
 
-    kind = "coupling"
+    kind, called = "coupling", "{symbol.title}, which changes with {other}"
+    usual = (10 * UM, 100 * URAD)
 
-    @property
-    def name(self) -> str:
-        """`coupling(EBX,Z)`; with its degree from 2, `coupling(EBX,Z,2)`."""
-        degree = f",{self.degree}" if self.degree > 1 else ""
-        return f"coupling({self.symbol.name},{self.other}{degree})"
+    def on(self, chain: Chain, refuse: Refuse) -> Self:
+        """With another axis than its own."""
+        if self.other == self.symbol.link:
+            raise refuse(f"another axis than {self.other} itself")
+        return self
 
     @property
     def _words(self) -> list[str]:
@@ -65,31 +71,18 @@ class Coupling:
         words = [" ".join(w for w in (f, g) if w) for f in own for g in other]
         return ["amplitude"] if len(words) == 1 else words
 
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(f"{self.symbol.title}, which changes with {self.other}", self.symbol.link)
-
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Peak amplitudes."""
-        sd = 100 * URAD if self.symbol.is_angular else 10 * UM
-        if self.degree == 1:
-            return tuple(Parameter(word, self.symbol.unit, sd) for word in self._words)
         # guides are smooth: a shape of order j k is expected that much smaller
         own, other = (_orders(a, self.degree) for a in (self.symbol.link, self.other))
-        sizes = [sd / (j * k) for j in own for k in other]
-        return tuple(
-            Parameter(word, self.symbol.unit, size)
-            for word, size in zip(self._words, sizes, strict=True)
-        )
+        shares = [1.0 / (j * k) for j in own for k in other]
+        return tuple(self.sized(w, share) for w, share in zip(self._words, shares, strict=True))
 
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """Twists of the axis."""
-        where = touches.chain.twist_of(self.symbol)
+    def amounts(self, touches: Touches) -> Amounts:
+        """Products of a function of either reading."""
         own, other = (_factors(touches, a, self.degree) for a in (self.symbol.link, self.other))
-        products = [f * g for f in own for g in other]
-        return tuple(Term(k, where, product) for k, product in enumerate(products))
+        return [f * g for f in own for g in other]
 
 
 def _factor_names(axis: str) -> tuple[str, ...]:
@@ -120,19 +113,6 @@ def _factors(touches: Touches, axis: str, degree: int) -> tuple[Array, ...]:
     return tuple(f(k * q) for k in range(1, degree + 1) for f in (np.cos, np.sin))
 
 
-def make(chain: Chain, arguments: Sequence[str]) -> Coupling:
-    """From the component error, the other axis, and the degree where it is not one."""
-    check_count(KIND.usage, arguments, 2, 3)
-    degree = arguments[2] if len(arguments) == 3 else "1"
-    if degree not in DEGREES:
-        raise refusal(KIND.usage, arguments, f"a degree of {', '.join(DEGREES)}")
-    symbol = component_symbol(chain, arguments[0])
-    other = checked_axis(KIND.usage, arguments, arguments[1], chain)
-    if other == symbol.link:
-        raise refusal(KIND.usage, arguments, f"another axis than {other} itself")
-    return Coupling(symbol, other, int(degree))
-
-
 def propose(touches: Touches) -> Iterable[Coupling]:
     """Every angular component of every axis that moved, with every other axis that moved.
 
@@ -140,16 +120,14 @@ def propose(touches: Touches) -> Iterable[Coupling]:
     seen through the lever of that turn and need not be proposed apart.
     """
     axes = moving_axes(touches)
-    for symbol in touches.chain.symbols:
-        if symbol.family is Family.COMPONENT and symbol.is_angular and symbol.link in axes:
-            for other in axes:
-                if other != symbol.link:
-                    yield Coupling(symbol, other)
+    for symbol in components_of(touches, axes):
+        for other in axes:
+            if symbol.is_angular and other != symbol.link:
+                yield Coupling(symbol, other)
 
 
-KIND = Kind(
-    word="coupling",
-    arguments="symbol,axis[,degree]",
+KIND = Kind.of(
+    Coupling,
     title="bending of a guide with another axis",
     synonyms="cross-coupling, non-rigid, quasi-rigid, guideway bending, foundation bending",
     formula="E = a f(q_own) g(q_other); f, g = u (linear axis), cos q and sin q (rotary axis); of "
@@ -157,7 +135,5 @@ KIND = Kind(
     units="a: µrad or µm",
     typical="10 to 60 µrad over the travel, on slender machines more",
     source="J. S. Chen, Int. J. Mach. Tools Manufact. 35 (1995): pitch of X depends on Z, 58 µrad",
-    make=make,
     propose=propose,
-    classes=(Coupling,),
 )

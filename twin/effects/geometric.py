@@ -7,18 +7,9 @@ from functools import cached_property
 
 import numpy as np
 
-from matstd.twin.machine import SHAPES, Chain, Family, Ranges, ShapeName, Symbol, shape
-from matstd.twin.model import (
-    Effect,
-    Kind,
-    Parameter,
-    Term,
-    Title,
-    check_count,
-    component_symbol,
-    moving_axes,
-    refusal,
-)
+from matstd.twin.fields import check_count, component_symbol, components_of, moving_axes, refusal
+from matstd.twin.machine import SHAPES, Chain, Ranges, ShapeName, Symbol, shape
+from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG
 
@@ -31,7 +22,7 @@ _SHAPE = re.compile(r"([a-z]+)(?:,([\d.]+))?(?:@(-?[\d.]+(?:e-?\d+)?))?\Z")
 
 
 @dataclass(frozen=True)
-class ComponentError:
+class ComponentError(Declared):
     """One component error of an axis in one of the distributions of the D-MT paper.
 
     ``E(q) = a f(q)`` with f the constant, linear, parabolic or sinusoidal shape of unit peak
@@ -51,35 +42,30 @@ class ComponentError:
     phase: float = 0.0
     sd: float = 1.0
 
-    kind = "geometric"
+    kind, called = "geometric", "{symbol.title}"
+    is_ordinary = True
 
     @property
+    def distribution(self) -> str:
+        """Name of the distribution."""
+        return self.shape
+
+    @cached_property
     def name(self) -> str:
         """`geometric(EXX,linear)`, `geometric(EXX,sinusoidal,2@90)`: periods, phase in degrees."""
         extra = f",{self.periods:.10g}" if self.periods != 1.0 else ""
         extra += f"@{self.phase / DEG:.10g}" if self.phase else ""
         return f"geometric({self.symbol.name},{self.shape}{extra})"
 
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(self.symbol.title, self.symbol.link)
-
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """The peak amplitude."""
         return (Parameter("amplitude", self.symbol.unit, self.sd),)
 
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """A twist of the axis."""
-        amount = shape(
-            self.shape,
-            touches.reading(self.symbol.link),
-            touches.chain.link(self.symbol.link),
-            self.periods,
-            self.phase,
-        )
-        return (Term(0, touches.chain.twist_of(self.symbol), amount),)
+    def amounts(self, touches: Touches) -> Amounts:
+        """The distribution at the readings."""
+        q, link = touches.reading(self.symbol.link), touches.chain.link(self.symbol.link)
+        return (shape(self.shape, q, link, self.periods, self.phase),)
 
 
 def component(chain: Chain, name: str, shape: ShapeName, **options: float) -> ComponentError:
@@ -88,7 +74,7 @@ def component(chain: Chain, name: str, shape: ShapeName, **options: float) -> Co
 
 
 @dataclass(frozen=True)
-class HigherOrder:
+class HigherOrder(Declared):
     """One component error of an axis over some degrees, or some harmonics.
 
     ``E = sum a_k T_k(u)``, or ``sum s_k sin kq + c_k cos kq``, k from `lowest` to `degree`. T_k are
@@ -110,10 +96,11 @@ class HigherOrder:
     rotary: bool = False
     lowest: int = 1
 
-    kind = "geometric"
+    kind, called = "geometric", "{symbol.title}"
     is_curve = True
+    harmonic = 0.0
 
-    @property
+    @cached_property
     def name(self) -> str:
         """`geometric(EYX,4)`, `geometric(EYX,3-4)`: up to degree 4, and degrees 3 and 4 alone."""
         degrees = f"{self.lowest}-{self.degree}" if self.lowest > 1 else f"{self.degree}"
@@ -124,33 +111,23 @@ class HigherOrder:
         """Every degree that is in it."""
         return range(self.lowest, self.degree + 1)
 
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(self.symbol.title, self.symbol.link)
-
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Coefficients, by rising degree; sine before cosine."""
-        unit = self.symbol.unit
-        out = []
-        for k in self.degrees:
-            for name in (f"sin{k}", f"cos{k}") if self.rotary else (f"T{k}",):
-                out.append(Parameter(name, unit, self.sd / k**1.5))
-        return tuple(out)
+        words = ("sin", "cos") if self.rotary else ("T",)
+        unit, each = self.symbol.unit, [(word, k) for k in self.degrees for word in words]
+        return tuple(Parameter(f"{word}{k}", unit, self.sd / k**1.5) for word, k in each)
 
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """Twists of the axis."""
-        where = touches.chain.twist_of(self.symbol)
+    def amounts(self, touches: Touches) -> Amounts:
+        """Chebyshev polynomials, or harmonics, of the reading."""
         q = touches.reading(self.symbol.link)
         if self.rotary:
-            harmonics = [f(k * q) for k in self.degrees for f in (np.sin, np.cos)]
-            return tuple(Term(j, where, amount) for j, amount in enumerate(harmonics))
+            return [f(k * q) for k in self.degrees for f in (np.sin, np.cos)]
         u = touches.chain.link(self.symbol.link).scaled(q)
         basis = [np.ones_like(u), u]
         for _ in range(1, self.degree):
             basis.append(2.0 * u * basis[-1] - basis[-2])
-        return tuple(Term(j, where, basis[k]) for j, k in enumerate(self.degrees))
+        return [basis[k] for k in self.degrees]
 
 
 def higher_order(chain: Chain, symbol: Symbol, degree: int, lowest: int = 1) -> HigherOrder:
@@ -195,11 +172,9 @@ def propose(touches: Touches) -> Iterable[HigherOrder]:
     That has two of a linear axis and one of a rotary one; a degree that stood in both would have a
     size in neither.
     """
-    axes = moving_axes(touches)
-    for symbol in touches.chain.symbols:
-        if symbol.family is Family.COMPONENT and symbol.link in axes:
-            lowest = 2 if touches.chain.link(symbol.link).kind == "rotary" else 3
-            yield higher_order(touches.chain, symbol, PROPOSED_DEGREE, lowest)
+    for symbol in components_of(touches, moving_axes(touches)):
+        lowest = 2 if touches.chain.link(symbol.link).kind == "rotary" else 3
+        yield higher_order(touches.chain, symbol, PROPOSED_DEGREE, lowest)
 
 
 KIND = Kind(

@@ -2,44 +2,34 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from matstd.twin.machine import Chain, Family, Symbol
-from matstd.twin.model import (
-    Effect,
-    Kind,
-    Parameter,
-    Term,
-    Title,
+from matstd.twin.errors import UnknownEffect
+from matstd.twin.fields import (
+    AxisName,
+    ComponentSymbol,
     check_count,
-    checked_axis,
     component_symbol,
     moving_axes,
+    read_axis,
     refusal,
 )
+from matstd.twin.machine import Chain, Family, Symbol
+from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
 
 @dataclass(frozen=True)
-class _Sag:
+class _Sag(Declared):
     """A component error in proportion to the weight that an axis carries about."""
 
-    symbol: Symbol
+    symbol: ComponentSymbol
 
     kind = "gravity"
-
-    @property
-    def name(self) -> str:
-        """`gravity(EYZ)`."""
-        return f"gravity({self.symbol.name})"
-
-    @property
-    def parameters(self) -> Sequence[Parameter]:
-        """Its largest size."""
-        sd = 100 * URAD if self.symbol.is_angular else 20 * UM
-        return (Parameter("amplitude", self.symbol.unit, sd),)
+    usual = (20 * UM, 100 * URAD)
 
 
 @dataclass(frozen=True)
@@ -53,16 +43,13 @@ class RamSag(_Sag):
         symbol: The component error, across the axis for a sag.
     """
 
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(f"sag of {self.symbol.link} {self.symbol.motion}", self.symbol.link)
+    called = "sag of {symbol.link} {symbol.motion}"
 
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """A twist of the axis."""
+    def amounts(self, touches: Touches) -> Amounts:
+        """The cube of the overhang."""
         low, high = touches.chain.link(self.symbol.link).range
         overhang = (high - touches.reading(self.symbol.link)) / (high - low)
-        return (Term(0, touches.chain.twist_of(self.symbol), overhang**3),)
+        return (overhang**3,)
 
 
 @dataclass(frozen=True)
@@ -71,18 +58,14 @@ class TiltSag(_Sag):
 
     ``E = a sin 2q``. The weight pulls with m g sin q across and m g cos q along the tilted body;
     the arm that its sag across gives the pull along makes the product of both (P-delta). What the
-    weight does in the first harmonic cannot be told from `geometric(EBB,1)` and belongs there.
+    weight does in the first harmonic looks like `geometric(EBB,1)` and belongs there.
     """
 
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(f"sag of {self.symbol.link} under its own weight", self.symbol.link)
+    called = "sag of {symbol.link} under its own weight"
 
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """A twist of the axis."""
-        where = touches.chain.twist_of(self.symbol)
-        return (Term(0, where, np.sin(2.0 * touches.reading(self.symbol.link))),)
+    def amounts(self, touches: Touches) -> Amounts:
+        """Two waves a turn."""
+        return (np.sin(2.0 * touches.reading(self.symbol.link)),)
 
 
 @dataclass(frozen=True)
@@ -96,29 +79,20 @@ class OffCentreLoad(_Sag):
         table: Name of the axis that turns the load.
     """
 
-    table: str
+    table: AxisName
 
-    @property
-    def name(self) -> str:
-        """`gravity(EBB,C)`."""
-        return f"gravity({self.symbol.name},{self.table})"
+    called = "tilt under a load off the centre of {table}"
+    usual = (10 * UM, 30 * URAD)
 
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(f"tilt under a load off the centre of {self.table}", self.symbol.link)
-
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Components of the off-centre load in phase with the table and a quarter turn on."""
-        unit, sd = self.symbol.unit, 30 * URAD if self.symbol.is_angular else 10 * UM
-        return (Parameter("cos", unit, sd), Parameter("sin", unit, sd))
+        return (self.sized("cos"), self.sized("sin"))
 
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """Twists of the tilting axis."""
-        where = touches.chain.twist_of(self.symbol)
+    def amounts(self, touches: Touches) -> Amounts:
+        """The tilt times either component of the load."""
         tilt, turn = np.sin(touches.reading(self.symbol.link)), touches.reading(self.table)
-        return (Term(0, where, tilt * np.cos(turn)), Term(1, where, tilt * np.sin(turn)))
+        return (tilt * np.cos(turn), tilt * np.sin(turn))
 
 
 def make(chain: Chain, arguments: Sequence[str]) -> Effect:
@@ -128,11 +102,13 @@ def make(chain: Chain, arguments: Sequence[str]) -> Effect:
     rotary = chain.link(symbol.link).kind == "rotary"
     if len(arguments) == 1:
         return TiltSag(symbol) if rotary else RamSag(symbol)
-    table = checked_axis(KIND.usage, arguments, arguments[1], chain)
+
+    def refuse(expected: str) -> UnknownEffect:
+        return refusal(KIND.usage, arguments, expected)
+
+    table = read_axis(arguments[1], chain, refuse)
     if not rotary or table not in chain.rotary_axes or table == symbol.link:
-        raise refusal(
-            KIND.usage, arguments, "a rotary axis that tilts and another that turns the load"
-        )
+        raise refuse("a rotary axis that tilts and another that turns the load")
     return OffCentreLoad(symbol, table)
 
 

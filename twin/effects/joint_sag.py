@@ -8,13 +8,16 @@ joints that follow, and at the flange, stand for all links that reach from joint
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
+from typing import Annotated, Self
 
 import numpy as np
 
+from matstd.twin.fields import Argument, Refuse
 from matstd.twin.frames import Array, apply, turn
 from matstd.twin.machine import Chain, Link, table_to_tool
-from matstd.twin.model import Kind, Parameter, Term, Title, Where, check_count, refusal
+from matstd.twin.model import Declared, Kind, Parameter, Term, Title, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import URAD
 
@@ -28,8 +31,15 @@ DOWN = np.array([0.0, 0.0, -1.0])
 """Direction of weights in the machine frame, whose Z stands upright (ISO 841)."""
 
 
+def _joint(text: str, chain: Chain, refuse: Refuse) -> str:
+    if text not in chain.tool_rotary_axes:
+        known = ", ".join(chain.tool_rotary_axes) or "none on this machine"
+        raise refuse(f"a rotary axis that carries the tool: {known}")
+    return text
+
+
 @dataclass(frozen=True)
-class JointSag:
+class JointSag(Declared):
     """Rotation of a joint that gives way under the weights behind it.
 
     ``E = sum_k c W_k d . ((p_k - p) x down)`` about the joint's line through p along d, for weights
@@ -46,24 +56,26 @@ class JointSag:
         arm: Judd and Knasinski, IEEE Trans. Robotics and Automation 6 (1990) 20.
     """
 
-    joint: str
-    places: tuple[str, ...]
+    joint: Annotated[str, Argument("axis", _joint)]
+    places: tuple[str, ...] = ()
 
     kind = "joint-sag"
     is_curve = True
-    is_told_whole = True
+    is_reported_whole = True
 
-    @property
-    def name(self) -> str:
-        """`joint-sag(B)`."""
-        return f"joint-sag({self.joint})"
-
-    @property
+    @cached_property
     def title(self) -> Title:
-        """In the words of those who run machines."""
+        """With the joint for its carrier."""
         return Title(f"sag of joint {self.joint} under the weight of the arm", self.joint)
 
-    @property
+    def on(self, chain: Chain, refuse: Refuse) -> Self:
+        """With the places of the weights."""
+        found = replace(self, places=weights_behind(chain, self.joint))
+        if not found.places:
+            raise refuse("a joint behind which the arm has a length")
+        return found
+
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Rotation per lever arm of every weight."""
         # 200 N at 1 m on a joint of 200 N m/mrad: 1 mrad over 1000 mm
@@ -98,8 +110,8 @@ def _body_before(touches: Touches, link: Link) -> Array:
     return table_to_tool(part, touches.q[:, [chain.axis_index(ln.name) for ln in before]])
 
 
-def joint_sag(chain: Chain, joint: str) -> JointSag:
-    """Sag of a joint under weights at the points that follow, each place once.
+def weights_behind(chain: Chain, joint: str) -> tuple[str, ...]:
+    """Names of the points behind a joint at which weights are taken to be, each place once.
 
     The point of the next joint has no lever if it lies on this joint's line; two at one place are
     one.
@@ -113,33 +125,19 @@ def joint_sag(chain: Chain, joint: str) -> JointSag:
         lever = np.cross(own.direction, lever) if before is own else lever
         if np.linalg.norm(lever) > SAME:
             places.append(FLANGE if after.kind == "fixed" else after.name)
-    return JointSag(joint, tuple(places))
-
-
-def make(chain: Chain, arguments: Sequence[str]) -> JointSag:
-    """From the joint."""
-    check_count(KIND.usage, arguments, 1, 1)
-    joints = chain.tool_rotary_axes
-    if arguments[0] not in joints:
-        known = ", ".join(joints) or "none on this machine"
-        raise refusal(KIND.usage, arguments, f"a rotary axis that carries the tool: {known}")
-    found = joint_sag(chain, arguments[0])
-    if not found.places:
-        raise refusal(KIND.usage, arguments, "a joint behind which the arm has a length")
-    return found
+    return tuple(places)
 
 
 def propose(touches: Touches) -> Iterable[JointSag]:
     """Every joint of an open chain."""
     for joint in touches.chain.joints:
-        found = joint_sag(touches.chain, joint)
-        if found.places:
-            yield found
+        places = weights_behind(touches.chain, joint)
+        if places:
+            yield JointSag(joint, places)
 
 
-KIND = Kind(
-    word="joint-sag",
-    arguments="axis",
+KIND = Kind.of(
+    JointSag,
     title="sag of the joints of a serial arm",
     synonyms="joint compliance, gear compliance, joint stiffness, link weight, payload, robot, "
     "gravity torque, elastic deflection of an arm",
@@ -147,7 +145,5 @@ KIND = Kind(
     units="c W_k: µrad/mm",
     typical="0.1 to 2 µrad/mm: 0.1 to 2 mrad of a shoulder with the arm stretched out",
     source="static torque of gravity of an open chain over the stiffness of a joint",
-    make=make,
     propose=propose,
-    classes=(JointSag,),
 )

@@ -4,21 +4,13 @@ Stated by the user (`--add 'jump(EXX)'`) and never proposed: noise that remember
 some instant in every log, and three of four such logs got a false jump.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.twin.machine import Chain, Symbol
-from matstd.twin.model import (
-    Inner,
-    Kind,
-    Parameter,
-    Term,
-    Title,
-    check_count,
-    component_symbol,
-)
+from matstd.twin.fields import ComponentSymbol, no_values
+from matstd.twin.frames import Array
+from matstd.twin.model import Amounts, Declared, Kind, scanned
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
@@ -28,77 +20,48 @@ INSTANTS = 600
 """Most instants that are scanned; between two of them the search refines."""
 
 
+def thinned(instants: Array, most: int) -> Array:
+    """Instants at even steps, so many at most."""
+    return instants[:: int(np.ceil(len(instants) / most)) or 1]
+
+
+def between(times: Array, on_each_side: int) -> Array:
+    """Instants between two ascending times, with so many of them on either side."""
+    middle = 0.5 * (times[1:] + times[:-1])
+    inside: Array = middle[on_each_side - 1 : len(middle) - on_each_side + 1]
+    return inside
+
+
+def _instants(effect: "Jump", touches: Touches) -> Array:
+    return thinned(between(np.unique(touches.time), ON_EACH_SIDE), INSTANTS)
+
+
 @dataclass(frozen=True)
-class Jump:
+class Jump(Declared):
     """The positioning of an axis is another one from an unknown instant on.
 
-    ``E = a`` after the instant, until the end of the run.
-
-    Attributes:
-        instant: s since the start of the run.
+    ``E = a`` after the instant, s since the start of the run, until the end of the run.
     """
 
-    symbol: Symbol
-    instant: float = 0.0
+    symbol: ComponentSymbol
+    instant: float = scanned("s", _instants, acts="at an instant")
 
-    kind = "jump"
+    kind, called = "jump", "jump of {symbol.link}, as of lost counts"
+    usual = (10 * UM, 30 * URAD)
 
-    @property
-    def name(self) -> str:
-        """`jump(EXX)`."""
-        return f"jump({self.symbol.name})"
-
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(f"jump of {self.symbol.link}, as of lost counts", self.symbol.link)
-
-    @property
-    def parameters(self) -> Sequence[Parameter]:
-        """The height of the step."""
-        sd = 30 * URAD if self.symbol.is_angular else 10 * UM
-        return (Parameter("amplitude", self.symbol.unit, sd),)
-
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """A twist of the axis."""
-        later = (touches.time > self.instant).astype(float)
-        return (Term(0, touches.chain.twist_of(self.symbol), later),)
-
-    def inner(self, touches: Touches) -> Sequence[Inner]:
-        """Instants between two readings, with enough of them on either side."""
-        t = np.unique(touches.time)
-        middle = 0.5 * (t[1:] + t[:-1])
-        inside = middle[ON_EACH_SIDE - 1 : len(middle) - ON_EACH_SIDE + 1]
-        step = int(np.ceil(len(inside) / INSTANTS)) or 1
-        return (Inner("instant", "s", inside[::step], acts="at an instant"),)
-
-    def tuned(self, *values: float) -> "Jump":
-        """With this instant, s."""
-        return replace(self, instant=float(values[0]))
-
-    @property
-    def tuning(self) -> Mapping[str, float]:
-        """The instant, s."""
-        return {"instant": self.instant}
+    def amounts(self, touches: Touches) -> Amounts:
+        """One from the instant on."""
+        return ((touches.time > self.instant).astype(float),)
 
 
-def make(chain: Chain, arguments: Sequence[str]) -> Jump:
-    """From the component error."""
-    check_count(KIND.usage, arguments, 1, 1)
-    return Jump(component_symbol(chain, arguments[0]))
-
-
-KIND = Kind(
-    word="jump",
-    arguments="symbol",
+KIND = Kind.of(
+    Jump,
     title="jump of an axis",
     synonyms="lost counts, lost steps, missed pulses, reference, shifted zero, collision, slip",
     formula="E = a after an unknown instant",
     units="a: µm or µrad; instant: s",
     typical="whole counts of the encoder, whole steps of a motor, 0.1 to 20 µm",
     source="counting errors of incremental encoders; motors without feedback",
-    make=make,
-    propose=lambda touches: (),
-    classes=(Jump,),
+    propose=no_values,
     belongs_to="run",
 )

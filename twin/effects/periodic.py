@@ -1,24 +1,22 @@
 """Errors that repeat: the pitch of a screw or scale, the higher harmonics of a rotary axis."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from matstd.twin.frames import Array
-from matstd.twin.machine import Chain, Family, Symbol
-from matstd.twin.model import (
-    Inner,
-    Kind,
-    Parameter,
-    Term,
-    Title,
+from matstd.twin.fields import (
+    ComponentSymbol,
     check_count,
     component_symbol,
+    components_of,
     moving_axes,
     refusal,
 )
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.model import Amounts, Declared, Inner, Kind, Parameter, Wave, scanned
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
@@ -60,66 +58,57 @@ READINGS = 4000
 
 
 @dataclass(frozen=True)
-class _Repeating:
+class _Repeating(Declared):
     """A component error that is a sine of free phase over the reading of its axis."""
 
-    symbol: Symbol
+    symbol: ComponentSymbol
 
-    kind = "periodic"
-
-    @property
-    def name(self) -> str:
-        """`periodic(EXX)`."""
-        return f"periodic({self.symbol.name})"
-
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(f"{self.symbol.title}, which repeats", self.symbol.link)
+    kind, called = "periodic", "{symbol.title}, which repeats"
+    usual = (3 * UM, 20 * URAD)
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Sine and cosine."""
-        sd = 20 * URAD if self.symbol.is_angular else 3 * UM
-        return tuple(Parameter(word, self.symbol.unit, sd) for word in ("sin", "cos"))
+        return (self.sized("sin"), self.sized("cos"))
 
-    def _wave(self, touches: Touches, factor: float) -> Sequence[Term]:
-        """Sine and cosine of factor times the reading, as a twist of the axis."""
-        where = touches.chain.twist_of(self.symbol)
+    def _wave(self, touches: Touches, factor: float) -> Sequence[Array]:
+        """Sine and cosine of factor times the reading."""
         argument = factor * touches.reading(self.symbol.link)
-        return (Term(0, where, np.sin(argument)), Term(1, where, np.cos(argument)))
+        return (np.sin(argument), np.cos(argument))
+
+
+def _periods(effect: "Periodic", touches: Touches) -> Array:
+    """Evenly spaced in frequency, fine enough for the travel that was covered."""
+    axis = effect.symbol.link
+    return scanned_periods(touches.reading(axis), touches.chain.link(axis).pitch)
 
 
 @dataclass(frozen=True)
 class Periodic(_Repeating):
-    """A sine of free phase and unknown period p over a linear axis.
+    """A sine of free phase and unknown period p (mm) over a linear axis.
 
     Screw and nut, or scale and head, repeat every pitch.
-
-    Attributes:
-        period: p, mm.
     """
 
-    period: float = 10.0
+    period: float = scanned("mm", _periods, default=10.0, acts="with a period")
 
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """Twists of the axis."""
+    def amounts(self, touches: Touches) -> Amounts:
+        """One sine."""
         return self._wave(touches, 2.0 * np.pi / self.period)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The period, evenly spaced in frequency, fine enough for the travel that was covered."""
-        axis = self.symbol.link
-        grid = scanned_periods(touches.reading(axis), touches.chain.link(axis).pitch)
-        return (Inner(name="period", unit="mm", grid=grid, acts="with a period", over=axis),)
-
-    def tuned(self, *values: float) -> "Periodic":
-        """With this period, mm."""
-        return replace(self, period=float(values[0]))
+        """The period, over the axis."""
+        (period,) = super().inner(touches)
+        return (period._replace(over=self.symbol.link),)
 
     @property
-    def tuning(self) -> Mapping[str, float]:
-        """The period, mm."""
-        return {"period": self.period}
+    def wave(self) -> Wave:
+        """A single sine."""
+        return Wave(self.symbol, self.period, 1)
+
+    def with_sines(self, period: float, sines: int) -> "Overtones":
+        """Several sines of a period near this one."""
+        return Overtones(self.symbol, period, sines, near=period)
 
 
 @dataclass(frozen=True)
@@ -138,26 +127,26 @@ class Overtones(Periodic):
     order: int = 2
     near: float | None = None
 
-    @property
+    @cached_property
     def name(self) -> str:
         """`periodic(EXX,6)`."""
         return f"periodic({self.symbol.name},{self.order})"
 
     @property
+    def wave(self) -> Wave:
+        """All sines."""
+        return Wave(self.symbol, self.period, self.order)
+
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Sine and cosine of every k, by rising k."""
-        sd = 20 * URAD if self.symbol.is_angular else 3 * UM
-        unit, orders = self.symbol.unit, range(1, self.order + 1)
-        return tuple(
-            Parameter(f"{word}{k}", unit, sd / k**1.5) for k in orders for word in ("sin", "cos")
-        )
+        orders = range(1, self.order + 1)
+        return tuple(self.sized(f"{word}{k}", k**-1.5) for k in orders for word in ("sin", "cos"))
 
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """Twists of the axis."""
-        where = touches.chain.twist_of(self.symbol)
+    def amounts(self, touches: Touches) -> Amounts:
+        """Sine and cosine of every k, by rising k."""
         turn = 2.0 * np.pi / self.period * touches.reading(self.symbol.link)
-        waves = [f(k * turn) for k in range(1, self.order + 1) for f in (np.sin, np.cos)]
-        return tuple(Term(i, where, wave) for i, wave in enumerate(waves))
+        return [f(k * turn) for k in range(1, self.order + 1) for f in (np.sin, np.cos)]
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """The period, as of one sine; beside a known one only the nearest."""
@@ -166,6 +155,20 @@ class Overtones(Periodic):
             return (whole,)
         at = int(np.clip(np.searchsorted(whole.grid, self.near), 2, len(whole.grid) - 2))
         return (whole._replace(grid=whole.grid[at - 2 : at + 2]),)
+
+
+def _harmonics(effect: "Harmonic", touches: Touches) -> Array:
+    """As far as the distinct readings of the axis can tell one harmonic from another.
+
+    Of the positioning of an axis that is as fine as the uneven readings resolve: worms and gears
+    turn many times in a turn of their axis.
+    """
+    readings = np.unique(np.round(touches.reading(effect.symbol.link), 4))
+    highest = int(np.clip(len(readings) // 2 - 1, 2, HIGHEST_HARMONIC))
+    is_fine = touches.instrument.reads_angle or len(readings) >= ENOUGH_READINGS
+    if is_fine and effect.is_positioning(touches.chain):
+        highest = max(highest, finest_harmonic(readings))
+    return np.arange(2.0, highest + 1.0)
 
 
 @dataclass(frozen=True)
@@ -180,35 +183,21 @@ class Harmonic(_Repeating):
         harmonic: k.
     """
 
-    harmonic: float = 2.0
+    harmonic: float = scanned("1", _harmonics, default=2.0, continuous=False)
 
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """Twists of the axis."""
+    def is_positioning(self, chain: Chain) -> bool:
+        """Whether it is the rotation of the axis about itself."""
+        return self.symbol.component == chain.link(self.symbol.link).own_component
+
+    def amounts(self, touches: Touches) -> Amounts:
+        """Waves over the turn."""
         return self._wave(touches, self.harmonic)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The harmonic, as far as the distinct readings of the axis can tell one from another.
-
-        Of the positioning of an axis that is as fine as the uneven readings resolve: worms and
-        gears turn many times in a turn of their axis.
-        """
-        link = self.symbol.link
-        readings = np.unique(np.round(touches.reading(link), 4))
-        highest = int(np.clip(len(readings) // 2 - 1, 2, HIGHEST_HARMONIC))
-        is_own = self.symbol.component == touches.chain.link(link).own_component
-        if is_own and (touches.instrument.reads_angle or len(readings) >= ENOUGH_READINGS):
-            highest = max(highest, finest_harmonic(readings))
-        grid = np.arange(2.0, highest + 1.0)
-        return (Inner("harmonic", "1", grid, continuous=False, over=link if is_own else ""),)
-
-    def tuned(self, *values: float) -> "Harmonic":
-        """With this harmonic."""
-        return replace(self, harmonic=float(values[0]))
-
-    @property
-    def tuning(self) -> Mapping[str, float]:
-        """The harmonic."""
-        return {"harmonic": self.harmonic}
+        """The harmonic; of the positioning the waves repeat over the axis."""
+        (harmonic,) = super().inner(touches)
+        over = self.symbol.link if self.is_positioning(touches.chain) else ""
+        return (harmonic._replace(over=over),)
 
 
 def scanned_periods(q: Array, pitch: float | None = None) -> Array:
@@ -323,9 +312,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> Periodic | Harmonic:
 def propose(touches: Touches) -> Iterable[Periodic | Harmonic]:
     """Positioning of every linear axis that moved; every component of a rotary axis."""
     chain, axes = touches.chain, moving_axes(touches)
-    for symbol in chain.symbols:
-        if symbol.family is not Family.COMPONENT or symbol.link not in axes:
-            continue
+    for symbol in components_of(touches, axes):
         if chain.link(symbol.link).kind == "rotary":
             yield Harmonic(symbol)
         elif symbol.component == chain.link(symbol.link).own_component:

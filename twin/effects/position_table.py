@@ -5,25 +5,18 @@ where an axis is wrong and not why: a pitch, a polynomial or one reversal alike 
 same with fewer numbers and then has the better name.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Annotated, Self
 
 import numpy as np
 
 from matstd.twin.effects.backlash import measured_component
+from matstd.twin.fields import Argument, ComponentSymbol, Refuse, moving_axes
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Symbol
-from matstd.twin.model import (
-    Inner,
-    Kind,
-    Parameter,
-    Term,
-    Title,
-    check_count,
-    component_symbol,
-    moving_axes,
-    refusal,
-)
+from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter, Title, scanned
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
@@ -47,8 +40,18 @@ WHOLE_TURN = 2.0 * np.pi - 0.02
 """Travel of a rotary axis, rad, from which its curve closes in itself: a degree less is no gap."""
 
 
+def _directions(text: str, chain: Chain, refuse: Refuse) -> bool:
+    if text != EACH:
+        raise refuse(f"nothing or '{EACH}' after the comma")
+    return True
+
+
+def _no_or_each(by_direction: bool) -> str:
+    return EACH if by_direction else ""
+
+
 @dataclass(frozen=True)
-class PositionTable:
+class PositionTable(Declared):
     """A component error as a smooth curve over the reading, or one for each direction.
 
     ``E = sum_k a_k c_k(q)``, and with a curve for each direction besides ``sgn(last motion)/2
@@ -67,23 +70,26 @@ class PositionTable:
         ISO 230-2 (mean deviation at every target for either direction, reversal at a target).
     """
 
-    symbol: Symbol
-    by_direction: bool = False
+    symbol: ComponentSymbol
+    by_direction: Annotated[bool, Argument("directions", _directions, _no_or_each)] = False
     is_round: bool = False
-    length: float = LENGTHS[1]
+    length: float = scanned("1", LENGTHS, continuous=False)
 
     kind = "position-table"
+    usual = (5 * UM, 20 * URAD)
     is_curve = True
     is_table = True
+    harmonic = 0.0
 
-    @property
-    def name(self) -> str:
-        """`position-table(EXX)`, `position-table(EXX,directions)`."""
-        return f"position-table({self.symbol.name}{f',{EACH}' if self.by_direction else ''})"
+    def on(self, chain: Chain, refuse: Refuse) -> Self:
+        """Closed in itself where the axis turns all round."""
+        link = chain.link(self.symbol.link)
+        travel = link.range[1] - link.range[0]
+        return replace(self, is_round=link.kind == "rotary" and travel > WHOLE_TURN)
 
-    @property
+    @cached_property
     def title(self) -> Title:
-        """In the words of those who run machines."""
+        """By position, or by position and direction."""
         by = "position and direction" if self.by_direction else "position"
         return Title(f"{self.symbol.title} by {by}", self.symbol.link)
 
@@ -94,26 +100,28 @@ class PositionTable:
             return tuple((f, 2 * k) for k in range(1, ORDER // 2 + 1) for f in ("sin", "cos"))
         return tuple(("cos", k) for k in range(1, ORDER + 1))
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """The a_k of the mean curve; of two curves then the b_k of the reversal, b_0 first."""
-        size, unit = (20 * URAD if self.symbol.is_angular else 5 * UM), self.symbol.unit
-        mean = [Parameter(f"{f}{k}", unit, size) for f, k in self._waves]
+        mean = [self.sized(f"{f}{k}") for f, k in self._waves]
         if not self.by_direction:
             return mean
-        turned = [Parameter(f"reversal {p.name}", unit, 0.5 * p.sd) for p in mean]
-        return (*mean, Parameter("reversal", unit, size), *turned)
+        turned = [self.sized(f"reversal {p.name}", 0.5) for p in mean]
+        return (*mean, self.sized("reversal"), *turned)
 
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """Twists of the axis."""
-        where = touches.chain.twist_of(self.symbol)
+    def amounts(self, touches: Touches) -> Amounts:
+        """The curves; of two then half of their difference to either side."""
         mean = self._curves(touches)
         half = 0.5 * touches.last_move(self.symbol.link)
         turned = [half, *(half * c for c in mean)] if self.by_direction else []
-        return tuple(Term(i, where, amount) for i, amount in enumerate([*mean, *turned]))
+        return [*mean, *turned]
 
-    def reversal(self, touches: Touches) -> Array:
-        """Forward less backward at the reading of every touch, per unit of every parameter."""
+    @property
+    def reversal(self) -> Callable[[Touches], Array] | None:
+        """Forward less backward at some touches, per unit of every parameter."""
+        return self._reversal if self.by_direction else None
+
+    def _reversal(self, touches: Touches) -> Array:
         mean = self._curves(touches)
         still = [np.zeros(len(touches))] * len(mean)
         return np.stack([*still, np.ones(len(touches)), *mean], axis=1)
@@ -129,36 +137,8 @@ class PositionTable:
         waves = zip(w, self._waves, strict=True)
         return [float(wk) * of[f](k * np.pi * share) for wk, (f, k) in waves]
 
-    def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The correlation length."""
-        return (Inner("length", "1", np.array(LENGTHS), continuous=False),)
 
-    def tuned(self, *values: float) -> "PositionTable":
-        """With this correlation length."""
-        return replace(self, length=float(values[0]))
-
-    @property
-    def tuning(self) -> Mapping[str, float]:
-        """The correlation length."""
-        return {"length": self.length}
-
-
-def position_table(chain: Chain, symbol: Symbol, by_direction: bool = False) -> PositionTable:
-    """The position table of a component error."""
-    link = chain.link(symbol.link)
-    travel = link.range[1] - link.range[0]
-    return PositionTable(symbol, by_direction, link.kind == "rotary" and travel > WHOLE_TURN)
-
-
-def make(chain: Chain, arguments: Sequence[str]) -> PositionTable:
-    """From the component error, and `directions` for a curve of each direction."""
-    check_count(KIND.usage, arguments, 1, 2)
-    if arguments[1:] not in ([], [EACH]):
-        raise refusal(KIND.usage, arguments, f"nothing or '{EACH}' after the comma")
-    return position_table(chain, component_symbol(chain, arguments[0]), len(arguments) == 2)
-
-
-def propose(touches: Touches) -> Iterable[PositionTable]:
+def propose(touches: Touches) -> Iterable[Effect]:
     """Positioning of an axis that moved alone, or that an instrument beside the machine saw at the
     same targets again and again; what leads aside or tilts where that was measured.
 
@@ -169,9 +149,9 @@ def propose(touches: Touches) -> Iterable[PositionTable]:
     for axis in axes:
         if len(axes) == 1 or (beside and _has_targets(touches.reading(axis))):
             symbol = Symbol(measured_component(touches, axis), axis, Family.COMPONENT)
-            yield position_table(touches.chain, symbol)
+            yield KIND.make(touches.chain, (symbol.name,))
             if len(np.unique(touches.last_move(axis))) > 1:
-                yield position_table(touches.chain, symbol, by_direction=True)
+                yield KIND.make(touches.chain, (symbol.name, EACH))
 
 
 def _has_targets(q: Array) -> bool:
@@ -181,9 +161,8 @@ def _has_targets(q: Array) -> bool:
     return len(again) >= FEWEST_TARGETS and again.sum() >= REVISITED * len(q)
 
 
-KIND = Kind(
-    word="position-table",
-    arguments="symbol[,directions]",
+KIND = Kind.of(
+    PositionTable,
     title="position table of an axis",
     synonyms="positioning error, error table, compensation table, lead error compensation, "
     "ISO 230-2, mean deviation, reversal along the travel, screw error",
@@ -192,7 +171,5 @@ KIND = Kind(
     units="a_k, b_k: µm or µrad; length: share of the travel",
     typical="5 to 30 µm over a metre with an encoder on the motor, 1 to 5 µm with a scale",
     source="ISO 230-2 (mean unidirectional positioning deviations, reversal errors)",
-    make=make,
     propose=propose,
-    classes=(PositionTable,),
 )

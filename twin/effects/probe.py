@@ -1,13 +1,11 @@
 """What a touch probe adds of its own: lobes, its effective radius, a stylus that bends."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from functools import partial
+from dataclasses import dataclass
 
 import numpy as np
 
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect, Inner, Kind, Parameter, Term, Title, Where
+from matstd.twin.model import Amounts, Declared, Kind, Parameter, scanned
 from matstd.twin.record import Touches
 from matstd.twin.units import UM
 
@@ -19,7 +17,7 @@ def normal_in_tool(touches: Touches) -> Array:
 
 
 @dataclass(frozen=True)
-class ProbeLobing:
+class ProbeLobing(Declared):
     """Pre-travel that varies with the direction in which the stylus is deflected.
 
     theta and phi are latitude from the tool axis and azimuth of the surface normal in the tool
@@ -29,87 +27,57 @@ class ProbeLobing:
         lobes: k.
     """
 
-    lobes: float = 3.0
+    # one lobe is the offset of the stylus
+    lobes: float = scanned("1", np.arange(2.0, 7.0), default=3.0, continuous=False)
 
-    kind = "probe-lobing"
-    name = "probe-lobing"
-    title = Title("lobes of the probe", "probe")
+    kind, called, carrier, acts_on = "probe-lobing", "lobes of the probe", "probe", "bias"
+    parameters = (Parameter("cos", "mm", 3 * UM), Parameter("sin", "mm", 3 * UM))
 
-    @property
-    def parameters(self) -> Sequence[Parameter]:
-        """Cosine and sine."""
-        return (Parameter("cos", "mm", 3 * UM), Parameter("sin", "mm", 3 * UM))
-
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """A bias along the normal."""
+    def amounts(self, touches: Touches) -> Amounts:
+        """Cosine and sine, in proportion to how far the stylus is deflected sideways."""
         n = normal_in_tool(touches)
         sideways = np.hypot(n[:, 0], n[:, 1])
         phi = np.arctan2(n[:, 1], n[:, 0])
-        waves = (np.cos(self.lobes * phi), np.sin(self.lobes * phi))
-        return tuple(Term(i, Where("bias"), sideways * wave) for i, wave in enumerate(waves))
-
-    def inner(self, touches: Touches) -> Sequence[Inner]:
-        """Two to six lobes; one is the offset of the stylus."""
-        return (Inner("lobes", "1", np.arange(2.0, 7.0), continuous=False),)
-
-    def tuned(self, *values: float) -> "ProbeLobing":
-        """With this number of lobes."""
-        return replace(self, lobes=float(values[0]))
-
-    @property
-    def tuning(self) -> Mapping[str, float]:
-        """The number of lobes."""
-        return {"lobes": self.lobes}
+        return (sideways * np.cos(self.lobes * phi), sideways * np.sin(self.lobes * phi))
 
 
 @dataclass(frozen=True)
-class ProbeRadius:
+class ProbeRadius(Declared):
     """Effective radius of the ball minus the radius that is stated.
 
     A larger ball meets the surface earlier, by as much along every normal; a pre-travel v t_d that
     is the same in every direction makes it smaller.
     """
 
-    kind = "probe-radius"
-    name = "probe-radius"
-    title = Title("effective radius of the ball", "probe")
+    kind, called, carrier, acts_on = "probe-radius", "effective radius of the ball", "probe", "bias"
+    stated_number = "radius"
+    parameters = (Parameter("amplitude", "mm", 5 * UM),)
 
-    @property
-    def parameters(self) -> Sequence[Parameter]:
-        """Excess radius."""
-        return (Parameter("amplitude", "mm", 5 * UM),)
-
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """A bias along the normal."""
-        return (Term(0, Where("bias"), np.ones(len(touches))),)
+    def amounts(self, touches: Touches) -> Amounts:
+        """One everywhere."""
+        return (np.ones(len(touches)),)
 
 
 @dataclass(frozen=True)
-class StylusBending:
+class StylusBending(Declared):
     """Bending of the stylus, which grows with the latitude of the touch.
 
     The trigger force bends a stylus of length l by ``F l^3/(3 E I)`` times sin(theta), of which
     sin(theta) lies along the normal. Positive where the surface is seen outside.
     """
 
-    kind = "stylus-bending"
-    name = "stylus-bending"
-    title = Title("bending of the stylus", "probe")
+    kind, called, carrier, acts_on = "stylus-bending", "bending of the stylus", "probe", "bias"
+    parameters = (Parameter("amplitude", "mm", 5 * UM),)
 
-    @property
-    def parameters(self) -> Sequence[Parameter]:
-        """Deviation of a touch square to the stylus."""
-        return (Parameter("amplitude", "mm", 5 * UM),)
-
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """A bias along the normal."""
+    def amounts(self, touches: Touches) -> Amounts:
+        """One at a touch square to the stylus."""
         n = normal_in_tool(touches)
-        return (Term(0, Where("bias"), n[:, 0] ** 2 + n[:, 1] ** 2),)
+        return (n[:, 0] ** 2 + n[:, 1] ** 2,)
 
 
-def _if_touching(effect: Callable[[], Effect], touches: Touches) -> Iterable[Effect]:
-    """The effect where a ball touched a standard; a laser or a tracker has no stylus."""
-    return (effect(),) if touches.instrument.is_ball_on_standard else ()
+def _touching(touches: Touches) -> bool:
+    """Whether a ball touched a standard; a laser or a tracker has no stylus."""
+    return touches.instrument.is_ball_on_standard
 
 
 LOBING = Kind.of(
@@ -120,7 +88,7 @@ LOBING = Kind.of(
     units="a, b: µm; k: 1",
     typical="3 to 8 µm with three lobes (kinematic), below 1 µm (strain gauge)",
     source="Estler et al., Precision Engineering 19 (1996): pre-travel of touch probes",
-    propose=partial(_if_touching, ProbeLobing),
+    when=_touching,
     belongs_to="probe",
 )
 RADIUS = Kind.of(
@@ -131,7 +99,7 @@ RADIUS = Kind.of(
     units="a: µm",
     typical="1 to 5 µm",
     source="ISO 10360-5 (effective size of the stylus tip)",
-    propose=partial(_if_touching, ProbeRadius),
+    when=_touching,
     belongs_to="probe",
 )
 BENDING = Kind.of(
@@ -142,6 +110,6 @@ BENDING = Kind.of(
     units="a: µm",
     typical="0.5 to 3 µm",
     source="cantilever F l^3/(3 E I); Estler et al. 1996",
-    propose=partial(_if_touching, StylusBending),
+    when=_touching,
     belongs_to="probe",
 )

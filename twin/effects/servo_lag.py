@@ -1,22 +1,13 @@
 """Servo lag of an axis on a path: while it moves it stands where it was told to be a little ago."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
+from matstd.twin.fields import AxisName, moving_linear_axes
 from matstd.twin.frames import Array
-from matstd.twin.machine import Chain
-from matstd.twin.model import (
-    Kind,
-    Parameter,
-    Term,
-    Title,
-    Where,
-    check_count,
-    checked_axis,
-    moving_axes,
-)
+from matstd.twin.model import Amounts, Declared, Kind, Parameter
 from matstd.twin.record import IntArray, Labels, Touches
 
 STATED = "v{axis}_mm_s"
@@ -31,46 +22,26 @@ GAP = 3.0
 
 
 @dataclass(frozen=True)
-class ServoLag:
+class ServoLag(Declared):
     """An axis that follows its command with a delay: ``E = -T v``, v its speed.
 
     On a circle at feed F, two axes that lag alike only fall behind along the path; a difference T
     of their delays makes it an ellipse at 45 degrees, ``dr = -(F T / 2) sin 2 theta`` with the
     other sign the other way round: the mismatch of a ball bar test.
 
-    Attributes:
-        axis: Name of a linear axis.
-        component: Index of the component along it.
-
     Reference:
         Kakino, Ihara and Shinohara, Accuracy Inspection of NC Machine Tools by Double Ball Bar
         Method (1993); ISO 230-4 (circular tests).
     """
 
-    axis: str
-    component: int
+    axis: AxisName
 
-    kind = "servo-lag"
+    kind, called = "servo-lag", "servo lag of {axis} beside the other axes"
+    parameters = (Parameter("lag", "s", 3e-4),)
 
-    @property
-    def name(self) -> str:
-        """`servo-lag(X)`."""
-        return f"servo-lag({self.axis})"
-
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(f"servo lag of {self.axis} beside the other axes", self.axis)
-
-    @property
-    def parameters(self) -> Sequence[Parameter]:
-        """The delay."""
-        return (Parameter("lag", "s", 3e-4),)
-
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """A twist of the axis."""
-        where = Where("twist", touches.chain.link_index(self.axis), self.component)
-        return (Term(0, where, -speed(touches, self.axis)),)
+    def amounts(self, touches: Touches) -> Amounts:
+        """Against the motion."""
+        return (-speed(touches, self.axis),)
 
 
 def speed(touches: Touches, axis: str) -> Array:
@@ -107,25 +78,13 @@ def _numbers(feature: Labels) -> IntArray:
     return np.unique(feature, return_inverse=True)[1].reshape(-1).astype(np.int64)
 
 
-def make(chain: Chain, arguments: Sequence[str]) -> ServoLag:
-    """From the axis."""
-    check_count(KIND.usage, arguments, 1, 1)
-    axis = checked_axis(KIND.usage, arguments, arguments[0], chain)
-    return ServoLag(axis, chain.link(axis).own_component)
-
-
 def propose(touches: Touches) -> Iterable[ServoLag]:
     """Linear axes that an instrument beside the machine saw moving together on a path.
 
     A single axis that runs at one speed lags as it reverses: that is `backlash`.
     """
-    if touches.instrument.is_ball_on_standard:
-        return
-    moving = [a for a in moving_axes(touches) if a in touches.chain.linear_axes]
-    on_path = [a for a in moving if _on_the_way(touches, a)]
-    if len(on_path) > 1:
-        for axis in on_path:
-            yield ServoLag(axis, touches.chain.link(axis).own_component)
+    on_path = [axis for axis in moving_linear_axes(touches) if _on_the_way(touches, axis)]
+    return [ServoLag(axis) for axis in on_path] if len(on_path) > 1 else ()
 
 
 def _on_the_way(touches: Touches, axis: str) -> bool:
@@ -137,9 +96,8 @@ def _on_the_way(touches: Touches, axis: str) -> bool:
     return bool(steps) and float(np.median(np.concatenate(steps))) < SMOOTH * float(np.ptp(q))
 
 
-KIND = Kind(
-    word="servo-lag",
-    arguments="axis",
+KIND = Kind.of(
+    ServoLag,
     title="servo lag on a path",
     synonyms="servo mismatch, following error, gain mismatch, Kv, velocity error, ball bar "
     "ellipse, circularity at feed, contouring error",
@@ -147,7 +105,6 @@ KIND = Kind(
     units="T: ms",
     typical="differences of 0.05 to 1 ms between axes",
     source="Kakino et al. 1993; ISO 230-4 (circular tests, both directions)",
-    make=make,
     propose=propose,
-    classes=(ServoLag,),
+    when=lambda touches: not touches.instrument.is_ball_on_standard,
 )

@@ -212,7 +212,7 @@ def placing_errors(touches: Touches) -> tuple[SetupError | StylusError, ...]:
             x, y, z = touches.point_table[rows].mean(axis=0)
             turns_only = touches.instrument.reads_angle
             out.append(SetupError(setup.name, (float(x), float(y), float(z)), turns_only))
-    return (*out, *_styli(touches))
+    return (*out, *further_styli(touches))
 
 
 def body_errors(touches: Touches) -> tuple[BodyTemperature | BodyExpansion, ...]:
@@ -225,7 +225,7 @@ def body_errors(touches: Touches) -> tuple[BodyTemperature | BodyExpansion, ...]
     return (*warm, *(one for one in grown.values() if np.any(at & one.here(touches))))
 
 
-def _styli(touches: Touches) -> tuple[StylusError, ...]:
+def further_styli(touches: Touches) -> tuple[StylusError, ...]:
     """Every stylus but the first that touched; of a ball on the tool axis alone."""
     if not touches.instrument.is_ball_on_standard or np.any(touches.offset):
         return ()

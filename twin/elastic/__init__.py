@@ -4,22 +4,13 @@ One kind a file, as in `effects`; `section` and `beam` are the mechanics. Weight
 a material, so a `beam` is stated by the user and never proposed.
 """
 
-from matstd.twin.elastic.beam import SUPPORTS, Plane, along, bending
 from matstd.twin.elastic.body import Body
 from matstd.twin.elastic.doubts import short_beams
-from matstd.twin.elastic.section import MATERIALS, Material, Section, material
-from matstd.twin.elastic.tool_point import ToolPointStiffness
+from matstd.twin.elastic.section import Material, material
 
 __all__ = [
-    "MATERIALS",
-    "SUPPORTS",
     "Body",
     "Material",
-    "Plane",
-    "Section",
-    "ToolPointStiffness",
-    "along",
-    "bending",
     "material",
     "short_beams",
 ]

@@ -1,17 +1,19 @@
 """A carriage, ram, column or crossbeam as a Timoshenko beam that carries the frame of its axis."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from matstd.twin.elastic.beam import SUPPORTS, Plane, Support, along, bending
 from matstd.twin.elastic.section import MATERIALS, Material, Section, material, section
 from matstd.twin.errors import UnknownEffect
+from matstd.twin.fields import no_values, read_linear_axis, refusal
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
-from matstd.twin.model import Kind, Parameter, Term, Title, Where, checked_linear, refusal
+from matstd.twin.model import Declared, Kind, Parameter, Term, Where
 from matstd.twin.record import Touches
 
 GRAVITY = 9.80665
@@ -25,7 +27,7 @@ DIRECTIONS = {s + a: i for i, (s, a) in enumerate((s, a) for a in "XYZ" for s in
 
 
 @dataclass(frozen=True)
-class Body:
+class Body(Declared):
     """A beam whose deflection and rotation at the frame of an axis move all that it carries.
 
     The point stands ``x = at + sense q`` from the root, q the reading. Loads on it are its mass at
@@ -60,9 +62,11 @@ class Body:
     outward: tuple[int, int]
     on_tool_side: bool
 
-    kind = "beam"
+    kind, called = "beam", "bending of the body of {axis} under weight and load"
+    # how many times what the beam says: 1 and 1 where it is as it is stated
+    parameters = (Parameter("weight", "1", 1.0), Parameter("load", "1", 1.0))
 
-    @property
+    @cached_property
     def name(self) -> str:
         """`beam(Z,cantilever,220x180x20,at:420,sense:-1,mass:80)`."""
         words = [self.axis, self.support, self.shape, f"at:{self.at:g}"]
@@ -74,16 +78,6 @@ class Body:
         words += [f"material:{self.stuff}"] if self.stuff != "steel" else []
         words += [f"down:{self.down}"] if self.down != "-Z" else []
         return f"beam({','.join(words)})"
-
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(f"bending of the body of {self.axis} under weight and load", self.axis)
-
-    @property
-    def parameters(self) -> Sequence[Parameter]:
-        """How many times what the beam says: 1 and 1 where it is as it is stated."""
-        return (Parameter("weight", "1", 1.0), Parameter("load", "1", 1.0))
 
     @property
     def material(self) -> Material:
@@ -184,7 +178,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> Body:
     usage = KIND.usage
     if len(arguments) < 4:
         raise refusal(usage, arguments, "an axis, a support, a section and where the frame stands")
-    axis = checked_linear(usage, arguments, arguments[0], chain)
+    axis = read_linear_axis(arguments[0], chain, lambda text: refusal(usage, arguments, text))
     if arguments[1] not in SUPPORTS:
         raise refusal(usage, arguments, f"a support: {', '.join(SUPPORTS)}")
     keys = _keys(usage, arguments)
@@ -294,11 +288,6 @@ def _check_travel(usage: str, arguments: Sequence[str], chain: Chain, body: Body
         )
 
 
-def propose(touches: Touches) -> Iterable[Body]:
-    """None: nobody but the user knows sections."""
-    return ()
-
-
 KIND = Kind(
     word="beam",
     arguments="axis,support,section,at:MM,...",
@@ -309,6 +298,6 @@ KIND = Kind(
     typical="1 where the beam is as stated; joints make it 1.5 to 3",
     source="Timoshenko beam with Cowper's shear coefficients; first paper, 2.2",
     make=make,
-    propose=propose,
+    propose=no_values,  # nobody but the user knows sections
     classes=(Body,),
 )

@@ -1,20 +1,37 @@
 """Compliance of an axis, or of the tool, under the load on the tool."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Annotated, Self
 
 import numpy as np
 
 from matstd.twin.errors import UnknownEffect
+from matstd.twin.fields import Argument, Refuse
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
-from matstd.twin.model import Kind, Parameter, Term, Title, Where, check_count, refusal
+from matstd.twin.model import Declared, Kind, Parameter, Term, Title, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import UM
 
 
+def _link(text: str, chain: Chain, refuse: Refuse) -> str:
+    known = (*chain.programmed_axes, "t")
+    if text not in known:
+        raise refuse(f"one of {', '.join(known)}")
+    return text
+
+
+def _loaded(touches: Touches) -> Iterable[str]:
+    """Every axis and the tool, where loads were recorded and vary."""
+    if touches.force is None or float(np.max(np.ptp(touches.force, axis=0))) == 0.0:
+        return ()
+    return (*touches.chain.programmed_axes, "t")
+
+
 @dataclass(frozen=True)
-class Stiffness:
+class Stiffness(Declared):
     """An axis or the tool yields to the load on the tool.
 
     F acts on the tool, M is its moment about the axis, d the direction of the axis; on either side
@@ -26,22 +43,23 @@ class Stiffness:
         components: Indices of the components that yield, and the parameter of each.
     """
 
-    link: str
-    components: tuple[tuple[int, int], ...]
+    link: Annotated[str, Argument("axis or t", _link, offered=_loaded)]
+    components: tuple[tuple[int, int], ...] = ((0, 0), (1, 0), (2, 1))
 
     kind = "stiffness"
 
-    @property
-    def name(self) -> str:
-        """`stiffness(Z)`."""
-        return f"stiffness({self.link})"
+    def on(self, chain: Chain, refuse: Refuse) -> Self:
+        """With the component of an axis that yields."""
+        if self.link == "t":
+            return self
+        return replace(self, components=((chain.link(self.link).own_component, 0),))
 
-    @property
+    @cached_property
     def title(self) -> Title:
-        """In the words of those who run machines."""
+        """With the link for its carrier."""
         return Title(f"compliance of {'the tool' if self.link == 't' else self.link}", self.link)
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Compliances."""
         if self.link == "t":
@@ -67,39 +85,12 @@ def _force(touches: Touches, name: str) -> Array:
     return touches.force
 
 
-def stiffness(chain: Chain, link: str) -> Stiffness:
-    """Compliance of an axis or of the tool."""
-    if link == "t":
-        return Stiffness(link, ((0, 0), (1, 0), (2, 1)))
-    return Stiffness(link, ((chain.link(link).own_component, 0),))
-
-
-def make(chain: Chain, arguments: Sequence[str]) -> Stiffness:
-    """From the axis, or `t` for the tool."""
-    check_count(KIND.usage, arguments, 1, 1)
-    if arguments[0] not in (*chain.programmed_axes, "t"):
-        known = ", ".join((*chain.programmed_axes, "t"))
-        raise refusal(KIND.usage, arguments, f"one of {known}")
-    return stiffness(chain, arguments[0])
-
-
-def propose(touches: Touches) -> Iterable[Stiffness]:
-    """Every axis and the tool, where loads were recorded and vary."""
-    if touches.force is not None and float(np.max(np.ptp(touches.force, axis=0))) > 0.0:
-        for link in (*touches.chain.programmed_axes, "t"):
-            yield stiffness(touches.chain, link)
-
-
-KIND = Kind(
-    word="stiffness",
-    arguments="axis or t",
+KIND = Kind.of(
+    Stiffness,
     title="compliance under load",
     synonyms="flexibility, deflection under load, cutting force, loaded, stiffness",
     formula="E = c F.d (linear axis, tool); E = c M.d (rotary axis); F, M the load on the tool",
     units="c: µm/N; µrad/(N mm)",
     typical="0.02 to 0.1 µm/N (10 to 50 N/µm) at the tool; the rotary table is the weakest",
     source="static compliance, ISO 230-1 (machine under load); loaded double ball bar",
-    make=make,
-    propose=propose,
-    classes=(Stiffness,),
 )

@@ -2,12 +2,14 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from matstd.twin.errors import UnknownEffect
+from matstd.twin.fields import check_count, moving_linear_axes
 from matstd.twin.machine import Chain
-from matstd.twin.model import Kind, Parameter, Term, Title, Where, check_count, moving_axes
+from matstd.twin.model import Declared, Kind, Parameter, Term, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import UM
 
@@ -16,7 +18,7 @@ PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))
 
 
 @dataclass(frozen=True)
-class ToolPointStiffness:
+class ToolPointStiffness(Declared):
     """The tool point yields to its load by a compliance that depends on place and direction.
 
     ``d = C(p) F``, ``C(p) = C0 + sum over linear axes of Ca s``, s from -1 to 1 over the travel; C0
@@ -28,21 +30,16 @@ class ToolPointStiffness:
 
     axes: tuple[str, ...]
 
-    kind = "tool-point-stiffness"
+    kind, called = "tool-point-stiffness", "stiffness at the tool point over the workspace"
     is_tensor = True
-    """Told as a whole: its entries one by one depend on what the zero of a bar takes up."""
+    """Reported as a whole: its entries one by one depend on what the zero of a bar takes up."""
 
-    @property
+    @cached_property
     def name(self) -> str:
         """`tool-point-stiffness(X,Y,Z)`; the last axis carries it."""
         return f"tool-point-stiffness({','.join(self.axes)})"
 
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title("stiffness at the tool point over the workspace")
-
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Six entries at the middle of the travels, and how each changes to the end of an axis."""
         out = []
@@ -87,7 +84,7 @@ def propose(touches: Touches) -> Iterable[ToolPointStiffness]:
     """The linear axes that moved, where a load changed its direction."""
     if touches.force is None:
         return
-    axes = [a for a in moving_axes(touches) if a in touches.chain.linear_axes]
+    axes = moving_linear_axes(touches)
     if axes and float(np.ptp(touches.force, axis=0).min()) > 1.0:
         yield ToolPointStiffness(tuple(axes))
 

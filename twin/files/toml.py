@@ -3,10 +3,13 @@
 import math
 import re
 import tomllib
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, TypeVar, get_args
+from types import SimpleNamespace
+from typing import Any, TypeVar, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic.fields import FieldInfo
 
 from matstd.twin.errors import BadFile
 from matstd.twin.words import did_you_mean
@@ -188,25 +191,95 @@ def _as_bad_file(
             for e in found
             if e["type"] == "missing" and e["loc"][:-1] == first["loc"][:-1]
         ]
+        if steps[-1].isdigit() and (field := _field(model, steps[:-1])):
+            whole = key.rpartition(".")[0]
+            return BadFile(path, whole, repr(first["input"]), _list(field))
         if len(lacking) == 1:
             return BadFile(path, key, "nothing", "this key")
         table = ".".join(key.split(".")[:-1]) or "file"
         return BadFile(path, table, "nothing for several keys", f"the keys {', '.join(lacking)}")
-    message = first["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
     try:
         shown = repr(first["input"])
     except (RecursionError, ValueError):  # lists without end, a number of thousands of digits
         shown = f"a {type(first['input']).__name__} too large to show"
-    return BadFile(path, key, shown, message)
+    return BadFile(path, key, shown, _expected(first, model, steps))
+
+
+_NUMBERS = {"int_type": "a whole number", "int_from_float": "a whole number"}
+_KINDS = {
+    "bool_type": "true or false",
+    "string_type": "text in quotes",
+    "dict_type": "a table",
+    "list_type": "a list in brackets",
+}
+
+
+def _expected(error: Any, model: type[BaseModel], steps: list[str]) -> str:
+    """What a value should have been, in words of the file instead of the library's."""
+    kind: str = error["type"]
+    field = _field(model, steps)
+    bounds = _bounds(field.metadata if field else [])
+    if kind in ("int_type", "int_from_float", "float_type"):
+        return f"{_NUMBERS.get(kind, 'a number')}{bounds}"
+    if kind.startswith(("greater_than", "less_than")):
+        return f"a number{bounds or _bounds([SimpleNamespace(**error['ctx'])])}"
+    if kind == "model_type" and (known := list(_keys(model, steps))):
+        return f"a table with the keys {', '.join(known)}"
+    if kind in ("tuple_type", "too_long", "too_short") and field:
+        return _list(field)
+    message: str = error["msg"]
+    return _KINDS.get(kind, message.removeprefix("Value error, ").removeprefix("Input should be "))
+
+
+def _list(field: FieldInfo) -> str:
+    """A list as the annotation of a field has it: of so many values, if it has a length."""
+    items = next(_items(field.annotation), (Ellipsis,))
+    return "a list in brackets" if Ellipsis in items else f"a list of {len(items)} values"
+
+
+def _items(kind: Any) -> Iterator[tuple[Any, ...]]:
+    """The kinds of the items of every list inside an annotation, such as an optional one."""
+    if get_origin(kind) is tuple:
+        yield get_args(kind)
+    else:
+        for inner in get_args(kind):
+            yield from _items(inner)
+
+
+def _bounds(limits: Sequence[Any]) -> str:
+    """Limits of a number: " from 100 to 2000", ", 1 or more", " above 0"; "" for none."""
+    stated = {
+        name: f"{value:.10g}"
+        for limit in limits
+        for name in ("ge", "gt", "le", "lt")
+        if (value := getattr(limit, name, None)) is not None
+    }
+    if "ge" in stated and "le" in stated:
+        return f" from {stated['ge']} to {stated['le']}"
+    words = {"ge": ", {} or more", "gt": " above {}", "le": ", {} or less", "lt": " below {}"}
+    return " and".join(words[name].format(value) for name, value in stated.items())
+
+
+def _field(model: type[BaseModel], steps: list[str]) -> FieldInfo | None:
+    """The field to which some steps lead; None for a part of a list or an unknown one."""
+    inner = _table(model, steps[:-1])
+    fields = inner.model_fields.items() if inner and steps else ()
+    return next((field for name, field in fields if (field.alias or name) == steps[-1]), None)
 
 
 def _keys(model: type[BaseModel], steps: list[str]) -> dict[str, Any]:
     """Keys, with their types, of the table within a table to which some steps lead."""
+    inner = _table(model, steps)
+    return _fields(inner) if inner else {}
+
+
+def _table(model: type[BaseModel], steps: list[str]) -> type[BaseModel] | None:
+    """The table within a table to which some steps lead, None for anything else."""
     kind: Any = model
     for step in steps:
         is_table = isinstance(kind, type) and issubclass(kind, BaseModel)
         kind = _fields(kind).get(step) if is_table else next(reversed(get_args(kind)), None)
-    return _fields(kind) if isinstance(kind, type) and issubclass(kind, BaseModel) else {}
+    return kind if isinstance(kind, type) and issubclass(kind, BaseModel) else None
 
 
 def _fields(model: type[BaseModel]) -> dict[str, Any]:

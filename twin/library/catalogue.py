@@ -8,6 +8,7 @@ import importlib.util
 import inspect
 import os
 import re
+import sys
 from collections.abc import Sequence
 from importlib.metadata import entry_points
 from pathlib import Path
@@ -16,7 +17,7 @@ import numpy as np
 
 from matstd.twin.effects import (
     MARK,
-    Again,
+    Repeated,
     artefact,
     artefact_form,
     backlash,
@@ -35,7 +36,7 @@ from matstd.twin.elastic import body, stiffness, tool_point
 from matstd.twin.errors import BadFile, DesignError, UnknownEffect
 from matstd.twin.library.trial import users_fault
 from matstd.twin.machine import Chain
-from matstd.twin.model import Effect, Kind, Title, Titled, columns, is_tunable
+from matstd.twin.model import Effect, Kind, Title, columns, is_tunable, own_title
 from matstd.twin.record import Touches
 from matstd.twin.thermal import (
     axis_warming,
@@ -131,8 +132,9 @@ def find_kinds(query: str) -> tuple[Kind, ...]:
 
 def title_of(effect: Effect) -> Title:
     """What an effect is called by those who run machines; its kind's title, or its name at last."""
-    if isinstance(effect, Titled):
-        return effect.title
+    own = own_title(effect)
+    if own is not None:
+        return own
     kind = _REGISTER.get(effect.kind)
     return Title(kind.title if kind is not None and kind.title else effect.name)
 
@@ -152,7 +154,7 @@ def parse_effect(text: str, chain: Chain) -> Effect:
     """
     whole, mark, number = text.strip().rpartition(MARK)
     if mark:
-        return _parse_again(whole, number, text, chain)
+        return _parse_repeated(whole, number, text, chain)
     match = _NAME.match(text)
     kind = _REGISTER.get(match.group(1)) if match else None
     if match is None or kind is None:
@@ -162,7 +164,7 @@ def parse_effect(text: str, chain: Chain) -> Effect:
     return kind.make(chain, arguments)
 
 
-def _parse_again(whole: str, number: str, text: str, chain: Chain) -> Effect:
+def _parse_repeated(whole: str, number: str, text: str, chain: Chain) -> Effect:
     """Effect of a name that ends in #2; raises UnknownEffect."""
     effect = parse_effect(whole, chain)
     if not number.isdecimal() or int(number) < 2:
@@ -171,7 +173,7 @@ def _parse_again(whole: str, number: str, text: str, chain: Chain) -> Effect:
         raise UnknownEffect(
             f"effect '{text}': {effect.kind} has no inner parameter, so a second one is the first"
         )
-    return Again(effect, int(number))
+    return Repeated(effect, int(number))
 
 
 def _unknown(text: str, chain: Chain) -> UnknownEffect:
@@ -242,6 +244,7 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
         found = "nothing that Python can load" if os.path.isfile(path) else "no such file"
         raise BadFile(path, "file", found, "a .py file with a Kind in it")
     module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # where data classes look for the types of their fields
     try:
         spec.loader.exec_module(module)
     except SyntaxError as cause:
@@ -252,6 +255,8 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
         if isinstance(cause, ModuleNotFoundError) and str(cause.name).startswith("twin"):
             expected = f"the name that is installed, matstd.{cause.name}"
         raise users_fault(cause, path, "file", expected) from cause
+    finally:
+        del sys.modules[spec.name]
     own = {id(k): k for k in vars(module).values() if isinstance(k, Kind)}
     if not own:
         raise BadFile(path, "file", "no Kind", "at least one twin.Kind at its top level")

@@ -12,7 +12,7 @@ from matstd.twin.frames import Array
 from matstd.twin.library.catalogue import parse_effect, users_files
 from matstd.twin.library.trial import try_effect
 from matstd.twin.machine import Chain
-from matstd.twin.model import Effect, Tunable
+from matstd.twin.model import Effect, is_tunable
 from matstd.twin.record import Touches, at_poses
 from matstd.twin.units import DAY, DEG, HOUR, MINUTE, NM, UM, URAD
 from matstd.twin.words import listed
@@ -79,7 +79,7 @@ def parse_sized_effect(text: str, chain: Chain) -> SizedEffect:
     if effect.kind in users_files():
         try_effect(effect, touches, users_files()[effect.kind])
     units = {p.name: p.unit for p in effect.parameters}
-    inner = effect.inner(touches) if isinstance(effect, Tunable) else ()
+    inner = effect.inner(touches) if is_tunable(effect) else ()
     inner_units = {i.name: i.unit for i in inner}
     only = next(iter(units)) if len(units) == 1 else None
     sizes = parse_sizes(text, rest, {**units, **inner_units}, only) if equals else {}
@@ -93,7 +93,7 @@ def parse_sized_effect(text: str, chain: Chain) -> SizedEffect:
         what = "incomplete" if sizes else "no size"
         example = f"{name.strip()}={','.join(examples)}"
         raise DesignError(f"{text}: {what}, expected for example {example}")
-    if isinstance(effect, Tunable):
+    if is_tunable(effect):
         effect = effect.tuned(*(sizes[key] for key in inner_units))
     return SizedEffect(effect, np.array([sizes.get(key, 0.0) for key in units]))
 

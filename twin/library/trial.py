@@ -18,7 +18,7 @@ import numpy as np
 
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect, Inner, Kind, Parameter, Term, Tunable, Where
+from matstd.twin.model import Effect, Inner, Kind, Parameter, Term, Tunable, Where, is_tunable
 from matstd.twin.record import Touches
 
 _PARTS = {"twist": 6, "place": 6, "shift": 3, "bias": 1}
@@ -67,7 +67,7 @@ def try_effect(effect: Effect, touches: Touches, path: str | Path) -> None:
     _try_attributes(effect, path)
     _try_parameters(effect, path)
     touches = read_only(touches)
-    if not isinstance(effect, Tunable):
+    if not is_tunable(effect):
         if not _moves(effect, touches, path):
             raise _moves_nothing(effect, path)
         return
@@ -162,7 +162,7 @@ def _try_grids(effect: Tunable, grids: Sequence[Inner], path: str | Path) -> Non
 def _tuned(effect: Tunable, values: tuple[float, ...], path: str | Path) -> Tunable:
     """The effect at some inner values, which must be those that it then says it has."""
     out = effect.tuned(*values)
-    if not isinstance(out, Tunable) or out.name != effect.name:
+    if not is_tunable(out) or out.name != effect.name:
         found = f"{type(out).__name__} '{getattr(out, 'name', '')}'"
         raise _bad(effect, "tuned", path, found, f"another '{effect.name}'")
     told = tuple(float(v) for v in out.tuning.values())

@@ -1,41 +1,32 @@
 """What an effect is and how effects add up: columns of the linear model, the exact product.
 
 An effect says where it acts (`Where`) and how much per unit of each parameter (`Term`); `Model`
-adds terms up, to first order and exactly. `Kind` is a word of the library with what users are told
-of it.
+adds terms up, to first order and exactly. `Declared` writes most of an effect from its fields,
+`Kind` is a word of the library with its card, and `traits` answers what others ask of an effect.
 """
 
+from matstd.twin.fields import moving_axes, refusal, sensors
 from matstd.twin.machine import Where
+from matstd.twin.model.declared import Amounts, Declared, scanned
 from matstd.twin.model.effect import (
-    Acts,
     Effect,
     Inner,
     Parameter,
     Term,
     Title,
-    Titled,
     Tunable,
     contribution,
     inner_values,
     is_tunable,
+    own_title,
 )
-from matstd.twin.model.kind import (
-    Kind,
-    check_count,
-    checked_axis,
-    checked_linear,
-    component_symbol,
-    moved_components,
-    moving_axes,
-    refusal,
-    sensor_record,
-    sensors,
-    varies,
-)
+from matstd.twin.model.effect_traits import Traits, Wave, original_of, traits
+from matstd.twin.model.kind import Kind
 from matstd.twin.model.model import Model, columns
 
 __all__ = [
-    "Acts",
+    "Amounts",
+    "Declared",
     "Effect",
     "Inner",
     "Kind",
@@ -43,21 +34,19 @@ __all__ = [
     "Parameter",
     "Term",
     "Title",
-    "Titled",
+    "Traits",
     "Tunable",
+    "Wave",
     "Where",
-    "check_count",
-    "checked_axis",
-    "checked_linear",
     "columns",
-    "component_symbol",
     "contribution",
     "inner_values",
     "is_tunable",
-    "moved_components",
     "moving_axes",
+    "original_of",
+    "own_title",
     "refusal",
-    "sensor_record",
+    "scanned",
     "sensors",
-    "varies",
+    "traits",
 ]

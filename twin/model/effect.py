@@ -1,6 +1,7 @@
 """What an effect is: where in the machine it acts, and how much per unit of its parameters."""
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 from typing import Literal, NamedTuple, Protocol, TypeGuard, runtime_checkable
 
 import numpy as np
@@ -122,18 +123,13 @@ class Inner(NamedTuple):
         return bool(self.over) and self.unit == "1"
 
     def frequency(self, value: Array) -> Array:
-        """Of what repeats over an axis the waves per mm, or per rad, at values of it."""
+        """Spatial frequency of a periodic effect at values of it, 1/mm or 1/rad."""
         return value / (2.0 * np.pi) if self.is_harmonic else 1.0 / value
 
 
-@runtime_checkable
-class Titled(Effect, Protocol):
-    """An effect with a title of its own."""
-
-    @property
-    def title(self) -> Title:
-        """What it is called, and what carries it."""
-        ...
+def own_title(effect: Effect) -> Title | None:
+    """The title that an effect gives itself (attribute or property `title`); None without one."""
+    return getattr(effect, "title", None)
 
 
 @runtime_checkable
@@ -160,7 +156,12 @@ def is_tunable(effect: Effect) -> TypeGuard[Tunable]:
     As `isinstance` says, which asks every attribute of the protocol and took a twentieth of a
     diagnosis.
     """
-    return hasattr(type(effect), "tuned")
+    return _is_tunable(type(effect))
+
+
+@cache
+def _is_tunable(cls: type) -> bool:
+    return hasattr(cls, "tuned") and getattr(cls, "has_inner", lambda: True)()
 
 
 def inner_values(effect: Effect, touches: Touches) -> list[tuple[Inner, float]]:

@@ -1,18 +1,17 @@
-"""`Kind`: one word of the library of effects, with all that a user is told about it."""
+"""`Kind`: one word of the library of effects, with all that a user reads about it."""
 
 import inspect
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import ClassVar
 
-import numpy as np
-
 from matstd.twin.errors import UnknownEffect
-from matstd.twin.frames import Array
-from matstd.twin.machine import Chain, Family, Symbol
+from matstd.twin.fields import Argument, check_count, refusal
+from matstd.twin.machine import Chain
+from matstd.twin.model.declared import Declared, layout_of
 from matstd.twin.model.effect import Effect
 from matstd.twin.record import Touches
-from matstd.twin.words import did_you_mean
 
 
 @dataclass(frozen=True)
@@ -55,7 +54,7 @@ class Kind:
     @classmethod
     def of(
         cls,
-        effect: Callable[[], Effect],
+        effect: Callable[..., Effect],
         formula: str,
         units: str = "",
         typical: str = "",
@@ -64,35 +63,39 @@ class Kind:
         title: str = "",
         synonyms: str = "",
         belongs_to: str = "machine",
+        when: Callable[[Touches], bool] | None = None,
     ) -> "Kind":
-        """The kind of an effect that takes no arguments, which is all that most users need.
+        """The kind of one class: its usage, parser and proposals follow from its fields.
 
         Args:
-            effect: Its class, made without arguments; its `kind` is the word.
+            effect: The class, a `Declared` one or one that takes no arguments; its `kind` is the
+                word, and its first line of documentation the summary.
             formula: The closed formula, one line.
             units: Of its parameters and inner parameters, as a user sees them.
             typical: Size that is met in practice.
             source: Where the formula and the size are from.
-            propose: The effect where it makes sense for some touches; None for always.
+            propose: Every effect that makes sense for some touches; None for one with every value
+                that its fields are offered, and the usual values of those that may be left out.
             title: What those who run machines call it.
             synonyms: Other words for it, commas between them.
             belongs_to: As of the attribute.
+            when: Whether it is proposed for some touches at all; None for always.
         """
-        word = effect().kind
+        signature = _Signature.of(effect)
 
-        def make(chain: Chain, arguments: Sequence[str]) -> Effect:
-            check_count(word, arguments, 0, 0)
-            return effect()
+        def offered(touches: Touches) -> Iterable[Effect]:
+            is_wanted = when is None or when(touches)
+            return (propose or signature.proposed)(touches) if is_wanted else ()
 
         return cls(
-            word=word,
-            arguments="",
+            word=signature.word,
+            arguments=signature.usage,
             formula=formula,
             units=units,
             typical=typical,
             source=source,
-            make=make,
-            propose=propose or (lambda touches: (effect(),)),
+            make=signature.make,
+            propose=offered,
             classes=(effect,) if isinstance(effect, type) else (),
             title=title,
             synonyms=synonyms,
@@ -101,8 +104,8 @@ class Kind:
 
     def matches(self, query: str) -> bool:
         """Whether every word of a query stands in the name, title, synonyms, formula or summary."""
-        told = (self.word, self.title, self.synonyms, self.formula, self.summary, self.typical)
-        text = " ".join(told).lower().replace("-", " ")
+        card = (self.word, self.title, self.synonyms, self.formula, self.summary, self.typical)
+        text = " ".join(card).lower().replace("-", " ")
         return all(word in text for word in query.lower().replace("-", " ").split())
 
     @property
@@ -117,84 +120,59 @@ class Kind:
         return text.partition("\n")[0] if text else self.about
 
 
-def refusal(usage: str, found: Sequence[str], expected: str) -> UnknownEffect:
-    """Exception for arguments that an effect does not take.
+def _refused(expected: str) -> UnknownEffect:
+    return UnknownEffect(f"an effect that was proposed: expected {expected}")
 
-    Args:
-        usage: How the effect is written.
-        found: The arguments that were given.
-        expected: What should stand there, with what is available.
+
+@dataclass(frozen=True)
+class _Signature:
+    """How an effect is written, from the fields of its class.
+
+    Attributes:
+        word: First word of its name.
+        effect: Makes it from the values of its arguments by name.
+        arguments: What stands in the brackets, by the name of the field.
+        required: How many of them cannot be left out.
     """
-    word = usage.partition("(")[0]
-    given = f"{word}({','.join(found)})" if found else word
-    return UnknownEffect(f"effect '{given}': expected {usage}, {expected}")
 
+    word: str
+    effect: Callable[..., Effect]
+    arguments: Mapping[str, Argument]
+    required: int
 
-def check_count(usage: str, arguments: Sequence[str], low: int, high: int) -> None:
-    """Check the number of arguments; raises UnknownEffect."""
-    if not low <= len(arguments) <= high:
-        number = f"{low or 'no'}" if low == high else f"{low} to {high}"
-        raise refusal(usage, arguments, f"{number} argument{'' if high == 1 else 's'}")
+    @classmethod
+    def of(cls, effect: Callable[..., Effect]) -> "_Signature":
+        """Of a class with declared fields, or of anything that is made without arguments."""
+        declared = effect if isinstance(effect, type) and issubclass(effect, Declared) else None
+        if declared is None:
+            return cls(effect().kind, effect, {}, 0)
+        layout = layout_of(declared)
+        required = len(layout.arguments) - len(layout.usual)
+        return cls(declared.kind, effect, layout.arguments, required)
 
+    @property
+    def usage(self) -> str:
+        """`symbol,axis[,degree]`."""
+        words = [a.word for a in self.arguments.values()]
+        left_out = "".join(f"[,{word}]" for word in words[self.required :])
+        return ",".join(words[: self.required]) + left_out
 
-def component_symbol(chain: Chain, name: str) -> Symbol:
-    """Component error of an axis by its name; raises UnknownSymbol or UnknownEffect."""
-    symbol = chain.symbol(name)
-    if symbol.family is not Family.COMPONENT:
-        raise UnknownEffect(
-            f"'{name}' is a constant ({symbol.family.value}); expected a component error of an "
-            "axis, such as EXX"
-        )
-    return symbol
+    def make(self, chain: Chain, found: Sequence[str]) -> Effect:
+        """Effect from the texts in the brackets."""
+        usage = f"{self.word}({self.usage})" if self.arguments else self.word
+        check_count(usage, found, self.required, len(self.arguments))
 
+        def refuse(expected: str) -> UnknownEffect:
+            return refusal(usage, found, expected)
 
-def moving_axes(touches: Touches) -> list[str]:
-    """Programmed axes that stood at more than one reading, in chain order."""
-    return [axis for axis in touches.chain.programmed_axes if np.ptp(touches.reading(axis)) > 1e-6]
+        given = zip(self.arguments.items(), found, strict=False)
+        effect = self.effect(**{name: a.read(text, chain, refuse) for (name, a), text in given})
+        return effect.on(chain, refuse) if isinstance(effect, Declared) else effect
 
-
-def moved_components(touches: Touches) -> Iterator[Symbol]:
-    """Component errors of the axes that moved, in the order of the machine's symbols.
-
-    Where nothing moved, as in front of a nest of displacement probes, the axis next to the tool
-    stands for the machine.
-    """
-    axes = moving_axes(touches) or touches.chain.axes[-1:]
-    for symbol in touches.chain.symbols:
-        if symbol.family is Family.COMPONENT and symbol.link in axes:
-            yield symbol
-
-
-def varies(values: Array) -> bool:
-    """Whether a record says more than one thing, and says it everywhere."""
-    return bool(np.all(np.isfinite(values)) and np.ptp(values) > 1e-6)
-
-
-def sensors(touches: Touches) -> list[str]:
-    """Sensors whose record varies and has no gap."""
-    return [name for name, values in touches.temperature.items() if varies(values)]
-
-
-def sensor_record(touches: Touches, sensor: str) -> Array:
-    """Temperatures of one sensor, (N,), degC; raises UnknownEffect where there is none."""
-    if sensor not in touches.temperature:
-        known = ", ".join(touches.temperature) or "none"
-        meant = did_you_mean(sensor, touches.temperature)
-        raise UnknownEffect(
-            f"no temperature sensor '{sensor}' in these touches{meant}; there is {known}"
-        )
-    return touches.temperature[sensor]
-
-
-def checked_axis(usage: str, arguments: Sequence[str], axis: str, chain: Chain) -> str:
-    """A programmed axis of the machine; raises UnknownEffect."""
-    if axis not in chain.programmed_axes:
-        raise refusal(usage, arguments, f"an axis of {', '.join(chain.programmed_axes)}")
-    return axis
-
-
-def checked_linear(usage: str, arguments: Sequence[str], axis: str, chain: Chain) -> str:
-    """A linear axis of the machine; raises UnknownEffect."""
-    if axis not in chain.linear_axes:
-        raise refusal(usage, arguments, f"a linear axis of {', '.join(chain.linear_axes)}")
-    return axis
+    def proposed(self, touches: Touches) -> Iterable[Effect]:
+        """One with every combination of what its required fields are offered."""
+        wanted = list(self.arguments.items())[: self.required]
+        names = [name for name, _ in wanted]
+        for values in product(*(list(a.offered(touches)) for _, a in wanted)):
+            effect = self.effect(**dict(zip(names, values, strict=True)))
+            yield effect.on(touches.chain, _refused) if isinstance(effect, Declared) else effect

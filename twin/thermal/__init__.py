@@ -5,19 +5,15 @@ a column of the user's own. One kind a file, as in `effects`; `drives` says what
 """
 
 from matstd.twin.thermal.drive_columns import CYCLE, PROGRESS, SPINDLE, drives, is_speed
-from matstd.twin.thermal.follows import Follows, ThermalStatic, follower
-from matstd.twin.thermal.thermal_field import LETTERS, ThermalField, field
+from matstd.twin.thermal.follows import follower
+from matstd.twin.thermal.thermal_field import field
 from matstd.twin.thermal.thermal_lag import ThermalLag
 
 __all__ = [
     "CYCLE",
-    "LETTERS",
     "PROGRESS",
     "SPINDLE",
-    "Follows",
-    "ThermalField",
     "ThermalLag",
-    "ThermalStatic",
     "drives",
     "field",
     "follower",

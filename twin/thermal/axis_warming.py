@@ -2,23 +2,14 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated, Self
 
 import numpy as np
 
+from matstd.twin.fields import Argument, LinearAxisName, Refuse, moving_linear_axes
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
-from matstd.twin.model import (
-    Inner,
-    Kind,
-    Parameter,
-    Term,
-    Title,
-    Where,
-    check_count,
-    checked_linear,
-    moving_axes,
-    refusal,
-)
+from matstd.twin.model import Amounts, Declared, Inner, Kind, Parameter
 from matstd.twin.record import Touches
 from matstd.twin.thermal.drive_columns import OWN, PROGRESS, is_own, own_column
 from matstd.twin.thermal.thermal_lag import LONGEST, SHORTEST, STEPS
@@ -29,8 +20,14 @@ FASTEST, SLOWEST = 0.3, 1.0
 slower is a straight line, which needs no time constant and has no size to settle at."""
 
 
+def _clock_name(text: str, chain: Chain, refuse: Refuse) -> str:
+    if not is_own(text):
+        raise refuse("an own column V_name_unit that grows with time")
+    return text
+
+
 @dataclass(frozen=True)
-class AxisWarming:
+class AxisWarming(Declared):
     """The positioning error of a linear axis that warms while it works.
 
     ``E = (1 - exp(-t/tau)) (low (1 - s) + high s)``, s from 0 to 1 over the travel: the screw grows
@@ -38,8 +35,6 @@ class AxisWarming:
     times, but its order: then t counts cycles.
 
     Attributes:
-        axis: Name of the linear axis.
-        component: Index of the component along the axis.
         clock: Own column `V_name` that grows in step with time; empty for the time itself.
         tau: Time constant, s, or in units of the clock.
 
@@ -47,36 +42,23 @@ class AxisWarming:
         ISO 230-3 (thermal distortion caused by moving linear axes); ISO 230-2 (drift over cycles).
     """
 
-    axis: str
-    component: int
-    clock: str = ""
+    axis: LinearAxisName
+    clock: Annotated[str, Argument("V_column that grows with time", _clock_name)] = ""
     tau: float = 20.0 * MINUTE
 
-    kind = "axis-warming"
+    kind, called = "axis-warming", "growth of the screw or scale of {axis} while it warms"
+    parameters = tuple(Parameter(f"{end} end", "mm", 30 * UM) for end in ("low", "high"))
 
-    @property
-    def name(self) -> str:
-        """`axis-warming(X)`, `axis-warming(X,V_cycles_done_1)`."""
-        return f"axis-warming({self.axis}{',' if self.clock else ''}{self.clock})"
+    def on(self, chain: Chain, refuse: Refuse) -> Self:
+        """One cycle where the clock counts cycles."""
+        return replace(self, tau=1.0) if self.clock else self
 
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(f"growth of the screw or scale of {self.axis} while it warms", self.axis)
-
-    @property
-    def parameters(self) -> Sequence[Parameter]:
-        """What either end of the travel settles at."""
-        return tuple(Parameter(f"{end} end", "mm", 30 * UM) for end in ("low", "high"))
-
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """Twists of the axis."""
-        i = touches.chain.link_index(self.axis)
-        low, high = touches.chain.links[i].range
+    def amounts(self, touches: Touches) -> Amounts:
+        """What has warmed, at either end."""
+        low, high = touches.chain.link(self.axis).range
         s = (touches.reading(self.axis) - low) / (high - low)
-        where = Where("twist", i, self.component)
         y = -np.expm1(-self._clock(touches) / self.tau)
-        return (Term(0, where, y * (1.0 - s)), Term(1, where, y * s))
+        return (y * (1.0 - s), y * s)
 
     def _clock(self, touches: Touches) -> Array:
         """Time since the run began, or what counts it."""
@@ -93,7 +75,7 @@ class AxisWarming:
         high = float(np.clip(SLOWEST * spent, 4.0 * SHORTEST, LONGEST))
         return (Inner("tau", "s", np.geomspace(SHORTEST, high, STEPS)),)
 
-    def tuned(self, *values: float) -> "AxisWarming":
+    def tuned(self, *values: float) -> Self:
         """With this time constant."""
         return replace(self, tau=float(values[0]))
 
@@ -103,39 +85,23 @@ class AxisWarming:
         return {"cycles" if self.clock else "tau": self.tau}
 
 
-def make(chain: Chain, arguments: Sequence[str]) -> AxisWarming:
-    """From the linear axis and, where no times are known, a column that counts."""
-    check_count(KIND.usage, arguments, 1, 2)
-    axis = checked_linear(KIND.usage, arguments, arguments[0], chain)
-    clock = arguments[1] if len(arguments) == 2 else ""
-    if len(arguments) == 2 and not is_own(clock):
-        raise refusal(KIND.usage, arguments, "an own column V_name_unit that grows with time")
-    tau = 1.0 if clock else AxisWarming.tau
-    return AxisWarming(axis, chain.link(axis).own_component, clock, tau)
-
-
 def propose(touches: Touches) -> Iterable[AxisWarming]:
-    """Every linear axis that moved, where an instrument watched axes and no standard warms too."""
-    if touches.instrument.is_ball_on_standard:
-        return
+    """Every linear axis that moved, by the time and by the order of a test without times."""
     clocks = [""] if np.ptp(touches.since_start) > 0.0 else []
     clocks += [OWN + PROGRESS] if PROGRESS in touches.value else []
-    for axis in moving_axes(touches):
-        if axis in touches.chain.linear_axes:
-            for clock in clocks:
-                yield make(touches.chain, (axis, clock) if clock else (axis,))
+    for axis in moving_linear_axes(touches):
+        for clock in clocks:
+            yield AxisWarming(axis, clock, 1.0 if clock else AxisWarming.tau)
 
 
-KIND = Kind(
-    word="axis-warming",
-    arguments="axis[,V_column that grows with time]",
+KIND = Kind.of(
+    AxisWarming,
     title="warming of an axis that works",
     synonyms="ball screw heating, warm-up, drift over cycles, thermal growth of the screw",
     formula="E = (1 - exp(-t/tau)) (low (1 - s) + high s), s = (q - q_min)/travel",
     units="low, high: µm; tau: min, or cycles of a positioning test",
     typical="screws 10 to 60 µm at the free end of a metre, tau 20 to 60 min; scales a few µm",
     source="ISO 230-3 (moving linear axes); ISO 230-2 (drift over the cycles of a test)",
-    make=make,
     propose=propose,
-    classes=(AxisWarming,),
+    when=lambda touches: not touches.instrument.is_ball_on_standard,  # whose growth hides it
 )

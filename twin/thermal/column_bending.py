@@ -1,31 +1,29 @@
 """Bending of a column that is warmer on one side than on the other."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import combinations
+from typing import Self
 
 import numpy as np
 
-from matstd.twin.machine import Chain
-from matstd.twin.model import (
-    Kind,
-    Parameter,
-    Term,
-    Title,
-    Where,
-    check_count,
-    checked_linear,
-    moving_axes,
-    refusal,
+from matstd.twin.fields import (
+    LinearAxisName,
+    Refuse,
+    SensorName,
+    moving_linear_axes,
     sensor_record,
     sensors,
 )
+from matstd.twin.machine import Chain
+from matstd.twin.model import Declared, Kind, Parameter, Term, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import URAD
 
 
 @dataclass(frozen=True)
-class ColumnBending:
+class ColumnBending(Declared):
     """A column bends away from its warm side, more the higher the carriage stands on it.
 
     L is the travel. The carriage turns by E_r and moves across by E_e, for the bending about
@@ -39,28 +37,24 @@ class ColumnBending:
         component: Index of the component along the axis.
     """
 
-    axis: str
-    warm: str
-    cold: str
-    component: int
+    axis: LinearAxisName
+    warm: SensorName
+    cold: SensorName
+    component: int = 2
 
-    kind = "column-bending"
+    kind, called = "column-bending", "bending of the column of {axis}"
 
-    @property
-    def name(self) -> str:
-        """`column-bending(Z,columnLeft,columnRight)`."""
-        return f"column-bending({self.axis},{self.warm},{self.cold})"
+    def on(self, chain: Chain, refuse: Refuse) -> Self:
+        """With the direction of the axis; raises for one sensor on both sides."""
+        if self.warm == self.cold:
+            raise refuse("two different sensors")
+        return replace(self, component=chain.link(self.axis).own_component)
 
     @property
     def _across(self) -> tuple[int, int]:
         return (self.component + 1) % 3, (self.component + 2) % 3
 
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(f"bending of the column of {self.axis}", self.axis)
-
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Rotation at full height, per kelvin, about the two axes across."""
         names = ("XYZ"[i] for i in self._across)
@@ -83,37 +77,24 @@ class ColumnBending:
         return tuple(out)
 
 
-def make(chain: Chain, arguments: Sequence[str]) -> ColumnBending:
-    """From the linear axis and a sensor on either side of its column."""
-    check_count(KIND.usage, arguments, 3, 3)
-    axis = checked_linear(KIND.usage, arguments, arguments[0], chain)
-    if arguments[1] == arguments[2]:
-        raise refusal(KIND.usage, arguments, "two different sensors")
-    return ColumnBending(axis, arguments[1], arguments[2], chain.link(axis).own_component)
-
-
 def propose(touches: Touches) -> Iterable[ColumnBending]:
     """Every linear axis that moved, with pairs of sensors that are named for a column.
 
-    A gradient needs two sensors on the same body; only their names tell.
+    A gradient needs two sensors on the same body, which only their names show.
     """
     on_column = [s for s in sensors(touches) if s.lower().startswith("column")]
-    for axis in moving_axes(touches):
-        if axis in touches.chain.linear_axes:
-            for warm, cold in combinations(on_column, 2):
-                yield ColumnBending(axis, warm, cold, touches.chain.link(axis).own_component)
+    for axis in moving_linear_axes(touches):
+        for warm, cold in combinations(on_column, 2):
+            yield ColumnBending(axis, warm, cold, touches.chain.link(axis).own_component)
 
 
-KIND = Kind(
-    word="column-bending",
-    arguments="axis,sensor,sensor",
+KIND = Kind.of(
+    ColumnBending,
     title="thermal bending of the column",
     synonyms="thermal drift of the column, column tilt, temperature gradient, one-sided heating",
     formula="E_r = a (T_1 - T_2) s, E_e = a (T_1 - T_2) L s^2/2; s = (q - q_min)/L",
     units="a: µrad/K",
     typical="2 to 15 µrad/K; 12 arcsec from 4 K",
     source="J. S. Chen 1995; curvature alpha (T_1 - T_2)/h of a bar with a gradient",
-    make=make,
     propose=propose,
-    classes=(ColumnBending,),
 )

@@ -10,8 +10,9 @@ from weakref import WeakKeyDictionary
 import numpy as np
 
 from matstd.twin.errors import UnknownEffect
+from matstd.twin.fields import sensor_record, sensors, varies
 from matstd.twin.frames import Array
-from matstd.twin.model import Inner, sensor_record, sensors, varies
+from matstd.twin.model import Inner
 from matstd.twin.record import Touches
 from matstd.twin.units import T_REF
 from matstd.twin.words import did_you_mean

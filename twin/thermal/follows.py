@@ -1,22 +1,23 @@
 """Any component error that follows a recorded drive at once: a sensor, or a column of one's own."""
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
+from typing import Annotated
 
-from matstd.twin.machine import Chain, Symbol
-from matstd.twin.model import (
-    Effect,
-    Inner,
-    Kind,
-    Parameter,
-    Term,
-    Title,
-    check_count,
-    component_symbol,
+import numpy as np
+
+from matstd.twin.fields import (
+    Argument,
+    ComponentSymbol,
+    Refuse,
+    SensorName,
     moved_components,
     sensors,
 )
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Symbol
+from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter, Title, scanned
 from matstd.twin.record import Touches
 from matstd.twin.thermal.drive_columns import (
     CYCLE,
@@ -25,55 +26,57 @@ from matstd.twin.thermal.drive_columns import (
     driven,
     drives,
     is_own,
-    step_inner,
     step_of,
 )
 from matstd.twin.units import UM, URAD
 
+USUAL = (6 * UM, 20 * URAD)
+"""Usual size of an error after a kelvin or a step, mm and rad."""
+
 
 @dataclass(frozen=True)
-class ThermalStatic:
+class ThermalStatic(Declared):
     """A component error that follows a sensor at once, wherever the axis stands.
 
     ``E = a (T - 20 degC)``. Holds where the sensor sits on what expands, so that nothing lags. One
     parameter, the amplitude a, mm/K or rad/K: 1 to 30 um/K of a frame or a column.
 
-    Attributes:
-        sensor: Name of the sensor.
-
     Reference:
         ISO 230-3 (environmental temperature variation); static thermal models.
     """
 
-    symbol: Symbol
-    sensor: str
+    symbol: ComponentSymbol
+    sensor: SensorName
 
-    kind = "thermal-static"
+    kind, usual = "thermal-static", USUAL
 
-    @property
-    def name(self) -> str:
-        """`thermal-static(EZZ,frame)`."""
-        return f"thermal-static({self.symbol.name},{self.sensor})"
-
-    @property
+    @cached_property
     def title(self) -> Title:
-        """In the words of those who run machines."""
+        """`growth along Z with frame`: which body grows is seldom seen."""
         what = "tilt" if self.symbol.is_angular else "growth"
         return Title(f"{what} {self.symbol.motion} with {self.sensor}", self.symbol.link)
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """The amplitude per kelvin."""
-        return (Parameter("amplitude", f"{self.symbol.unit}/K", _usual(self.symbol)),)
+        return (self.sized("amplitude")._replace(unit=f"{self.symbol.unit}/K"),)
 
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """A twist of the axis."""
-        warmth = driven(touches, self.sensor, 0.0, self.name)
-        return (Term(0, touches.chain.twist_of(self.symbol), warmth),)
+    def amounts(self, touches: Touches) -> Amounts:
+        """Kelvins above 20 degC."""
+        return (driven(touches, self.sensor, 0.0, self.name),)
+
+
+def _column(text: str, chain: Chain, refuse: Refuse) -> str:
+    """With or without its `V_`."""
+    return text.removeprefix(OWN)
+
+
+def _steps(effect: "Follows", touches: Touches) -> Array:
+    return np.array([step_of(touches, OWN + effect.column)])
 
 
 @dataclass(frozen=True)
-class Follows:
+class Follows(Declared):
     """A component error that follows a column `V_name_unit` at once.
 
     ``E = a v / s``. The column is in a unit that only its user knows, so the amplitude a, mm or
@@ -85,53 +88,24 @@ class Follows:
         step: s, in the unit of the column.
     """
 
-    symbol: Symbol
-    column: str
-    step: float = 1.0
+    symbol: ComponentSymbol
+    column: Annotated[str, Argument("column of the user's own", _column)]
+    step: float = scanned("1", _steps, default=1.0, continuous=False)
 
-    kind = "follows"
+    kind, usual = "follows", USUAL
 
-    @property
-    def name(self) -> str:
-        """`follows(EZZ,coolant_l_min)`."""
-        return f"follows({self.symbol.name},{self.column})"
-
-    @property
+    @cached_property
     def title(self) -> Title:
-        """In the words of those who run machines."""
+        """With the column in words."""
         if self.column in (CYCLE, PROGRESS):
             how = "with every cycle" if self.column == CYCLE else "steadily over the cycles"
             return Title(f"{self.symbol.title} that grows {how}", self.symbol.link)
         column = self.column.removesuffix("_1").replace("_", " ")
         return Title(f"{self.symbol.title} that follows {column}", self.symbol.link)
 
-    @cached_property
-    def parameters(self) -> Sequence[Parameter]:
-        """The amplitude of a step."""
-        return (Parameter("amplitude", self.symbol.unit, _usual(self.symbol)),)
-
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """A twist of the axis."""
-        amount = driven(touches, OWN + self.column, 0.0, self.name, self.step)
-        return (Term(0, touches.chain.twist_of(self.symbol), amount),)
-
-    def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The step."""
-        return (step_inner(touches, OWN + self.column),)
-
-    def tuned(self, *values: float) -> "Follows":
-        """With this step."""
-        return replace(self, step=float(values[0]))
-
-    @property
-    def tuning(self) -> Mapping[str, float]:
-        """The step."""
-        return {"step": self.step}
-
-
-def _usual(symbol: Symbol) -> float:
-    """Usual size of an error after a kelvin or a step, mm or rad."""
-    return 20 * URAD if symbol.is_angular else 6 * UM
+    def amounts(self, touches: Touches) -> Amounts:
+        """The column in steps."""
+        return (driven(touches, OWN + self.column, 0.0, self.name, self.step),)
 
 
 def follower(touches: Touches, symbol: Symbol, drive: str) -> Effect:
@@ -141,18 +115,6 @@ def follower(touches: Touches, symbol: Symbol, drive: str) -> Effect:
     return ThermalStatic(symbol, drive)
 
 
-def _make_static(chain: Chain, arguments: Sequence[str]) -> ThermalStatic:
-    """From the component error and the sensor."""
-    check_count(STATIC.usage, arguments, 2, 2)
-    return ThermalStatic(component_symbol(chain, arguments[0]), arguments[1])
-
-
-def _make_own(chain: Chain, arguments: Sequence[str]) -> Follows:
-    """From the component error and the column, with or without its `V_`."""
-    check_count(FOLLOWS.usage, arguments, 2, 2)
-    return Follows(component_symbol(chain, arguments[0]), arguments[1].removeprefix(OWN))
-
-
 def _each(touches: Touches, names: Iterable[str]) -> Iterable[Effect]:
     """Every component of every axis that moved, after each of some drives."""
     for drive in names:
@@ -160,30 +122,24 @@ def _each(touches: Touches, names: Iterable[str]) -> Iterable[Effect]:
             yield follower(touches, symbol, drive)
 
 
-STATIC = Kind(
-    word="thermal-static",
-    arguments="symbol,sensor",
+STATIC = Kind.of(
+    ThermalStatic,
     title="thermal growth without a lag",
     synonyms="expansion of a frame, thermal displacement, temperature coefficient",
     formula="E = a (T - 20 degC), at once",
     units="a: µm/K or µrad/K",
     typical="frames and columns 1 to 30 µm/K",
     source="ISO 230-3",
-    make=_make_static,
     propose=lambda touches: _each(touches, sensors(touches)),
-    classes=(ThermalStatic,),
 )
 
-FOLLOWS = Kind(
-    word="follows",
-    arguments="symbol,column of the user's own",
+FOLLOWS = Kind.of(
+    Follows,
     title="what follows a column of your own",
     synonyms="coolant, pressure, load, own sensor, own column",
     formula="E = a v / s, v a column V_name_unit, s a round step of it",
     units="a: µm or µrad a step; step: unit of the column",
     typical="whatever the column knows",
     source="the user",
-    make=_make_own,
     propose=lambda touches: _each(touches, filter(is_own, drives(touches))),
-    classes=(Follows,),
 )

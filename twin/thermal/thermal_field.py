@@ -1,16 +1,18 @@
 """A body of the machine after every drive, at once and through a few lags, shrunk together.
 
 Sensors of one machine share what they know. Picked one by one they stand in for each other, and
-which one is picked is chance; fitted together with one common prior each tells a little, and the
-sum predicts. Time constants need not be searched: a lag between two of the fixed ones is nearly a
-mean of both.
+which one is picked is chance; fitted together with one common prior each contributes a little,
+and their sum predicts. Time constants need not be searched: a lag between two of the fixed ones
+is nearly a mean of both.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
+from matstd.twin.fields import moving_axes, refusal
 from matstd.twin.machine import Chain
-from matstd.twin.model import Inner, Kind, Parameter, Term, Title, Where, moving_axes, refusal
+from matstd.twin.model import Declared, Inner, Kind, Parameter, Term, Where
 from matstd.twin.record import Touches
 from matstd.twin.thermal.drive_columns import (
     OWN,
@@ -34,7 +36,7 @@ a weighted mean of both to 7 % of a step."""
 
 
 @dataclass(frozen=True)
-class ThermalField:
+class ThermalField(Declared):
     """All six component errors of an axis after several drives, each at once and through lags.
 
     ``E = sum_d [a_d0 d(t) + sum_k a_dk y_dk(t)]``, ``tau_k dy_dk/dt = d - y_dk``, with
@@ -56,18 +58,14 @@ class ThermalField:
     drives: tuple[str, ...]
     steps: tuple[float, ...] = ()
 
-    kind = "thermal-field"
+    kind, called = "thermal-field", "warming of the body of {axis}"
     is_shrunk = True
+    needs_history = True
 
-    @property
+    @cached_property
     def name(self) -> str:
         """`thermal-field(Z,frame,bed)`."""
         return f"thermal-field({','.join((self.axis, *self.drives))})"
-
-    @property
-    def title(self) -> Title:
-        """In the words of those who run machines."""
-        return Title(f"warming of the body of {self.axis}", self.axis)
 
     @property
     def places(self) -> Sequence[tuple[str, float]]:
@@ -76,6 +74,11 @@ class ThermalField:
         return (*at_once, *((d, tau) for d in self.drives for tau in LAGS))
 
     @property
+    def parameter_drives(self) -> tuple[str, ...]:
+        """The drive of every parameter."""
+        return tuple(drive for _ in LETTERS for drive, _ in self.places)
+
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """An amplitude for every component, drive and lag, one component after the other."""
         out = []

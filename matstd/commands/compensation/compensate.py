@@ -91,6 +91,7 @@ def _program(args: argparse.Namespace, job: Job) -> int:
     )
     from matstd.console import say
     from matstd.report.compensation import draw_program, program_lines
+    from matstd.report.style import save
     from matstd.twin.files import refuse_to_overwrite, write_whole
     from matstd.twin.units import UM
 
@@ -113,7 +114,7 @@ def _program(args: argparse.Namespace, job: Job) -> int:
     done = compensated(program, job.errors, job.header(1), tolerance)
     write_whole(output, done.text)  # the first: where another run was faster, it is what is kept
     write_trajectory(beside[0], done)
-    draw_program(beside[1], done)
+    save(draw_program(done), beside[1])
     write_program_result(beside[2], done)
     for line, is_first in program_lines(output.name, done):
         say(line, style="bold" if is_first else None)

@@ -43,6 +43,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.compensation.programs import write_shares
     from matstd.console import say
     from matstd.report.compensation import draw_shares_along, share_lines
+    from matstd.report.style import save
     from matstd.twin.files import results_folder
 
     if (args.program is None) == (args.poses is None):
@@ -53,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
         whole = deviation(job.errors, touches) - job.datum.deviation(job.errors)
         shares = contributions(job.errors, touches, job.datum)
         write_shares(folder / "contributions.csv", touches, whole, shares)
-        draw_shares_along(folder / "contributions.png", touches.time, whole, shares)
+        save(draw_shares_along(touches.time, whole, shares), folder / "contributions.png")
     for line in share_lines(whole, shares):
         say(line)
     say(f"{args.output}: look at contributions.csv, contributions.png")

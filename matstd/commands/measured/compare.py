@@ -95,11 +95,10 @@ def _tell(args: argparse.Namespace, found: Comparison, saved: SavedModel | None,
     """The comparison in words, beside what the model promised, or what it was learnt with."""
     from matstd.console import say
     from matstd.report.geometry import console_lines
-    from matstd.report.numbers import signed
+    from matstd.report.numbers import microns, signed
     from matstd.report.words import (
         comparison_sentence,
         learnt_lines,
-        microns,
         promise_sentence,
         region_words,
         remark_sentence,

@@ -185,7 +185,7 @@ def _tell(args: argparse.Namespace, result: Diagnosis, found: str) -> None:
             "--add NAME one of them"
         )
     for i, plan in enumerate(result.plans, start=1):
-        say(f"- next_measurement_{i}.csv would tell {plan_words(plan)}")
+        say(f"- next_measurement_{i}.csv would distinguish {plan_words(plan)}")
     first = "" if args.no_report else "report.html, "
     say(f"{args.output}: look at {first}diagnosis.json, model.toml")
 

@@ -10,9 +10,7 @@ from matstd.options import add_output, seen_from
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from matstd.importers.sheets import Sheet
-    from matstd.twin.machine import Chain
-    from matstd.twin.record import Run
+    from matstd.importers import Sheet
 
 _SIGN = {
     "positioning": "a deviation (actual - target) is the axis's own error; in the run it stands as "
@@ -172,7 +170,7 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from matstd.console import say
-    from matstd.importers.sheets import read_sheet
+    from matstd.importers import read_sheet
     from matstd.twin.errors import DesignError
     from matstd.twin.files import refuse_to_overwrite
 
@@ -182,7 +180,7 @@ def run(args: argparse.Namespace) -> int:
     sheets = [read_sheet(path, args.sheet, names) for path in args.files]
     if args.in_order is not None and not (args.arm or args.part or args.standard):
         raise DesignError("--in-order: expected with --arm, --part or --standard alone")
-    if len(sheets) > 1 and (args.map or args.positioning or args.arm or args.circle):
+    if len(sheets) > 1 and not (args.part or args.standard):
         raise DesignError(f"{args.files[1]}: one table at a time; lists of points may be several")
     for sheet in sheets:
         if sheet.left_out:
@@ -196,48 +194,23 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
-    """Any table, by a mapping file; the result is read once before it gets its name."""
-    import tempfile
-    from pathlib import Path
-
+    """Any table, by a mapping file."""
     from matstd.console import say, say_each
-    from matstd.importers import mapped_run
-    from matstd.twin.errors import BadFile
-    from matstd.twin.files import read_machine, read_run, write_whole
+    from matstd.importers import import_mapped
+    from matstd.twin.files import read_machine, write_whole
 
-    text, left_out = mapped_run(sheet, args.map)
-    with tempfile.TemporaryDirectory() as folder:
-        trial = Path(folder) / output.name
-        write_whole(trial, text)
-        chain = read_machine(args.machine) if args.machine else _named_machine(args, text, output)
-        try:
-            found = read_run(trial, chain)
-        except BadFile as error:
-            facts = error.facts
-            where = f"what it makes of {sheet.path}: {facts['where']}"
-            raise BadFile(args.map, where, facts["found"], str(facts["expected"])) from error
-    write_whole(output, text)
-    say(f"{output}: {len(found)} readings by {args.map}")
-    if left_out:
-        readings = "1 reading" if left_out == 1 else f"{left_out} readings"
+    chain = read_machine(args.machine) if args.machine else None
+    found = import_mapped(sheet, args.map, output.parent, chain)
+    write_whole(output, found.text)
+    say(f"{output}: {len(found.run)} readings by {args.map}")
+    if found.left_out:
+        readings = "1 reading" if found.left_out == 1 else f"{found.left_out} readings"
         say(f"- {readings} left out: no deviation stands there")
-    say_each(found.remarks)
-
-
-def _named_machine(args: argparse.Namespace, text: str, output: Path) -> Chain:
-    """The machine that the head of a mapping file names, seen from the run file."""
-    from matstd.twin.errors import BadFile
-    from matstd.twin.files import parse_toml, read_machine
-
-    head = "\n".join(ln.removeprefix("# ") for ln in text.splitlines() if ln.startswith("#"))
-    named = parse_toml(head, args.map).get("machine")
-    if not isinstance(named, str):
-        raise BadFile(args.map, "head.machine", "nothing", "the machine file, or --machine")
-    return read_machine(output.parent / named)
+    say_each(found.run.remarks)
 
 
 def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> None:
-    """A positioning test or a list of points."""
+    """A test of an axis, a circle, an arm, or lists of points."""
     from pathlib import Path
 
     import numpy as np
@@ -245,23 +218,20 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     from matstd.commands.measured.kinds import arm, circle, points, positioning
     from matstd.console import say
     from matstd.importers import machine_text
+    from matstd.importers.files import timed_by_rows
     from matstd.twin.files import refuse_to_overwrite, write_run, write_whole
     from matstd.twin.units import UM
 
-    meaning = next(m for m in _SIGN if getattr(args, m))
-    if args.positioning or args.component:
-        measured, chain = positioning(args, sheets[0])
-    elif args.circle:
-        measured, chain = circle(args, sheets[0])
-    elif args.arm:
-        measured, chain = arm(args, sheets[0])
+    if args.part or args.standard:
+        measured, chain = points(args, sheets)
     else:
-        measured, chain = points(args, sheets, meaning)
+        made = arm if args.arm else circle if args.circle else positioning
+        measured, chain = made(args, sheets[0])
     if args.in_order is not None:
-        measured = _in_order(args, measured)
+        measured = timed_by_rows(measured, args.in_order)
     for sheet in sheets:
         if sheet.unused:
-            say(f"- columns of {sheet.path} that nothing was taken of: {', '.join(sheet.unused)}")
+            say(f"- columns of {sheet.path} that were not used: {', '.join(sheet.unused)}")
     machine = Path(args.machine) if args.machine else output.with_suffix(".machine.toml")
     if not args.machine:
         refuse_to_overwrite(machine, args.force)
@@ -271,27 +241,6 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
     unit = "µrad" if measured.touches.instrument.reads_angle else "µm"  # of an arm of one metre
     say(f"{output}: {len(measured)} readings, deviations {rms:.3f} {unit} rms")
-    say(f"- sign: {_SIGN[meaning]}")
+    say(f"- sign: {next(words for kind, words in _SIGN.items() if getattr(args, kind))}")
     if not args.machine:
         say(f"- {machine}: made from the data; check what is marked PLACEHOLDER")
-
-
-def _in_order(args: argparse.Namespace, run: Run) -> Run:
-    """The run with times by the order of the rows of its table; those of one row are one moment."""
-    from dataclasses import replace
-
-    import numpy as np
-
-    from matstd.twin.errors import DesignError
-    from matstd.twin.units import DAY
-
-    if not 0.0 < args.in_order <= DAY:
-        raise DesignError(f"--in-order {args.in_order:g}: expected seconds from 0 to {DAY:g}")
-    t = run.touches
-    if np.ptp(t.time) > 0.0:
-        raise DesignError(f"--in-order: {args.files[0]} has times; expected a table without")
-    time = np.zeros(len(run))
-    for k in np.unique(t.run):
-        rows = t.run == k
-        time[rows] = args.in_order * np.unique(run.line[rows], return_inverse=True)[1]
-    return replace(run, touches=replace(t, time=time))

@@ -238,6 +238,7 @@ def _predict(args: argparse.Namespace) -> int:
     from matstd.console import say, say_each
     from matstd.diagnosis.drift import read_law, read_log, write_prediction
     from matstd.report.drift import draw_drift, law_title
+    from matstd.report.style import save
     from matstd.twin.errors import BadFile
     from matstd.twin.files import results_folder
 
@@ -267,7 +268,8 @@ def _predict(args: argparse.Namespace) -> int:
     with results_folder(args.output, args.force, OURS) as folder:
         write_prediction(folder / "drift.csv", record, predicted, u)
         (folder / "pictures").mkdir()
-        draw_drift(folder / "pictures" / "drift.png", record, predicted, u, has_measured=False)
+        drawn = draw_drift(record, predicted, u, has_measured=False)
+        save(drawn, folder / "pictures" / "drift.png")
     say(f"{law_title(saved.name)}: {len(record)} rows of {record.step / 60.0:g} min")
     say_each(record.remarks)
     say(f"{args.output}: look at drift.csv, pictures/drift.png")

@@ -233,7 +233,7 @@ def _dialect(control: str | None, program: Path) -> Dialect:
 
     from matstd.probe_paths.language import language_of, read_dialect
 
-    name = control or ("linuxcnc" if language_of(program).ENDING != ".H" else "itnc530")
+    name = control or ("linuxcnc" if language_of(program).ending != ".H" else "itnc530")
     dialect, text = read_dialect(name), program.read_text(encoding="ascii", errors="replace")
     if tool := re.search(r";TOOL (\d+) IS THE PROBE", text):
         dialect = replace(dialect, tool=int(tool[1]))

@@ -47,7 +47,7 @@ def run(args: argparse.Namespace) -> int:
             pdf=bool(args.pdf),
         )
     say_each(made.remarks)
-    verdict, *others = design_lines(made.placement, brief.ranges, made.worst)
+    verdict, *others = design_lines(made.placement, brief.ranges)
     say(verdict, style="bold")
     say_each(others)
     # a pose is visited twice

@@ -1,9 +1,9 @@
-"""An effect once more: a second time beside itself, or changed from some run on."""
+"""Effects made of another effect: repeated beside it, or its change from some run on."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from matstd.twin.model import Effect, Inner, Parameter, Term, Title, Titled, Tunable
+from matstd.twin.model import Effect, Inner, Parameter, Term, Title, Tunable, is_tunable, own_title
 from matstd.twin.record import Touches
 
 MARK = "#"
@@ -11,60 +11,60 @@ MARK = "#"
 
 
 @dataclass(frozen=True)
-class Again:
+class Repeated:
     """An effect with inner parameters of its own, beside one of the same name.
 
     Only an effect with inner parameters can stand in a model twice: without them both would be one.
 
     Attributes:
-        effect: As if it stood there alone.
+        original: As if it stood there alone.
         number: 2 for the second.
     """
 
-    effect: Tunable
+    original: Tunable
     number: int = 2
 
     @property
     def kind(self) -> str:
         """The kind of the effect."""
-        return self.effect.kind
+        return self.original.kind
 
     @property
     def name(self) -> str:
         """`thermal-lag(EZZ,bed)#2`."""
-        return f"{self.effect.name}{MARK}{self.number}"
+        return f"{self.original.name}{MARK}{self.number}"
 
     @property
     def title(self) -> Title:
         """That of the effect."""
-        return self.effect.title if isinstance(self.effect, Titled) else Title(self.effect.name)
+        return own_title(self.original) or Title(self.original.name)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
         """Those of the effect."""
-        return self.effect.parameters
+        return self.original.parameters
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Those of the effect."""
-        return self.effect.terms(touches)
+        return self.original.terms(touches)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """Those of the effect."""
-        return self.effect.inner(touches)
+        return self.original.inner(touches)
 
-    def tuned(self, *values: float) -> "Again":
+    def tuned(self, *values: float) -> "Repeated":
         """With these values of the inner parameters."""
-        return replace(self, effect=self.effect.tuned(*values))
+        return replace(self, original=self.original.tuned(*values))
 
     @property
     def tuning(self) -> Mapping[str, float]:
         """Values of the inner parameters."""
-        return self.effect.tuning
+        return self.original.tuning
 
 
-def again(effect: Effect, number: int = 2) -> Again | None:
+def repeat(effect: Effect, number: int = 2) -> Repeated | None:
     """An effect another time, or None where it has no inner parameters to differ in."""
-    return Again(effect, number) if isinstance(effect, Tunable) and effect.tuning else None
+    return Repeated(effect, number) if is_tunable(effect) and effect.tuning else None
 
 
 @dataclass(frozen=True)
@@ -75,13 +75,13 @@ class Change:
     between two runs stays until the next change.
 
     Attributes:
-        effect: What changed.
-        index: Number of the first run that shows it, as in `Touches.run`.
+        original: What changed.
+        since_run: Number of the first run that shows it, as in `Touches.run`.
         since: Name of that run.
     """
 
-    effect: Effect
-    index: int
+    original: Effect
+    since_run: int
     since: str
 
     kind = "change"
@@ -89,20 +89,20 @@ class Change:
     @property
     def name(self) -> str:
         """`change(location(EC0Y),autumn)`."""
-        return f"change({self.effect.name},{self.since})"
+        return f"change({self.original.name},{self.since})"
 
     @property
     def title(self) -> Title:
         """That of the effect."""
-        own = self.effect.title if isinstance(self.effect, Titled) else Title(self.effect.name)
+        own = own_title(self.original) or Title(self.original.name)
         return Title(f"change of {own.text}", own.carrier)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
         """Those of the effect: what may be anything may also become anything."""
-        return self.effect.parameters
+        return self.original.parameters
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Those of the effect, at the touches of this run and of later ones."""
-        here = touches.run >= self.index
-        return tuple(t._replace(amount=t.amount * here) for t in self.effect.terms(touches))
+        here = touches.run >= self.since_run
+        return tuple(t._replace(amount=t.amount * here) for t in self.original.terms(touches))

@@ -10,8 +10,6 @@ Both compare where a point is with where it should be, and mean opposite things:
 """
 
 import re
-from collections.abc import Sequence
-from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -21,13 +19,10 @@ from matstd.importers.points.coordinate_rows import (
     nominal_and_measured,
     points_of_rows,
 )
-from matstd.importers.points.other_frame import OtherFrame, places
 from matstd.importers.points.point_list import PointList
 from matstd.importers.sheets import MM, Sheet, signs
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
-from matstd.twin.machine import Axis, Chain, inverse_linear, linear_directions, make_chain, tip
-from matstd.twin.record import Instrument, Run, Setup, at_poses
 
 Meaning = Literal["part", "standard"]
 """Who made a list: see the module."""
@@ -75,16 +70,20 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
     for i, letter in enumerate("xyz"):
         if ("approach", letter) in found:
             approach[:, i] = signs(sheet, found["approach", letter])
-        if ("nominal", letter) in found:
-            nominal[:, i] = sheet.quantity(found["nominal", letter], MM, unit or "mm")
+        at = found.get(("nominal", letter))
+        if at is not None:
+            nominal[:, i] = sheet.quantity(at, MM, unit or "mm")
         if ("measured", letter) in found:
             measured = sheet.quantity(found["measured", letter], MM, unit or "mm")
-            deviation[:, i] = measured - nominal[:, i]
+            deviation[:, i] = measured - np.nan_to_num(nominal[:, i])
         elif ("deviation", letter) in found:
             deviation[:, i] = sheet.quantity(found["deviation", letter], MM, unit)
+        if at is not None:
+            nominal[:, i] = _stated(sheet, at, nominal[:, i], deviation[:, i])
     if not np.isfinite(deviation).any() or not any(role == "nominal" for role, _ in found):
-        expected = "columns such as 'x nominal [mm]' and 'x measured [mm]', or a mapping file"
-        raise sheet.lacking(expected)
+        raise sheet.lacking(
+            "columns such as 'x nominal [mm]' and 'x measured [mm]', or a mapping file"
+        )
     return PointList(
         nominal=nominal,
         deviation=deviation,
@@ -97,10 +96,10 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
 
 def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointList:
     """Points of a table with a row a coordinate."""
-    nominal, measured = (
-        sheet.quantity(c, MM, unit or "mm")
-        for c in nominal_and_measured(sheet, _NOMINAL, _MEASURED)
-    )
+    columns = nominal_and_measured(sheet, _NOMINAL, _MEASURED)
+    nominal, measured = (sheet.quantity(c, MM, unit or "mm") for c in columns)
+    is_point = np.array([letter != "" for letter in letters])
+    nominal = _stated(sheet, columns[0], nominal, np.where(is_point, measured, np.nan))
     setup = _texts(sheet, _SETUP, "a")
     label, points = points_of_rows(sheet, letters, _texts(sheet, _NAME, ""), setup)
     at, off = np.zeros((len(points), 3)), np.full((len(points), 3), np.nan)
@@ -117,6 +116,15 @@ def _by_coordinate(sheet: Sheet, letters: list[str], unit: str | None) -> PointL
         line=np.array([sheet.lines[k] for k in first]),
         approach=np.zeros((len(points), 3), dtype=np.int64),
     )
+
+
+def _stated(sheet: Sheet, column: int, nominal: Array, found: Array) -> Array:
+    """Nominal coordinates, 0 where neither stands; raises BadFile where one was measured alone."""
+    alone = np.flatnonzero(np.isfinite(found) & ~np.isfinite(nominal))
+    if len(alone):
+        expected = "the nominal coordinate of what was measured"
+        raise sheet.bad(int(alone[0]), column, "nothing", expected)
+    return np.nan_to_num(nominal)
 
 
 def _roles(sheet: Sheet) -> dict[tuple[str, str], int]:
@@ -145,95 +153,3 @@ def _texts(sheet: Sheet, pattern: re.Pattern[str], empty: str) -> list[str]:
     found = sheet.find(pattern, _LETTER)
     cells = [""] * len(sheet) if found is None else sheet.text(found)
     return [text or empty for text in cells]
-
-
-def linear_machine(points: PointList, frames: Sequence[OtherFrame] = ()) -> Chain:
-    """A machine of the linear axes along which the points extend, for a list without a machine.
-
-    An axis along which points were measured but do not extend gets a travel of 2 mm.
-
-    Args:
-        frames: In which the machine measured them where it is not the nominal frame.
-    """
-    at = places(points, frames)
-    low, high = at.min(axis=0), at.max(axis=0)
-    moves = (high > low) | ((high == low) & np.isfinite(points.deviation).any(axis=0))
-    travels = {
-        letter: Axis(range=(float(low[i]), float(high[i])))
-        if high[i] > low[i]
-        else Axis(range=(float(low[i]) - 1.0, float(low[i]) + 1.0))
-        for i, letter in enumerate("XYZ")
-        if moves[i]
-    }
-    return make_chain("linear machine", f"[w f {' '.join(travels)} t]", travels, (0.0, 0.0, 0.0))
-
-
-def points_run(
-    points: PointList,
-    meaning: Meaning,
-    chain: Chain,
-    u: float,
-    frames: Sequence[OtherFrame] = (),
-) -> Run:
-    """Run of a list of points: a row a measured coordinate, with the direction of that coordinate.
-
-    Readings are those that bring the tool point of the nominal machine to the nominal place, with
-    its rotary axes at zero; table frame and list share their origin, the set-up is free in a fit.
-
-    Args:
-        points: The list.
-        meaning: `part` or `standard`; it decides the sign.
-        u: Standard uncertainty of one coordinate, mm.
-        frames: Where the set-ups of a standard stand that are not where the list says; deviations
-            are those in these frames.
-
-    Raises:
-        OutsideTravel: A point that the machine does not reach.
-    """
-    rows, axis = np.nonzero(np.isfinite(points.deviation))
-    q = _readings(chain, places(points, frames)[rows])
-    setups = points.setup.tolist()
-    labels = list(dict.fromkeys(setups))  # in the order of the lists
-    stands = {label: np.eye(4) for label in labels} | {f.setup: f.T for f in frames}
-    turned = np.array([stands[label][:3, :3] for label in setups])[rows]
-    of = dict(zip(setups, points.run.tolist(), strict=True)) if len(points.run) else {}
-    sign = -1.0 if meaning == "part" else 1.0
-    touches = replace(
-        at_poses(chain, q, 0.0),
-        point=points.nominal[rows],
-        normal=turned[np.arange(len(rows)), axis],  # of the machine, as the standard sees it
-        setups=tuple(Setup(_key(k), stands[k], run=of.get(k, "")) for k in labels),
-        setup=np.array([labels.index(label) for label in setups], dtype=np.int64)[rows],
-        approach=_approach(points, chain)[rows],
-        feature=points.feature[rows],
-        pose=rows.astype(np.int64),
-        instrument=Instrument.CMM if meaning == "part" else Instrument.TOUCH_PROBE,
-    )
-    deviation = sign * points.deviation[rows, axis]
-    return Run(touches, deviation, np.full(len(rows), u), line=points.line[rows])
-
-
-def _readings(chain: Chain, place: Array) -> Array:
-    """Readings that bring the nominal tool point to places of the table frame, (N, A)."""
-    q = np.zeros((len(place), len(chain.axes)))
-    if len(chain.linear_axes) == 3:
-        return inverse_linear(chain, place, q, 0.0)
-    # fewer axes reach places in their own directions only: what is beside them is the set-up's
-    columns = [chain.axis_index(name) for name in chain.linear_axes]
-    back = np.linalg.pinv(linear_directions(chain, q))
-    q[:, columns] = np.einsum("nmi,ni->nm", back, place - tip(chain, q, 0.0))
-    return q
-
-
-def _approach(points: PointList, chain: Chain) -> Array:
-    """Signs of the last motion of every axis, (N, A)."""
-    out = np.zeros((len(points.line), len(chain.axes)))
-    for i, letter in enumerate("XYZ"):
-        if letter in chain.axes:
-            out[:, chain.axis_index(letter)] = points.approach[:, i]
-    return out
-
-
-def _key(name: str) -> str:
-    """A name that may stand as a key of the run's head."""
-    return re.sub(r"[^A-Za-z0-9_-]+", "_", name) or "a"

@@ -1,19 +1,19 @@
-"""Reflectors on an arm: where they were measured, and where they sit and the tracker stands."""
+"""Where a tracker stands and reflectors sit on an arm, from the places that were measured."""
 
-import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from matstd.importers.sheets import MM, Sheet, bare, unit_of_column
-from matstd.twin.errors import BadFile
+from matstd.importers.arms.table import ArmTable
+from matstd.twin.errors import DesignError, NotEnoughData
 from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.machine import Chain, table_to_tool
 from matstd.twin.record import rigid_motion
 
-_LETTER = re.compile(r"(?<![a-z])([xyz])(?![a-z])", re.IGNORECASE)
-_MEASURED = re.compile(r"meas|act|ist\b|track|refl|laser", re.IGNORECASE)
+FEWEST = 6
+"""Poses for the nine unknown numbers of tracker and reflector, three equations each, with some
+over."""
 
 OPEN = 10.0
 """Standard uncertainty (mm) of a direction from which poses do not determine it. Thirty poses of an
@@ -27,53 +27,6 @@ LOST = 0.5
 
 TAKES_PART = 0.05
 """Share of a unit vector from which a parameter takes part in a direction."""
-
-
-def reflector_places(sheet: Sheet, joints: Sequence[str] = ()) -> tuple[Array, tuple[str, ...]]:
-    """Where the reflectors were measured, (N, K, 3), mm, and their names.
-
-    Columns x, y and z with the same words about the letter are one reflector (`x1 y1 z1 x2 y2 z2`,
-    `SMR1 X`); mm where the name of a column has no unit. `Z` and `z` are two columns. Of columns of
-    several kinds those count whose names say that they were measured.
-
-    Args:
-        joints: Columns that hold readings of joints.
-
-    Raises:
-        BadFile: No columns x, y, z; several of one letter of which it is not said that they were
-            measured and that do not differ by a number alone.
-    """
-    found: dict[tuple[str, bool], dict[str, int]] = {}
-    letters = {c: m for c in sheet.columns if (m := _LETTER.search(bare(c).replace("_", " ")))}
-    for i, column in enumerate(sheet.columns):
-        if column in letters and column not in joints:
-            match = letters[column]
-            around = match.string[: match.start()] + match.string[match.end() :]
-            key = around.strip().lower(), match.group(1).isupper()
-            found.setdefault(key, {}).setdefault(match.group(1).lower(), i)
-    named = {key: columns for key, columns in found.items() if len(columns) == 3}
-    measured = {key: columns for key, columns in named.items() if _MEASURED.search(key[0])}
-    chosen = measured or named
-    kinds = {(re.sub(r"\d+", "", words).strip(), is_upper) for words, is_upper in chosen}
-    if len(kinds) != 1:
-        every = [sheet.columns[i] for columns in found.values() for i in columns.values()]
-        listed = ", ".join(map(repr, every)) or "no such column"
-        raise BadFile(
-            sheet.path,
-            "header",
-            listed,
-            "one column of measured x, y, z (or x1, x2 ...), the others renamed, or `measured` in "
-            "its name",
-        )
-    factors = {i: MM.get(unit_of_column(sheet.columns[i]) or "mm", 1.0) for c in chosen.values()
-               for i in c.values()}  # fmt: skip
-    places = [
-        np.stack([sheet.numbers(c[letter]) * factors[c[letter]] for letter in "xyz"], axis=1)
-        for c in chosen.values()
-    ]
-    several = len(chosen) > 1
-    names = tuple(f"reflector {k + 1}" if several else "reflector" for k in range(len(chosen)))
-    return np.stack(places, axis=1), names
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +55,7 @@ class Placement:
         return self.rms > max(LOST * self.spread, ROUGH)
 
 
-def placed(T_table_tool: Array, place: Array, reflector: Array | None, u: float) -> Placement:
+def placed(table: ArmTable, chain: Chain, u: float, reflector: Array | None) -> Placement:
     """Tracker and reflectors from the places where reflectors were measured.
 
     ``R (p + R_i v) + t = x`` with (R, t) what takes the table to the tracker and v a reflector.
@@ -110,28 +63,35 @@ def placed(T_table_tool: Array, place: Array, reflector: Array | None, u: float)
     damped least squares from the flange (variable projection, Golub and Pereyra 1973).
 
     Args:
-        T_table_tool: Of the nominal arm at every pose, (N, 4, 4).
-        place: Where the reflectors were measured, (N, K, 3), mm; not a number where one was not.
-        reflector: Where they sit, (K, 3), if that is known.
+        chain: The nominal arm.
         u: Standard uncertainty of one coordinate, mm.
+        reflector: Where the reflector sits, tool frame, (3,), mm, if that is known.
+
+    Raises:
+        DesignError: Several reflectors, and one stated place.
+        NotEnoughData: Too few poses.
     """
-    problem = _Problem(T_table_tool, place, reflector is not None)
+    path = table.sheet.path
+    if reflector is not None and len(table.names) > 1:
+        raise DesignError(f"{path}: {len(table.names)} reflectors, expected one where it is stated")
+    poses = int(table.shots.any(axis=1).sum())
+    if poses < FEWEST:
+        raise NotEnoughData(f"{path}: {poses} poses, expected {FEWEST} at least")
+    problem = _Problem(table, chain, reflector is not None)
     if reflector is None:
         from scipy.optimize import least_squares  # a third of a second, for arms alone
 
-        start = np.zeros(3 * place.shape[1])
+        start = np.zeros(3 * problem.count)
         found = least_squares(problem.left, start, problem.slopes, xtol=1e-14, ftol=1e-14)
         v, is_settled = found.x.reshape(-1, 3), bool(found.status > 0)
     else:
-        v, is_settled = reflector, True
-    left = problem.left(v.ravel())
-    rms = float(np.sqrt(np.mean(left**2)))
-    seen = problem.seen
+        v, is_settled = reflector[None], True
+    rms = float(np.sqrt(np.mean(problem.left(v) ** 2)))
     return Placement(
         T_table_tracker=inverse(problem.tracker(v)),
         reflector=v,
         rms=rms,
-        spread=float(np.sqrt(np.mean((seen - seen.mean(axis=0)) ** 2))),
+        spread=float(np.sqrt(np.mean((problem.seen - problem.seen.mean(axis=0)) ** 2))),
         is_settled=is_settled,
         free=tuple(problem.free(v, float(np.clip(rms, u, max(u, ROUGH))))),
     )
@@ -140,16 +100,15 @@ def placed(T_table_tool: Array, place: Array, reflector: Array | None, u: float)
 class _Problem:
     """Places of K reflectors at N poses, and what they say of tracker and reflectors."""
 
-    def __init__(self, T_table_tool: Array, place: Array, is_known: bool) -> None:
-        self.T, self.count, self.is_known = T_table_tool, place.shape[1], is_known
-        there: NDArray[np.bool_] = np.all(np.isfinite(place), axis=2)
-        self.pose, self.of = np.nonzero(there)
-        self.seen = place[there]  # (M, 3)
+    def __init__(self, table: ArmTable, chain: Chain, is_known: bool) -> None:
+        self.count, self.is_known = len(table.names), is_known
+        row, self.of = np.nonzero(table.shots)
+        self.T = table_to_tool(chain, table.q[row])  # (M, 4, 4), a pose for every place
+        self.seen = table.place[table.shots]  # (M, 3)
 
     def believed(self, v: Array) -> Array:
         """Where the arm takes the reflectors to be, (M, 3), table frame."""
-        T = self.T[self.pose]
-        return np.einsum("mij,mj->mi", T[:, :3, :3], v[self.of]) + T[:, :3, 3]
+        return apply(self.T, v[self.of])
 
     def tracker(self, v: Array) -> Array:
         """What takes the table to the tracker, (4, 4)."""
@@ -174,7 +133,7 @@ class _Problem:
         J[:, :, 3:6] = np.eye(3)
         rows = np.arange(len(at))
         for i in range(3):
-            J[rows, :, 6 + 3 * self.of + i] = self.T[self.pose, :3, i]
+            J[rows, :, 6 + 3 * self.of + i] = self.T[:, :3, i]
         return np.einsum("ij,mjp->mip", R, J).reshape(-1, J.shape[2])
 
     def slopes(self, v: Array) -> Array:
@@ -204,10 +163,9 @@ def _directions(block: Array, preposition: str, letters: str) -> Iterator[str]:
     rank = int((s > TAKES_PART).sum())
     if rank == 3:
         yield f"{preposition} every direction"
-    elif rank == 2:
-        yield f"{preposition} every direction square to {_direction(U[:, 2], letters)}"
-    elif rank == 1:
-        yield f"{preposition} {_direction(U[:, 0], letters)}"
+    elif rank:
+        square = "every direction square to " if rank == 2 else ""
+        yield f"{preposition} {square}{_direction(U[:, 2 if rank == 2 else 0], letters)}"
 
 
 def _direction(n: Array, letters: str) -> str:
@@ -215,5 +173,5 @@ def _direction(n: Array, letters: str) -> str:
     largest = int(np.argmax(np.abs(n)))
     if abs(n[largest]) > 1.0 - 1e-4:
         return letters[largest]
-    n = n * np.sign(n[largest]) + 0.0
-    return f"({', '.join(f'{v:.2f}' for v in np.round(n, 2) + 0.0)})"
+    n = np.round(n * np.sign(n[largest]), 2) + 0.0
+    return f"({', '.join(f'{v:.2f}' for v in n)})"

@@ -1,0 +1,101 @@
+"""Arms from tables of Denavit and Hartenberg's parameters."""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from matstd.importers.sheets import ANGLES, MM, Sheet
+from matstd.twin.errors import BadFile
+from matstd.twin.frames import Array, pose, rotation
+from matstd.twin.machine import Axis, Chain, make_chain
+
+_COLUMNS = {
+    "a": re.compile(r"\Aa\b", re.IGNORECASE),
+    "alpha": re.compile(r"alpha|α", re.IGNORECASE),
+    "d": re.compile(r"\Ad\b", re.IGNORECASE),
+    "theta": re.compile(r"theta|offset|θ", re.IGNORECASE),
+}
+
+
+def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tuple[Chain, Array]:
+    """An arm from a table of Denavit and Hartenberg's parameters, a row a joint.
+
+    The machine frame has the directions of the base and its origin at the flange with every joint
+    at zero; the table frame is the base. An axis gets the letter of the direction that its line is
+    nearest to, and that line as its direction.
+
+    Args:
+        sheet: Columns a and d in mm, alpha and theta (its offset at reading zero) in degrees,
+            unless their names say other units.
+        readings: Of the joints, (N, J), rad; travels are theirs.
+        is_modified: Whether a joint turns about z of its own frame (Craig), and not about that of
+            the frame before it.
+
+    Returns:
+        The arm, and the rotation R (3, 3) that takes flange to tool coordinates.
+
+    Raises:
+        BadFile: A column that is not there, or as many rows as there are no joints.
+
+    Reference:
+        Denavit and Hartenberg 1955; Craig, Introduction to Robotics (modified parameters).
+    """
+    a, alpha, d, theta = (_parameter(sheet, name) for name in _COLUMNS)
+    if len(a) != readings.shape[1]:
+        found = f"{len(a)} rows for {readings.shape[1]} columns of joints"
+        raise BadFile(sheet.path, "table", found, "a row a joint")
+    T, origins, lines = np.eye(4), [], []
+    ex, ez = np.eye(3)[0], np.eye(3)[2]
+    for i in range(len(a)):
+        across = pose(rotation(alpha[i] * ex), a[i] * ex)
+        along = pose(rotation(theta[i] * ez), d[i] * ez)
+        T = T @ across if is_modified else T
+        origins.append(T[:3, 3])
+        lines.append(T[:3, 2])
+        T = T @ along if is_modified else T @ along @ across
+    flange = T[:3, 3]
+    names = _names(lines)
+    axes = {
+        name: Axis(
+            range=_travel(readings[:, i]),
+            point=_triple(origins[i] - flange),
+            direction=_triple(lines[i]),
+        )
+        for i, name in enumerate(names)
+    }
+    chain = make_chain("arm", f"[w f {' '.join(names)} t]", axes, _triple(-flange))
+    return chain, T[:3, :3]
+
+
+def _parameter(sheet: Sheet, name: str) -> Array:
+    """One parameter of every joint, mm or rad."""
+    column = sheet.find(_COLUMNS[name])
+    if column is None:
+        raise sheet.lacking(f"a column {name} among {', '.join(_COLUMNS)}")
+    is_angle = name in ("alpha", "theta")
+    values = sheet.quantity(column, ANGLES if is_angle else MM, "deg" if is_angle else "mm")
+    if not np.isfinite(values).all():
+        row = int(np.argmin(np.isfinite(values)))
+        raise sheet.bad(row, column, "nothing", "a number for every joint")
+    return values
+
+
+def _names(lines: Sequence[Array]) -> list[str]:
+    """Letters of axes about some lines, numbered where one comes again."""
+    out: list[str] = []
+    for line in lines:
+        letter = "ABC"[int(np.argmax(np.abs(line)))]
+        count = sum(name[0] == letter for name in out)
+        out.append(f"{letter}{count}" if count else letter)
+    return out
+
+
+def _travel(q: Array) -> tuple[float, float]:
+    low, high = float(q.min()), float(q.max())
+    return (low, high) if high > low else (low - 1.0, high + 1.0)
+
+
+def _triple(v: Array) -> tuple[float, float, float]:
+    x, y, z = (float(c) for c in np.round(v, 12) + 0.0)
+    return x, y, z

@@ -1,0 +1,150 @@
+"""Tables of joint readings with the places at which a tracker measured reflectors."""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from matstd.importers.sheets import ANGLES, MM, Sheet
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.frames import Array
+
+_JOINT = re.compile(
+    r"(?:\A|[^a-z])(?:j|joint|axis|achse|gelenk|q|theta|a)[\s_.]*(\d)", re.IGNORECASE
+)
+_LETTER = re.compile(r"(?<![a-z])([xyz])(?![a-z])", re.IGNORECASE)
+_MEASURED = re.compile(r"meas|act|ist\b|track|refl|laser", re.IGNORECASE)
+_COUPLED = re.compile(r"J?(\d)\s*([+-])\s*J?(\d)\Z", re.IGNORECASE)
+
+
+@dataclass(frozen=True, eq=False)
+class ArmTable:
+    """Joint readings and measured places, a row a pose.
+
+    Attributes:
+        sheet: What they stand in.
+        q: Readings, (N, J), rad, of a joint that slides mm.
+        joints: Columns of the readings.
+        place: Where the reflectors were measured, (N, K, 3), mm; not a number where one was not.
+        names: Of the reflectors.
+    """
+
+    sheet: Sheet
+    q: Array
+    joints: tuple[str, ...]
+    place: Array
+    names: tuple[str, ...]
+
+    @property
+    def shots(self) -> NDArray[np.bool_]:
+        """Which reflectors were measured at which poses, (N, K)."""
+        is_whole: NDArray[np.bool_] = np.all(np.isfinite(self.q), axis=1)
+        return np.all(np.isfinite(self.place), axis=2) & is_whole[:, None]
+
+
+def read_arm(sheet: Sheet, axes: Sequence[str] = ()) -> ArmTable:
+    """Readings of joints, and places of reflectors in the tracker's frame.
+
+    Columns of joints are taken in the order of their numbers (`j1`, `joint 2`, `theta3`), degrees
+    where the name of a column has no unit. Columns x, y and z with the same words about the letter
+    are one reflector (`x1 y1 z1 x2 y2 z2`, `SMR1 X`), mm where no unit is stated.
+
+    Args:
+        axes: Names of the axes of the arm; columns named so are taken, if all are there.
+
+    Raises:
+        BadFile: No such columns, a joint twice or left out, places that may be several things.
+    """
+    joints = _joints(sheet, axes)
+    reflectors = _reflectors(sheet, joints)
+    q = [sheet.quantity(i, {**ANGLES, **MM}, "deg") for i in joints]
+    place = [[sheet.quantity(of[c], MM, "mm") for c in "xyz"] for of in reflectors]
+    several = len(reflectors) > 1
+    return ArmTable(
+        sheet=sheet,
+        q=np.stack(q, axis=1),
+        joints=tuple(sheet.columns[i] for i in joints),
+        place=np.array(place).transpose(2, 0, 1),
+        names=tuple(f"reflector {k + 1}" if several else "reflector" for k in range(len(place))),
+    )
+
+
+def _joints(sheet: Sheet, axes: Sequence[str]) -> list[int]:
+    """Columns of joints, by the names of axes if all are there, else by their numbers."""
+    named = [_named(sheet, axis) for axis in axes]
+    found = [i for i in named if i is not None]
+    if found and len(found) == len(axes):
+        return found
+    numbered: dict[int, int] = {}
+    for i, column in enumerate(sheet.columns):
+        match = _JOINT.search(column)
+        if match and (first := numbered.setdefault(int(match[1]), i)) != i:
+            twice = f"{sheet.columns[first]!r} and {column!r}"
+            raise BadFile(sheet.path, "header", twice, "every joint once")
+    numbers = sorted(numbered)
+    if not numbers or numbers != list(range(numbers[0], numbers[0] + len(numbers))):
+        raise sheet.lacking("columns j1, j2, j3 ... of joints")
+    return [numbered[k] for k in numbers]
+
+
+def _named(sheet: Sheet, axis: str) -> int | None:
+    """Column of the name of an axis, `Z` before `z`; raises BadFile where two have it."""
+    same = [i for i, name in enumerate(sheet.names) if name == axis]
+    same = same or [i for i, name in enumerate(sheet.names) if name.upper() == axis]
+    if len(same) > 1:
+        both = " and ".join(repr(sheet.columns[i]) for i in same[:2])
+        raise BadFile(sheet.path, "header", both, f"one column of the readings of {axis}")
+    return same[0] if same else None
+
+
+def _reflectors(sheet: Sheet, joints: Sequence[int]) -> list[dict[str, int]]:
+    """Columns x, y and z of every reflector.
+
+    `Z` and `z` are two columns. Of columns of several kinds those count whose names say that they
+    were measured; of one kind they may differ by a number alone.
+    """
+    found: dict[tuple[str, bool], dict[str, int]] = {}
+    for i, name in enumerate(sheet.names):
+        match = _LETTER.search(name.replace("_", " "))
+        if match and i not in joints:
+            around = match.string[: match.start()] + match.string[match.end() :]
+            key = around.strip().lower(), match[1].isupper()
+            found.setdefault(key, {}).setdefault(match[1].lower(), i)
+    whole = {key: of for key, of in found.items() if len(of) == 3}
+    measured = {key: of for key, of in whole.items() if _MEASURED.search(key[0])}
+    chosen = measured or whole
+    kinds = {(re.sub(r"\d+", "", words).strip(), is_upper) for words, is_upper in chosen}
+    if len(kinds) != 1:
+        every = [sheet.columns[i] for of in found.values() for i in of.values()]
+        raise BadFile(
+            sheet.path,
+            "header",
+            ", ".join(map(repr, every)) or "no such column",
+            "one column of measured x, y, z (or x1, x2 ...), the others renamed, or `measured` in "
+            "its name",
+        )
+    return list(chosen.values())
+
+
+def coupled(q: Array, how: str) -> Array:
+    """Readings of joints one of which counts from another one's link, (N, J).
+
+    On arms with a parallel linkage, and in the readings of some controls without one, joint 3
+    counts from the horizontal: its angle against link 2 is J3 + J2 (or J3 - J2).
+
+    Args:
+        q: Readings as they stand, (N, J), rad.
+        how: `J3+J2`.
+
+    Raises:
+        DesignError: Joints that are not there.
+    """
+    match = _COUPLED.match(how.strip())
+    joint, other = (int(match[1]) - 1, int(match[3]) - 1) if match else (-1, -1)
+    if match is None or not (0 <= joint < q.shape[1] and 0 <= other < q.shape[1]):
+        raise DesignError(f"--coupled {how}: expected two of {q.shape[1]} joints such as J3+J2")
+    out = q.copy()
+    out[:, joint] += (1.0 if match[2] == "+" else -1.0) * q[:, other]
+    return out

@@ -1,0 +1,180 @@
+"""Serial arms under a tracker: joint readings with the places at which reflectors really were.
+
+The tracker says where the reflector is, the readings where a controller that believes in the
+nominal arm takes it to be; the run has the difference along x, y and z of the tracker. Where the
+tracker stands, and where on the arm the reflector sits unless that is stated, is solved for first,
+at any size.
+"""
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from matstd.importers.arms.dh import arm_from_dh
+from matstd.importers.arms.mistakes import likely_mistake
+from matstd.importers.arms.placement import Placement, placed
+from matstd.importers.arms.table import ArmTable, coupled, read_arm
+from matstd.importers.sheets import Sheet, loads, own_columns, seconds, temperatures
+from matstd.twin.errors import DesignError, NotEnoughData
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+from matstd.twin.record import Instrument, Run, Setup, at_poses, computed_deviation
+
+_TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
+
+
+@dataclass(frozen=True, eq=False)
+class ArmImport:
+    """What a table of joints and reflectors became.
+
+    Attributes:
+        joints: Columns of the readings, in the order of the programmed axes of the arm.
+        mistake: What its readings and its description may disagree about, and the deviations that
+            are left then, mm rms.
+    """
+
+    run: Run
+    chain: Chain
+    joints: tuple[str, ...]
+    mistake: tuple[str, float] | None
+
+    @property
+    def rms(self) -> float:
+        """Deviations of the arm as it is described, mm."""
+        return float(np.sqrt(np.mean(self.run.deviation**2)))
+
+    @property
+    def reflectors(self) -> dict[str, Array]:
+        """Place of every reflector in the tool frame, (3,), mm."""
+        places = dict(zip(self.run.touches.feature.tolist(), self.run.touches.target, strict=True))
+        return {name: places[name] for name in sorted(places)}
+
+
+def import_arm(
+    sheet: Sheet,
+    u: float,
+    machine: Chain | None = None,
+    dh: Sheet | None = None,
+    is_modified: bool = False,
+    couplings: Sequence[str] = (),
+    reflector: Sequence[float] | None = None,
+) -> ArmImport:
+    """Run of an arm under a tracker, with its machine.
+
+    Args:
+        sheet: Columns of joints and of x, y, z of reflectors.
+        u: Standard uncertainty of one coordinate, mm.
+        machine: The arm; its axes may name the columns of joints.
+        dh: Denavit and Hartenberg's parameters in place of a machine.
+        is_modified: Whether these are modified ones (Craig).
+        couplings: Joints whose readings count from another link, `J3+J2`.
+        reflector: Its place, mm, in the tool frame, or with `dh` in that of the flange, if known.
+
+    Raises:
+        DesignError: Both descriptions or none, readings and places of another arm.
+        NotEnoughData: Poses too few or too alike.
+    """
+    if (machine is None) == (dh is None):
+        given = "both given" if dh else "neither given"
+        raise DesignError(f"--machine, --dh: {given}; expected the arm by one of them")
+    table = read_arm(sheet, machine.programmed_axes if machine else ())
+    for how in couplings:
+        table = replace(table, q=coupled(table.q, how))
+    chain, turned, other = machine, np.eye(3), None
+    if dh is not None:
+        chain, turned = arm_from_dh(dh, table.q, is_modified)
+        other = arm_from_dh(dh, table.q, not is_modified)[0]
+    assert chain is not None
+    _check_joints(table, chain)
+    stated = None if reflector is None else turned @ np.array(reflector)
+
+    def left(arm: Chain, q: Array) -> float:
+        return placed(replace(table, q=q), arm, u, stated).rms
+
+    mistake = likely_mistake(table.q, chain, other, left)
+    try:
+        run = tracker_run(table, chain, u, stated)
+    except DesignError as refusal:
+        if mistake is None:
+            raise
+        words, rms = mistake
+        raise DesignError(f"{refusal}; {rms:.4g} mm rms are left if {words}") from refusal
+    return ArmImport(run, chain, table.joints, mistake)
+
+
+def tracker_run(table: ArmTable, chain: Chain, u: float, reflector: Array | None = None) -> Run:
+    """Run of an arm under a tracker: three rows a reflector and pose, along x, y, z of the tracker.
+
+    Times, temperatures, loads and columns of other units (torques, currents) of the sheet go with
+    them.
+
+    Args:
+        table: Readings in the order of the axes of the arm.
+        chain: The arm.
+        u: Standard uncertainty of one coordinate, mm.
+        reflector: In the tool frame, (3,), mm; None finds it.
+
+    Returns:
+        The run; its set-up is the tracker's frame, `touches.target` has the reflector.
+
+    Raises:
+        DesignError: Readings of other joints than the arm has, or of another arm.
+        NotEnoughData: Poses too few or too alike to say where reflector and tracker are.
+    """
+    _check_joints(table, chain)
+    found = placed(table, chain, u, reflector)
+    _check_placed(table.sheet, found, reflector is not None)
+    sheet = table.sheet
+    clock, force = sheet.find(_TIME), loads(sheet)
+    which, of = (np.repeat(k, 3) for k in np.nonzero(table.shots))
+    n = len(which)
+    touches = replace(
+        at_poses(chain, table.q[which], -found.reflector[of, 2]),
+        offset=found.reflector[of, :2],
+        point=table.place[which, of],
+        normal=np.tile(np.eye(3), (n // 3, 1)),
+        setups=(Setup("tracker", found.T_table_tracker),),
+        time=np.zeros(n) if clock is None else seconds(sheet, clock)[which],
+        temperature={name: values[which] for name, values in temperatures(sheet).items()},
+        force=None if force is None else force[which],
+        value={name: values[which] for name, values in own_columns(sheet).items()},
+        feature=np.array(table.names)[of],
+        pose=np.unique(which, return_inverse=True)[1],
+        instrument=Instrument.TRACKER,
+    )
+    lines = np.array(sheet.lines)[which]
+    return Run(touches, computed_deviation(touches), np.full(n, u), line=lines)
+
+
+def _check_joints(table: ArmTable, chain: Chain) -> None:
+    """Refuse readings of other joints than the arm has."""
+    axes = chain.programmed_axes
+    if len(table.joints) != len(axes) or chain.axes != axes:
+        raise DesignError(
+            f"{table.sheet.path}: {len(table.joints)} columns of joints, expected {len(axes)}: "
+            f"{', '.join(axes)}"
+        )
+
+
+def _check_placed(sheet: Sheet, found: Placement, is_stated: bool) -> None:
+    """Refuse what the poses do not determine, and what no arm is measured with."""
+    if found.is_lost:
+        raise DesignError(
+            f"{sheet.path}: {found.rms:.4g} mm rms are left of measured places that spread by "
+            f"{found.spread:.4g} mm: these readings and places are not of one arm; expected joints "
+            "and places in the stated order, signs and units"
+        )
+    if found.free:
+        other = "" if is_stated else ", or --reflector X Y Z"
+        poses = "off one line" if is_stated else "that turn the tool about lines not parallel"
+        raise NotEnoughData(
+            f"{sheet.path}: the poses leave open {' and '.join(found.free)}; expected poses "
+            f"{poses}{other}"
+        )
+    if not found.is_settled:
+        raise DesignError(
+            f"{sheet.path}: the search for the reflector has not converged ({found.rms:.4g} mm rms "
+            "are left); expected --reflector X Y Z, or poses farther apart"
+        )

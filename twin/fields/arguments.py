@@ -1,0 +1,117 @@
+"""Types of the fields that name an effect: how each is written, read, checked and proposed.
+
+A field of an effect is annotated with one of them, `axis: LinearAxisName`; the parser, the usage,
+the name and the proposals of its kind follow.
+"""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from matstd.twin.errors import UnknownEffect
+from matstd.twin.fields.records import moved_components, moving_axes, moving_linear_axes, sensors
+from matstd.twin.machine import Chain, Family, Symbol
+from matstd.twin.record import Touches
+
+Refuse = Callable[[str], UnknownEffect]
+"""Makes the exception from what should stand there, with what is available."""
+
+
+def no_values(touches: Touches) -> Iterable[Any]:
+    """Nothing to propose: the value is the user's to state."""
+    return ()
+
+
+@dataclass(frozen=True)
+class Argument:
+    """What may stand at one place between the brackets of an effect's name.
+
+    Attributes:
+        word: What it is, for the usage.
+        read: Value of a text on a machine; raises what `Refuse` makes, or another DesignError.
+        write: Text of a value.
+        offered: Values that make sense for some touches.
+    """
+
+    word: str
+    read: Callable[[str, Chain, Refuse], Any]
+    write: Callable[[Any], str] = str
+    offered: Callable[[Touches], Iterable[Any]] = no_values
+
+
+def refusal(usage: str, found: Sequence[str], expected: str) -> UnknownEffect:
+    """Exception for arguments that an effect does not take.
+
+    Args:
+        usage: How the effect is written.
+        found: The arguments that were given.
+        expected: What should stand there, with what is available.
+    """
+    word = usage.partition("(")[0]
+    given = f"{word}({','.join(found)})" if found else word
+    return UnknownEffect(f"effect '{given}': expected {usage}, {expected}")
+
+
+def check_count(usage: str, arguments: Sequence[str], low: int, high: int) -> None:
+    """Check the number of arguments; raises UnknownEffect."""
+    if not low <= len(arguments) <= high:
+        number = f"{low or 'no'}" if low == high else f"{low} to {high}"
+        raise refusal(usage, arguments, f"{number} argument{'' if high == 1 else 's'}")
+
+
+def component_symbol(chain: Chain, name: str) -> Symbol:
+    """Component error of an axis by its name; raises UnknownSymbol or UnknownEffect."""
+    symbol = chain.symbol(name)
+    if symbol.family is not Family.COMPONENT:
+        raise UnknownEffect(
+            f"'{name}' is a constant ({symbol.family.value}); expected a component error of an "
+            "axis, such as EXX"
+        )
+    return symbol
+
+
+def read_axis(text: str, chain: Chain, refuse: Refuse) -> str:
+    """A programmed axis."""
+    if text not in chain.programmed_axes:
+        raise refuse(f"an axis of {', '.join(chain.programmed_axes)}")
+    return text
+
+
+def read_linear_axis(text: str, chain: Chain, refuse: Refuse) -> str:
+    """A programmed linear axis."""
+    if text not in chain.linear_axes:
+        raise refuse(f"a linear axis of {', '.join(chain.linear_axes)}")
+    return text
+
+
+def read_component(text: str, chain: Chain, refuse: Refuse) -> Symbol:
+    """A component error of an axis."""
+    return component_symbol(chain, text)
+
+
+def read_text(text: str, chain: Chain, refuse: Refuse) -> str:
+    """Any text: what it names is known with the run."""
+    return text
+
+
+def symbol_name(symbol: Symbol) -> str:
+    """`EXX`."""
+    return symbol.name
+
+
+def _read_symbol(text: str, chain: Chain, refuse: Refuse) -> Symbol:
+    return chain.symbol(text)
+
+
+AnySymbol = Annotated[Symbol, Argument("symbol", _read_symbol, symbol_name)]
+"""Any error parameter: `EXX`, `EC0Y`, `EX0w`."""
+AxisName = Annotated[str, Argument("axis", read_axis, offered=moving_axes)]
+"""A programmed axis; offered are those that moved."""
+LinearAxisName = Annotated[str, Argument("axis", read_linear_axis, offered=moving_linear_axes)]
+"""A programmed linear axis; offered are those that moved."""
+ComponentSymbol = Annotated[
+    Symbol, Argument("symbol", read_component, symbol_name, moved_components)
+]
+"""A component error of an axis; offered are those of the axes that moved."""
+SensorName = Annotated[str, Argument("sensor", read_text, offered=sensors)]
+"""A temperature sensor; offered are those whose record varies."""

@@ -1,0 +1,112 @@
+"""What the rest of the house may ask of an effect beyond its terms, with the usual answers.
+
+Nobody above the twin asks which class an effect is of; it asks for a trait. An effect answers by an
+attribute or a property of the same name, and where it says nothing the answer is the default here.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import NamedTuple
+
+from matstd.twin.frames import Array
+from matstd.twin.machine import Family, Symbol
+from matstd.twin.model.effect import Effect
+from matstd.twin.record import Touches
+
+
+class Wave(NamedTuple):
+    """What repeats over a linear axis.
+
+    Attributes:
+        symbol: The component error that repeats.
+        period: In which it repeats, mm.
+        sines: Sines of this period and of its whole fractions: 1 for a single one.
+    """
+
+    symbol: Symbol
+    period: float
+    sines: int
+
+
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Traits:
+    """Answers of one effect.
+
+    Attributes:
+        symbol: The error parameter that it acts on, where it acts on one alone.
+        axis: Name of its axis, where it has no symbol.
+        is_ordinary: Whether it is one distribution of an error parameter, as the ordinary model
+            has them (`ordinary_model`).
+        distribution: Of an ordinary component error: constant, linear, parabolic, sinusoidal.
+        is_curve: Whether its parameters are coefficients of one curve over a reading, which is
+            reported from peak to valley.
+        is_reported_whole: Of a curve, whether the curve is reported as the effect alone explains
+            it, without what the rest of the model could take over.
+        is_tensor: Whether its parameters have no common size: reported is the rms that it explains.
+        is_shrunk: Whether its parameters share a prior whose size the run chooses; reported as a
+            tensor, and weighed against single effects by what it predicts.
+        is_table: Whether it could imitate most other effects: it is followed only where it predicts
+            plainly better than those that give a cause.
+        reversal: Of a curve for either direction: forward less backward at every touch, per unit of
+            every parameter, (N, P).
+        harmonic: Waves a turn of what repeats over a rotary axis; 0 of a curve, which has many.
+        wave: What repeats over a linear axis.
+        with_sines: Of a wave: the same error with another period and so many sines of it.
+        parameter_drives: Of an effect that follows several drives: the drive of every parameter.
+        needs_history: Whether it depends on what drove it before the first touch.
+        stated_number: Number of a run that is wrong where this effect acts: `radius`.
+        original: The effect that this one repeats, or whose change it is. All other traits are then
+            asked of the original.
+        number: 2 for the second of two effects that differ in their inner parameters alone.
+        since_run: Of a change: number of the first run that shows it, as in `Touches.run`.
+    """
+
+    symbol: Symbol | None = None
+    axis: str = ""
+    is_ordinary: bool = False
+    distribution: str = ""
+    is_curve: bool = False
+    is_reported_whole: bool = False
+    is_tensor: bool = False
+    is_shrunk: bool = False
+    is_table: bool = False
+    reversal: Callable[[Touches], Array] | None = None
+    harmonic: float | None = None
+    wave: Wave | None = None
+    with_sines: Callable[[float, int], Effect] | None = None
+    parameter_drives: tuple[str, ...] = ()
+    needs_history: bool = False
+    stated_number: str = ""
+    original: Effect | None = None
+    number: int = 1
+    since_run: int | None = None
+
+    @property
+    def ordinary_component(self) -> Symbol | None:
+        """The symbol of an ordinary component error; None of anything else."""
+        own = self.symbol if self.is_ordinary else None
+        return own if own is not None and own.family is Family.COMPONENT else None
+
+    @property
+    def ordinary_constant(self) -> Symbol | None:
+        """The symbol of a location error or an error of set-up; None of anything else."""
+        own = self.symbol if self.is_ordinary else None
+        return own if own is not None and own.family is not Family.COMPONENT else None
+
+
+_USUAL = Traits()
+_NAMES = tuple(field.name for field in fields(Traits))
+_OLD_NAMES = {"is_reported_whole": "is_told_whole"}
+"""Names that users' effects may still use."""
+
+
+def traits(effect: Effect) -> Traits:
+    """What an effect says of itself; the defaults where it says nothing."""
+    usual = {name: getattr(_USUAL, name) for name in _NAMES}
+    usual |= {name: getattr(effect, old, usual[name]) for name, old in _OLD_NAMES.items()}
+    return Traits(**{name: getattr(effect, name, usual[name]) for name in _NAMES})
+
+
+def original_of(effect: Effect) -> Effect:
+    """The effect that another repeats or changes; any other effect itself."""
+    return traits(effect).original or effect
