@@ -38,7 +38,6 @@ RUNS: dict[str, tuple[str, ...]] = {
     "flat_plate": (),
     "real_records": (),
     "standard_temperature": (),
-    "thermal_laws": (),
 }
 """Scripts and their arguments; the unseen cases, which have to be made first, come after them."""
 

@@ -29,6 +29,7 @@ def main():
     (program,) = programs.programs
     read = interpret(program.text.encode(), Path("MS_A_1.H"), programs.masks.get, chain)
     return {
+        "programs": programs,
         "text": program.text.replace("\r\n", "\n"),
         "minutes": program.duration / 60.0,
         "feature": [read.features[touch.feature] for touch in read.touches],

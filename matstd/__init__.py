@@ -1,17 +1,160 @@
-"""The command line: reads arguments and files, strings the rooms together, prints what they found.
+"""One door to the tool: what the command line can do, three lines of Python can.
 
-`matstd.cli.main` finds the command; a command is a module in `commands` with the functions
-`add_arguments` and `run`. Only here is anything printed, a process ended or a user's file
-overwritten; nothing is computed. A new command is a new module and a line in `cli.COMMANDS`.
+    import matstd
+
+    found = matstd.diagnose("run.csv")
+    found.save("diagnosis")
+    found.compensate(tool_length=160.0).tables("tables")
+
+Lengths are in mm, angles in rad, times in s, temperatures in °C; `UM`, `URAD`, `DEG` and `MINUTE`
+are the units that files and figures have. Names are loaded when they are used. The rooms of the
+library, `matstd.twin` and so on, stand behind them (docs/api.md).
 """
 
-from typing import Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from matstd.api.comparing import Comparison, compare
+    from matstd.api.compensating import Compensation, ProgramOptions, compensate
+    from matstd.api.designing import Project, Sensitivities
+    from matstd.api.diagnosing import Diagnosis, diagnose
+    from matstd.api.effects import register_effects
+    from matstd.api.machines import (
+        machine_file,
+        machine_names,
+        read_machine,
+        sensitivities,
+        volumetric,
+    )
+    from matstd.api.probing import Evaluation, Simulation, evaluate, simulate, virtual_machine
+    from matstd.api.replanning import Replanned, replan
+    from matstd.api.runs import read_run
+    from matstd.api.standards import (
+        Calibration,
+        TaskBudget,
+        calibrate,
+        cmm_program,
+        read_standard,
+        uncertainty,
+    )
+    from matstd.artefact.body import Standard
+    from matstd.compensation.field import State
+    from matstd.diagnosis.answer import Verdict
+    from matstd.diagnosis.files import SavedModel, read_model
+    from matstd.diagnosis.fit import Fit
+    from matstd.report.pages import Design
+    from matstd.twin.errors import BadArgument, BadFile, DesignError, NotEnoughData
+    from matstd.twin.files import write_run
+    from matstd.twin.machine import Chain
+    from matstd.twin.model import Effect, Model
+    from matstd.twin.record import Run
+    from matstd.twin.units import DEG, MINUTE, UM, URAD
+
+_PLACES = {
+    "api.comparing": ("Comparison", "compare"),
+    "api.compensating": ("Compensation", "ProgramOptions", "compensate"),
+    "api.designing": ("Project", "Sensitivities"),
+    "api.diagnosing": ("Diagnosis", "diagnose"),
+    "api.effects": ("register_effects",),
+    "api.machines": (
+        "machine_file",
+        "machine_names",
+        "read_machine",
+        "sensitivities",
+        "volumetric",
+    ),
+    "api.probing": ("Evaluation", "Simulation", "evaluate", "simulate", "virtual_machine"),
+    "api.replanning": ("Replanned", "replan"),
+    "api.runs": ("read_run",),
+    "api.standards": (
+        "Calibration",
+        "TaskBudget",
+        "calibrate",
+        "cmm_program",
+        "read_standard",
+        "uncertainty",
+    ),
+    "artefact.body": ("Standard",),
+    "compensation.field": ("State",),
+    "diagnosis.answer": ("Verdict",),
+    "diagnosis.files": ("SavedModel", "read_model"),
+    "diagnosis.fit": ("Fit",),
+    "report.pages": ("Design",),
+    "twin.errors": ("BadArgument", "BadFile", "DesignError", "NotEnoughData"),
+    "twin.files": ("write_run",),
+    "twin.machine": ("Chain",),
+    "twin.model": ("Effect", "Model"),
+    "twin.record": ("Run",),
+    "twin.units": ("DEG", "MINUTE", "UM", "URAD"),
+}
+"""Names by the module that has them; a test compares them with the imports for type checkers."""
+
+_MODULES = {name: module for module, names in _PLACES.items() for name in names}
+
+__all__ = [
+    "DEG",
+    "MINUTE",
+    "UM",
+    "URAD",
+    "BadArgument",
+    "BadFile",
+    "Calibration",
+    "Chain",
+    "Comparison",
+    "Compensation",
+    "Design",
+    "DesignError",
+    "Diagnosis",
+    "Effect",
+    "Evaluation",
+    "Fit",
+    "Model",
+    "NotEnoughData",
+    "ProgramOptions",
+    "Project",
+    "Replanned",
+    "Run",
+    "SavedModel",
+    "Sensitivities",
+    "Simulation",
+    "Standard",
+    "State",
+    "TaskBudget",
+    "Verdict",
+    "calibrate",
+    "cmm_program",
+    "compare",
+    "compensate",
+    "diagnose",
+    "evaluate",
+    "machine_file",
+    "machine_names",
+    "read_machine",
+    "read_model",
+    "read_run",
+    "read_standard",
+    "register_effects",
+    "replan",
+    "sensitivities",
+    "simulate",
+    "uncertainty",
+    "virtual_machine",
+    "volumetric",
+    "write_run",
+]
 
 
 def __getattr__(name: str) -> Any:
-    """`matstd.Project`, loaded when it is asked for."""
-    if name != "Project":
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from matstd.design import Project
+    """A name of the door, loaded when it is first used (PEP 562)."""
+    module = _MODULES.get(name)
+    if module is None:
+        raise AttributeError(f"module 'matstd' has no attribute {name!r}")
+    import_module("matstd.api")  # results show themselves with the sentences of the report
+    value = getattr(import_module(f"matstd.{module}"), name)
+    globals()[name] = value
+    return value
 
-    return Project
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -59,13 +59,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     arguments = list(sys.argv[1:] if arguments is None else arguments)
     parser = _parser(arguments)
     args = parser.parse_args(arguments)
-    from matstd.twin.errors import DesignError
+    from matstd.twin.errors import BadArgument, DesignError
 
     try:
         _check_output(args)
         code = int(args.run(args) or 0)
         sys.stdout.flush()  # a disk that is full says so here, not when Python ends
         return code
+    except BadArgument as error:  # named as the option, not as the argument of a function
+        option = str(error.facts["argument"]).replace("_", "-")
+        text = str(error).partition(" ")[2]
+        print(f"matstd {args.command}: --{option} {text}", file=sys.stderr)
+        return EXIT_BAD_INPUT
     except DesignError as error:
         print(f"matstd {args.command}: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT

@@ -3,26 +3,19 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
-from collections.abc import Iterable
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.twin.errors import BadValue, DesignError
+from matstd.twin.errors import DesignError
 
 if TYPE_CHECKING:
-    from matstd.artefact.body import Standard
     from matstd.report.pages import Printer
-    from matstd.twin.machine import Chain
-    from matstd.twin.model import Model
-    from matstd.twin.record import Run, StatedBody
 
 SETUP, GEOMETRY = "setup", "geometry"
 """Words of `--start`."""
-
-REPORT_FILES = ("report.html", "report.pdf", "tables.xlsx", "tables/*.csv")
-"""Results that not every run of such a command leaves."""
-
 
 SHEET = "setup"
 """Folder of the set-up sheet, and of the programs that are run before the others."""
@@ -73,40 +66,6 @@ def add_body(parser: argparse.ArgumentParser, meaning: str) -> None:
         help="standard uncertainty of the temperature of the standard, K (0.3 if the "
         "temperature is stated; otherwise 2, about 20 °C)",
     )
-
-
-def body_stated(args: argparse.Namespace, standard: Standard) -> StatedBody:
-    """What the file of a standard and the options of `add_body` state; raises DesignError."""
-    from matstd.twin.record import StatedBody
-
-    made_of = standard.material
-    try:
-        return StatedBody(made_of.expansion, made_of.u_expansion, args.body_degC, args.body_u_K)
-    except BadValue as error:
-        option = str(error.facts["key"]).replace("_", "-")
-        expected = error.facts["expected"]
-        raise DesignError(f"--{option} {error.facts['found']}: expected {expected}") from None
-
-
-def with_size(run: Run, stated: StatedBody) -> tuple[Run, list[str]]:
-    """The run with what is stated of its standard, and what that says of every scale."""
-    from matstd.diagnosis.remarks import body_sizes
-    from matstd.report.words import remark_sentence
-    from matstd.twin.record import with_body
-
-    run = with_body(run, stated)
-    return run, [remark_sentence(size) for size in body_sizes(run.touches)]
-
-
-def load_effects(files: Iterable[str]) -> None:
-    """Effects of other rooms, of installed packages and of the user's files."""
-    from matstd.drift_law import DRIFT_LAW
-    from matstd.twin.library import load_installed_effects, load_user_effects, register
-
-    register(DRIFT_LAW)
-    load_installed_effects()
-    for path in files:
-        load_user_effects(Path(path))
 
 
 def seen_from(folder: Path, file: str | Path) -> str:
@@ -191,28 +150,44 @@ def add_pitch(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def model_file(args: argparse.Namespace) -> str | None:
-    """The model file that is named, None for none.
+def starting_model(args: argparse.Namespace) -> str:
+    """The starting model: a word, or the path of a model file.
 
     Raises:
         DesignError: A model by both options, or a word that is none of theirs.
     """
     start: str | None = args.start
-    if start is None or (start == GEOMETRY and args.model is None):
-        return args.model
+    if start is None or (start == GEOMETRY and args.model is not None):
+        return args.model or GEOMETRY
     if args.model is not None:
         raise DesignError(f"--start {start}: beside --model {args.model}, expected one of the two")
-    if start == SETUP:
-        return None
-    if not start.endswith(".toml"):
+    if start not in (SETUP, GEOMETRY) and not start.endswith(".toml"):
         expected = f"expected {SETUP}, {GEOMETRY} or a model file (.toml)"
         raise DesignError(f"--start {start}: {expected}")
     return start
 
 
-def first_model(args: argparse.Namespace, chain: Chain) -> Model:
-    """The starting model where no model file is named."""
-    from matstd.twin.library import ordinary_model
-    from matstd.twin.model import Model
+def named_numbers(option: str, words: Sequence[str], expected: str) -> dict[str, float]:
+    """Numbers by name of words such as `X=10`.
 
-    return Model(chain, ()) if args.start == SETUP else ordinary_model(chain)
+    Raises:
+        DesignError: No name and number, or a name that is given twice.
+    """
+    out: dict[str, float] = {}
+    for word in words:
+        name, _, number = (part.strip() for part in word.rpartition("="))
+        try:
+            value = float(number)
+        except ValueError:
+            name, value = "", 0.0
+        if not name or not math.isfinite(value):
+            raise DesignError(f"{option} {word}: expected {expected}")
+        if name in out:
+            raise DesignError(f"{option} {word}: {name} is given twice, expected it once")
+        out[name] = value
+    return out
+
+
+def pitches(args: argparse.Namespace) -> dict[str, float]:
+    """Pitches by axis, mm, of the option of `add_pitch`."""
+    return named_numbers("--pitch", args.pitch, "an axis and its pitch in mm, such as X=10")

@@ -13,16 +13,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TextIO
 
 from matstd.stop import raise_if_asked
-from matstd.twin.compute import Progress, blocks
+from matstd.twin.compute import Progress
 
 if TYPE_CHECKING:
     from rich.console import Console
 
 PERIOD = 10.0
 """Seconds between two lines where there is no terminal."""
-
-BLOCK = 10_000
-"""Rows of a table that are computed at once: a second or two, some hundred MB."""
 
 
 STEADY = 1.2
@@ -113,14 +110,6 @@ def stages() -> Iterator[Progress]:
     watched = Console(stderr=True)
     with _bars(watched) if watched.is_terminal else _lines(sys.stderr, PERIOD) as show:
         yield show
-
-
-def table_blocks(stage: str, rows: int, show: Progress) -> Iterator[slice]:
-    """The rows of a table, some at a time; what is done of a longer one is shown."""
-    for block in blocks(rows, BLOCK):
-        if block.start:
-            show(stage, block.start, rows)
-        yield block
 
 
 @contextmanager

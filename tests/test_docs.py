@@ -110,12 +110,14 @@ def test_the_index_of_the_interface_names_what_is_there() -> None:
     listed = [
         f"matstd.{r}.{p}" for r in ROOMS[:-1] for p in importlib.import_module(f"matstd.{r}").PARTS
     ]
-    assert parts == listed
+    assert parts == ["matstd", *listed]
 
 
 @pytest.mark.parametrize("room", ROOMS)
 def test_examples_of_docstrings_say_what_they_give(room: str) -> None:
     for file in TEXTS[room]:
+        if file.parent.name == "api":
+            continue  # its examples name files: tests/test_door.py
         if ">>>" in file.read_text(encoding="utf-8"):
             inner = ".".join(file.relative_to(ROOT).with_suffix("").parts)
             name = inner if room == "matstd" else f"matstd.{inner}"

@@ -15,8 +15,6 @@ from pydantic_core import PydanticUndefined
 from matstd.artefact.body.standard_file import read_standard
 from matstd.artefact.brief.project_file import read_project
 from matstd.artefact.brief.task_file import read_task
-from matstd.diagnosis.drift.beams import beam_estimate, read_beams
-from matstd.diagnosis.drift.record import DriftRecord
 from matstd.diagnosis.files.diagnosis_file import comparison_table, diagnosis_table
 from matstd.diagnosis.files.model_file import read_model
 from matstd.importers.files.mapping_file import MappingTable
@@ -97,24 +95,6 @@ def test_projects_standards_and_models_are_read(folder):
     saved = read_model(folder / "model.toml")
     assert saved.model.effects[2].tuning == {"tau": pytest.approx(18.2 * 60.0)}
     np.testing.assert_allclose(saved.estimates.mean, [12.5 * URAD, 1.8 * UM, 24.9 * UM])
-
-
-def test_beams_are_read(folder):
-    sensors = ("nose", "motor", "front", "back")
-    record = DriftRecord(
-        time=np.arange(3.0),
-        stretch=np.zeros(3, dtype=np.int64),
-        step=1.0,
-        drives=sensors,
-        drive=np.tile([25.0, 25.0, 30.0, 25.0], (3, 1)),
-        components=("z", "y", "a"),
-        units=("mm", "mm", "rad"),
-        displacement=np.zeros((3, 3)),
-    )
-    z, y, a = beam_estimate(read_beams(str(folder / "beams.toml"), record), record)[0]
-    assert z == pytest.approx(-600.0 * 11.5e-6 * 5.0)
-    assert y == pytest.approx(11.5e-6 * 5.0 / 180.0 * 600.0**2 / 2.0)
-    assert a == pytest.approx(11.5e-6 * 5.0 / 180.0 * 600.0)
 
 
 # --- the keys of files that are read --------------------------------------------------------

@@ -23,7 +23,7 @@ NAMES = (
 
 OTHERS = (
     "holes", "laser", "encoders", "map", "mapped", "dh", "dialect", "workshop", "several",
-    "gcode log", "gcode", "drift", "probed", "law", "beams", "task", "cmm", "loads", "part", "ngc",
+    "gcode log", "gcode", "drift", "probed", "law", "task", "cmm", "loads", "part", "ngc",
 )  # fmt: skip
 """Tables of others, dialects, the workshop of a project, two runs, a second control; what belongs
 to drift, to tasks and calibrations, to parts."""

@@ -9,7 +9,8 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from matstd.compensation.field.state import SWITCHED_ON, State
-from matstd.diagnosis.files import SavedModel
+from matstd.diagnosis.files import SavedModel, model_of
+from matstd.diagnosis.fit import Fit
 from matstd.twin.errors import BadValue
 from matstd.twin.frames import Array
 from matstd.twin.machine import (
@@ -75,8 +76,9 @@ class MachineErrors:
     left_out: tuple[str, ...] = ()
 
     @classmethod
-    def of_model(cls, saved: SavedModel, state: State = SWITCHED_ON) -> "MachineErrors":
-        """The errors of the machine that a model was learnt of."""
+    def of_model(cls, model: SavedModel | Fit, state: State = SWITCHED_ON) -> "MachineErrors":
+        """The errors of the machine that a model file, or a fit, knows."""
+        saved = model_of(model) if isinstance(model, Fit) else model
         effects, mean = saved.model.effects, saved.estimates.mean
         theta = np.split(mean, np.cumsum([len(e.parameters) for e in effects])[:-1])
         known = list(zip(effects, theta, strict=True))

@@ -8,29 +8,22 @@ probing now and then makes of it (`kept`). A saved law is an effect of a machine
 function that fits it, and a line in `judged.offered`.
 """
 
-from matstd.diagnosis.drift.arx import ArxInputs
-from matstd.diagnosis.drift.arx import coefficients as arx_coefficients
-from matstd.diagnosis.drift.beams import read_beams
 from matstd.diagnosis.drift.clocks import lead
 from matstd.diagnosis.drift.drift_file import read_law, write_drift, write_prediction
 from matstd.diagnosis.drift.drift_law import DriftLaw, drift_law_of
 from matstd.diagnosis.drift.judged import Judged, chosen, judge, offered
-from matstd.diagnosis.drift.linear import LinearLaw
 from matstd.diagnosis.drift.live import LiveDrift
 from matstd.diagnosis.drift.log_file import check_alike, read_log, read_probed
 from matstd.diagnosis.drift.probing import Kept, kept
 from matstd.diagnosis.drift.record import DriftRecord, IntArray, joined, varying
 
 __all__ = [
-    "ArxInputs",
     "DriftLaw",
     "DriftRecord",
     "IntArray",
     "Judged",
     "Kept",
-    "LinearLaw",
     "LiveDrift",
-    "arx_coefficients",
     "check_alike",
     "chosen",
     "drift_law_of",
@@ -39,7 +32,6 @@ __all__ = [
     "kept",
     "lead",
     "offered",
-    "read_beams",
     "read_law",
     "read_log",
     "read_probed",

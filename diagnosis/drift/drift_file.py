@@ -8,13 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from matstd.diagnosis.drift.arx import ArxInputs, coefficients
-from matstd.diagnosis.drift.beams import Beam, BeamLaw
+from matstd.diagnosis.drift.constant import Constant
 from matstd.diagnosis.drift.judged import Judged, Law
 from matstd.diagnosis.drift.lags import Lagged
-from matstd.diagnosis.drift.linear import Inputs, LinearLaw
-from matstd.diagnosis.drift.network import Network
-from matstd.diagnosis.drift.plain_laws import Constant
+from matstd.diagnosis.drift.linear import LinearLaw
 from matstd.diagnosis.drift.record import DriftRecord
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_text, write_whole
@@ -26,8 +23,7 @@ FORMAT = "matstd-thermal/1"
 SHOWN = {"mm": "um", "rad": "urad"}
 """Unit of a component in the file."""
 
-_INPUTS: dict[str, type] = {"lagged": Lagged, "arx": ArxInputs}
-_LAWS: dict[str, type] = {"linear": LinearLaw, "constant": Constant, "network": Network}
+_LAWS: dict[str, type] = {"linear": LinearLaw, "constant": Constant}
 
 
 def write_drift(
@@ -54,7 +50,6 @@ def write_drift(
             {
                 "name": j.name,
                 "chosen": j is best,
-                "unstable_pole": j.pole,
                 "one_step": _named(names, j.one_step / record.size),
                 "left_out": _named(names, j.left_out / record.size),
                 "free_run": _named(names, j.free_run / record.size),
@@ -64,7 +59,6 @@ def write_drift(
             }
             for j in judged
         ],
-        "arx": [_equation(j, record, names) for j in judged if _is_arx(j.law)],
         "components": list(record.components),
         "units": list(record.units),
         "drives": list(record.drives),
@@ -84,43 +78,13 @@ def _named(names: Sequence[str], values: Array) -> dict[str, float] | None:
     return {n: round(float(v), 6) for n, v in zip(names, values, strict=True)}
 
 
-def _is_arx(law: Law) -> bool:
-    return isinstance(law, LinearLaw) and isinstance(law.inputs, ArxInputs)
-
-
-def _equation(judged: Judged, record: DriftRecord, names: Sequence[str]) -> dict[str, object]:
-    """The ARX law as its equation is written, in the units of the components' names."""
-    law = judged.law
-    assert isinstance(law, LinearLaw)
-    assert isinstance(law.inputs, ArxInputs)
-    found = coefficients(law, record.step)
-    return {
-        "equation": "y(t) = constant + sum_i a_i y(t-i) + sum_jk b_jk T_j(t-k+1)",
-        "step_s": record.step,
-        "drives": list(law.inputs.drives),
-        "poles": list(law.inputs.poles(record.step)),
-        "time_constants_s": list(law.inputs.time_constants),
-        "a": found.a.tolist(),
-        "constant": dict(zip(names, (found.constant / record.size).tolist(), strict=True)),
-        "b": {n: (found.b[..., k] / record.size[k]).tolist() for k, n in enumerate(names)},
-    }
-
-
 def _stated(law: Law) -> dict[str, Any]:
     """A law as tables of numbers."""
-    if isinstance(law, BeamLaw):
-        rest = None if law.rest is None else _stated(law.rest)
-        beams = [b.model_dump() for b in law.beams]
-        own = {"beams": beams, "rest": rest, "offset": law.offset.tolist()}
-        return {"kind": "beams", **own, "residual": law.residual.tolist(), "memory": law.memory}
     kind = next(word for word, known in _LAWS.items() if isinstance(law, known))
     out: dict[str, Any] = {"kind": kind}
     for name, value in vars(law).items():
         if name == "inputs":
-            word = next(w for w, known in _INPUTS.items() if isinstance(value, known))
-            out[name] = {"kind": word, **vars(value)}
-        elif name == "weights":
-            out[name] = [[part.tolist() for part in member] for member in value]
+            out[name] = {"kind": "lagged", "places": value.places}
         elif name == "scale":  # of a constant column, which counts for nothing
             out[name] = [v if np.isfinite(v) else None for v in value.tolist()]
         else:
@@ -177,7 +141,7 @@ def read_law(path: str | Path) -> SavedLaw:
             raise BadFile(path, "format", repr(data["format"]), f"'{FORMAT}'")
         return SavedLaw(
             name=data["chosen"],
-            law=_stable(_law(data["law"]), path),
+            law=_law(data["law"], path),
             factor=np.array(data["factor"], dtype=float),
             drives=tuple(data["drives"]),
             components=tuple(data["components"]),
@@ -192,50 +156,30 @@ def read_law(path: str | Path) -> SavedLaw:
         raise BadFile(path, "law", repr(error)[:200], "a thermal.json as matstd wrote it") from None
 
 
-def _stable(law: Law, path: str | Path) -> Law:
-    """A law whose poles lie inside the unit circle; raises BadFile."""
-    inner = law.rest if isinstance(law, BeamLaw) else law
-    inputs = getattr(inner, "inputs", None)
-    taus = getattr(inputs, "time_constants", ()) or [t for _, t in getattr(inputs, "places", ())]
-    for tau in taus:
-        if not 0.0 <= tau < np.inf or (tau == 0.0 and hasattr(inputs, "time_constants")):
-            found = f"a time constant of {tau:g} s: an unstable law"
-            raise BadFile(path, "law", found, "time constants above zero")
-    return law
-
-
-def _law(data: dict[str, Any]) -> Law:
+def _law(data: dict[str, Any], path: str | Path) -> Law:
     """A law from its tables."""
     data = dict(data)
     kind = data.pop("kind")
-    if kind == "beams":
-        rest = None if data["rest"] is None else _law(data["rest"])
-        assert rest is None or isinstance(rest, LinearLaw)
-        beams = tuple(Beam.model_validate(b) for b in data["beams"])
-        offset, residual = np.array(data["offset"]), np.array(data["residual"])
-        return BeamLaw(
-            beams=beams, rest=rest, offset=offset, residual=residual, memory=float(data["memory"])
-        )
+    if kind not in _LAWS or ("inputs" in data and data["inputs"]["kind"] != "lagged"):
+        found = f"a law of kind '{data['inputs']['kind'] if kind in _LAWS else kind}'"
+        raise BadFile(path, "law", found, "a law of this version: learn it anew from the logs")
     if "inputs" in data:
-        data["inputs"] = _inputs(dict(data["inputs"]))
-    if "weights" in data:
-        data["weights"] = tuple(tuple(np.array(p) for p in m) for m in data["weights"])
+        data["inputs"] = _inputs(data["inputs"]["places"], path)
     if "scale" in data:
         data["scale"] = [np.inf if v is None else v for v in data["scale"]]
     for name, value in data.items():
         if isinstance(value, list):
-            data[name] = tuple(value) if name == "drives" else np.array(value, dtype=float)
+            data[name] = np.array(value, dtype=float)
     return _LAWS[kind](**data)
 
 
-def _inputs(data: dict[str, Any]) -> Inputs:
-    known = _INPUTS[data.pop("kind")]
-    own = {k: tuple(map(_pair, v)) if isinstance(v, list) else v for k, v in data.items()}
-    return known(**own)
-
-
-def _pair(value: Any) -> Any:
-    return tuple(value) if isinstance(value, list) else value
+def _inputs(places: list[tuple[str, float]], path: str | Path) -> Lagged:
+    """Drives with their time constants; raises BadFile for one that does not settle."""
+    for _, tau in places:
+        if not 0.0 <= tau < np.inf:
+            found = f"a time constant of {tau:g} s: an unstable law"
+            raise BadFile(path, "law", found, "time constants above zero")
+    return Lagged(tuple((name, tau) for name, tau in places))
 
 
 def write_prediction(path: str | Path, record: DriftRecord, predicted: Array, u: Array) -> None:

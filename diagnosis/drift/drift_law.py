@@ -13,7 +13,6 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from matstd.diagnosis.drift.beams import BeamLaw
 from matstd.diagnosis.drift.drift_file import SavedLaw, read_law
 from matstd.diagnosis.drift.linear import LinearLaw
 from matstd.diagnosis.drift.record import DriftRecord, is_speed
@@ -189,8 +188,6 @@ class DriftLaw:
     def _linear(self) -> LinearLaw | None:
         """The part of the law whose coefficients have a covariance."""
         law = self.saved.law
-        if isinstance(law, BeamLaw):
-            return law.rest
         return law if isinstance(law, LinearLaw) else None
 
     @cached_property

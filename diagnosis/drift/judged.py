@@ -2,17 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Protocol
 
 import numpy as np
 
-from matstd.diagnosis.drift.arx import arx
-from matstd.diagnosis.drift.beams import Beam, beam_law
+from matstd.diagnosis.drift.constant import constant
 from matstd.diagnosis.drift.lags import at_once, remembered
 from matstd.diagnosis.drift.linear import ridge
-from matstd.diagnosis.drift.network import has_network, network
-from matstd.diagnosis.drift.plain_laws import OneStepArx, constant, one_step_arx
 from matstd.diagnosis.drift.record import DriftRecord, IntArray, blocks, is_speed
 from matstd.twin.compute import Progress
 from matstd.twin.frames import Array
@@ -55,7 +51,6 @@ class Judged:
         free_run: In the held-out hours.
         noisy: The same with noise on the temperatures; None where none was asked for.
         factor: By which left-out blocks miss more than residual and leverage say.
-        pole: Of a law that is unstable; None of the others.
     """
 
     name: str
@@ -65,12 +60,6 @@ class Judged:
     free_run: Array
     noisy: Array | None
     factor: Array
-    pole: float | None = None
-
-    @property
-    def is_offered(self) -> bool:
-        """Whether it may be chosen: not if it was fitted for one step and is used for many."""
-        return not isinstance(self.law, OneStepArx)
 
     def total(self, values: Array, record: DriftRecord) -> float:
         """Over all components, in micrometres or microradians."""
@@ -82,35 +71,16 @@ class Judged:
         return self.factor * self.law.residual * spread[:, None]
 
 
-def offered(
-    record: DriftRecord, beams: Sequence[Beam] = (), networks: bool = True
-) -> dict[str, Fits]:
-    """Every law that suits a record, by name.
-
-    Where logs have zeros of their own, those that work with changes within a log.
-    """
-    has_speed = any(map(is_speed, record.drives))
+def offered(record: DriftRecord) -> dict[str, Fits]:
+    """Every law that suits a record, by name."""
     laws: dict[str, Fits] = {
         "constant": constant,
-        **({} if record.zeros is not None else {"one-step-arx": one_step_arx}),
         "static-ridge": lambda r, p: ridge(r, at_once(r), p),
     }
-    if has_speed:
+    if any(map(is_speed, record.drives)):
         laws["speed-lags"] = lambda r, p: ridge(r, remembered(r, temperatures=False), p)
     laws["lags"] = lambda r, p: ridge(r, remembered(r, temperatures=True), p)
-    laws["arx"] = arx
-    if networks and has_network() and record.zeros is None:
-        laws["network"] = network
-    if beams:
-        laws["beams"] = partial(_with_beams, beams, False)
-        laws["beams-arx"] = partial(_with_beams, beams, True)
     return laws
-
-
-def _with_beams(
-    beams: Sequence[Beam], is_coupled: bool, record: DriftRecord, parts: Sequence[IntArray]
-) -> Law:
-    return beam_law(beams, record, parts, is_coupled)
 
 
 def judge(
@@ -140,7 +110,7 @@ def judge(
 
 def chosen(judged: Sequence[Judged], record: DriftRecord) -> Judged:
     """The law that predicts left-out blocks of the training part best."""
-    return min((j for j in judged if j.is_offered), key=lambda j: j.total(j.left_out, record))
+    return min(judged, key=lambda j: j.total(j.left_out, record))
 
 
 def _judged(
@@ -153,25 +123,9 @@ def _judged(
 ) -> Judged:
     parts = blocks(train, BLOCKS)
     law = fits(record, parts)
-    nothing = np.full(len(record.components), np.nan)
-    if isinstance(law, OneStepArx) and not law.is_stable:
-        step = rms_of_columns(law.one_step(record)[held] - record.displacement[held])
-        return Judged(
-            name=name,
-            law=law,
-            one_step=step,
-            left_out=nothing,
-            free_run=nothing,
-            noisy=None,
-            factor=nothing,
-            pole=law.pole,
-        )
-    errors, ratios, pole = [], [], None
+    errors, ratios = [], []
     for i, part in enumerate(parts):
         own = fits(record, [b for j, b in enumerate(parts) if j != i])
-        if isinstance(own, OneStepArx) and not own.is_stable:
-            pole = own.pole
-            break
         error = record.centred((own.predicted(record) - record.displacement)[part], part)
         errors.append(error)
         spread = np.sqrt(1.0 + own.leverage(record)[part])[:, None]
@@ -184,19 +138,16 @@ def _judged(
     return Judged(
         name=name,
         law=law,
-        one_step=rms_of_columns((_one_step(law, record, free) - record.displacement)[held]),
-        left_out=nothing if pole else rms_of_columns(np.concatenate(errors)),
+        one_step=rms_of_columns((_one_step(record, free) - record.displacement)[held]),
+        left_out=rms_of_columns(np.concatenate(errors)),
         free_run=missed(free),
         noisy=missed(law.predicted(noisy)) if noisy else None,
-        factor=nothing if pole else rms_of_columns(np.concatenate(ratios)),
-        pole=pole,
+        factor=rms_of_columns(np.concatenate(ratios)),
     )
 
 
-def _one_step(law: Law, record: DriftRecord, free: Array) -> Array:
+def _one_step(record: DriftRecord, free: Array) -> Array:
     """With the displacement of the row before: that plus the change that the law predicts."""
-    if isinstance(law, OneStepArx):
-        return law.one_step(record)
     before = np.maximum(np.arange(len(record)) - 1, 0)
     if record.zeros is not None:  # nothing is known at the first row of a log
         before = np.where(np.diff(record.zeros, prepend=-1) != 0, np.arange(len(record)), before)

@@ -11,13 +11,21 @@ from matstd.diagnosis.files.diagnosis_file import (
     write_diagnosis,
     write_residuals,
 )
-from matstd.diagnosis.files.model_file import SavedModel, check_machine, read_model
-from matstd.diagnosis.files.model_writer import write_model
+from matstd.diagnosis.files.model_file import (
+    SavedModel,
+    check_machine,
+    parsed_model,
+    read_model,
+)
+from matstd.diagnosis.files.model_writer import model_of, model_text, write_model
 from matstd.diagnosis.files.uncertainty_file import write_uncertainty
 
 __all__ = [
     "SavedModel",
     "check_machine",
+    "model_of",
+    "model_text",
+    "parsed_model",
     "plan_text",
     "read_model",
     "write_comparison",

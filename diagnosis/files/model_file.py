@@ -213,7 +213,14 @@ def read_model(
     Raises:
         BadFile: File, key, what stood there, what was expected.
     """
-    data = parse_toml(read_text(path), path)
+    return parsed_model(read_text(path), path, known, runs)
+
+
+def parsed_model(
+    text: str, path: str | Path, known: Sequence[Effect] = (), runs: Sequence[Run] = ()
+) -> SavedModel:
+    """The model of a text; arguments and errors as of `read_model`."""
+    data = parse_toml(text, path)
     check_format(data, FORMAT, path)
     table = checked(ModelTable, data, path)
     chain = table.machine.made(path, "machine")

@@ -6,7 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from matstd.diagnosis.files.model_file import FORMAT, SavedModel, parameter_keys, probes_of
+from matstd.diagnosis.files.model_file import (
+    FORMAT,
+    SavedModel,
+    parameter_keys,
+    parsed_model,
+    probes_of,
+)
 from matstd.diagnosis.fit import Fit, Learnt, Reported, inner_unit
 from matstd.diagnosis.geometry import standing, state_of_standing
 from matstd.diagnosis.regression import Memory
@@ -88,6 +94,11 @@ def model_text(
         f'format = "{FORMAT}"\n' + _triangle(shown) + _root(L @ learnt.from_inner / scale[:, None])
     )
     return head + tomli_w.dumps(tables)
+
+
+def model_of(fit: Fit) -> SavedModel:
+    """What a model file would keep of a fit, without a file."""
+    return parsed_model(model_text(fit, "run"), "model.toml", fit.model.effects)
 
 
 def _source(

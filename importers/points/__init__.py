@@ -1,7 +1,7 @@
 """Lists of nominal and measured coordinates, of parts and of calibrated plates."""
 
 from matstd.importers.points.point_list import PointList, joined_points
-from matstd.importers.points.reading import read_points
+from matstd.importers.points.reading import Meaning, read_points
 from matstd.importers.points.runs import (
     PointsImport,
     import_points,
@@ -10,6 +10,7 @@ from matstd.importers.points.runs import (
 )
 
 __all__ = [
+    "Meaning",
     "PointList",
     "PointsImport",
     "import_points",

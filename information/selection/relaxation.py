@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 
 from matstd.information.criteria import DesignCriterion, Tangent
 from matstd.information.selection.bound import slope
@@ -31,6 +32,7 @@ _REFRESH = 50
 _HALVINGS = 8
 _PATIENCE = 3  # looks without progress before the mean is sharpened, or the search given up
 _SHARPEST = 1000.0
+_LEAST_FLOW = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,7 +234,7 @@ def _best_flow(tangents: Sequence[Tangent], h: Array, k: Array, most: float) -> 
 
     Along the flow t the determinant of a machine's information grows by ``1 + b t - d t^2``, and
     its share of the criterion falls by ``(a t - c t^2) / (1 + b t - d t^2)``, which is concave; the
-    slope of the sum is bisected.
+    root of the slope of the sum is found.
 
     Args:
         tangents: Of the machines, S.
@@ -251,8 +253,6 @@ def _best_flow(tangents: Sequence[Tangent], h: Array, k: Array, most: float) -> 
 
     if falls(most) >= 0.0:
         return float(most)
-    low, high = 0.0, most
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if falls(middle) > 0.0 else (low, middle)
-    return float(max(low, 1e-12))
+    if falls(0.0) <= 0.0:
+        return _LEAST_FLOW
+    return max(float(brentq(falls, 0.0, most, xtol=_LEAST_FLOW * most)), _LEAST_FLOW)

@@ -1,17 +1,14 @@
 """The page of a thermal drift: the laws compared, the chosen one over time."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from matstd.diagnosis.drift import (
-    ArxInputs,
     DriftRecord,
     IntArray,
     Judged,
-    LinearLaw,
-    arx_coefficients,
 )
 from matstd.report.drift.drift_pictures import draw_drift, draw_laws
 from matstd.report.drift.drift_words import law_title, law_words, together, units_word
@@ -100,7 +97,6 @@ def write_drift_page(
                 ],
             ),
             *_probed(probings),
-            *_equations(record, judged),
         ],
         foot=[
             _FOOT.format(components=", ".join(record.components), drives=", ".join(record.drives))
@@ -117,11 +113,10 @@ def _laws(record: DriftRecord, judged: Sequence[Judged], best: Judged, hold: Arr
     first = digits(together(hold, record))
     rows = [["last value held", first, "–", "–", *[""] * has_noise, *none]]
     for j in judged:
-        pole = "" if j.pole is None else f" (unstable: pole {j.pole:.4f})"
         cells = [digits(together(v, record)) for v in (j.one_step, j.left_out, j.free_run)]
         noisy = "" if j.noisy is None else digits(together(j.noisy, record))
         each = [digits(v) for v in j.free_run / record.size]
-        rows.append([law_title(j.name) + pole, *cells, *[noisy] * has_noise, *each])
+        rows.append([law_title(j.name), *cells, *[noisy] * has_noise, *each])
     columns = ("law", "one step", "left out", "held out", *noise, *record.components)
     caption = (
         f"Root mean square error, {units_word(record)}: over all components; then the held-out "
@@ -134,25 +129,3 @@ def _laws(record: DriftRecord, judged: Sequence[Judged], best: Judged, hold: Arr
 def _probed(probings: Sequence[str]) -> list[Section]:
     words = [sentence(line) for line in probings]
     return [Section("With occasional probing", sentences=words)] if words else []
-
-
-def _equations(record: DriftRecord, judged: Sequence[Judged]) -> Iterator[Section]:
-    """Coefficients of every ARX law, a row for each term."""
-    for law in (j.law for j in judged):
-        if not isinstance(law, LinearLaw) or not isinstance(law.inputs, ArxInputs):
-            continue
-        found = arx_coefficients(law, record.step)
-        rows = [["constant", *(digits(v, 4) for v in found.constant / record.size)]]
-        rows += [[f"a{i + 1}", *[f"{a:.6f}"] * len(record.units)] for i, a in enumerate(found.a)]
-        for d, drive in enumerate(law.inputs.drives):
-            for k in range(law.inputs.order):
-                label = f"b of {drive} at t" + (f" - {k}" if k else "")
-                rows.append([label, *(digits(v, 4) for v in found.b[d, k] / record.size)])
-        times = " and ".join(span(tau, 2) for tau in law.inputs.time_constants)
-        words = (
-            "y(t) = constant + Σ a_{i} y(t − i) + Σ b_{jk} T_{j}(t − k + 1), steps of "
-            f"{span(record.step)}; time constants {times}."
-        )
-        caption = f"Coefficients, {units_word(record)} per unit of the drive"
-        table = Table(("", *record.components), rows, caption)
-        yield Section("The ARX law as an equation", sentences=[words], table=table)

@@ -72,8 +72,6 @@ def draw_laws(record: DriftRecord, judged: Sequence[Judged], best: Judged) -> Fi
         ax.barh(y + 0.27 - 0.27 * k, values, height=0.25, color=colour, label=label)
     names = [law_title(j.name) + (" (chosen)" if j is best else "") for j in judged]
     ax.set_yticks(y, names)
-    known = [together(j.left_out, record) for j in judged if j.pole is None]
-    ax.set_xlim(0.0, 1.1 * max(known))  # an unstable law would hide all others
     ax.set_xlabel("error in µm or µrad, rms over components")
     ax.legend(fontsize=8, frameon=False)
     plain(ax, "x")

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from matstd.diagnosis.drift import ArxInputs, DriftRecord, IntArray, Judged, Kept, LinearLaw
+from matstd.diagnosis.drift import DriftRecord, IntArray, Judged, Kept
 from matstd.report.numbers import digits, span
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
@@ -13,14 +13,9 @@ from matstd.twin.units import MINUTE
 _TITLES = {
     "hold": "last value held",
     "constant": "constant",
-    "one-step-arx": "ARX, all drives, fitted one step ahead",
     "static-ridge": "ridge on all drives at once",
     "speed-lags": "ridge, speed with first-order lags",
     "lags": "ridge, all drives with first-order lags",
-    "arx": "ARX, few drives, fitted running freely",
-    "network": "neural network, one hidden layer",
-    "beams": "beams alone",
-    "beams-arx": "beams with ARX",
 }
 
 
@@ -61,8 +56,6 @@ def drift_lines(
         line = f"{law_title(j.name):<42}" + "".join(f"{c:>10}" for c in cells)
         if j.noisy is not None:
             line += f"{digits(together(j.noisy, record)):>12}"
-        if j.pole is not None:
-            line += f"  unstable: pole {j.pole:.4f}"
         yield line, j is best
     yield f"chosen by the blocks left out: {law_title(best.name)}; {law_words(best, record)}", True
 
@@ -70,12 +63,7 @@ def drift_lines(
 def law_words(judged: Judged, record: DriftRecord) -> str:
     """Uncertainty of a law, and its terms."""
     u = judged.u(record)
-    words = f"u {digits(together(np.sqrt(np.mean(u**2, axis=0)), record), 2)} {units_word(record)}"
-    law = judged.law
-    if isinstance(law, LinearLaw) and isinstance(law.inputs, ArxInputs):
-        times = " and ".join(span(tau, 2) for tau in law.inputs.time_constants)
-        words += f"; drives {', '.join(law.inputs.drives)}; poles at {times}"
-    return words
+    return f"u {digits(together(np.sqrt(np.mean(u**2, axis=0)), record), 2)} {units_word(record)}"
 
 
 def clock_line(lead: float) -> str:

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from bench import LENGTH
 
+from matstd.api.compensating import with_unknowns
 from matstd.cli import main
-from matstd.commands.compensation.job import _with_unknowns
 from matstd.compensation.field.machine_errors import MachineErrors, deviation
 from matstd.compensation.field.state import State
 from matstd.compensation.service.output import OutputLimits, Quality
@@ -142,7 +142,7 @@ def test_a_model_learns_how_much_of_a_law_there_is_and_keeps_its_unknowns(drifti
     known = [(others[0], np.ones(1)), (law, np.array([0.9])), (others[1], np.ones(1))]
     root = np.array([[1.0, 0.0], [0.0, 0.1], [0.5, 0.5]])
     errors = MachineErrors.of_errors(bench_chain, [], state).with_known(known, root)
-    wide = _with_unknowns(errors)
+    wide = with_unknowns(errors)
     count = len(drifting.parameters)
     assert [len(t) for t in wide.theta] == [1, count, 1]
     assert wide.theta[1][0] == 0.9

@@ -1,21 +1,14 @@
 """Laws of a thermal drift, each beside something that does not share its code."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from matstd.diagnosis.drift.arx import ArxInputs, arx, coefficients
-from matstd.diagnosis.drift.beams import Beam, beam_estimate, read_beams
 from matstd.diagnosis.drift.judged import chosen, judge, offered
 from matstd.diagnosis.drift.lags import Lagged, at_once, followed
 from matstd.diagnosis.drift.linear import WEIGHTS, fitted, ridge
-from matstd.diagnosis.drift.network import _regressor, network
-from matstd.diagnosis.drift.plain_laws import one_step_arx
 from matstd.diagnosis.drift.probing import RENEWED, kept
 from matstd.diagnosis.drift.record import DriftRecord, blocks, joined
 from matstd.twin.compute import silent
-from matstd.twin.errors import BadFile
 from matstd.twin.units import UM
 
 STEP = 300.0
@@ -68,26 +61,6 @@ def planted():
     return record_of(drive, y)
 
 
-def test_arx_finds_the_drives_and_runs_freely_into_hours_it_never_saw(planted):
-    rows = np.arange(280)
-    law = arx(planted, blocks(rows, 4))
-    assert {"t0", "t2", "spindle_rpm"} <= set(law.inputs.drives)
-    left = (law.predicted(planted) - planted.displacement)[280:] / UM
-    assert np.sqrt(np.mean(left**2)) < 0.05 * np.ptp(planted.displacement[280:, 0]) / UM
-    assert all(0.0 < pole < 1.0 for pole in law.inputs.poles(STEP))
-
-
-def test_the_coefficients_of_an_arx_law_are_those_of_its_equation(planted):
-    inputs = ArxInputs(("t0", "t2", "spindle_rpm"), (1500.0, 7000.0), 2)
-    law = fitted(planted, inputs, [np.arange(300)], 1e-4)
-    found = coefficients(law, STEP)
-    free = law.predicted(planted)
-    drive = planted.columns(inputs.drives)
-    for k in range(2):
-        again = by_its_equation(found.a, found.b[..., k], found.constant[k], drive, free[:2, k])
-        np.testing.assert_allclose(again, free[:, k], atol=1e-9)
-
-
 def test_ridge_is_that_of_scikit_learn(planted):
     from sklearn.linear_model import Ridge
 
@@ -136,38 +109,10 @@ def test_a_log_of_another_day_begins_anew(planted):
     np.testing.assert_array_equal(twice, np.vstack([once, once]))
 
 
-def test_a_network_predicts_as_scikit_learn_does(planted):
-    law = network(planted, blocks(np.arange(200), 2))
-    V, v, W, w = law.weights[0]
-    theirs = _regressor()(hidden_layer_sizes=(len(v),), activation="tanh", max_iter=1, solver="sgd")
-    Z = (planted.drive - law.mean) / law.scale
-    theirs.partial_fit(Z[:10], np.zeros((10, 2)))
-    theirs.coefs_, theirs.intercepts_ = [V, W], [v, w]
-    alone = replace(law, weights=law.weights[:1]).predicted(planted)
-    np.testing.assert_allclose(alone, law.center + law.spread * theirs.predict(Z), atol=1e-12)
-
-
-def test_one_step_is_no_evidence_and_an_unstable_law_is_told():
-    """A drift that grows with the hours has a pole of 1: nearly no error one step ahead."""
-    rng = np.random.default_rng(5)
-    drive = heat(rng)
-    y = np.cumsum(0.5 * UM + 0.2 * UM * rng.standard_normal((400, 1)), axis=0)
-    record = record_of(drive, y * np.exp(np.arange(400) / 200.0)[:, None])
-    laws = {n: f for n, f in offered(record).items() if n in ("constant", "one-step-arx")}
-    judged = judge(record, np.arange(280), np.arange(280, 400), laws, silent)
-    arx_law = judged[1]
-    assert arx_law.pole is not None
-    assert arx_law.pole > 1.0
-    assert arx_law.one_step[0] < 0.05 * judged[0].free_run[0]
-    assert not one_step_arx(record, [np.arange(280)]).is_stable
-    assert chosen(judged, record).name == "constant"
-
-
 def test_left_out_blocks_choose_and_their_uncertainty_holds(planted):
-    laws = {n: f for n, f in offered(planted, networks=False).items() if n != "arx"}
-    judged = judge(planted, np.arange(280), np.arange(280, 400), laws, silent)
+    judged = judge(planted, np.arange(280), np.arange(280, 400), offered(planted), silent)
     best = chosen(judged, planted)
-    assert best.left_out[0] == min(j.left_out[0] for j in judged if j.is_offered)
+    assert best.left_out[0] == min(j.left_out[0] for j in judged)
     z = ((best.law.predicted(planted) - planted.displacement) / best.u(planted))[280:]
     assert 0.8 <= np.mean(np.abs(z) < 2.0) <= 1.0
 
@@ -196,37 +141,6 @@ def test_probing_is_what_conditioning_a_gaussian_process_gives(planted):
             v = K[row, row] - K[row, seen] @ np.linalg.solve(S, K[seen, row])
         assert result.predicted[row, 0] - free[row] == pytest.approx(want, abs=1e-9)
         assert result.u[row, 0] == pytest.approx(np.sqrt(v), rel=1e-6)
-
-
-def test_a_beam_grows_and_bends_as_in_a_book():
-    """500 mm of steel 4 K warm: 23 µm; 2 K over 200 mm of depth: 57.5 µrad, 14.375 µm."""
-    drive = np.column_stack([np.full(50, 24.0), np.full(50, 22.0), np.arange(50.0)])
-    record = record_of(drive, np.zeros((50, 2)))
-    record = replace(record, units=("mm", "rad"))
-    beam = Beam(
-        name="ram", length_mm=500.0, alpha_um_per_m_K=11.5, sensors=["t0"], grows={"x": -1.0},
-        depth_mm=200.0, warm=["t0"], cold=["t1"], bends={"x": 1.0}, tilts={"y": 1.0},
-    )  # fmt: skip
-    found = beam_estimate([beam], record)
-    np.testing.assert_allclose(found[:, 0], -23.0 * UM + 14.375 * UM)
-    np.testing.assert_allclose(found[:, 1], 57.5e-6)
-
-
-@pytest.mark.parametrize(
-    ("text", "words"),
-    [
-        ('sensors = ["t9"]\ngrows = {x = 1.0}', "sensor 't9'"),
-        ('sensors = ["t0"]\ngrows = {q = 1.0}', "component 'q'"),
-        ('warm = ["t0"]\ncold = ["t1"]\nbends = {x = 1.0}', "bending without a section"),
-        ('sensors = ["t0"]', "nothing that it moves"),
-        ('sensors = ["t0"]\ntilts = {x = 1.0}', "component 'x'"),
-    ],
-)
-def test_beams_that_make_no_sense_are_refused(planted, tmp_path, text, words):
-    path = tmp_path / "beams.toml"
-    path.write_text(f'[[beam]]\nname = "b"\nlength_mm = 1.0\nalpha_um_per_m_K = 11.0\n{text}\n')
-    with pytest.raises(BadFile, match=words):
-        read_beams(str(path), planted)
 
 
 # --- logs with zeros of their own ---------------------------------------------------------------
@@ -262,11 +176,10 @@ def test_a_day_from_another_zero_is_predicted(days):
     for own_zeros in (False, True):
         record = joined(days, own_zeros)
         train, held = np.arange(400), np.arange(400, 600)
-        judged = judge(record, train, held, offered(record, networks=False), silent)
+        judged = judge(record, train, held, offered(record), silent)
         best = chosen(judged, record)
         left[own_zeros] = best.free_run[0] / UM
         ratio = best.u(record)[held].mean() / UM
-        assert "one-step-arx" in {j.name for j in judged} or own_zeros
     assert left[False] > 10.0
     assert left[True] < 0.4
     assert 0.2 < ratio < 0.6

@@ -90,7 +90,7 @@ def test_probings_stand_where_the_log_was(tmp_path):
 def test_the_command_writes_a_law_that_predicts_the_same_again(tmp_path, capsys):
     log = written(tmp_path / "a.csv", rows_of())
     out = tmp_path / "out"
-    assert main(["thermal", str(log), "--no-network", "--probe-every", "1", "-o", str(out)]) == 0
+    assert main(["thermal", str(log), "--probe-every", "1", "-o", str(out)]) == 0
     said = capsys.readouterr().out
     assert "chosen by the blocks left out" in said
     assert "probed every" in said
@@ -103,6 +103,21 @@ def test_the_command_writes_a_law_that_predicts_the_same_again(tmp_path, capsys)
     first, second = ((p / "drift.csv").read_text() for p in (out, again))
     assert first == second
     assert read_law(law).components == ("z",)
+
+
+@pytest.mark.parametrize(
+    ("law", "found"),
+    [
+        ({"kind": "network"}, "'network'"),
+        ({"kind": "linear", "inputs": {"kind": "arx", "drives": ["T"]}}, "'arx'"),
+    ],
+)
+def test_a_law_of_a_kind_that_is_no_longer_offered_is_refused(tmp_path, law, found):
+    saved = {"format": "matstd-thermal/1", "chosen": "x", "law": law}
+    path = tmp_path / "thermal.json"
+    path.write_text(json.dumps(saved))
+    with pytest.raises(BadFile, match=f"a law of kind {found}, expected .* learn it anew"):
+        read_law(path)
 
 
 @pytest.mark.parametrize(

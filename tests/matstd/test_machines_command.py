@@ -5,8 +5,9 @@ import re
 import numpy as np
 import pytest
 
+from matstd.api.machines import machine_names
 from matstd.cli import main
-from matstd.commands.machine.machines import names, text
+from matstd.commands.machine.machines import text
 from matstd.twin.files.error_file import read_errors
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.model.model import Model
@@ -21,7 +22,7 @@ def written(name, folder):
     return chain, read_errors(folder / "e.toml", chain)
 
 
-@pytest.mark.parametrize("name", names())
+@pytest.mark.parametrize("name", machine_names())
 def test_files_are_read_and_every_figure_has_its_source(name, tmp_path):
     chain, _ = written(name, tmp_path)
     assert set(chain.linear_axes) == {"X", "Y", "Z"}

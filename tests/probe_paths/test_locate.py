@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from matstd.api.replanning import feeds_of
 from matstd.artefact.body import Base, contact, write_standard
 from matstd.artefact.tool.probe import Probe
 from matstd.cli import main
-from matstd.commands.probing.replan import feeds_of
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.evaluation import ball_centres

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+from matstd.api.replanning import by_probe, of_one_setup
 from matstd.artefact.brief.project_file import read_project
 from matstd.artefact.reach.bodies import Clamping
 from matstd.artefact.reach.workshop import Solid, Workshop, round_table
 from matstd.artefact.tool.probe import Probe
-from matstd.commands.probing.replan import _by_probe, _of_one_setup
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.evaluation import evaluate
@@ -126,8 +126,8 @@ def test_programs_name_their_tool_and_stand_in_order(stations, texts):
     assert [text.name for text in texts] == ["MS_A_1", "MS31_A_1", "MS_B_1"]
     assert [station.dialect.tool for station in stations] == [30, 31, 30]
     assert [text.heading.probe.length for text in texts] == [160.0, 200.0, 160.0]
-    by_probe = {words.tool: p for words, p in _by_probe(texts, None).items()}
-    assert {tool: [p.name for p in mine] for tool, mine in by_probe.items()} == {
+    by_tool = {words.tool: p for words, p in by_probe(texts, None).items()}
+    assert {tool: [p.name for p in mine] for tool, mine in by_tool.items()} == {
         30: ["MS_A_1", "MS_B_1"],
         31: ["MS31_A_1"],
     }
@@ -209,10 +209,10 @@ def test_a_clamping_without_a_touch_is_refused(small, wanted):
 def test_a_standard_is_planned_again_in_the_set_up_of_the_log(texts, small):
     machine = VirtualMachine(golden.machine())
     parts = logs(texts, small, [machine] * 3)
-    here, others = _of_one_setup(texts, parts[:2])
+    here, others = of_one_setup(texts, parts[:2])
     assert ([p.name for p in here], others) == (["MS_A_1", "MS31_A_1"], ["b"])
     with pytest.raises(DesignError, match="logs of set-up a, b, expected those of one"):
-        _of_one_setup(texts, parts)
+        of_one_setup(texts, parts)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,11 +10,7 @@ from matstd.commands.compensation.options import add_program, add_state
 from matstd.twin.errors import DesignError
 
 if TYPE_CHECKING:
-    from matstd.commands.compensation.job import Job
-    from matstd.compensation.tables import Played
-
-OURS = ("*/*", "report.html", "tables.xlsx", "tables/*.csv", "pictures/*.png", "compensation.json")
-"""Results that not every compensation leaves."""
+    from matstd.api.compensating import Compensation
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -73,112 +68,45 @@ def run(args: argparse.Namespace) -> int:
         raise DesignError("expected --program with --loads")
     if (args.program is None) != (args.output is None):
         raise DesignError("expected -o OUT with --program, and only there")
-    job = read_job(args)
-    return _tables(args, job) if args.program is None else _program(args, job)
+    machine = read_job(args)
+    return _tables(args, machine) if args.program is None else _program(args, machine)
 
 
-def _program(args: argparse.Namespace, job: Job) -> int:
+def _program(args: argparse.Namespace, machine: Compensation) -> int:
     """A compensated program, its points as a table, its picture."""
-    from dataclasses import replace
-
-    from matstd.commands.compensation.job import by_tool
-    from matstd.compensation.part_programs import Frame, read_loads, read_part_program
-    from matstd.compensation.programs import (
-        TOLERANCE,
-        compensated,
-        write_program_result,
-        write_trajectory,
-    )
+    from matstd.api.compensating import beside_program
+    from matstd.commands.compensation.job import program_options
+    from matstd.compensation.programs import TOLERANCE
     from matstd.console import say
-    from matstd.report.compensation import draw_program, program_lines
-    from matstd.report.style import save
-    from matstd.twin.files import refuse_to_overwrite, write_whole
+    from matstd.report.compensation import program_lines
     from matstd.twin.units import UM
 
-    output = Path(args.output)
-    beside = [output.with_suffix(ending) for ending in (".csv", ".png", ".json")]
-    for path in (output, *beside):
-        refuse_to_overwrite(path, args.force)
-    frame = Frame(job.errors.chain, job.datum)
-    program = read_part_program(
-        args.program,
-        frame,
-        by_tool("--tool", args.tool),
-        by_tool("--tool-radius", args.tool_radius),
-        args.pass_m,
-        args.tcp_m,
-    )
-    if args.loads:
-        program = replace(program, loads=read_loads(args.loads))
+    output, options = Path(args.output), program_options(args)
     tolerance = TOLERANCE if args.tolerance is None else args.tolerance * UM
-    done = compensated(program, job.errors, job.header(1), tolerance)
-    write_whole(output, done.text)  # the first: where another run was faster, it is what is kept
-    write_trajectory(beside[0], done)
-    save(draw_program(done), beside[1])
-    write_program_result(beside[2], done)
+    done = machine.program(
+        args.program, output, tolerance=tolerance, options=options, force=args.force
+    )
     for line, is_first in program_lines(output.name, done):
         say(line, style="bold" if is_first else None)
-    say(f"{output}: look at {', '.join(path.name for path in beside)} beside it")
+    names = ", ".join(path.name for path in beside_program(output))
+    say(f"{output}: look at {names} beside it")
     return 0
 
 
-def _tables(args: argparse.Namespace, job: Job) -> int:
-    """Tables of every control, read back and played."""
-    from matstd.compensation.tables import (
-        FORMATS,
-        Harmful,
-        play_tables,
-        refuse_harmful,
-        write_table_results,
-        write_tables,
-    )
-    from matstd.progress import stages
-    from matstd.report.compensation import write_compensation_page
-    from matstd.twin.files import results_folder
-
-    names = _controls(args.control) or list(FORMATS)
-    opposite = _controls(args.opposite)
-    done: list[Played] = []
-    harmful: list[str] = []
-    with results_folder(args.tables, args.force, OURS) as folder, stages() as show:
-        for k, name in enumerate(names):
-            show("tables", k, len(names))
-            place, head = folder / name, job.header(-1 if name in opposite else 1)
-            words = FORMATS[name], place, job.errors, job.datum, head, job.poses
-            write_tables(*words)
-            played = play_tables(*words)
-            try:
-                refuse_harmful(played)
-                done.append(played)
-            except Harmful as refusal:
-                if args.control or len(harmful) + 1 == len(names):
-                    raise
-                harmful.append(str(refusal))
-                shutil.rmtree(place, ignore_errors=True)
-        head = job.header(1)
-        write_table_results(folder / "compensation.json", job.errors, head, done)
-        write_compensation_page(folder, job.errors, head, done, Path(args.model).name)
-    _report(args, done, harmful)
-    return 0
-
-
-def _controls(names: list[str]) -> list[str]:
-    from matstd.compensation.tables import FORMATS
-
-    for name in names:
-        if name not in FORMATS:
-            raise DesignError(f"control {name}: expected one of {', '.join(FORMATS)}")
-    return list(dict.fromkeys(names))
-
-
-def _report(args: argparse.Namespace, done: list[Played], harmful: list[str]) -> None:
+def _tables(args: argparse.Namespace, machine: Compensation) -> int:
     """Every control in a line, what it cannot hold in another, then the tables not written."""
     from matstd.console import say
+    from matstd.progress import stages
     from matstd.report.compensation import table_lines
 
-    for played in done:
+    with stages() as show:
+        found = machine.tables(
+            args.tables, args.control, opposite=args.opposite, force=args.force, progress=show
+        )
+    for played in found.done:
         for line, is_first in table_lines(played):
             say(line, style="bold" if is_first else None)
-    for refusal in harmful:
+    for refusal in found.refused:
         say(f"not written: {refusal}", style="bold")
     say(f"{args.tables}: look at report.html, compensation.json")
+    return 0

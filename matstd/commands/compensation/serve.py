@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from matstd.commands.compensation.options import add_state
 
 if TYPE_CHECKING:
-    from matstd.commands.compensation.job import Job
+    from matstd.api.compensating import Compensation
     from matstd.compensation.service import OutputLimits, Service
 
 
@@ -47,21 +47,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Answer until somebody stops it."""
+    """Answer until it is stopped."""
     import asyncio
     import logging
 
     from matstd.commands.compensation.job import read_job
-    from matstd.compensation.service import OutputLimits, Service, serve
+    from matstd.compensation.service import OutputLimits, serve
     from matstd.console import say
     from matstd.twin.units import UM
 
     limits = OutputLimits(args.most * UM, args.rate * UM, args.patience, args.hold)
-    job = read_job(args)
+    machine = read_job(args)
     if args.linuxcnc:
-        return _on_linuxcnc(args.linuxcnc, job, limits)
-    service = Service(job.errors, job.datum.length, job.datum, limits)
-    logging.getLogger("asyncua").setLevel(logging.CRITICAL)  # what stops it is told by us
+        return _on_linuxcnc(args.linuxcnc, machine, limits)
+    service = machine.service(limits)
+    logging.getLogger("asyncua").setLevel(logging.CRITICAL)
 
     def ready() -> None:
         say(f"{args.endpoint}: {_corrected(service)}; Ctrl-C stops it")
@@ -70,8 +70,8 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _on_linuxcnc(ini: str, job: Job, limits: OutputLimits) -> int:
-    """Write the files of the control, answer its component until somebody stops it."""
+def _on_linuxcnc(ini: str, machine: Compensation, limits: OutputLimits) -> int:
+    """Write the files of the control, answer its component until it is stopped."""
     import asyncio
     from pathlib import Path
 
@@ -82,12 +82,11 @@ def _on_linuxcnc(ini: str, job: Job, limits: OutputLimits) -> int:
         serve_linuxcnc,
         write_control_files,
     )
-    from matstd.compensation.service import Service
     from matstd.console import say
 
     control = Control(Path(ini))
-    control.check(job.errors.chain)
-    service = Service(job.errors, job.datum.length, job.datum, limits)
+    control.check(machine.errors.chain)
+    service = machine.service(limits)
     written = write_control_files(control, service, limits)
     say(f"{', '.join(map(str, written))}: for the control")
     if not control.reads_ours:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.options import add_effects, load_effects
+from matstd.options import add_effects
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -28,10 +28,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Print the table, the kinds that words may mean, or the whole story of one kind."""
     from matstd import console as words
+    from matstd.api.effects import register_effects
     from matstd.twin.errors import UnknownEffect
     from matstd.twin.library import find_kinds, kinds
 
-    load_effects(args.effects)
+    register_effects(*args.effects)
     console = words.console()
     query = " ".join(args.kind)
     found = find_kinds(query) if query else kinds()

@@ -1,10 +1,6 @@
 """`matstd machines`: the machines that come with the tool, with the source of every figure."""
 
 import argparse
-from importlib.resources import files
-
-ERRORS = "-errors"
-"""Ending of the name of a machine's error file."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -17,29 +13,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def names() -> list[str]:
-    """Names of the machines."""
-    folder = files("matstd").joinpath("machines")
-    stems = [path.name.removesuffix(".toml") for path in folder.iterdir()]
-    return sorted(stem for stem in stems if not stem.endswith(ERRORS))
-
-
 def text(name: str, errors: bool = False) -> str:
-    """A machine file, or its error file.
+    """A machine file, or its error file, as text; raises DesignError for another name."""
+    from matstd.api.machines import machine_file
 
-    Raises:
-        DesignError: No such machine, with those that are.
-    """
-    from matstd.twin.errors import DesignError
-    from matstd.twin.words import did_you_mean
-
-    if name not in names():
-        available = ", ".join(names())
-        raise DesignError(
-            f"machine {name}: expected one of {available}{did_you_mean(name, names())}"
-        )
-    file = files("matstd").joinpath("machines", f"{name}{ERRORS if errors else ''}.toml")
-    return file.read_text(encoding="utf-8").replace("\r\n", "\n")
+    return machine_file(name, errors).read_text(encoding="utf-8").replace("\r\n", "\n")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -47,9 +25,10 @@ def run(args: argparse.Namespace) -> int:
     if args.name is not None:
         print(text(args.name, args.errors), end="")
         return 0
+    from matstd.api.machines import machine_names
     from matstd.console import say
 
-    for name in names():
+    for name in machine_names():
         say(name, style="bold")
         for line in _card(name):
             say(f"  {line}")

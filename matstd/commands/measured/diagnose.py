@@ -3,34 +3,16 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.folder import FOUND, write_found_arm
-from matstd.options import (
-    REPORT_FILES,
-    add_measured,
-    asked_printer,
-    first_model,
-    model_file,
-    print_report,
-)
-from matstd.twin.files import results_folder
+from matstd.options import add_measured, asked_printer, pitches, starting_model
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    from matstd.diagnosis.answer import Diagnosis, Step
-    from matstd.diagnosis.files import SavedModel
-    from matstd.twin.record import Run
-
-OURS = ("next_measurement_*.csv", FOUND, "pictures/*.png", *REPORT_FILES)
-"""Results that not every diagnosis leaves."""
-
+    from matstd.api.diagnosing import Diagnosis
+    from matstd.diagnosis.answer import Step
 
 WIDE = 40
-"""Letters of a cell of words, so that the table of figures fits beside them."""
-
+"""Width in characters of a cell of words, so that the table of figures fits beside them."""
 
 LISTS = (
     (
@@ -69,86 +51,36 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Diagnose; the folder appears whole or not at all."""
-    from matstd.inputs import read_inputs, with_pitches
+    from matstd.api.diagnosing import SOMETIMES, diagnose
+    from matstd.api.effects import register_effects
+    from matstd.progress import stages, turns
+    from matstd.twin.files import results_folder
     from matstd.twin.words import deviations_in
 
-    same = "so that its estimates are made anew: no touch counts twice"
-    run, saved = read_inputs(args.run_files, model_file(args), args.effects, same, args.hold_out)
-    run = with_pitches(run, args.pitch)
-    with deviations_in(run.touches.deviation_unit):
-        return _made(args, run, saved)
-
-
-def _made(args: argparse.Namespace, run: Run, saved: SavedModel | None) -> int:
-    """The diagnosis as files and in words."""
-    import numpy as np
-
-    from matstd.progress import stages, turns
-
-    printed_by = asked_printer(args)
-    with results_folder(args.output, args.force, OURS) as folder, stages() as show:
-        result = _diagnosed(args, run, saved, turns(show))
-        _write(args, result, saved, folder)
-        found = write_found_arm(folder, result.fit, _title(args))
+    register_effects(*args.effects)
+    model, pitch, printed_by = starting_model(args), pitches(args), asked_printer(args)
+    with results_folder(args.output, args.force, SOMETIMES) as folder, stages() as show:
+        found = diagnose(
+            args.run_files,
+            model,
+            add=args.add,
+            auto=args.auto,
+            only=args.only,
+            without=args.without,
+            hold_out=args.hold_out,
+            pitch=pitch,
+            progress=turns(show),
+        )
+        arm = found.write(folder)
         if not args.no_report:
-            from matstd.report.pages import write_diagnosis_page
-
             show("report", 0, 1)
-            title = _title(args)
-            write_diagnosis_page(result, folder, title, np.random.default_rng(0))
-            print_report(folder, printed_by)
-    _tell(args, result, found)
+            found.write_page(folder, printed_by)
+    with deviations_in(found.run.touches.deviation_unit):
+        _report(args, found, arm)
     return 0
 
 
-def _title(args: argparse.Namespace) -> str:
-    return ", ".join(Path(path).name for path in args.run_files)
-
-
-def _diagnosed(
-    args: argparse.Namespace,
-    run: Run,
-    saved: SavedModel | None,
-    progress: Callable[[float, str], None],
-) -> Diagnosis:
-    """The diagnosis, from the model file or from the ordinary model."""
-    import numpy as np
-
-    from matstd.diagnosis.answer import diagnose
-    from matstd.inputs import candidates, is_learnt_from, named_effects
-
-    start = saved.model if saved else first_model(args, run.touches.chain)
-    known = saved.estimates if saved and not is_learnt_from(saved, run) else None
-    added = named_effects(args.add, start.effects, run)
-    found = candidates(args.only, args.without, run)
-    rng = np.random.default_rng(0)
-    return diagnose(run, start, known, added, found, progress, rng)
-
-
-def _write(
-    args: argparse.Namespace, result: Diagnosis, saved: SavedModel | None, folder: Path
-) -> None:
-    """Result, model and plans as files."""
-    from matstd.diagnosis.files import plan_text, write_diagnosis, write_model
-    from matstd.inputs import is_learnt_from
-    from matstd.report.words import remark_sentence
-    from matstd.twin.files import write_whole
-    from matstd.twin.versions import versions
-
-    sentences = [remark_sentence(r) for r in result.remarks]
-    write_diagnosis(folder / "diagnosis.json", result, sentences)
-    fit = result.fit if args.auto else result.steps[len(args.add)].fit
-    before = saved if saved and not is_learnt_from(saved, result.run) else None
-    made_with = f"material-standard {versions()['material-standard']}"
-    promised = result.choice.best.error if fit is result.fit and result.choice else None
-    name = _title(args)
-    told = {s.effect.name: s.reported for s in result.steps if s.effect is not None}
-    write_model(folder / "model.toml", fit, name, before, made_with, promised, told)
-    for i, plan in enumerate(result.plans, start=1):
-        write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
-
-
-def _tell(args: argparse.Namespace, result: Diagnosis, found: str) -> None:
+def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     """The verdict, the error falling, what was found to copy, and what else should be known."""
     from rich.table import Column, Table
 
@@ -172,12 +104,12 @@ def _tell(args: argparse.Namespace, result: Diagnosis, found: str) -> None:
     known = result.run.touches, result.geometry, result.faults, result.trend
     for line, is_first in console_lines(*known):
         say(f"- {line}", style="bold" if is_first else None)
-    told = [
-        found,
+    said = [
+        arm,
         *(remark_sentence(r) for r in result.remarks),
         scanned_sentence(result.detectable),
     ]
-    for line in filter(None, told):
+    for line in filter(None, said):
         say(f"- {line}")
     if any(not s.is_named for s in result.steps[1:]) and not args.auto:
         say(

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
 
     from matstd.importers import Sheet
     from matstd.importers.instruments import PositioningTest
+    from matstd.importers.points import Meaning
     from matstd.twin.machine import Chain
     from matstd.twin.record import Run
 
@@ -134,11 +135,8 @@ def points(args: argparse.Namespace, sheets: list[Sheet]) -> tuple[Run, Chain]:
     from matstd.importers import import_points
     from matstd.twin.units import DEG, UM
 
-    meaning, then = (
-        ("part", "brought back to the nominal one")
-        if args.part
-        else ("standard", "the standard stands so")
-    )
+    meaning: Meaning = "part" if args.part else "standard"
+    then = "brought back to the nominal one" if args.part else "the standard stands so"
     u = _uncertainty(args, "u_um", UM)
     found = import_points(sheets, meaning, u, _machine(args), args.unit)
     if found.misplaced:

@@ -59,11 +59,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="time step of the laws, minutes (5)",
     )
     parser.add_argument(
-        "--beams",
-        metavar="BEAMS.toml",
-        help="bodies with section and sensors, for estimates by beam theory",
-    )
-    parser.add_argument(
         "--sensor-noise",
         metavar="K",
         type=float,
@@ -78,7 +73,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--u-um", type=float, default=1.0, help="standard uncertainty of a probed drift, µm (1)"
     )
-    parser.add_argument("--no-network", action="store_true", help="leave out the neural network")
     parser.add_argument(
         "--law", metavar="thermal.json", help="predict with this law of an earlier run; fit nothing"
     )
@@ -96,7 +90,7 @@ def run(args: argparse.Namespace) -> int:
 
 def _check(args: argparse.Namespace) -> None:
     """Refuse options that do not go together, or make no sense."""
-    if args.law and (args.held_out or args.train_until or args.beams or len(args.logs) > 1):
+    if args.law and (args.held_out or args.train_until or len(args.logs) > 1):
         raise DesignError("expected one LOG.csv and no training options with --law")
     if args.probed and not args.law:
         raise DesignError("expected --law thermal.json with --probed")
@@ -127,7 +121,6 @@ def _compare(args: argparse.Namespace) -> int:
         chosen,
         judge,
         offered,
-        read_beams,
         write_drift,
         write_prediction,
     )
@@ -136,8 +129,7 @@ def _compare(args: argparse.Namespace) -> int:
     from matstd.twin.files import results_folder
 
     record, train, held = _record(args)
-    beams = read_beams(args.beams, record) if args.beams else ()
-    laws = offered(record, beams, not args.no_network)
+    laws = offered(record)
     noise = args.sensor_noise
     noisy = record.with_noise(noise, np.random.default_rng(1)) if noise else None
     with results_folder(args.output, args.force, OURS) as folder, stages() as show:

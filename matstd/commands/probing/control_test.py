@@ -5,9 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.commands.probing.replan import programs_of
-from matstd.commands.probing.simulate import add_planted, checked_noise, virtual_machine
-from matstd.options import add_output, seen_from
+from matstd.commands.probing.simulate import add_planted, planted_machine
+from matstd.options import add_output
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -39,28 +38,26 @@ def run(args: argparse.Namespace) -> int:
 
     import numpy as np
 
+    from matstd.api.probing import save_run
+    from matstd.api.replanning import programs_of
     from matstd.artefact.body import read_standard
     from matstd.console import say, say_each
-    from matstd.probe_paths.language import read_dialect
     from matstd.probe_paths.linuxcnc import installed, rehearse
-    from matstd.twin.files import write_run
     from matstd.twin.units import MINUTE, UM
 
-    checked_noise(args)
     user = installed(args.user)
     design = Path(args.design)
     standard = read_standard(design / "standard.toml")
-    for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
-    dialect = read_dialect("linuxcnc")
-    machine = virtual_machine(args, design / "machine.toml", for_errors, dialect)
+    machine = planted_machine(args, design / "machine.toml", "linuxcnc")
+    for_noise = np.random.default_rng(args.seed).spawn(2)[1]
     files, out = _of_first_probe(programs_of(design)), _output_folder(args)
 
-    def told(made: ProgramSet) -> None:
+    def announce(made: ProgramSet) -> None:
         touches = sum(program.touches for program in made.programs)
         say(f"{touches} touches on LinuxCNC, about {made.duration / MINUTE:.0f} min")
 
-    made = rehearse(files, standard, machine, for_noise, out, args.touches, user, told)
-    write_run(out / "run.csv", made.run, seen_from(out, design / "machine.toml"))
+    made = rehearse(files, standard, machine, for_noise, out, args.touches, user, announce)
+    save_run(out / "run.csv", made.run, design / "machine.toml")
     say(
         f"{out / 'run.csv'}: {len(made.run)} touches from LinuxCNC's own log, "
         f"u = {made.u / UM:.3f} µm with the latch"

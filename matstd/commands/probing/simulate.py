@@ -4,28 +4,14 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from matstd.options import (
-    add_body,
-    add_effects,
-    add_output,
-    body_stated,
-    load_effects,
-    seen_from,
-    with_size,
-)
+from matstd.options import add_body, add_effects, add_output
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
-    import numpy as np
-
     from matstd.artefact.body import Standard
     from matstd.probe_paths.campaign import VirtualMachine
     from matstd.probe_paths.control import ReadProgram
-    from matstd.probe_paths.language import Dialect
-    from matstd.twin.files import SensorRecord
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -79,87 +65,60 @@ def run(args: argparse.Namespace) -> int:
     """Write the run file; a touch without contact stops the program and writes nothing."""
     import numpy as np
 
-    from matstd.artefact.body import read_standard
+    from matstd.api.probing import leaves_no_run, simulate
+    from matstd.api.standards import read_standard
     from matstd.console import say, say_assumed, say_each
-    from matstd.probe_paths.campaign import SMALLEST_U, ball_changes, effective_radii, simulate
-    from matstd.probe_paths.control import read_program, stated_probe
-    from matstd.probe_paths.language import read_dialect
     from matstd.progress import stages
-    from matstd.report.words import ball_lines
-    from matstd.twin.files import read_sensors, refuse_to_overwrite, write_run, write_whole
+    from matstd.twin.files import refuse_to_overwrite
     from matstd.twin.units import UM
 
-    checked_noise(args)
     refuse_to_overwrite(args.output, args.force)
+    machine = planted_machine(args, args.machine, args.control, args.sensors)
     standard = read_standard(args.standard)
-    stated = body_stated(args, standard)
-    real = _piece(args, standard)
-    for_errors, for_noise = np.random.default_rng(args.seed).spawn(2)
-    record = read_sensors(args.sensors) if args.sensors else None
-    dialect = read_dialect(args.control)
-    machine = virtual_machine(args, args.machine, for_errors, dialect, record)
-    probe = stated_probe(args.programs[0], args.probe_radius, args.probe_length, machine.dialect)
-    first = read_program(args.programs[0], machine.chain, probe, dialect)
-    if first.is_search or first.is_first:
-        return _search(args, first, real, machine, for_noise)
+    if program := leaves_no_run(args.programs[0], machine):
+        return _search(args, program, standard, machine)
     with stages() as show:
-        campaign = simulate(args.programs, real, machine, for_noise, probe, show, standard)
-    run = campaign.run if record is None else record.joined(campaign.run, campaign.begin)
+        found = simulate(
+            args.programs,
+            standard,
+            machine,
+            sensors=args.sensors,
+            probe_radius=args.probe_radius,
+            probe_length=args.probe_length,
+            progress=show,
+            **_piece(args),
+        )
+    run = found.campaign.run
     rms = float(np.sqrt(np.mean(run.deviation**2))) / UM
-    run, size = with_size(run, stated) if args.body_degC is not None else (run, [])
-    write_run(args.output, run, seen_from(Path(args.output).parent, args.machine))
-    # after it: a run that comes second does not touch the logs of the first
-    for name, text in campaign.logs.items() if args.logs else ():
-        write_whole(Path(args.logs) / name, text, newline="\r\n")
-    minutes = campaign.runs[-1].end / 60.0
+    found.save(args.output, args.machine, args.logs)
+    minutes = found.campaign.runs[-1].end / 60.0
     say(
         f"{args.output}: {len(run)} touches in {minutes:.0f} min, "
         f"deviations {rms:.3f} µm rms after the set-up was fitted"
     )
     say_each(f"planted: {text}" for text in args.add)
     say_assumed(run.touches.chain)
-    u = max(machine.noise, SMALLEST_U)
-    changes = ball_changes(campaign.parts, standard, machine.chain, u, dialect)
-    radii = effective_radii(campaign.parts, machine.chain, u, dialect)
-    say_each([*ball_lines(changes, radii=radii), *size, *run.remarks])
+    say_each(found.remarks)
     return 0
 
 
-def _piece(args: argparse.Namespace, believed: Standard) -> Standard:
-    """The standard as it really is, at its temperature.
-
-    Raises:
-        BadFile: The calibration of another standard than the design that is believed of it.
-        DesignError: The uncertainty of a temperature that is not stated.
-    """
-    from matstd.artefact.body import read_standard
-    from matstd.twin.errors import BadFile, DesignError
-
-    if args.body_degC is None and args.body_u_K is not None:
-        raise DesignError(f"--body-u-K {args.body_u_K:g}: expected --body-degC as well")
-    real = read_standard(args.real_standard) if args.real_standard else believed
-    if real.known and not believed.known and real.known.nominal != believed.fingerprint:
-        raise BadFile(
-            args.real_standard,
-            "calibration.nominal",
-            real.known.nominal,
-            f"{believed.fingerprint}, the fingerprint of '{believed.name}' (--standard)",
-        )
-    return real if args.body_degC is None else real.at(args.body_degC)
+def _piece(args: argparse.Namespace) -> dict[str, Any]:
+    """What the options say of the standard as it really is, and of the noise."""
+    return {
+        "real_standard": args.real_standard,
+        "body_temperature": args.body_degC,
+        "body_u": args.body_u_K,
+        "seed": args.seed,
+    }
 
 
 def _search(
-    args: argparse.Namespace,
-    program: ReadProgram,
-    standard: Standard,
-    machine: VirtualMachine,
-    rng: np.random.Generator,
+    args: argparse.Namespace, program: ReadProgram, standard: Standard, machine: VirtualMachine
 ) -> int:
     """Write the log of a program that measures nothing and leaves no run file."""
+    from matstd.api.probing import save_logs, simulate_log
     from matstd.console import say
-    from matstd.probe_paths.campaign import simulate_search
     from matstd.twin.errors import DesignError
-    from matstd.twin.files import write_whole
 
     if not args.logs or len(args.programs) > 1:
         raise DesignError(
@@ -167,9 +126,8 @@ def _search(
             "and no run file: run it alone, with --logs FOLDER"
         )
     reader = "replan" if program.is_search else "evaluate"
-    for name, text in simulate_search(program, standard, machine, rng).log.items():
-        write_whole(Path(args.logs) / name, text, newline="\r\n")
-        say(f"{Path(args.logs) / name}: {len(program.touches)} touches; matstd {reader} reads it")
+    for path in save_logs(args.logs, simulate_log(program, standard, machine, **_piece(args))):
+        say(f"{path}: {len(program.touches)} touches; matstd {reader} reads it")
     return 0
 
 
@@ -209,75 +167,31 @@ def add_planted(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, default=0, help="seed of noise and random errors (0)")
 
 
-def checked_noise(args: argparse.Namespace) -> None:
-    """Refuse noise and seed that mean nothing; raises DesignError."""
-    from matstd.twin.errors import DesignError
-
-    if not 0.0 <= args.noise_um < 1000.0 or args.seed < 0:
-        raise DesignError(
-            f"--noise-um {args.noise_um:g} --seed {args.seed}: "
-            "expected noise from 0 to 1000 µm and a seed from 0 up"
-        )
-
-
-def virtual_machine(
-    args: argparse.Namespace,
-    machine_file: str | Path,
-    rng: np.random.Generator,
-    dialect: Dialect,
-    record: SensorRecord | None = None,
+def planted_machine(
+    args: argparse.Namespace, machine: str | Path, control: str, sensors: str | None = None
 ) -> VirtualMachine:
-    """The machine as it really is, with the effects that the user plants in it.
+    """The machine as it really is, with what the options of `add_planted` plant in it.
 
     Args:
-        args: With the options of `add_planted`.
-        machine_file: Its nominal kinematics.
-        rng: For random errors.
-        dialect: Of its control.
-        record: What drives effects, by the clock.
+        args: The options.
+        machine: Its nominal kinematics.
+        control: Its control.
+        sensors: What drives effects, by the clock.
     """
-    import numpy as np
-
-    from matstd.probe_paths.campaign import FIRST_MORNING, VirtualMachine, effects_over_record
-    from matstd.sensitivity.population import Population, drawn_errors
-    from matstd.twin.files import read_errors, read_machine
-    from matstd.twin.frames import fixed_xyz, pose
-    from matstd.twin.library import parse_sized_effect, parse_sizes
+    from matstd.api.effects import register_effects
+    from matstd.api.probing import virtual_machine
     from matstd.twin.units import UM
 
-    chain = read_machine(machine_file)
-    load_effects(args.effects)
-    errors = read_errors(args.errors, chain) if args.errors else []
-    if args.random_errors:
-        errors = drawn_errors(Population(chain), rng)
-    planted = [parse_sized_effect(text, chain) for text in args.add]
-    units = {**dict.fromkeys("XYZ", "mm"), **dict.fromkeys("ABC", "rad")}
-    given = args.setup_error
-    stands = parse_sizes(f"--setup-error {given}", given, units) if given else {}
-    units = {"radius": "mm", "length": "mm"}
-    given = args.probe_error
-    probe = parse_sizes(f"--probe-error {given}", given, units) if given else {}
-    return VirtualMachine(
-        chain,
-        effects_over_record([*errors, *planted], record),
-        setup_error=pose(
-            fixed_xyz(np.array([stands.get(a, 0.0) for a in "ABC"])),
-            np.array([stands.get(a, 0.0) for a in "XYZ"]),
-        ),
-        radius_error=probe.get("radius", 0.0),
-        length_error=probe.get("length", 0.0),
+    register_effects(*args.effects)
+    return virtual_machine(
+        machine,
+        args.errors,
+        random_errors=args.random_errors,
+        add=args.add,
         noise=args.noise_um * UM,
-        begin=FIRST_MORNING if record is None else record.begin,
-        dialect=dialect,
-        temperature=_thermometers(record),
+        setup_error=args.setup_error or "",
+        probe_error=args.probe_error or "",
+        sensors=sensors,
+        control=control,
+        seed=args.seed,
     )
-
-
-def _thermometers(record: SensorRecord | None) -> Callable[[str, float], float]:
-    """What the control reads of a sensor: the record, or 20 degC of one that is not in it."""
-    import numpy as np
-
-    if record is None:
-        return lambda name, now: 20.0
-    since, known = record.since(record.begin), record.temperature
-    return lambda name, now: float(np.interp(now, since, known[name])) if name in known else 20.0

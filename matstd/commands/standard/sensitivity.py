@@ -65,31 +65,25 @@ def run(args: argparse.Namespace) -> int:
 
 def _table(args: argparse.Namespace) -> int:
     """One column a parameter: µm/µm, or µm/µrad for an angular one."""
+    from matstd.api.machines import read_machine, sensitivities
     from matstd.console import say_assumed
-    from matstd.progress import stages, table_blocks
-    from matstd.sensitivity.first_order import sensitivity
-    from matstd.twin.files import read_machine, read_poses, refuse_to_overwrite, write_whole
-    from matstd.twin.units import UM, URAD
+    from matstd.progress import stages
+    from matstd.twin.files import refuse_to_overwrite
 
     refuse_to_overwrite(args.output, args.force)
     chain = read_machine(args.source)
-    unit = [URAD / UM if symbol.is_angular else 1.0 for symbol in chain.symbols]
-    lines = [",".join(symbol.name for symbol in chain.symbols)]
     with stages() as show:
-        q, length = read_poses(args.poses, chain)
-        for part in table_blocks("poses", len(q), show):
-            rows = sensitivity(chain, q[part], length[part]) * unit
-            lines += [",".join(f"{v:.9g}" for v in row) for row in rows]
-        write_whole(args.output, "\n".join(lines) + "\n")
-    print(f"{args.output}: {len(q)} poses, {len(chain.symbols)} parameters")
+        found = sensitivities(chain, args.poses, show)
+        found.save(args.output)
+    print(f"{args.output}: {len(found.S)} poses, {len(found.names)} parameters")
     say_assumed(chain)
     return 0
 
 
 def _study(args: argparse.Namespace) -> int:
     """Data, pictures and page of a study; the folder appears whole or not at all."""
+    from matstd.api.designing import Project
     from matstd.console import say_assumed, say_each
-    from matstd.design import Project
     from matstd.progress import stages
     from matstd.report.words import study_words
 

@@ -1,22 +1,19 @@
-"""What several commands leave in their folder of results."""
+"""The machine file of a serial arm as a run found it."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.geometry import found_arm
+from matstd.importers import machine_text
+from matstd.report.numbers import microns
+from matstd.twin.files import write_whole
 
 FOUND = "machine_found.toml"
 """Machine file of a serial arm with the lines of all joints as found."""
 
 
-def write_found_arm(folder: Path, fit: "Fit", title: str) -> str:
+def write_found_arm(folder: Path, fit: Fit, title: str) -> str:
     """Write it, and say what it is good for; nothing, and "", where the machine is no arm."""
-    from matstd.diagnosis.geometry import found_arm
-    from matstd.importers import machine_text
-    from matstd.report.numbers import microns
-    from matstd.twin.files import write_whole
-
     arm = found_arm(fit)
     if arm is None:
         return ""

@@ -1,0 +1,423 @@
+"""The errors of a machine as a model knows them, taken back: tables, programs, a live service."""
+
+import shutil
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from matstd.api.diagnosing import Diagnosis
+from matstd.api.effects import register_effects
+from matstd.compensation import field
+from matstd.compensation.field import Datum, MachineErrors, Share, State, datum_of, workspace
+from matstd.compensation.part_programs import Frame, Program, read_loads, read_part_program
+from matstd.compensation.programs import (
+    TOLERANCE,
+    Compensated,
+    compensated,
+    passed,
+    write_program_result,
+    write_shares,
+    write_trajectory,
+)
+from matstd.compensation.service import OutputLimits, Service
+from matstd.compensation.tables import (
+    FORMATS,
+    Harmful,
+    Header,
+    Played,
+    hashed,
+    header_of,
+    play_tables,
+    refuse_harmful,
+    write_table_results,
+    write_tables,
+)
+from matstd.diagnosis.drift import DriftLaw
+from matstd.diagnosis.files import SavedModel, model_of, read_model
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.remarks import Remark, ShortBeam
+from matstd.report.compensation import draw_program, draw_shares_along, write_compensation_page
+from matstd.report.style import save
+from matstd.twin.compute import Progress, silent
+from matstd.twin.display import Displayed
+from matstd.twin.elastic import short_beams
+from matstd.twin.errors import BadArgument, DesignError, UnknownEffect
+from matstd.twin.files import (
+    parse_toml,
+    read_errors,
+    read_machine,
+    read_poses,
+    read_text,
+    refuse_to_overwrite,
+    results_folder,
+    write_whole,
+)
+from matstd.twin.frames import Array
+from matstd.twin.library import parse_effect, parse_sized_effect
+from matstd.twin.machine import Chain
+from matstd.twin.record import Touches
+from matstd.twin.units import DEG
+
+SOMETIMES = (
+    "*/*",
+    "report.html",
+    "tables.xlsx",
+    "tables/*.csv",
+    "pictures/*.png",
+    "compensation.json",
+)
+"""Files that not every compensation by tables leaves."""
+
+
+@dataclass(frozen=True, eq=False)
+class TableResults:
+    """Tables of controls that were written, read back and played on the exact twin.
+
+    Attributes:
+        done: What the tables of every control correct and leave.
+        refused: Why tables of other controls were not written: they would make the machine worse.
+    """
+
+    done: tuple[Played, ...]
+    refused: tuple[Harmful, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Shares:
+    """What every error adds along a program or at poses.
+
+    Attributes:
+        touches: The poses.
+        whole: Deviation of the tool point from the datum's, (N, 3), mm.
+        each: What each error has of it.
+    """
+
+    touches: Touches
+    whole: Array
+    each: tuple[Share, ...]
+
+    def save(self, folder: str | Path, force: bool = False) -> None:
+        """Write contributions.csv and contributions.png, whole or not at all."""
+        names = ("contributions.csv", "contributions.png")
+        with results_folder(folder, force, names) as place:
+            write_shares(place / names[0], self.touches, self.whole, self.each)
+            save(draw_shares_along(self.touches.time, self.whole, self.each), place / names[1])
+
+
+@dataclass(frozen=True, slots=True)
+class ProgramOptions:
+    """What a part program leaves open.
+
+    Attributes:
+        tools: Lengths by number or name of the tool, mm; other tools have that of the datum.
+        radii: Radii of tools, mm, where the program goes beside a contour (RL, RR, G41, G42).
+        pass_m: M functions of the machine that move nothing and change no coordinates.
+        tcp_m: M functions of G-code that switch tool-point control on and off.
+        loads: File with the process forces by the lines of the program; None for none.
+
+    Example:
+        >>> ProgramOptions(tools={1: 120.0}, pass_m=[88]).tools
+        {1: 120.0}
+    """
+
+    tools: Mapping[int | str, float] | None = None
+    radii: Mapping[int | str, float] | None = None
+    pass_m: Sequence[int] = ()
+    tcp_m: Sequence[int] = ()
+    loads: str | Path | None = None
+
+    def read(self, path: str | Path, frame: Frame) -> Program:
+        """A part program with these options."""
+        tools, radii = dict(self.tools or {}), dict(self.radii or {})
+        program = read_part_program(path, frame, tools, radii, self.pass_m, self.tcp_m)
+        return replace(program, loads=read_loads(self.loads)) if self.loads else program
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Compensation(Displayed):
+    """A machine to be compensated; `compensate` and `Diagnosis.compensate` return it.
+
+    Attributes:
+        errors: As they are known, in their state.
+        datum: To which everything refers.
+        poses: Over which a compensation is judged, (N, A).
+        model: Hash of what the errors were read from; tables state it.
+        title: Name of the model.
+        remarks: What the user should know of the model.
+
+    Example:
+        >>> files = machine_file("hmc1995"), machine_file("hmc1995", errors=True)
+        >>> found = compensate(*files, tool_length=100.0).tables("tables", ["iso230"])
+        >>> [tables.files for tables in found.done]
+        [('iso230.csv',)]
+    """
+
+    errors: MachineErrors
+    datum: Datum
+    poses: Array
+    model: str
+    title: str
+    remarks: tuple[Remark, ...] = ()
+
+    def header(self, sign: int = 1) -> Header:
+        """Head of a table; -1 where a control wants the opposite sign."""
+        return header_of(self.errors.chain, self.model, self.datum, self.errors.state, sign)
+
+    def tables(
+        self,
+        folder: str | Path,
+        controls: Iterable[str] = (),
+        *,
+        opposite: Iterable[str] = (),
+        force: bool = False,
+        progress: Progress = silent,
+    ) -> TableResults:
+        """Write compensation tables, read them back and play them on the exact twin.
+
+        Args:
+            folder: New or empty; it appears whole or not at all, with report.html.
+            controls: iso230, sinumerik, linuxcnc or heidenhain; all without it.
+            opposite: Controls for which the sign of the values is turned.
+            force: Replace the results of an earlier run.
+            progress: Called with what is being done.
+
+        Raises:
+            Harmful: The tables of the only control, or of one that is named, would make the machine
+                worse.
+        """
+        asked, turned = _controls("control", controls), _controls("opposite", opposite)
+        names = asked or list(FORMATS)
+        done: list[Played] = []
+        refused: list[Harmful] = []
+        with results_folder(folder, force, SOMETIMES) as place:
+            for k, name in enumerate(names):
+                progress("tables", k, len(names))
+                head = self.header(-1 if name in turned else 1)
+                words = FORMATS[name], place / name, self.errors, self.datum, head, self.poses
+                write_tables(*words)
+                played = play_tables(*words)
+                try:
+                    refuse_harmful(played)
+                    done.append(played)
+                except Harmful as refusal:
+                    if asked or len(refused) + 1 == len(names):
+                        raise
+                    refused.append(refusal)
+                    shutil.rmtree(place / name, ignore_errors=True)
+            head = self.header()
+            write_table_results(place / "compensation.json", self.errors, head, done)
+            write_compensation_page(place, self.errors, head, done, self.title)
+        return TableResults(tuple(done), tuple(refused))
+
+    def program(
+        self,
+        source: str | Path,
+        output: str | Path,
+        *,
+        tolerance: float = TOLERANCE,
+        options: ProgramOptions | None = None,
+        force: bool = False,
+    ) -> Compensated:
+        """Compensate a part program; its points, picture and figures go beside it.
+
+        Args:
+            source: A Klartext (`.H`) or G-code (`.ngc`, `.nc`) program.
+            output: The compensated program.
+            tolerance: Between a path and the lines that it becomes, mm.
+            options: What the program leaves open.
+            force: Overwrite earlier results.
+        """
+        output = Path(output)
+        beside = beside_program(output)
+        for path in (output, *beside):
+            refuse_to_overwrite(path, force)
+        frame = Frame(self.errors.chain, self.datum)
+        program = (options or ProgramOptions()).read(source, frame)
+        done = compensated(program, self.errors, self.header(), tolerance)
+        write_whole(output, done.text)  # the first: where another run was faster, it is what stays
+        write_trajectory(beside[0], done)
+        save(draw_program(done), beside[1])
+        write_program_result(beside[2], done)
+        return done
+
+    def along(self, source: str | Path, options: ProgramOptions | None = None) -> Shares:
+        """What every error adds along a part program."""
+        frame = Frame(self.errors.chain, self.datum)
+        program = (options or ProgramOptions()).read(source, frame)
+        return self._shares(passed(program, self.errors))
+
+    def at(self, poses: str | Path) -> Shares:
+        """What every error adds at the poses of a file."""
+        return self._shares(self.errors.touches(*read_poses(poses, self.errors.chain)))
+
+    def _shares(self, touches: Touches) -> Shares:
+        whole = field.deviation(self.errors, touches) - self.datum.deviation(self.errors)
+        each = field.contributions(self.errors, touches, self.datum)
+        return Shares(touches, whole, tuple(each))
+
+    def service(self, limits: OutputLimits | None = None) -> Service:
+        """Corrections for a machine that moves; `matstd serve` gives them to a control."""
+        return Service(self.errors, self.datum.length, self.datum, limits or OutputLimits())
+
+
+def beside_program(output: Path) -> list[Path]:
+    """What is written beside a compensated program: its points, its picture, its figures."""
+    return [output.with_suffix(ending) for ending in (".csv", ".png", ".json")]
+
+
+def compensate(
+    model: Diagnosis | Fit | SavedModel | str | Path,
+    errors: str | Path | None = None,
+    *,
+    tool_length: float,
+    datum: Mapping[str, float] | None = None,
+    within: Mapping[str, tuple[float, float]] | None = None,
+    state: State | None = None,
+    add: Sequence[str] = (),
+    switch: Mapping[str, float] | None = None,
+    active: Sequence[str | Path] = (),
+) -> Compensation:
+    """A machine with known errors, to be compensated by tables, in programs or while it moves.
+
+    Args:
+        model: A diagnosis, a fit, a model, the path of a model file; or that of a machine file.
+        errors: Error file of a machine file.
+        tool_length: From the gauge point to the tip of the tool that stands at the datum, mm.
+        datum: Readings where the preset is taken, mm and rad; others are zero.
+        within: Workspace that is judged, mm and rad; other axes over their travel.
+        state: Time, temperatures, speed and load of the machine; one just switched on without it.
+        add: Further errors with their sizes, such as `"backlash(X)=3um"`.
+        switch: Factors of errors, 0 is off: by symbol, effect, kind, class, axis or all.
+        active: Tables that are active on the control, which must not be corrected twice.
+
+    Raises:
+        BadFile: A file that cannot be read, or an active table.
+        BadArgument: A reading beyond the travel of its axis.
+        DesignError: No error of an axis is known, or something that the model follows is not
+            stated.
+
+    Example:
+        >>> files = machine_file("hmc1995"), machine_file("hmc1995", errors=True)
+        >>> machine = compensate(*files, tool_length=100.0, within={"X": (-100.0, 100.0)})
+        >>> machine.header().datum
+        'X0 Z0 Y0 L100'
+    """
+    register_effects()
+    name = str(model) if isinstance(model, str | Path) else "the model"
+    state = state or State()
+    with _drives_stated(name):
+        known, remarks, content = _machine_errors(model, errors, state)
+    for text in add:
+        known = _with_added(known, text)
+    with _drives_stated(name):
+        known = with_unknowns(known)
+    known = known.switched(dict(switch or {}))
+    if not any(theta.any() for theta in known.theta):
+        raise DesignError(f"{name}: no error of an axis is known and switched on")
+    chain = known.chain
+    beams = tuple(ShortBeam(*found) for found in short_beams(chain, known.effects))
+    laws = [Path(e.path).read_bytes() for e in known.effects if isinstance(e, DriftLaw)]
+    title = model.title if isinstance(model, Diagnosis) else Path(name).name
+    out = Compensation(
+        errors=known,
+        datum=datum_of(chain, _within_travel(chain, "datum", datum or {}), tool_length),
+        poses=workspace(chain, _limits(chain, within or {})),
+        model=hashed(b"".join([content, *laws])),
+        title=title,
+        remarks=(*remarks, *beams),
+    )
+    for path in active:
+        Header.of(read_text(path), path).refuse_active(out.header(), path)
+    return out
+
+
+def _machine_errors(
+    model: Diagnosis | Fit | SavedModel | str | Path, errors: str | Path | None, state: State
+) -> tuple[MachineErrors, tuple[Remark, ...], bytes]:
+    """Errors of a machine, remarks on their model, and the content that tables have a hash of."""
+    if errors is not None and not isinstance(model, str | Path):
+        raise BadArgument("errors", errors, "none: the model has errors of its own")
+    if isinstance(model, Diagnosis):
+        return MachineErrors.of_model(model.model, state), (), model.model_text.encode()
+    if isinstance(model, Fit):
+        model = model_of(model)
+    if isinstance(model, SavedModel):
+        known = model.estimates.mean.tobytes() + model.estimates.root.tobytes()
+        return MachineErrors.of_model(model, state), model.left_out, known
+    content = Path(model).read_bytes if errors is None else None
+    if parse_toml(read_text(model), model).get("format") != "machine/1":
+        if content is None:
+            raise BadArgument("errors", errors, f"none: {model} has errors of its own")
+        saved = read_model(model)
+        return MachineErrors.of_model(saved, state), saved.left_out, content()
+    if errors is None:
+        raise DesignError(f"{model}: a machine without errors; expected --errors ERRORS.toml")
+    chain = read_machine(model)
+    found = MachineErrors.of_errors(chain, read_errors(errors, chain), state)
+    return found, (), Path(model).read_bytes() + Path(errors).read_bytes()
+
+
+@contextmanager
+def _drives_stated(model: str) -> Iterator[None]:
+    """Say which options state what a model follows, where something of it is not stated."""
+    try:
+        yield
+    except UnknownEffect as error:
+        expected = "expected --temperature, --rpm or --value for all that the model follows"
+        raise DesignError(f"{model}: {error}; {expected}") from error
+
+
+def _with_added(errors: MachineErrors, text: str) -> MachineErrors:
+    """With an effect that is added: of the size that is stated, or a saved law as it was saved."""
+    if "=" not in text:
+        effect = parse_effect(text, errors.chain)
+        if isinstance(effect, DriftLaw):
+            return errors.with_known([(effect, np.ones(1))])
+    added = parse_sized_effect(text, errors.chain)
+    return errors.with_known([(added.effect, added.theta)])
+
+
+def with_unknowns(errors: MachineErrors) -> MachineErrors:
+    """Saved laws with what is not known of them; raises UnknownEffect where a drive is missing."""
+    for number, effect in enumerate(errors.effects):
+        if isinstance(effect, DriftLaw):
+            effect.replay(errors.touches(np.zeros((1, len(errors.chain.axes))), 0.0))
+            theta, root = effect.whole.known
+            errors = errors.widened(number, effect.whole, theta[1:], root[1:, 1:])
+    return errors
+
+
+def _controls(argument: str, names: Iterable[str]) -> list[str]:
+    """Controls, each once."""
+    names = list(names)
+    for name in names:
+        if name not in FORMATS:
+            raise BadArgument(argument, name, f"one of {', '.join(FORMATS)}")
+    return list(dict.fromkeys(names))
+
+
+def _within_travel(chain: Chain, argument: str, readings: Mapping[str, float]) -> dict[str, float]:
+    """Readings by axis, mm and rad; raises BadArgument beyond the travel of an axis."""
+    for name, value in readings.items():
+        link = chain.links[chain.link_index(chain.axes[chain.axis_index(name)])]
+        unit = DEG if link.kind == "rotary" else 1.0
+        low, high = link.range
+        if not low <= value <= high:
+            expected = f"{low / unit:g} to {high / unit:g}, the travel of {name}"
+            raise BadArgument(argument, f"{name}={value / unit:g}", expected)
+    return dict(readings)
+
+
+def _limits(
+    chain: Chain, within: Mapping[str, tuple[float, float]]
+) -> dict[str, tuple[float, float]]:
+    """Ranges by axis, mm and rad."""
+    for name, ends in within.items():
+        for end in ends:
+            _within_travel(chain, "within", {name: end})
+        if not ends[0] <= ends[1]:
+            raise BadArgument("within", f"{name}={ends[0]:g}:{ends[1]:g}", "the smaller end first")
+    return dict(within)

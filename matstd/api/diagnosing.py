@@ -1,0 +1,255 @@
+"""What a model lacks: the result with its files, its page, and the compensation of the machine."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from matstd.api.arm import FOUND, write_found_arm
+from matstd.api.comparing import REPORT_FILES
+from matstd.api.runs import GEOMETRY, Runs, StartingModel, is_learnt_from, starting_run
+from matstd.diagnosis import answer
+from matstd.diagnosis.choice import candidate_effects
+from matstd.diagnosis.evidence import Progress, quiet
+from matstd.diagnosis.files import (
+    SavedModel,
+    model_text,
+    parsed_model,
+    plan_text,
+    write_diagnosis,
+)
+from matstd.diagnosis.fit import Fit
+from matstd.report.pages import Printer, printer, write_diagnosis_page, write_pdf
+from matstd.report.words import remark_sentence
+from matstd.twin.errors import BadArgument
+from matstd.twin.files import results_folder, write_whole
+from matstd.twin.library import is_visible, kinds, parse_effect, try_effect, users_files
+from matstd.twin.model import Effect
+from matstd.twin.record import Run
+from matstd.twin.versions import versions
+from matstd.twin.words import deviations_in
+
+if TYPE_CHECKING:
+    from matstd.api.compensating import Compensation
+
+SOMETIMES = ("next_measurement_*.csv", FOUND, "pictures/*.png", *REPORT_FILES)
+"""Files that not every diagnosis leaves."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Diagnosis(answer.Diagnosis):
+    """What a model lacks, with what it was made from; `diagnose` returns it.
+
+    Attributes:
+        before: The model file that it began with and that learnt from other runs.
+        title: Names of the runs.
+        named: Number of effects that the user named.
+        auto: Whether the model that is learnt has what the diagnosis found; else only effects that
+            the user named.
+
+    Example:
+        >>> found = diagnose("run.csv", only=["thermal-lag"])
+        >>> found.verdict.value, [effect.kind for effect in found.found]
+        ('missing effect', ['thermal-lag'])
+    """
+
+    before: SavedModel | None = None
+    title: str = ""
+    named: int = 0
+    auto: bool = False
+
+    @property
+    def learnt(self) -> Fit:
+        """The fit of the model that is saved and that compensates."""
+        return self.fit if self.auto else self.steps[self.named].fit
+
+    @property
+    def model_text(self) -> str:
+        """Text of the model file."""
+        made_with = f"material-standard {versions()['material-standard']}"
+        is_all = self.learnt is self.fit and self.choice is not None
+        promised = self.choice.best.error if is_all and self.choice else None
+        told = {s.effect.name: s.reported for s in self.steps if s.effect is not None}
+        return model_text(self.learnt, self.title, self.before, made_with, promised, told)
+
+    @property
+    def model(self) -> SavedModel:
+        """What the model file says of the machine, for another run or a compensation."""
+        return parsed_model(self.model_text, "model.toml", self.learnt.model.effects)
+
+    def compensate(self, **options: Any) -> "Compensation":
+        """The compensation of the machine by the model that was learnt.
+
+        Args:
+            options: As of `matstd.compensate`, `tool_length` among them.
+        """
+        from matstd.api.compensating import compensate
+
+        return compensate(self, **options)
+
+    def save(self, folder: str | Path, pdf: bool = False, force: bool = False) -> Path:
+        """Write diagnosis.json, model.toml and the page into a folder, whole or not at all.
+
+        Args:
+            folder: New or empty.
+            pdf: Print the page into report.pdf, too.
+            force: Replace the results of an earlier run.
+        """
+        printed_by = printer() if pdf else None
+        with results_folder(folder, force, SOMETIMES) as place:
+            self.write(place)
+            self.write_page(place, printed_by)
+        return Path(folder)
+
+    def page(self, folder: str | Path, pdf: bool = False, force: bool = False) -> Path:
+        """Write report.html with its pictures and tables into a folder; arguments as of `save`."""
+        printed_by = printer() if pdf else None
+        with results_folder(folder, force, SOMETIMES) as place:
+            self.write_page(place, printed_by)
+        return Path(folder) / "report.html"
+
+    def write(self, folder: Path) -> str:
+        """Write the results, without a page, into a folder that is there.
+
+        Returns:
+            A line on the machine of a serial arm as it was found; "" for any other machine.
+        """
+        with deviations_in(self.run.touches.deviation_unit):
+            sentences = [remark_sentence(r) for r in self.remarks]
+            write_diagnosis(folder / "diagnosis.json", self, sentences)
+            write_whole(folder / "model.toml", self.model_text)
+            for i, plan in enumerate(self.plans, start=1):
+                write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
+            return write_found_arm(folder, self.fit, self.title)
+
+    def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
+        """Write the page into a folder that is there."""
+        with deviations_in(self.run.touches.deviation_unit):
+            write_diagnosis_page(self, folder, self.title, np.random.default_rng(0))
+            if printed_by is not None:
+                write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
+
+
+def diagnose(
+    runs: Runs,
+    model: StartingModel = GEOMETRY,
+    *,
+    add: Sequence[str] = (),
+    auto: bool = False,
+    only: Sequence[str] = (),
+    without: Sequence[str] = (),
+    hold_out: Sequence[str] = (),
+    pitch: Mapping[str, float] | None = None,
+    progress: Progress = quiet,
+) -> Diagnosis:
+    """Find which effects a model lacks, and how far the error falls with each.
+
+    Args:
+        runs: A run, the path of a run file, or several of one machine in their order.
+        model: Starting model: `"geometry"`, `"setup"`, a model, or the path of a model file.
+        add: Effects that are added to the model, by name.
+        auto: Put what is found into the model that is saved, too.
+        only: Kinds or names of effects that are looked for; all without it.
+        without: Kinds or names of effects that are not looked for.
+        hold_out: Names of runs that are excluded from the fit, only their set-ups are fitted; the
+            result says how well the others predict them.
+        pitch: Pitches of screws or scales by axis, mm.
+        progress: Called with the share done and what is being done.
+
+    Raises:
+        BadFile: A file that cannot be read, or a model of another machine.
+        BadArgument: A name that means nothing here.
+        NotEnoughData: So few touches that nothing can be said.
+
+    Example:
+        >>> found = diagnose("run.csv", only=["thermal-lag"])
+        >>> [f"{1e3 * step.fit.test_rms:.2f} µm" for step in found.steps]
+        ['1.18 µm', '0.64 µm']
+    """
+    same = "so that its estimates are made anew: no touch counts twice"
+    run, start, saved, title = starting_run(runs, model, same, hold_out, pitch)
+    # a model of this very run would count its touches twice as a prior
+    before = saved if saved and not is_learnt_from(saved, run) else None
+    added = named_effects(add, start.effects, run)
+    found = answer.diagnose(
+        run,
+        start,
+        before.estimates if before else None,
+        added,
+        candidates(only, without, run),
+        progress,
+        np.random.default_rng(0),
+    )
+    known = {f.name: getattr(found, f.name) for f in fields(found)}
+    return Diagnosis(**known, before=before, title=title, named=len(added), auto=auto)
+
+
+def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> list[Effect]:
+    """Effects that a user wants to add.
+
+    Args:
+        names: As given.
+        known: Effects that are in the model already.
+
+    Raises:
+        UnknownEffect, UnknownAxis, UnknownSymbol: A name that means nothing here.
+        BadArgument: An effect that the model already has, that is given twice, or that moves
+            nothing in this run.
+    """
+    there = {effect.name for effect in known}
+    out: list[Effect] = []
+    for name in names:
+        effect = parse_effect(name, run.touches.chain)
+        place = users_files().get(effect.kind)
+        if place is not None:
+            try_effect(effect, run.touches, place)
+        if effect.name in there:
+            raise BadArgument("add", name, "another effect: it is in the model already")
+        if effect.name in {e.name for e in out}:
+            raise BadArgument("add", name, "every effect once: it is given twice")
+        if not is_visible(effect, run.touches):
+            raise BadArgument("add", name, "a visible effect: it moves nothing at these touches")
+        out.append(effect)
+    return out
+
+
+def candidates(only: Sequence[str], without: Sequence[str], run: Run) -> list[Effect] | None:
+    """Effects that may be found, narrowed by the user; None for all that make sense.
+
+    Args:
+        only: Kinds, or names of effects; empty for all.
+        without: Kinds, or names of effects, that are left out.
+
+    Raises:
+        BadArgument: A word that is no kind and no effect of this run, or nothing is left.
+    """
+    if not only and not without:
+        return None
+    everything = candidate_effects(run.touches)
+    words = {k.word for k in kinds()}
+    names = {_plain(e.name) for e in everything}
+    for argument, given in (("only", only), ("without", without)):
+        for word in given:
+            if word not in words and _plain(word) not in names:
+                expected = (
+                    f"a kind ({', '.join(sorted(words))}) or an effect that this run could show "
+                    "(matstd effects)"
+                )
+                raise BadArgument(argument, word, expected)
+    out = [e for e in everything if not only or _is_among(e, only)]
+    out = [e for e in out if not _is_among(e, without)]
+    if not out:
+        found = f"{' '.join(only)} --without {' '.join(without)}" if without else " ".join(only)
+        expected = "at least one effect that this run could show; nothing is left to look for"
+        raise BadArgument("only", found, expected)
+    return out
+
+
+def _plain(name: str) -> str:
+    return name.replace(" ", "")
+
+
+def _is_among(effect: Effect, words: Iterable[str]) -> bool:
+    return any(w == effect.kind or _plain(w) == _plain(effect.name) for w in words)

@@ -1,0 +1,417 @@
+"""Programs run on the twin of a machine, and logs of its control made measurements."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from os.path import relpath
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from matstd.api.effects import register_effects
+from matstd.api.machines import chain_of
+from matstd.api.standards import standard_of
+from matstd.artefact.body import Standard
+from matstd.diagnosis.remarks import body_sizes
+from matstd.probe_paths.campaign import (
+    FIRST_MORNING,
+    SMALLEST_U,
+    Campaign,
+    VirtualMachine,
+    ball_changes,
+    check_as_programmed,
+    check_changes,
+    effective_radii,
+    effects_over_record,
+    read_heights,
+    simulate_search,
+)
+from matstd.probe_paths.campaign import evaluate as evaluate_parts
+from matstd.probe_paths.campaign import simulate as run_on_twin
+from matstd.probe_paths.control import LogPart, ReadProgram, read_log, read_program, stated_probe
+from matstd.probe_paths.language import Dialect, read_dialect
+from matstd.report.words import ball_lines, remark_sentence
+from matstd.sensitivity.population import Population, drawn_errors
+from matstd.twin.compute import Progress, silent
+from matstd.twin.display import Displayed
+from matstd.twin.errors import BadArgument, BadFile, BadValue, DesignError, NotEnoughData
+from matstd.twin.files import SensorRecord, read_errors, read_sensors, write_run, write_whole
+from matstd.twin.frames import fixed_xyz, pose
+from matstd.twin.library import parse_sized_effect, parse_sizes
+from matstd.twin.machine import Chain
+from matstd.twin.record import Run, StatedBody, with_body
+from matstd.twin.units import UM
+
+T_NORMAL = 20.0
+"""What the control reads of a sensor that no record has, degC."""
+
+
+def virtual_machine(
+    machine: Chain | str | Path,
+    errors: str | Path | None = None,
+    *,
+    random_errors: bool = False,
+    add: Sequence[str] = (),
+    noise: float = 1.0 * UM,
+    setup_error: str = "",
+    probe_error: str = "",
+    sensors: str | Path | None = None,
+    control: str = "itnc530",
+    seed: int = 0,
+) -> VirtualMachine:
+    """A machine as it really is, with the errors and effects that are planted in it.
+
+    Args:
+        machine: Its nominal kinematics.
+        errors: Error file.
+        random_errors: Draw the errors from the default distributions instead.
+        add: Effects with their sizes: `"thermal-lag(EZZ)=25um,tau=18min"`, `"backlash(X)=3um"`.
+        noise: Standard deviation of one touch, mm.
+        setup_error: How the standard really stands, in its own frame: `"X=0.3mm,C=0.05deg"`.
+        probe_error: Of the probe, true less calibrated: `"radius=1um,length=20um"`.
+        sensors: File with what temperatures and spindle do by the clock; the run begins at its
+            first row.
+        control: Name of the control, or a dialect file of your own.
+        seed: Of the random errors.
+
+    Raises:
+        BadFile: A file that cannot be read.
+        BadArgument: Noise or a seed that makes no sense.
+        DesignError: An effect or a size that makes no sense.
+
+    Example:
+        >>> machine = virtual_machine("machine.toml", add=["backlash(X)=3um"])
+        >>> simulate(["programs/MS_A_1.H"], "standard.toml", machine).save("x.csv", "machine.toml")
+    """
+    register_effects()
+    if not 0.0 <= noise < 1000.0 * UM:
+        raise BadArgument("noise_um", f"{noise / UM:g}", "noise from 0 to 1000 µm")
+    if seed < 0:
+        raise BadArgument("seed", seed, "a seed from 0 up")
+    chain = chain_of(machine)
+    record = read_sensors(sensors) if sensors else None
+    known = read_errors(errors, chain) if errors else []
+    if random_errors:
+        known = drawn_errors(Population(chain), _children(seed)[0])
+    planted = [parse_sized_effect(text, chain) for text in add]
+    units = {**dict.fromkeys("XYZ", "mm"), **dict.fromkeys("ABC", "rad")}
+    stands = parse_sizes(f"--setup-error {setup_error}", setup_error, units) if setup_error else {}
+    units = {"radius": "mm", "length": "mm"}
+    probe = parse_sizes(f"--probe-error {probe_error}", probe_error, units) if probe_error else {}
+    return VirtualMachine(
+        chain,
+        effects_over_record([*known, *planted], record),
+        setup_error=pose(
+            fixed_xyz(np.array([stands.get(a, 0.0) for a in "ABC"])),
+            np.array([stands.get(a, 0.0) for a in "XYZ"]),
+        ),
+        radius_error=probe.get("radius", 0.0),
+        length_error=probe.get("length", 0.0),
+        noise=noise,
+        begin=FIRST_MORNING if record is None else record.begin,
+        dialect=read_dialect(control),
+        temperature=_thermometers(record),
+    )
+
+
+def _children(seed: int) -> list[np.random.Generator]:
+    """Generators for errors and for noise: the same noise whatever errors are drawn."""
+    return np.random.default_rng(seed).spawn(2)
+
+
+def _thermometers(record: SensorRecord | None) -> Callable[[str, float], float]:
+    """What the control reads of a sensor at a time."""
+    if record is None:
+        return lambda name, now: T_NORMAL
+    since, known = record.since(record.begin), record.temperature
+    return lambda name, now: (
+        float(np.interp(now, since, known[name])) if name in known else T_NORMAL
+    )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Simulation(Displayed):
+    """Programs that were run on the twin; `simulate` returns it.
+
+    Attributes:
+        run: The measurements.
+        campaign: What each program did, with the logs.
+        remarks: What the logs say of the probe, and what else the user should know.
+
+    Example:
+        >>> found = simulate(["programs/MS_A_1.H"], "standard.toml", "machine.toml")
+        >>> found.save("simulated.csv", "machine.toml")
+    """
+
+    run: Run
+    campaign: Campaign
+    remarks: tuple[str, ...]
+
+    def save(self, path: str | Path, machine: str | Path, logs: str | Path | None = None) -> None:
+        """Write the run file, and the logs into a folder of their own, each whole or not at all.
+
+        Args:
+            path: Run file.
+            machine: Machine file that the run file names.
+            logs: Folder; None for none.
+        """
+        save_run(path, self.run, machine)
+        # after it: a run that comes second does not touch the logs of the first
+        if logs is not None:
+            save_logs(logs, self.campaign.logs)
+
+
+def simulate(
+    programs: Sequence[str | Path],
+    standard: Standard | str | Path,
+    machine: VirtualMachine | Chain | str | Path,
+    *,
+    real_standard: Standard | str | Path | None = None,
+    body_temperature: float | None = None,
+    body_u: float | None = None,
+    sensors: str | Path | None = None,
+    probe_radius: float | None = None,
+    probe_length: float | None = None,
+    seed: int = 0,
+    progress: Progress = silent,
+) -> Simulation:
+    """Run emitted probing programs on the twin of a machine, and evaluate the logs they leave.
+
+    Args:
+        programs: Files in the order in which they are run.
+        standard: What is believed to be probed.
+        machine: As it really is (`virtual_machine`); a plain one has 1 µm of noise and no errors.
+        real_standard: The piece as it really is, a calibrated one, say.
+        body_temperature: Of the standard, degC, which the run states; 20, not stated, without it.
+        body_u: Its standard uncertainty, K.
+        sensors: The record that the machine was made with, to be joined to the run.
+        probe_radius: mm; must be that of the programs.
+        probe_length: mm; must be that of the programs.
+        seed: Of the noise.
+        progress: Called with what is being done.
+
+    Raises:
+        BadFile: A file that cannot be read, or a program made for another machine or standard.
+        NotReachable: A touch without contact.
+
+    Example:
+        >>> found = simulate(["programs/MS_A_1.H"], "standard.toml", "machine.toml")
+        >>> len(found.run)
+        33
+    """
+    believed = standard_of(standard)
+    stated = stated_body(believed, body_temperature, body_u)
+    real = _piece(believed, real_standard, body_temperature, body_u)
+    twin = machine if isinstance(machine, VirtualMachine) else virtual_machine(machine)
+    probe = stated_probe(programs[0], probe_radius, probe_length, twin.dialect)
+    campaign = run_on_twin(programs, real, twin, _children(seed)[1], probe, progress, believed)
+    run, sizes = campaign.run, []
+    if sensors is not None:
+        run = read_sensors(sensors).joined(run, campaign.begin)
+    if body_temperature is not None:
+        run = with_body(run, stated)
+        sizes = [remark_sentence(size) for size in body_sizes(run.touches)]
+    u = max(twin.noise, SMALLEST_U)
+    changes = ball_changes(campaign.parts, believed, twin.chain, u, twin.dialect)
+    radii = effective_radii(campaign.parts, twin.chain, u, twin.dialect)
+    return Simulation(run, campaign, (*ball_lines(changes, radii=radii), *sizes, *run.remarks))
+
+
+def leaves_no_run(program: str | Path, machine: VirtualMachine) -> ReadProgram | None:
+    """A search for the standard or a commissioning program, which leave a log alone; else None."""
+    read = read_program(program, machine.chain, dialect=machine.dialect)
+    return read if read.is_search or read.is_first else None
+
+
+def simulate_log(
+    program: ReadProgram,
+    standard: Standard | str | Path,
+    machine: VirtualMachine,
+    *,
+    real_standard: Standard | str | Path | None = None,
+    body_temperature: float | None = None,
+    body_u: float | None = None,
+    seed: int = 0,
+) -> Mapping[str, str]:
+    """Logs, by file name, of a program that leaves no measurements; arguments as of `simulate`."""
+    real = _piece(standard_of(standard), real_standard, body_temperature, body_u)
+    return simulate_search(program, real, machine, _children(seed)[1]).log
+
+
+def _piece(
+    believed: Standard,
+    real_standard: Standard | str | Path | None,
+    body_temperature: float | None,
+    body_u: float | None,
+) -> Standard:
+    """The standard as it really is, at its temperature.
+
+    Raises:
+        BadFile: The calibration of another standard than the design that is believed of it.
+        BadArgument: The uncertainty of a temperature that is not stated.
+    """
+    if body_temperature is None and body_u is not None:
+        raise BadArgument("body_u_K", f"{body_u:g}", "--body-degC as well")
+    real = believed if real_standard is None else standard_of(real_standard)
+    if real.known and not believed.known and real.known.nominal != believed.fingerprint:
+        raise BadFile(
+            real.name if isinstance(real_standard, Standard) else str(real_standard),
+            "calibration.nominal",
+            real.known.nominal,
+            f"{believed.fingerprint}, the fingerprint of '{believed.name}' (--standard)",
+        )
+    return real if body_temperature is None else real.at(body_temperature)
+
+
+def stated_body(standard: Standard, temperature: float | None, u: float | None) -> StatedBody:
+    """What is stated of a standard: its material, its temperature with the uncertainty of it.
+
+    Raises:
+        BadArgument: A temperature, or an uncertainty, that makes no sense.
+    """
+    material = standard.material
+    try:
+        return StatedBody(material.expansion, material.u_expansion, temperature, u)
+    except BadValue as error:
+        found, expected = error.facts["found"], str(error.facts["expected"])
+        raise BadArgument(str(error.facts["key"]), found, expected) from None
+
+
+def save_run(path: str | Path, run: Run, machine: str | Path) -> None:
+    """Write a run file that names its machine file as it is seen from there."""
+    folder = Path(path).parent.resolve()
+    write_run(path, run, Path(relpath(machine, folder)).as_posix())
+
+
+def save_logs(folder: str | Path, logs: Mapping[str, str]) -> list[Path]:
+    """Write logs as a control leaves them, each whole or not at all."""
+    paths = [Path(folder) / name for name in logs]
+    for path, text in zip(paths, logs.values(), strict=True):
+        write_whole(path, text, newline="\r\n")
+    return paths
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Evaluation(Displayed):
+    """Logs of a control made measurements; `evaluate` returns it.
+
+    Attributes:
+        measured: The measurements; None where the logs have touches on a ball alone.
+        chain: The machine.
+        probe_remarks: What the logs say of the probe.
+        remarks: What else the user should know.
+
+    Example:
+        >>> found = evaluate(["logs/MS_A_1.TXT"], "standard.toml", "machine.toml")
+        >>> found.save("evaluated.csv", "machine.toml")
+    """
+
+    measured: Run | None
+    chain: Chain
+    probe_remarks: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def run(self) -> Run:
+        """The measurements; raises NotEnoughData where the logs have none."""
+        if self.measured is None:
+            raise NotEnoughData("the logs hold no measurements, expected those of a program")
+        return self.measured
+
+    def save(self, path: str | Path, machine: str | Path) -> None:
+        """Write the run file, which names the machine file, whole or not at all."""
+        save_run(path, self.run, machine)
+
+
+def evaluate(
+    logs: Sequence[str | Path],
+    standard: Standard | str | Path,
+    machine: Chain | str | Path,
+    *,
+    u: float = 1.0 * UM,
+    z: Literal["gauge", "tip"] = "gauge",
+    probe_limit: float = 10.0 * UM,
+    programs: str | Path | None = None,
+    sensors: str | Path | None = None,
+    body_temperature: float | None = None,
+    body_u: float | None = None,
+) -> Evaluation:
+    """Measurements from the logs that probing programs left on a control.
+
+    Args:
+        logs: Of all probes and set-ups, in any order.
+        standard: As calibrated; beside its file may stand a folder `programs`.
+        machine: The machine.
+        u: Standard uncertainty of one touch, mm.
+        z: What Z the control returns from cycle 4: of the spindle gauge point, or of the pole of
+            the ball.
+        probe_limit: What the ball of the workshop may have moved between two of its logs, mm.
+        programs: Folder of the programs that the logs are compared with.
+        sensors: File with temperatures by the clock of the control.
+        body_temperature: Of the standard while it was probed, degC.
+        body_u: Its standard uncertainty, K.
+
+    Raises:
+        BadFile: A log that cannot be read, or that another program wrote.
+        DesignError: The probe has changed between two logs.
+
+    Example:
+        >>> found = evaluate(["logs/MS_A_1.TXT"], "standard.toml", "machine.toml")
+        >>> len(found.run)
+        33
+    """
+    if not 1e-3 <= u / UM <= 1000.0:
+        raise BadArgument("u_um", f"{u / UM:g}", "an uncertainty from 0.001 to 1000 µm")
+    if not 0.0 < probe_limit < float("inf"):
+        raise BadArgument("probe_limit_um", f"{probe_limit / UM:g}", "more than 0 µm")
+    chain, piece = chain_of(machine), standard_of(standard)
+    parts = [part for path in logs for part in read_log(path, chain.rotary_axes)]
+    if programs is not None or not isinstance(standard, Standard):
+        _check_programs(programs, standard, parts, chain)
+    dialect = Dialect(result_height=z)
+    changes = ball_changes(parts, piece, chain, u, dialect)
+    first = [part for part in parts if part.is_first]
+    heights = [read_heights(part, piece, chain) for part in first]
+    known = [(part.radius, part.heading.probe.radius) for part in first]
+    radii = effective_radii(parts, chain, u, dialect)
+    of_probe = tuple(ball_lines(changes, probe_limit, heights, radii, known))
+    if not any(part.is_measuring for part in parts) and of_probe:
+        return Evaluation(None, chain, of_probe)
+    check_changes(changes, probe_limit)
+    run = evaluate_parts(parts, piece, chain, u, dialect)
+    twice: list[str] = []
+    if sensors is not None:
+        record = read_sensors(sensors)
+        twice = [name for name in run.touches.temperature if name in record.temperature]
+        run = record.joined(run, min(part.begin for part in parts))
+    run = with_body(run, stated_body(piece, body_temperature, body_u))
+    if not changes and any(part.is_ball for part in parts):
+        once = "the ball was measured once: whether the probe has changed is not known"
+        of_probe = (*of_probe, once)
+    remarks = (
+        *(remark_sentence(size) for size in body_sizes(run.touches)),
+        *run.remarks,
+        *(f"T_{name}_degC: that of {sensors} counts, not the log's" for name in twice),
+        *(
+            f"{part.path}: {part.program} stopped after {len(part.number)} touches"
+            for part in parts
+            if not part.is_complete
+        ),
+    )
+    return Evaluation(run, chain, of_probe, remarks)
+
+
+def _check_programs(
+    folder: str | Path | None,
+    standard: Standard | str | Path,
+    parts: Sequence[LogPart],
+    chain: Chain,
+) -> None:
+    """Compare the logs with the programs that wrote them, where these are at hand."""
+    place = Path(str(standard)).parent / "programs" if folder is None else Path(folder)
+    names = {part.program for part in parts if part.is_measuring}
+    files = [f for f in place.glob("*") if f.stem in names and f.suffix in (".H", ".ngc")]
+    if folder is not None and not files:
+        raise DesignError(f"--programs {place}: found none of {', '.join(sorted(names))}")
+    programs = {file.stem: read_program(file, chain) for file in files}
+    check_as_programmed(parts, programs, chain)

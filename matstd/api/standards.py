@@ -1,0 +1,280 @@
+"""A standard under a coordinate measuring machine, and what measurements of it say of a task."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+from matstd.api.effects import register_effects
+from matstd.api.runs import Runs, is_learnt_from, listed, read_run
+from matstd.artefact import body
+from matstd.artefact.body import Standard, write_standard
+from matstd.artefact.brief import Task, read_task
+from matstd.artefact.certify import (
+    Allowed,
+    Calibrated,
+    calibrated,
+    check_places,
+    dmis_program,
+    judged,
+    read_cmm_points,
+)
+from matstd.artefact.worth import Calibration as KnownPlaces
+from matstd.diagnosis.files import SavedModel, check_machine, read_model, write_uncertainty
+from matstd.diagnosis.fit import Prior
+from matstd.diagnosis.task import TaskUncertainty, Visits
+from matstd.report.pages import write_uncertainty_page
+from matstd.report.task import measured_sentence, refusal_sentence, task_lines
+from matstd.report.words import remark_sentence
+from matstd.stages.budgets import PLAIN, budgets
+from matstd.twin.display import Displayed
+from matstd.twin.errors import BadArgument, DesignError, NotConforming
+from matstd.twin.model import Model
+from matstd.twin.record import Run
+from matstd.twin.units import UM
+
+
+def read_standard(path: str | Path) -> Standard:
+    """A standard, as designed or as calibrated (docs/formats/standard.md).
+
+    Raises:
+        BadFile: File, key, what stood there, what was expected.
+
+    Example:
+        >>> standard = read_standard("standard.toml")
+        >>> standard.known is None
+        True
+    """
+    return body.read_standard(path)
+
+
+def standard_of(standard: Standard | str | Path) -> Standard:
+    """A standard, read where a path is given."""
+    return standard if isinstance(standard, Standard) else read_standard(standard)
+
+
+@dataclass(frozen=True, repr=False)
+class Calibration(Calibrated, Displayed):
+    """A calibrated standard and what its calibration found; `calibrate` returns it.
+
+    Attributes:
+        refusal: Why the standard does not conform to its drawing; "" where it does.
+
+    Example:
+        >>> found = calibrate("standard.toml", "cmm.csv")
+        >>> found.save("calibrated.toml")
+        >>> read_standard("calibrated.toml").known is None
+        False
+    """
+
+    refusal: str = ""
+
+    def check(self) -> None:
+        """Raise NotConforming where the standard does not conform to its drawing."""
+        if self.refusal:
+            raise NotConforming(self.refusal)
+
+    def save(self, path: str | Path, cad: str | Path | None = None) -> None:
+        """Write the calibrated standard, whole or not at all.
+
+        Args:
+            path: Standard file.
+            cad: Folder for STEP, STL, 3MF and glTF of the standard as it is; None for none.
+        """
+        if cad is not None:
+            from matstd.cad_out.verify import export_standard  # the CAD kernel takes seconds
+
+            export_standard(self.standard, cad)
+        write_standard(path, self.standard)
+
+
+def calibrate(
+    standard: Standard | str | Path,
+    points: str | Path,
+    *,
+    u: float = 0.3 * UM,
+    u_feature: float = 0.3 * UM,
+    body_u: float = 0.5,
+    accept: bool = False,
+) -> Calibration:
+    """The standard as a coordinate measuring machine (CMM) found it, judged by its drawing.
+
+    Args:
+        standard: As designed.
+        points: File with the points of the CMM (docs/calibration.md).
+        u: Standard uncertainty of one point, mm.
+        u_feature: Of the place of a feature by what its points share (scales, squareness and stylus
+            of the CMM), as its certificate has it, mm.
+        body_u: Standard uncertainty of the temperature of the standard while it was measured, K.
+        accept: Take a standard that does not conform to its drawing.
+
+    Raises:
+        BadFile: A file that cannot be read, points in other units or far from every feature.
+        NotEnoughData: Too few points on a feature, or too few balls.
+        NotConforming: The standard does not conform to its drawing.
+
+    Example:
+        >>> found = calibrate("standard.toml", "cmm.csv", u=0.5 * UM)
+        >>> any(verdict.is_refused for verdict in found.verdicts)
+        False
+    """
+    from matstd.cad_out.details import CALIBRATED
+
+    for name, value in (("u_um", u), ("u_feature_um", u_feature)):
+        if not 0.001 <= value / UM <= 100.0:
+            raise BadArgument(name, f"{value / UM:g}", "an uncertainty from 0.001 to 100 µm")
+    if not 0.0 <= body_u <= 20.0:
+        raise BadArgument("body_u_K", f"{body_u:g}", "0 to 20 K")
+    nominal = as_designed(standard)
+    found = calibrated(nominal, read_cmm_points(points, nominal), u, u_feature)
+    found, causes = judged(nominal, found, Allowed(CALIBRATED, u_feature, body_u))
+    refusal = ""
+    if any(v.is_refused for v in found.verdicts):
+        refusal = f"{points}: {refusal_sentence(found.verdicts, causes)}"
+    known = {f.name: getattr(found, f.name) for f in fields(found)}
+    out = Calibration(**known, refusal=refusal)
+    if not accept:
+        out.check()
+    return out
+
+
+def cmm_program(standard: Standard | str | Path) -> str:
+    """The DMIS program that takes the points of a calibration on a CMM.
+
+    Args:
+        standard: As designed.
+
+    Example:
+        >>> cmm_program("standard.toml").count("PTMEAS/") > 100
+        True
+    """
+    from matstd.cad_out.details import datum_touches, engraved_on
+
+    nominal = as_designed(standard)
+    return dmis_program(nominal, datum_touches(nominal), engraved_on(nominal))
+
+
+def as_designed(standard: Standard | str | Path) -> Standard:
+    """A standard that was not calibrated; raises DesignError for another."""
+    nominal = standard_of(standard)
+    if nominal.known is not None:
+        name = nominal.name if isinstance(standard, Standard) else standard
+        raise DesignError(
+            f"{name}: calibrated with {nominal.known.source} already, expected the "
+            "standard as designed"
+        )
+    return nominal
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class TaskBudget(Displayed):
+    """Uncertainty of a measuring task; `uncertainty` returns it.
+
+    Attributes:
+        task: What is measured.
+        standard: What was measured.
+        found: Budgets by what results are corrected with, `as measured` first.
+        visits: What the visits found.
+        runs: Names of the visits with their numbers of touches.
+        remarks: On the runs and the model.
+
+    Example:
+        >>> found = uncertainty(["monday.csv", "friday.csv"], "standard.toml")
+        >>> found.sentence
+        '25 places on 4 faces at 4 table poses in 2 visits'
+    """
+
+    task: Task
+    standard: Standard
+    found: Mapping[str, TaskUncertainty]
+    visits: Visits
+    runs: tuple[tuple[str, int], ...]
+    remarks: tuple[str, ...]
+
+    @property
+    def sentence(self) -> str:
+        """How much was measured."""
+        return measured_sentence(next(iter(self.found.values())))
+
+    @property
+    def lines(self) -> list[str]:
+        """Sentences on the budgets."""
+        return task_lines(self.found, self.task.tolerance, self.visits)
+
+    def save(self, path: str | Path) -> None:
+        """Write the budgets as JSON, whole or not at all."""
+        write_uncertainty(path, self.task.name, self.found, self.task.tolerance)
+
+    def page(self, path: str | Path) -> None:
+        """Write an HTML page, with its tables beside it."""
+        write_uncertainty_page(
+            path,
+            self.task.name,
+            self.standard.name,
+            self.sentence,
+            self.found,
+            self.lines,
+            self.runs,
+            self.remarks,
+        )
+
+
+def uncertainty(
+    runs: Runs,
+    standard: Standard | str | Path,
+    task: Task | str | Path | None = None,
+    model: SavedModel | str | Path | None = None,
+) -> TaskBudget:
+    """Expanded uncertainty of a measuring task, from visits to calibrated faces (ISO 15530-3).
+
+    Args:
+        runs: Visits to one standard, two or more.
+        standard: What was measured, calibrated or as designed.
+        task: What is to be measured on workpieces; whatever was touched on the faces without it.
+        model: Of an earlier run, with which results are corrected.
+
+    Raises:
+        BadFile: A file that cannot be read, or a run of another standard.
+        NotEnoughData: Too few visits or places.
+
+    Example:
+        >>> found = uncertainty(["monday.csv", "friday.csv"], "standard.toml")
+        >>> found.save("uncertainty.json")
+    """
+    register_effects()
+    given = listed(runs)
+    names = [f"run {i}" if isinstance(v, Run) else v for i, v in enumerate(given, start=1)]
+    seen = [one if isinstance(one, Run) else read_run(one) for one in given]
+    _check_visits(names, seen)
+    piece = standard_of(standard)
+    for name, one in zip(names, seen, strict=True):
+        check_places(piece, one.touches, name)
+    remarks = [f"{name}: {r}" for name, one in zip(names, seen, strict=True) for r in one.remarks]
+    remarks += piece.remarks
+    models: dict[str, tuple[Model, Prior] | None] = {PLAIN: None}
+    if model is not None:
+        saved = model if isinstance(model, SavedModel) else read_model(model, runs=seen)
+        called = saved.source.run if isinstance(model, SavedModel) else str(model)
+        for one in seen:
+            check_machine(saved, one.touches.chain, called)
+        models[f"with {called}"] = saved.model, saved.estimates
+        remarks += [remark_sentence(one) for one in saved.left_out]
+        remarks += [
+            f"{called} has learnt from {name}: a visit proves more where it had no part in it"
+            for name, one in zip(names, seen, strict=True)
+            if is_learnt_from(saved, one)
+        ]
+    task = read_task(task) if isinstance(task, str | Path) else task or Task()
+    found, visits = budgets(seen, piece, KnownPlaces(), task, models)
+    sizes = tuple(zip(names, map(len, seen), strict=True))
+    return TaskBudget(task, piece, found, visits, sizes, tuple(remarks))
+
+
+def _check_visits(names: list[str], runs: list[Run]) -> None:
+    """Refuse one measurement that is given twice; raises DesignError."""
+    prints = [one.fingerprint for one in runs]
+    for k, fingerprint in enumerate(prints):
+        if fingerprint in prints[:k]:
+            raise DesignError(
+                f"{names[k]}: the same measurements as {names[prints.index(fingerprint)]}, "
+                "expected every visit once"
+            )

@@ -1,0 +1,189 @@
+"""The names of `matstd`: loaded when used, each with an example, all that commands can do."""
+
+import ast
+import doctest
+import importlib
+import inspect
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import matstd
+from matstd.artefact.body import write_standard
+from matstd.cli import main
+from matstd.compensation.field import MachineErrors
+from matstd.diagnosis.fit import fit_run
+from matstd.twin.library import ordinary_model
+
+ROOT = Path(__file__).parents[1]
+EXAMPLES = ROOT / "examples"
+API = sorted((ROOT / "matstd" / "api").glob("[a-z]*.py"))
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Files of one machine, as the examples name them: run, standard, program, log, effects."""
+    place = tmp_path_factory.mktemp("door")
+    sys.path.append(str(EXAMPLES))
+    ex06, ex07 = (importlib.import_module(n) for n in ("ex06_step", "ex07_program"))
+    shutil.copy(EXAMPLES / "hsm600u-machine.toml", place / "machine.toml")
+    shutil.copy(EXAMPLES / "my_effects.py", place / "my_effects.py")
+    project = (EXAMPLES / "hsm600u.toml").read_text(encoding="utf-8")
+    project = project.replace("hsm600u-machine.toml", "machine.toml")
+    (place / "project.toml").write_text(project, encoding="utf-8")
+    run = matstd.read_run(EXAMPLES / "hidden_effect" / "warm_up.csv")
+    matstd.write_run(place / "run.csv", run, "machine.toml")
+    write_standard(place / "standard.toml", ex06.standard())
+    ex07.main()["programs"].write(place / "programs")
+    files = [place / "programs" / "MS_A_1.H"], place / "standard.toml", place / "machine.toml"
+    for seed, name in enumerate(("probed.csv", "monday.csv", "friday.csv")):
+        logs = place / "logs" if seed == 0 else None
+        matstd.simulate(*files, seed=seed).save(place / name, place / "machine.toml", logs)
+    (place / "cmm.csv").write_text(cmm_points(ex06.standard()), encoding="utf-8")
+    return place
+
+
+def cmm_points(standard):
+    """Points of a CMM on every ball and face as designed, 0.3 µm of noise."""
+    rng = np.random.default_rng(1)
+    rows = ["feature,x [mm],y [mm],z [mm]"]
+    for ball in standard.spheres:
+        n = rng.normal(size=(25, 3)) * [1.0, 1.0, 0.0] + [0.0, 0.0, 1.0]
+        n /= np.linalg.norm(n, axis=1, keepdims=True)
+        rows += lines(ball.name, ball.centre + ball.radius * n, rng)
+    for patch in standard.patches:
+        uv = rng.uniform(-1.0, 1.0, (120, 2)) * patch.half_size
+        rows += lines(patch.name, patch.point(uv), rng)
+    return "\n".join(rows) + "\n"
+
+
+def lines(name, points, rng):
+    noisy = points + 0.3e-3 * rng.normal(size=points.shape)
+    return [f"{name}_{k},{x:.6f},{y:.6f},{z:.6f}" for k, (x, y, z) in enumerate(noisy)]
+
+
+@pytest.fixture
+def there(folder, tmp_path, monkeypatch):
+    """The folder of the examples, for one test."""
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def imported_for_types():
+    """Names that type checkers see, by module."""
+    (block,) = [n for n in ast.parse(inspect.getsource(matstd)).body if isinstance(n, ast.If)]
+    return {n.module: tuple(a.name for a in n.names) for n in block.body}
+
+
+def test_type_checkers_and_python_see_the_same_names() -> None:
+    lazy = {f"matstd.{module}": names for module, names in matstd._PLACES.items()}
+    assert imported_for_types() == lazy
+    assert sorted(matstd._MODULES) == sorted(matstd.__all__)
+    assert set(matstd.__all__) <= set(dir(matstd))
+    assert 35 <= len(matstd.__all__) <= 50
+
+
+@pytest.mark.parametrize("name", matstd.__all__)
+def test_every_name_is_there_and_says_what_it_is(name) -> None:
+    value = getattr(matstd, name)
+    if not isinstance(value, float):
+        assert inspect.getdoc(value), name
+
+
+def test_another_name_is_refused_as_by_any_module() -> None:
+    with pytest.raises(AttributeError, match="module 'matstd' has no attribute 'diagnoze'"):
+        matstd.diagnoze  # noqa: B018
+
+
+def test_importing_the_door_loads_nothing() -> None:
+    code = "import sys, matstd; dir(matstd); assert not {'numpy', 'scipy'} & set(sys.modules)"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.parametrize("path", API, ids=lambda p: p.stem)
+def test_examples_of_the_docstrings_run(path, there) -> None:
+    module = importlib.import_module(f"matstd.api.{path.stem}")
+    found = doctest.DocTestFinder(recurse=True).find(module)
+    runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
+    for test in found:
+        test.globs |= {name: getattr(matstd, name) for name in matstd.__all__} | {"np": np}
+        runner.run(test)
+    assert runner.summarize(verbose=False).failed == 0
+
+
+OWN = [n for n, module in matstd._MODULES.items() if module.startswith("api.")]
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_every_name_of_the_door_has_an_example(name) -> None:
+    assert ">>>" in (inspect.getdoc(getattr(matstd, name)) or ""), name
+
+
+def test_large_records_have_a_short_text(there) -> None:
+    run = matstd.read_run("run.csv")
+    model = ordinary_model(run.touches.chain)
+    records = [
+        run,
+        run.touches.chain,
+        model,
+        fit_run(run, model),
+        matstd.read_standard("standard.toml"),
+        matstd.simulate(["programs/MS_A_1.H"], "standard.toml", "machine.toml"),
+        matstd.volumetric(
+            matstd.machine_file("hmc1995"), matstd.machine_file("hmc1995", errors=True), poses()
+        ),
+    ]
+    for record in records:
+        assert len(repr(record)) < 400, type(record)
+        assert repr(record).count("\n") < 4
+        assert len(record._repr_html_()) < 5000
+
+
+def poses():
+    return np.zeros((2, 4)), np.full(2, 100.0)
+
+
+def test_a_run_can_be_given_as_a_path_a_run_or_several(there) -> None:
+    run = matstd.read_run("run.csv")
+    by_path, by_run = matstd.compare("run.csv"), matstd.compare(run)
+    np.testing.assert_array_equal(by_path.residual, by_run.residual)
+    later = matstd.compare(["run.csv", "probed.csv"])
+    assert len(later.run) == len(run) + 33
+
+
+def test_machine_errors_of_a_fit_are_those_of_its_file(there) -> None:
+    run = matstd.read_run("run.csv")
+    found = matstd.diagnose(run, only=["thermal-lag"], auto=True)
+    found.save("out")
+    saved = MachineErrors.of_model(matstd.read_model("out/model.toml"))
+    for errors in (MachineErrors.of_model(found.fit), MachineErrors.of_model(found.model)):
+        assert [e.name for e in errors.effects] == [e.name for e in saved.effects]
+        np.testing.assert_allclose(np.concatenate(errors.theta), np.concatenate(saved.theta))
+    q = np.zeros((1, len(run.touches.chain.axes)))
+    state = matstd.State(temperature={"spindle": 25.0})
+    by_file = matstd.compensate("out/model.toml", tool_length=160.0, state=state)
+    assert found.compensate(tool_length=160.0, state=state).header() == by_file.header()
+    assert len(by_file.errors.touches(q, 160.0)) == 1
+
+
+def test_commands_write_what_the_door_writes(there) -> None:
+    assert main(["diagnose", "run.csv", "--only", "thermal-lag", "-o", "command"]) == 0
+    matstd.diagnose("run.csv", only=["thermal-lag"]).save("door")
+    names = {p.relative_to("command") for p in Path("command").rglob("*") if p.is_file()}
+    assert names == {p.relative_to("door") for p in Path("door").rglob("*") if p.is_file()}
+    for name in ("diagnosis.json", "model.toml"):
+        assert Path("command", name).read_bytes() == Path("door", name).read_bytes()
+    with pytest.raises(matstd.DesignError, match="already exists"):
+        matstd.diagnose("run.csv", only=["thermal-lag"]).page("door")
+
+
+def test_an_argument_is_named_as_it_was_given(there, capsys) -> None:
+    with pytest.raises(matstd.BadArgument, match=r"^hold_out winter: expected one of run"):
+        matstd.diagnose("run.csv", hold_out=["winter"])
+    assert main(["diagnose", "run.csv", "--hold-out", "winter", "-o", "out"]) == 2
+    assert "matstd diagnose: --hold-out winter: expected one of run" in capsys.readouterr().err
