@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     )
     from matstd.artefact.body import Standard
     from matstd.compensation.field import State
+    from matstd.design import Project
     from matstd.diagnosis.answer import Verdict
     from matstd.diagnosis.files import SavedModel, read_model
     from matstd.diagnosis.fit import Fit
@@ -77,6 +78,7 @@ _PLACES = {
     ),
     "artefact.body": ("Standard",),
     "compensation.field": ("State",),
+    "design": ("Project",),
     "diagnosis.answer": ("Verdict",),
     "diagnosis.files": ("SavedModel", "read_model"),
     "diagnosis.fit": ("Fit",),
