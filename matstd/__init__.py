@@ -40,7 +40,6 @@ if TYPE_CHECKING:
     )
     from matstd.artefact.body import Standard
     from matstd.compensation.field import State
-    from matstd.design import Project
     from matstd.diagnosis.answer import Verdict
     from matstd.diagnosis.files import SavedModel, read_model
     from matstd.diagnosis.fit import Fit
@@ -78,7 +77,6 @@ _PLACES = {
     ),
     "artefact.body": ("Standard",),
     "compensation.field": ("State",),
-    "design": ("Project",),
     "diagnosis.answer": ("Verdict",),
     "diagnosis.files": ("SavedModel", "read_model"),
     "diagnosis.fit": ("Fit",),
