@@ -57,7 +57,7 @@ class Wish:
 
     Attributes:
         words: Key and value of the project file.
-        size: To tell small changes of one kind from large ones.
+        size: By which changes of one kind are ordered.
         kind: What is changed; one wish of a kind is named.
         reach: Machine, probe and set-up.
         rotary: Limits of the rotary axes, (R, 2), rad.
