@@ -95,7 +95,7 @@ def test_a_mesh_is_read_once(tmp_path, monkeypatch):
     monkeypatch.setattr(mesh_cover, "_triangles", lambda path: read.append(path) or usual(path))
     stl = 'stl = "clamp.stl"'
     brief = project(tmp_path, "sides_mm = [40.0, 25.0]\nheight_mm = 35.0", stl)
-    with pytest.raises(BadFile, match="CLAMP1 on the table: it reaches 17.5 mm into it"):
+    with pytest.raises(BadFile, match=r"CLAMP1 on the table: it reaches 17\.5 mm into it"):
         check_seat(brief)  # half of the box lies below its origin; other places are tried
     moved = replace(brief, bodies=tuple(replace(b, at=(150.0, 0.0, 90.0)) for b in brief.bodies))
     assert [s.low for s in moved.reach.workshop.bodies] != [
