@@ -2,11 +2,11 @@
 
 from matstd.report.task.calibration_words import (
     calibration_lines,
+    modulus_words,
     refusal_sentence,
     verdict_lines,
     verdict_rows,
 )
-from matstd.report.task.standard_words import modulus_words
 from matstd.report.task.task_words import (
     budget_rows,
     decision_sentence,

@@ -158,7 +158,7 @@ def _compare(args: argparse.Namespace) -> int:
 
 
 def _record(args: argparse.Namespace) -> tuple[DriftRecord, NDArray[np.int64], NDArray[np.int64]]:
-    """All hours, and the rows to learn from and to hold out."""
+    """All hours, and the rows to fit and to hold out."""
     from dataclasses import replace
 
     import numpy as np
@@ -178,7 +178,7 @@ def _record(args: argparse.Namespace) -> tuple[DriftRecord, NDArray[np.int64], N
         count = int(np.searchsorted(hours, until))
     if count < LEAST or len(record) - count < 2:
         raise DesignError(
-            f"{count} rows to learn from and {len(record) - count} held out: "
+            f"{count} rows to fit and {len(record) - count} held out: "
             f"expected {LEAST} and 2 at least (steps of {record.step / 60.0:g} min)"
         )
     train = np.arange(count)
