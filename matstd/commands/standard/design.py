@@ -26,9 +26,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
+    from matstd.api.designing import Project
     from matstd.artefact.reach import standing_remarks
     from matstd.console import say, say_assumed, say_each
-    from matstd.design import Project
     from matstd.progress import stages
     from matstd.report.task import modulus_words, task_lines
     from matstd.report.words import design_lines, proof_line
@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
     say_each(f"touch dropped: {refusal}" for refusal in dropped)
     tools = {one.dialect.tool for one in made.stations}
     say_each(
-        f"tool {tool} has no program: those before it make every touch that it could"
+        f"tool {tool} has no program: the probes before it make every touch that it reaches"
         for tool in brief.programs.further_tools
         if tool not in tools
     )
