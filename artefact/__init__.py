@@ -20,14 +20,6 @@ into `layout`, a hindrance for the probe into `reach`, for its place on the tabl
 criterion into `worth`.
 """
 
-from matstd.artefact.body import Limits, Standard, read_standard, write_standard
-from matstd.artefact.brief import Brief, PlacementOptions, read_project
-from matstd.artefact.compare import IdentifiabilityReport, identifiability_report
-from matstd.artefact.feasibility import Feasibility, feasibility
-from matstd.artefact.layout import Blank
-from matstd.artefact.place import Placement, design_standard
-from matstd.artefact.reach import Requests
-
 PARTS = (
     "body",
     "layout",
@@ -42,21 +34,3 @@ PARTS = (
     "place",
 )
 """From bottom to top: each imports only from those before it."""
-
-__all__ = [
-    "Blank",
-    "Brief",
-    "Feasibility",
-    "IdentifiabilityReport",
-    "Limits",
-    "Placement",
-    "PlacementOptions",
-    "Requests",
-    "Standard",
-    "design_standard",
-    "feasibility",
-    "identifiability_report",
-    "read_project",
-    "read_standard",
-    "write_standard",
-]

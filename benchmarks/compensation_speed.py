@@ -17,7 +17,8 @@ from matstd.compensation.part_programs import Frame, read_part_program
 from matstd.compensation.programs import compensated
 from matstd.compensation.service import PointCorrection
 from matstd.compensation.tables import header_of
-from matstd.twin import ordinary_model, read_machine
+from matstd.twin.files import read_machine
+from matstd.twin.library import ordinary_model
 from matstd.twin.units import NM
 
 MACHINE = Path(__file__).parents[1] / "examples" / "hsm600u-machine.toml"

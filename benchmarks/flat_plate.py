@@ -13,8 +13,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "fixtures"))
 from flat_plate import lag, write_plate
 
-from matstd.diagnosis import Verdict, diagnose
-from matstd.twin import read_run
+from matstd.diagnosis.answer import Verdict, diagnose
+from matstd.twin.files import read_run
 
 
 def main() -> None:

@@ -88,8 +88,8 @@ def least_squares(q, places):
 
 def told(folder, q, places):
     """The diagnosis of the same poses, by a run file."""
-    from matstd.diagnosis import diagnose
-    from matstd.twin import read_run
+    from matstd.diagnosis.answer import diagnose
+    from matstd.twin.files import read_run
 
     zero = REFLECTOR
     text = ['format = "machine/1"', 'name = "arm"', f'chain = "[w f {" ".join(NAMES)} t]"']

@@ -13,11 +13,5 @@ needles, `meshes` measures and writes them. Another file format
 is written in `build` beside `exchange` and gets its own figures in `verify.conformity`.
 """
 
-from matstd.cad_out.kernel import as_part, run_apart
-from matstd.cad_out.meshes import Mesh
-from matstd.cad_out.verify import Conformity, export_standard, measure
-
 PARTS = ("details", "making", "triangles", "meshes", "kernel", "verify")
 """From bottom to top: each imports only from those before it."""
-
-__all__ = ["Conformity", "Mesh", "as_part", "export_standard", "measure", "run_apart"]

@@ -15,38 +15,5 @@ controls hold, `programs` part programs, `service` corrects while the machine mo
 gives that to a control.
 """
 
-from matstd.compensation.field import (
-    Datum,
-    MachineErrors,
-    Result,
-    State,
-    correction,
-    datum_of,
-    result_of,
-    workspace,
-)
-from matstd.compensation.part_programs import Frame, read_part_program
-from matstd.compensation.programs import Compensated, compensated
-from matstd.compensation.tables import FORMATS, Played, play_tables, write_tables
-
 PARTS = ("field", "tables", "part_programs", "programs", "service", "linuxcnc")
 """From bottom to top: each imports only from those before it."""
-
-__all__ = [
-    "FORMATS",
-    "Compensated",
-    "Datum",
-    "Frame",
-    "MachineErrors",
-    "Played",
-    "Result",
-    "State",
-    "compensated",
-    "correction",
-    "datum_of",
-    "play_tables",
-    "read_part_program",
-    "result_of",
-    "workspace",
-    "write_tables",
-]

@@ -22,27 +22,6 @@ should know about a run is a record in `remarks`, its sentence in `matstd.report
 new effect needs nothing here.
 """
 
-from matstd.diagnosis.answer import (
-    Comparison,
-    Diagnosis,
-    Proof,
-    Step,
-    Verdict,
-    compare,
-    diagnose,
-    prove,
-)
-from matstd.diagnosis.files import (
-    SavedModel,
-    read_model,
-    write_comparison,
-    write_diagnosis,
-    write_model,
-    write_residuals,
-)
-from matstd.diagnosis.fit import Estimable, Fit, Prior, estimable, fit_run
-from matstd.diagnosis.residual import Region, Structure
-
 PARTS = (
     "regression",
     "fit",
@@ -59,27 +38,3 @@ PARTS = (
     "drift",
 )
 """From bottom to top: each imports only from those before it."""
-
-__all__ = [
-    "Comparison",
-    "Diagnosis",
-    "Estimable",
-    "Fit",
-    "Prior",
-    "Proof",
-    "Region",
-    "SavedModel",
-    "Step",
-    "Structure",
-    "Verdict",
-    "compare",
-    "diagnose",
-    "estimable",
-    "fit_run",
-    "prove",
-    "read_model",
-    "write_comparison",
-    "write_diagnosis",
-    "write_model",
-    "write_residuals",
-]

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.artefact import Brief, PlacementOptions, design_standard
+from matstd.artefact.brief import Brief, PlacementOptions
+from matstd.artefact.place import design_standard
 from matstd.artefact.worth import TouchOptions
 from matstd.twin.files import read_machine
 from matstd.twin.frames import apply

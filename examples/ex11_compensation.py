@@ -7,20 +7,11 @@ import tempfile
 from importlib.resources import files
 from pathlib import Path
 
-from matstd.compensation import (
-    FORMATS,
-    Frame,
-    MachineErrors,
-    State,
-    compensated,
-    datum_of,
-    play_tables,
-    read_part_program,
-    workspace,
-    write_tables,
-)
-from matstd.compensation.tables import header_of
-from matstd.twin import read_errors, read_machine
+from matstd.compensation.field import MachineErrors, State, datum_of, workspace
+from matstd.compensation.part_programs import Frame, read_part_program
+from matstd.compensation.programs import compensated
+from matstd.compensation.tables import FORMATS, header_of, play_tables, write_tables
+from matstd.twin.files import read_errors, read_machine
 
 MACHINES = Path(str(files("matstd").joinpath("machines")))
 PLATE = "G0 X0 Y0 Z5\nG1 Z0 F800\nG1 X300\nG1 Y200\nG1 X0\nG1 Y0\nG0 Z5\n"

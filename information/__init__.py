@@ -16,55 +16,5 @@ Results are numbers, enumerations and names; `matstd.report.words` puts them int
 criterion is a class in `criteria.measures`, a way to choose a module of `selection`.
 """
 
-from matstd.information.criteria import (
-    DesignCriterion,
-    Posterior,
-    five_criteria,
-    mean_prediction,
-    robust,
-    whitened,
-    with_potential,
-)
-from matstd.information.identifiability import (
-    Freedom,
-    Identifiability,
-    combinations,
-    identifiability,
-    supported_degrees,
-    ties,
-)
-from matstd.information.selection import (
-    Certificate,
-    Quota,
-    Selection,
-    exchange,
-    fill,
-    relaxed,
-    rounded,
-)
-
 PARTS = ("identifiability", "criteria", "selection")
 """From bottom to top: each imports only from those before it."""
-
-__all__ = [
-    "Certificate",
-    "DesignCriterion",
-    "Freedom",
-    "Identifiability",
-    "Posterior",
-    "Quota",
-    "Selection",
-    "combinations",
-    "exchange",
-    "fill",
-    "five_criteria",
-    "identifiability",
-    "mean_prediction",
-    "relaxed",
-    "robust",
-    "rounded",
-    "supported_degrees",
-    "ties",
-    "whitened",
-    "with_potential",
-]

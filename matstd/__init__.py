@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matstd.api.compensating import Compensation, ProgramOptions, compensate
     from matstd.api.designing import Project, Sensitivities
     from matstd.api.diagnosing import Diagnosis, diagnose
+    from matstd.api.drifting import DriftLaws, DriftPrediction, learn_drift, predict_drift
     from matstd.api.effects import register_effects
     from matstd.api.machines import (
         machine_file,
@@ -56,6 +57,7 @@ _PLACES = {
     "api.compensating": ("Compensation", "ProgramOptions", "compensate"),
     "api.designing": ("Project", "Sensitivities"),
     "api.diagnosing": ("Diagnosis", "diagnose"),
+    "api.drifting": ("DriftLaws", "DriftPrediction", "learn_drift", "predict_drift"),
     "api.effects": ("register_effects",),
     "api.machines": (
         "machine_file",
@@ -106,6 +108,8 @@ __all__ = [
     "Design",
     "DesignError",
     "Diagnosis",
+    "DriftLaws",
+    "DriftPrediction",
     "Effect",
     "Evaluation",
     "Fit",
@@ -128,8 +132,10 @@ __all__ = [
     "compensate",
     "diagnose",
     "evaluate",
+    "learn_drift",
     "machine_file",
     "machine_names",
+    "predict_drift",
     "read_machine",
     "read_model",
     "read_run",

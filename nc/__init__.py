@@ -7,10 +7,5 @@ moves nothing (`matstd.compensation`). `linuxcnc` has the
 files of that control: INI, HAL, variables and tools.
 """
 
-from matstd.nc.grammar import Flow, gcode_lines, klartext_blocks, run_order
-from matstd.nc.linuxcnc import Ini
-
 PARTS = ("grammar", "linuxcnc")
 """From bottom to top: each imports only from those before it."""
-
-__all__ = ["Flow", "Ini", "gcode_lines", "klartext_blocks", "run_order"]

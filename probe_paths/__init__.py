@@ -14,49 +14,5 @@ goes into `language`, another rule for what a program may do into `control`, ano
 program into `emit`.
 """
 
-from matstd.probe_paths.campaign import (
-    Campaign,
-    VirtualMachine,
-    evaluate,
-    orders,
-    probing_time,
-    simulate,
-)
-from matstd.probe_paths.control import (
-    Clock,
-    LogPart,
-    ReadProgram,
-    interpret,
-    read_log,
-    read_program,
-)
-from matstd.probe_paths.emit import Feeds, ProgramSet, make_programs
-from matstd.probe_paths.language import Dialect
-from matstd.probe_paths.plan import PlanOptions, Probe, TouchPlan, plan_touches, requests_at
-
 PARTS = ("plan", "language", "control", "emit", "stations", "campaign", "linuxcnc", "locate")
 """From bottom to top: each imports only from those before it."""
-
-__all__ = [
-    "Campaign",
-    "Clock",
-    "Dialect",
-    "Feeds",
-    "LogPart",
-    "PlanOptions",
-    "Probe",
-    "ProgramSet",
-    "ReadProgram",
-    "TouchPlan",
-    "VirtualMachine",
-    "evaluate",
-    "interpret",
-    "make_programs",
-    "orders",
-    "plan_touches",
-    "probing_time",
-    "read_log",
-    "read_program",
-    "requests_at",
-    "simulate",
-]

@@ -27,16 +27,6 @@ A new picture is a function from a result to a figure (`maps`, `plots`); a secti
 it with its caption. A new sentence is a function in `words`.
 """
 
-from matstd.report.layout import Page, Picture, Section, Table, write_page
-from matstd.report.pages import (
-    Design,
-    write_compare_page,
-    write_design_page,
-    write_diagnosis_page,
-    write_study_page,
-)
-from matstd.report.words import comparison_sentence, study_words, verdict_sentence
-
 PARTS = (
     "style",
     "layout",
@@ -54,19 +44,3 @@ PARTS = (
     "drift",
 )
 """From bottom to top: each imports only from those before it."""
-
-__all__ = [
-    "Design",
-    "Page",
-    "Picture",
-    "Section",
-    "Table",
-    "comparison_sentence",
-    "study_words",
-    "verdict_sentence",
-    "write_compare_page",
-    "write_design_page",
-    "write_diagnosis_page",
-    "write_page",
-    "write_study_page",
-]

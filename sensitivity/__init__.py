@@ -15,40 +15,5 @@ dependence of errors goes into `population`, a figure of random machines into `m
 way to name parts of a workspace into `shares`.
 """
 
-from matstd.sensitivity.first_order import (
-    Workspace,
-    jacobian,
-    latin_hypercube,
-    normal_length,
-    rms,
-    sensitivity,
-    variance_shares,
-)
-from matstd.sensitivity.montecarlo import Volumetric, volumetric
-from matstd.sensitivity.population import Distributions, Population, drawn_errors
-from matstd.sensitivity.shares import norm_shares, regions
-from matstd.sensitivity.study import Study, along_path, paper_trajectory, run_study
-
 PARTS = ("population", "first_order", "montecarlo", "shares", "study")
 """From bottom to top: each imports only from those before it."""
-
-__all__ = [
-    "Distributions",
-    "Population",
-    "Study",
-    "Volumetric",
-    "Workspace",
-    "along_path",
-    "drawn_errors",
-    "jacobian",
-    "latin_hypercube",
-    "norm_shares",
-    "normal_length",
-    "paper_trajectory",
-    "regions",
-    "rms",
-    "run_study",
-    "sensitivity",
-    "variance_shares",
-    "volumetric",
-]

@@ -19,19 +19,6 @@ Beside the parts stand the words that every room speaks: `units`, `frames`, `err
 `compute`, `versions`.
 """
 
-from matstd.twin.files import read_errors, read_machine, read_poses, read_run, write_run
-from matstd.twin.library import (
-    kinds,
-    load_user_effects,
-    ordinary_model,
-    parse_effect,
-    proposals,
-    register,
-)
-from matstd.twin.machine import Chain, Symbol, make_chain, tip
-from matstd.twin.model import Effect, Inner, Kind, Model, Parameter, Term, Where
-from matstd.twin.record import Run, Touches, at_poses
-
 PARTS = (
     "machine",
     "record",
@@ -44,31 +31,3 @@ PARTS = (
     "files",
 )
 """From bottom to top: each imports only from those before it."""
-
-__all__ = [
-    "Chain",
-    "Effect",
-    "Inner",
-    "Kind",
-    "Model",
-    "Parameter",
-    "Run",
-    "Symbol",
-    "Term",
-    "Touches",
-    "Where",
-    "at_poses",
-    "kinds",
-    "load_user_effects",
-    "make_chain",
-    "ordinary_model",
-    "parse_effect",
-    "proposals",
-    "read_errors",
-    "read_machine",
-    "read_poses",
-    "read_run",
-    "register",
-    "tip",
-    "write_run",
-]

@@ -6,23 +6,20 @@ drawing (`judged`); the program that takes the points (`dmis_program`); the touc
 task; standards that differ from their calibration as much as it allows.
 """
 
-from matstd.artefact.certify.calibration_fit import Calibrated, calibrated, fitted_ball
-from matstd.artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
+from matstd.artefact.certify.calibration_fit import Calibrated, calibrated
+from matstd.artefact.certify.cmm_points_file import read_cmm_points
 from matstd.artefact.certify.dmis import dmis_program
-from matstd.artefact.certify.task_places import check_places, curvature, like_task, on_faces
+from matstd.artefact.certify.task_places import check_places, like_task, on_faces
 from matstd.artefact.certify.true_places import misplaced
 from matstd.artefact.certify.verdicts import Allowed, CommonCause, judged
 
 __all__ = [
     "Allowed",
     "Calibrated",
-    "CmmPoints",
     "CommonCause",
     "calibrated",
     "check_places",
-    "curvature",
     "dmis_program",
-    "fitted_ball",
     "judged",
     "like_task",
     "misplaced",

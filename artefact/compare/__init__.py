@@ -12,11 +12,7 @@ from matstd.artefact.compare.comparison import (
     prior_rms,
     random_lots,
 )
-from matstd.artefact.compare.identifiability import (
-    Alone,
-    IdentifiabilityReport,
-    identifiability_report,
-)
+from matstd.artefact.compare.identifiability import IdentifiabilityReport, identifiability_report
 from matstd.artefact.compare.power import ERROR, RISK, WANTED, Power, proof_power, task_normals
 from matstd.artefact.compare.regions import WorstRegions, worst_regions
 
@@ -24,7 +20,6 @@ __all__ = [
     "ERROR",
     "RISK",
     "WANTED",
-    "Alone",
     "Alternative",
     "IdentifiabilityReport",
     "Power",

@@ -20,14 +20,7 @@ from matstd.artefact.reach.within_reach import (
     reach_of,
     spread_poses,
 )
-from matstd.artefact.reach.workshop import (
-    TABLE,
-    Solid,
-    Workshop,
-    clearance_in_workshop,
-    round_table,
-    still_frames,
-)
+from matstd.artefact.reach.workshop import TABLE, Solid, Workshop, round_table, still_frames
 
 __all__ = [
     "ANGLE",
@@ -44,7 +37,6 @@ __all__ = [
     "Solid",
     "Workshop",
     "clearance",
-    "clearance_in_workshop",
     "hangs",
     "joined",
     "places_on",

@@ -24,7 +24,6 @@ from matstd.artefact.worth.touch_choice import (
     touches_to_choose_from,
 )
 from matstd.artefact.worth.touch_criterion import (
-    CRITERIA,
     Criterion,
     CriterionOptions,
     criterion_for,
@@ -34,7 +33,6 @@ from matstd.artefact.worth.touch_criterion import (
 from matstd.artefact.worth.touch_curves import TouchCurve, touch_curve
 
 __all__ = [
-    "CRITERIA",
     "BallPlaces",
     "Calibration",
     "Criterion",

@@ -9,15 +9,7 @@ from matstd.cad_out.details.annotations import annotations_of
 from matstd.cad_out.details.detail_list import Details, details_of, engraved_on
 from matstd.cad_out.details.dot_font import CUTTER, DEPTH, DOT
 from matstd.cad_out.details.lettering import Lettering
-from matstd.cad_out.details.mounting import (
-    BALL,
-    RELIEF,
-    RELIEF_RADIUS,
-    SCREW,
-    Pad,
-    Screw,
-    relief_profile,
-)
+from matstd.cad_out.details.mounting import BALL, RELIEF, SCREW, Pad, Screw, relief_profile
 from matstd.cad_out.details.places import Bore, Side, datum_touches
 from matstd.cad_out.details.seats import Seat, glue_gap
 from matstd.cad_out.details.tolerances import CALIBRATED, DATUMS, Tolerance, notes_of, tolerances_of
@@ -30,7 +22,6 @@ __all__ = [
     "DEPTH",
     "DOT",
     "RELIEF",
-    "RELIEF_RADIUS",
     "SCREW",
     "Bore",
     "Details",

@@ -4,7 +4,6 @@ In: a folder with `standard.toml`. Out: STEP file, triangles and facts in the sa
 here loads the kernel at import; `run_apart` serves any library that may crash.
 """
 
-from matstd.cad_out.kernel.part import as_part
 from matstd.cad_out.kernel.process import run_apart, run_kernel
 from matstd.cad_out.kernel.worker import FACES, FACTS, MESH, SCENES, STANDARD, STEP
 
@@ -15,7 +14,6 @@ __all__ = [
     "SCENES",
     "STANDARD",
     "STEP",
-    "as_part",
     "run_apart",
     "run_kernel",
 ]

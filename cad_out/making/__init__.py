@@ -5,7 +5,7 @@ bodies answer for distances, and plate and pillars are cubes of finite elements.
 """
 
 from matstd.cad_out.making.cutting import Cutting
-from matstd.cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
+from matstd.cad_out.making.hints import ROUGHNESS, FaceHint
 from matstd.cad_out.making.making_file import FIRST_MODE, SAG, Making, making_of, write_making
 from matstd.cad_out.making.stiffness import Stiffness, stiffness_of, with_sag
 
@@ -17,7 +17,6 @@ __all__ = [
     "FaceHint",
     "Making",
     "Stiffness",
-    "hints_of",
     "making_of",
     "stiffness_of",
     "with_sag",

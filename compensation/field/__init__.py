@@ -6,14 +6,7 @@ corrects, a program, a table, a service, ends in one thing: readings that are ad
 """
 
 from matstd.compensation.field.inverse import Datum, correction, datum_of, played, shifted
-from matstd.compensation.field.machine_errors import (
-    Corrects,
-    Disturbance,
-    MachineErrors,
-    actual_tip,
-    deviation,
-    group_of,
-)
+from matstd.compensation.field.machine_errors import Corrects, MachineErrors, actual_tip, deviation
 from matstd.compensation.field.over_workspace import (
     Left,
     Result,
@@ -28,7 +21,6 @@ from matstd.compensation.field.state import State
 __all__ = [
     "Corrects",
     "Datum",
-    "Disturbance",
     "Left",
     "MachineErrors",
     "Result",
@@ -40,7 +32,6 @@ __all__ = [
     "correction",
     "datum_of",
     "deviation",
-    "group_of",
     "played",
     "relative_columns",
     "result_of",

@@ -5,28 +5,18 @@
 server.
 """
 
-from matstd.compensation.service.history import History
 from matstd.compensation.service.latency import prompt
 from matstd.compensation.service.opcua_server import NAMESPACE, serve
-from matstd.compensation.service.output import Output, OutputLimits, Quality, Sent
+from matstd.compensation.service.output import OutputLimits
 from matstd.compensation.service.point_correction import PointCorrection
-from matstd.compensation.service.service import DRIVEN_EVERY, Answer, Service
-from matstd.compensation.service.tabulated import CLOSE, ErrorTable, error_tables
+from matstd.compensation.service.service import DRIVEN_EVERY, Service
 
 __all__ = [
-    "CLOSE",
     "DRIVEN_EVERY",
     "NAMESPACE",
-    "Answer",
-    "ErrorTable",
-    "History",
-    "Output",
     "OutputLimits",
     "PointCorrection",
-    "Quality",
-    "Sent",
     "Service",
-    "error_tables",
     "prompt",
     "serve",
 ]

@@ -7,11 +7,9 @@ hold errors by name (`iso230`; `heidenhain` an axis's own alone) or corrections 
 `formats.FORMATS`.
 """
 
-from matstd.compensation.tables.acceptance import Acceptance
 from matstd.compensation.tables.by_name import point_spacing
 from matstd.compensation.tables.formats import (
     FORMATS,
-    Format,
     Harmful,
     Played,
     play_tables,
@@ -23,8 +21,6 @@ from matstd.compensation.tables.result_file import write_table_results
 
 __all__ = [
     "FORMATS",
-    "Acceptance",
-    "Format",
     "Harmful",
     "Header",
     "Played",

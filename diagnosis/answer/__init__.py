@@ -7,7 +7,7 @@ shown, `next_measurement` touches that tell look-alikes apart, `proof` compares 
 
 from matstd.diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
 from matstd.diagnosis.answer.comparison import Comparison, GroupResidual, compare
-from matstd.diagnosis.answer.detectable import Detectable, Scanned
+from matstd.diagnosis.answer.detectable import Detectable
 from matstd.diagnosis.answer.next_measurement import Plan
 from matstd.diagnosis.answer.proof import Proof, probed_volume, prove, seen_from
 from matstd.diagnosis.answer.run_diagnosis import diagnose
@@ -25,7 +25,6 @@ __all__ = [
     "Plan",
     "Proof",
     "RunErrors",
-    "Scanned",
     "Step",
     "Trend",
     "Verdict",

@@ -8,16 +8,10 @@ are correlated: poses, set-ups, stretches of time longer than the memory of what
 
 from matstd.diagnosis.choice.following import choice_remarks, field_shares, followed
 from matstd.diagnosis.choice.long_runs import found_in
-from matstd.diagnosis.choice.prediction import (
-    Choice,
-    ChoiceRule,
-    candidate_effects,
-    chosen_by_prediction,
-)
+from matstd.diagnosis.choice.prediction import Choice, candidate_effects, chosen_by_prediction
 
 __all__ = [
     "Choice",
-    "ChoiceRule",
     "candidate_effects",
     "choice_remarks",
     "chosen_by_prediction",

@@ -5,7 +5,7 @@ errors and lines of the rotary axes with uncertainty, what they do at the ends o
 changed since a saved model, corrections of the machine file, and the ladder from the set-up alone.
 """
 
-from matstd.diagnosis.geometry.arm_machine import FoundArm, found_arm
+from matstd.diagnosis.geometry.arm_machine import found_arm
 from matstd.diagnosis.geometry.changes import (
     changed_since,
     changing,
@@ -30,7 +30,6 @@ __all__ = [
     "CLEAR",
     "Correction",
     "Estimate",
-    "FoundArm",
     "FoundNumber",
     "GeometryRow",
     "LearntGeometry",

@@ -5,15 +5,12 @@ task, and how well the features are calibrated. Out: a `TaskUncertainty`, the bu
 expanded uncertainty, and what it leaves of a tolerance (`Guarded`).
 """
 
-from matstd.diagnosis.task.decision import CONFORMITY, Guarded, guarded
+from matstd.diagnosis.task.decision import guarded
 from matstd.diagnosis.task.uncertainty import LEVEL, TaskUncertainty, task_uncertainty
-from matstd.diagnosis.task.visits import MIN_PLACES, Visits, visits_of
+from matstd.diagnosis.task.visits import Visits, visits_of
 
 __all__ = [
-    "CONFORMITY",
     "LEVEL",
-    "MIN_PLACES",
-    "Guarded",
     "TaskUncertainty",
     "Visits",
     "guarded",

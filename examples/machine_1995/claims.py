@@ -15,8 +15,10 @@ import warm_up
 
 from matstd.compensation.field import MachineErrors, correction, played, shifted
 from matstd.diagnosis.drift import chosen, joined, judge, offered, read_log
-from matstd.twin import parse_effect, read_machine, tip
 from matstd.twin.compute import silent
+from matstd.twin.files import read_machine
+from matstd.twin.library import parse_effect
+from matstd.twin.machine import tip
 from matstd.twin.units import UM, URAD
 
 MACHINE = Path(str(files("matstd").joinpath("machines", "hmc1995.toml")))

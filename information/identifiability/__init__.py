@@ -14,13 +14,12 @@ from matstd.information.identifiability.estimable_combinations import (
 from matstd.information.identifiability.freedoms import (
     Freedom,
     FreedomFamily,
-    Reason,
     Resolution,
     Term,
     in_families,
 )
 from matstd.information.identifiability.nullspace import rank_analysis
-from matstd.information.identifiability.separation import Group, Identifiability, identifiability
+from matstd.information.identifiability.separation import Identifiability, identifiability
 
 __all__ = [
     "STRONG",
@@ -28,10 +27,8 @@ __all__ = [
     "EstimableCombination",
     "Freedom",
     "FreedomFamily",
-    "Group",
     "Identifiability",
     "Pair",
-    "Reason",
     "Resolution",
     "Term",
     "Ties",

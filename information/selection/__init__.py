@@ -10,12 +10,11 @@ from matstd.information.selection.certificate import Certificate, rounded
 from matstd.information.selection.groups import best_groups
 from matstd.information.selection.relaxation import ROUNDS, relaxed
 from matstd.information.selection.shares import heaviest
-from matstd.information.selection.touch_selection import Mask, Quota, Selection, exchange, fill
+from matstd.information.selection.touch_selection import Quota, Selection, exchange, fill
 
 __all__ = [
     "ROUNDS",
     "Certificate",
-    "Mask",
     "Quota",
     "Selection",
     "best_groups",

@@ -21,7 +21,7 @@ from matstd.probe_paths.campaign.disturbances import effects_over_record, in_cam
 from matstd.probe_paths.campaign.duration import probing_time
 from matstd.probe_paths.campaign.evaluation import ball_centres, evaluate
 from matstd.probe_paths.campaign.log_parts import checked_parts
-from matstd.probe_paths.campaign.order_study import Order, Ordering, orders
+from matstd.probe_paths.campaign.order_study import Ordering, orders
 from matstd.probe_paths.campaign.simulation import (
     SMALLEST_U,
     Campaign,
@@ -37,7 +37,6 @@ __all__ = [
     "BallChange",
     "Campaign",
     "ContactSolver",
-    "Order",
     "Ordering",
     "VirtualMachine",
     "ball_centres",

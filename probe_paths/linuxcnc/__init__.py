@@ -6,21 +6,12 @@ the Python of the system, as user interface and as component of the hardware lay
 (`TwinContact`) is asked over a socket where every stroke will meet the surface.
 """
 
-from matstd.probe_paths.linuxcnc.latch import latch_error, latch_u
-from matstd.probe_paths.linuxcnc.machine_config import machine_files
-from matstd.probe_paths.linuxcnc.rehearsal import Rehearsal, rehearse
+from matstd.probe_paths.linuxcnc.rehearsal import rehearse
 from matstd.probe_paths.linuxcnc.replanned import shortened
-from matstd.probe_paths.linuxcnc.session import installed, run_on_linuxcnc
-from matstd.probe_paths.linuxcnc.twin_contact import TwinContact
+from matstd.probe_paths.linuxcnc.session import installed
 
 __all__ = [
-    "Rehearsal",
-    "TwinContact",
     "installed",
-    "latch_error",
-    "latch_u",
-    "machine_files",
     "rehearse",
-    "run_on_linuxcnc",
     "shortened",
 ]

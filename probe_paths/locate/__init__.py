@@ -9,7 +9,6 @@ programs that are run beside those of a plan.
 from matstd.probe_paths.locate.again import planned_again
 from matstd.probe_paths.locate.beside import RAISED, Companions, companions
 from matstd.probe_paths.locate.find import Found, find_standard
-from matstd.probe_paths.locate.relief import Relief
 from matstd.probe_paths.locate.search_plan import plan_search
 from matstd.probe_paths.locate.spread import SPREADS, Spread
 
@@ -18,7 +17,6 @@ __all__ = [
     "SPREADS",
     "Companions",
     "Found",
-    "Relief",
     "Spread",
     "companions",
     "find_standard",

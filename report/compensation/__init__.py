@@ -4,21 +4,11 @@ from matstd.report.compensation.program_picture import draw_program
 from matstd.report.compensation.program_words import program_lines
 from matstd.report.compensation.shares_picture import draw_shares_along, share_lines
 from matstd.report.compensation.table_page import write_compensation_page
-from matstd.report.compensation.table_pictures import draw_errors_left, draw_shares
-from matstd.report.compensation.table_words import (
-    control_title,
-    held_words,
-    result_sentence,
-    table_lines,
-)
+from matstd.report.compensation.table_words import result_sentence, table_lines
 
 __all__ = [
-    "control_title",
-    "draw_errors_left",
     "draw_program",
-    "draw_shares",
     "draw_shares_along",
-    "held_words",
     "program_lines",
     "result_sentence",
     "share_lines",

@@ -7,17 +7,11 @@ from matstd.report.task.calibration_words import (
     verdict_lines,
     verdict_rows,
 )
-from matstd.report.task.task_words import (
-    budget_rows,
-    decision_sentence,
-    measured_sentence,
-    task_lines,
-)
+from matstd.report.task.task_words import budget_rows, measured_sentence, task_lines
 
 __all__ = [
     "budget_rows",
     "calibration_lines",
-    "decision_sentence",
     "measured_sentence",
     "modulus_words",
     "refusal_sentence",

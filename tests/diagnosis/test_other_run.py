@@ -16,7 +16,9 @@ from simulator_experiment import MACHINES, STATED_NOISE, placed, random_experime
 
 from matstd.cli import main
 from matstd.compensation.field import MachineErrors
-from matstd.diagnosis import compare, fit_run, read_model, write_model
+from matstd.diagnosis.answer import compare
+from matstd.diagnosis.files import read_model, write_model
+from matstd.diagnosis.fit import fit_run
 from matstd.report.words import remark_sentence
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_run

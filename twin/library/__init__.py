@@ -18,11 +18,10 @@ from matstd.twin.library.catalogue import (
     users_files,
 )
 from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.library.sized_effect import SizedEffect, parse_sized_effect, parse_sizes
+from matstd.twin.library.sized_effect import parse_sized_effect, parse_sizes
 from matstd.twin.library.trial import try_effect, try_kind, users_fault, users_lines
 
 __all__ = [
-    "SizedEffect",
     "find_kinds",
     "is_visible",
     "kinds",
