@@ -215,7 +215,7 @@ def _record(
     step: float,
 ) -> tuple[DriftRecord, IntArray, IntArray]:
     """All hours, and the rows to learn from and to hold out."""
-    paths = [*logs, *held_out]
+    paths = [str(path) for path in (*logs, *held_out)]
     records = [read_log(path, step) for path in paths]
     check_alike(records, paths)
     record = joined(records, own_zeros)
