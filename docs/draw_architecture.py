@@ -19,9 +19,10 @@ ROOMS = {
     "artefact": (5.6, 3.2, 9.4, 1.1, "#fbe3c8", "the standard, and where it is touched"),
     "compensation": (0.0, 5.2, 4.3, 1.1, "#d5e8d8", "the model goes back to a control"),
     "diagnosis": (0.0, 3.2, 4.3, 1.1, "#d5e8d8", "fit, find what the model lacks"),
-    "information": (0.0, 1.6, 5.4, 0.95, "#dbe8f4", "what touches can know: criteria"),
-    "importers": (5.7, 1.6, 3.9, 0.95, "#dbe8f4", "tables of others as runs"),
-    "sensitivity": (9.9, 1.6, 5.1, 0.95, "#dbe8f4", "where errors show; machines"),
+    "information": (0.0, 1.6, 4.3, 0.95, "#dbe8f4", "what touches can know: criteria"),
+    "nc": (4.6, 1.6, 2.4, 0.95, "#dbe8f4", "programs, read once"),
+    "importers": (7.3, 1.6, 2.9, 0.95, "#dbe8f4", "tables of others as runs"),
+    "sensitivity": (10.5, 1.6, 4.5, 0.95, "#dbe8f4", "where errors show; machines"),
     "twin": (0.0, 0.0, 15.0, 0.95, "#dbe8f4", "machines, touches, effects, files"),
 }
 ARROWS = (
@@ -29,7 +30,7 @@ ARROWS = (
     ((11.4, 0.95), (11.4, 1.6), "Chain", (11.55, 1.27)),
     ((3.6, 0.95), (3.6, 1.6), "Touches", (3.75, 1.27)),
     ((11.4, 2.55), (11.4, 3.2), "Population, Workspace", (11.55, 2.87)),
-    ((5.1, 2.55), (5.75, 3.2), "Selection", (5.7, 2.87)),
+    ((4.1, 2.55), (5.75, 3.2), "Selection", (5.35, 2.87)),
     ((8.2, 2.55), (8.2, 3.2), "Sheet", (8.35, 2.87)),
     ((2.1, 2.55), (2.1, 3.2), "Posterior", (2.25, 2.87)),
     ((12.6, 4.3), (12.6, 5.2), "Standard", (12.75, 4.75)),

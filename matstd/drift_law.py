@@ -2,9 +2,8 @@
 
 from collections.abc import Sequence
 
-from matstd.twin.library import Kind
 from matstd.twin.machine import Chain
-from matstd.twin.model import Effect
+from matstd.twin.model import Effect, Kind
 
 
 def _make(chain: Chain, arguments: Sequence[str]) -> Effect:

@@ -6,6 +6,7 @@ pictures, and HTML pages that stand alone. Nothing is decided here: every number
 number in a result.
 
     style   paper, colours and labels of every picture
+    layout  sections of a page, and how they become HTML, CSV and PDF
     effects titles of effects
     words   sentences, for pages and for the console
     geometry
@@ -17,7 +18,7 @@ number in a result.
     plots   plans, proofs, residuals, effects
     scenes  pictures in three dimensions, rendered in a process of their own
     drawing the sheet for the workshop, PDF and SVG
-    pages   HTML: lists of sections, rendered by one template
+    pages   the pages: results as lists of sections
     compensation
             what compensation corrects and what remains, with its page
     drift   laws of a thermal drift, with their page
@@ -28,6 +29,7 @@ it with its caption. A new sentence is a function in `words`.
 
 PARTS = (
     "style",
+    "layout",
     "effects",
     "words",
     "geometry",

@@ -233,4 +233,5 @@ def test_the_python_of_the_readme_runs_as_it_stands(tmp_path, capsys, monkeypatc
     assert found.startswith("The model lacks one effect: growth along Z after switching on (")
     assert found in " ".join(text.split())  # as the command says it, some pages before
     assert compared.endswith("The residual looks like noise.")
-    assert (tmp_path / "model.toml").is_file()
+    assert (tmp_path / "diagnosis" / "model.toml").is_file()
+    assert (tmp_path / "tables" / "iso230" / "iso230.csv").is_file()

@@ -340,6 +340,15 @@ def test_effects_are_asked_by_their_traits() -> None:
                 assert name not in (classes - own) | flags, f"{file}:{line}: asks for {name}"
 
 
+@pytest.mark.parametrize(
+    "name",
+    ["twin/thermal/thermal_expansion.py", "matstd/templates/effect.txt", "examples/my_effects.py"],
+)
+def test_a_simple_effect_is_a_page(name: str) -> None:
+    """One multiplication with its card and imports; what users begin with."""
+    assert len((ROOT / name).read_text(encoding="utf-8").splitlines()) <= 40
+
+
 def test_folders_are_small() -> None:
     for folder in {f.parent for f in FILES}:
         count = len(list(folder.glob("*.py")))

@@ -219,8 +219,12 @@ def check_body(
     if min(sides) < LEAST_SIDE:
         raise BadFile(path, "blank.base_mm", list(sides), "160 mm or more either way")
     if table < 160.0:
-        expected = "160 mm or more, the smallest base of a standard"
-        raise BadFile(path, _TABLE_KEYS, f"a table of {table:g} mm", expected)
+        raise BadFile(
+            path,
+            _TABLE_KEYS,
+            f"a table of {table:g} mm",
+            "160 mm or more, the smallest base of a standard",
+        )
     if max(sides) > table:
         raise BadFile(
             path,

@@ -28,7 +28,7 @@ def on_faces(standard: Standard, touches: Touches) -> Mask:
     unknown = sorted(set(touches.feature.tolist()) - set(standard.features))
     if unknown:
         raise DesignError(
-            f"feature '{unknown[0]}' is none of standard '{standard.name}', which has "
+            f"feature '{unknown[0]}' is not on standard '{standard.name}', which has "
             f"{', '.join(standard.features)}"
         )
     return np.isin(touches.feature, [patch.name for patch in standard.patches])
@@ -51,8 +51,8 @@ def like_task(task: Task, standard: Standard, touches: Touches) -> Mask:
     if not face.any():
         raise DesignError(
             f"no touch on a freeform face of standard '{standard.name}', which has "
-            f"{', '.join(patch.name for patch in standard.patches) or 'none'}: nothing is known of "
-            f"task '{task.name}'"
+            f"{', '.join(patch.name for patch in standard.patches) or 'none'}: task "
+            f"'{task.name}' cannot be evaluated"
         )
     asked = [
         ("slope_deg", DEG, np.arccos(np.clip(touches.normal[:, 2], -1.0, 1.0)), task.slope),
@@ -71,8 +71,8 @@ def like_task(task: Task, standard: Standard, touches: Touches) -> Mask:
         )
     if not like.any():
         raise DesignError(
-            f"task '{task.name}': none of {int(face.sum())} touches on freeform faces is like it; "
-            f"within its ranges are: {', '.join(told)}"
+            f"task '{task.name}': none of {int(face.sum())} touches on freeform faces is within "
+            f"all its ranges; within each: {', '.join(told)}"
         )
     return like
 

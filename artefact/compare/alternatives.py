@@ -167,7 +167,7 @@ def _bought(
     tried = touches_reached_in(other, requests, rng)
     wanted = len(requests) - len(half)
     if len(tried) < wanted:
-        raise DesignError(f"the machine reaches {len(tried)} touches, {wanted} are wanted")
+        raise DesignError(f"the machine reaches {len(tried)} touches, {wanted} are required")
     found = joined_rows(criterion, half, tried, other)
     tips = np.concatenate([criterion.tip_volume, criterion.tip_user])
     extra = found.W.shape[1] - tips.shape[2]

@@ -21,6 +21,7 @@ from matstd.cad_out.meshes import (
     mesh_volume,
     read_stl,
 )
+from matstd.cad_out.verify.annotation_check import missing_annotations
 from matstd.cad_out.verify.face_figures import area_errors, face_deviations
 from matstd.cad_out.verify.part21 import (
     Instance,
@@ -29,7 +30,6 @@ from matstd.cad_out.verify.part21 import (
     read_faces,
     read_instances,
 )
-from matstd.cad_out.verify.untold import untold
 from matstd.twin.errors import NotBuildable
 from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
@@ -262,7 +262,7 @@ def measure(
             *(f"{name} by itself" for name in wanted if name not in {*alone, *balls}),
         ),
         missing_details=details.missing,
-        untold=untold(standard, details, entities, found),
+        untold=missing_annotations(standard, details, entities, found),
         face_deviation={name: max(one[name] for one in apart) for name in apart[0]},
         area_error=area_errors(standard, face_areas(corners, triangles, owner)),
         is_watertight=is_watertight(corners, triangles),

@@ -22,7 +22,7 @@ async def serve_linuxcnc(
 
     Args:
         service: Of the machine.
-        path: Of the socket; one that nobody listens to any more is taken away.
+        path: Of the socket; one without a listener is removed.
         ready: Called when the component can connect.
         until: Ends it.
 
@@ -100,13 +100,13 @@ class _Asked:
             number = 0
         answer = self.service.tick(now)
         refused = "; ".join(filter(None, (answer.refused, self.undriven)))
-        told = {
+        reply = {
             "number": number,
             "correction": answer.sent.values,
             "quality": str(answer.sent.quality),
             "refused": refused,
         }
-        return json.dumps(told) + "\n"
+        return json.dumps(reply) + "\n"
 
     async def follow(self, until: asyncio.Event) -> None:
         """Temperatures and speed every two seconds."""

@@ -1,9 +1,8 @@
 """Part programs: read into motions, written again.
 
 In: a Klartext or G-code program (`read_part_program`) and where its zero stands (`Frame`). Out:
-`Program`: its blocks in their order, every motion with the places of all axes. A new language is a
-reader and a module that writes (`lines`, `comment`, `begin`, `listed`), and its ending in
-`program`.
+`Program`: its blocks in their order, every motion with the places of all axes. A new language is
+a reader and a module that writes (`lines`, `comment`, `begin`, `listed`), and both in `program`.
 """
 
 from matstd.compensation.part_programs.frame import Frame

@@ -125,7 +125,7 @@ class Reading:
         if self.tool not in self.radii:
             named = "the tool" if self.tool is None else f"tool {self.tool}"
             number = "NUMBER" if self.tool is None else self.tool
-            found = f"a contour beside {named}, whose radius nobody has stated"
+            found = f"a contour beside {named}, whose radius is not stated"
             raise self.refusal(line, found, f"--tool-radius {number}=MM")
         radius = self.radii[self.tool] + self.more_radius
         if radius <= 0.0:
@@ -158,7 +158,7 @@ class Reading:
         `named` are all axes that the block names.
 
         Raises:
-            BadFile: No feed, or a contour beside a tool whose radius nobody has stated.
+            BadFile: No feed, or a contour beside a tool whose radius is not stated.
         """
         is_known = _is_finite(self.at)
         at = self.at if is_known else np.where(np.isnan(self.at), end, self.at)

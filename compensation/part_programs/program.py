@@ -65,7 +65,7 @@ def read_part_program(
     Args:
         frame: Where its zero stands; the datum's tool is that of tools without a length.
         lengths: Of tools by number or name, mm.
-        radii: Likewise; where the program goes beside a contour.
+        radii: Of tools by number or name, mm; needed where the program goes beside a contour.
         passed: Numbers of M functions of the machine that move nothing.
         tcp_functions: Those of G-code that switch tool-point control on, and off.
 

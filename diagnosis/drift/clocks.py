@@ -26,11 +26,7 @@ def lead(record: DriftRecord) -> float:
     speeds = [d for d in record.drives if is_speed(d) and np.ptp(record.columns([d])) > 0.0]
     if not speeds or not len(record.components):
         return 0.0
-    columns = [
-        followed(record, d, (float(np.exp(-record.step / tau)),))
-        for d in speeds
-        for tau in LAGS[:3]
-    ]
+    columns = [followed(record, d, tau) for d in speeds for tau in LAGS[:3]]
     X = np.diff(np.column_stack(columns), axis=0)
     y = np.diff(record.displacement / record.size, axis=0)
     inside = np.diff(record.stretch) == 0

@@ -29,13 +29,12 @@ class Lagged:
         drive = record.columns([name for name, _ in self.places])
         out = np.empty_like(drive)
         for k, (name, tau) in enumerate(self.places):
-            poles = (np.exp(-record.step / tau),) if tau > 0.0 else ()
-            out[:, k] = followed(record, name, poles)
+            out[:, k] = followed(record, name, tau) if tau > 0.0 else drive[:, k]
         return out
 
 
-def followed(record: DriftRecord, drive: str, poles: tuple[float, ...]) -> Array:
-    """A drive after first-order lags one behind the other, gain 1, (N,).
+def followed(record: DriftRecord, drive: str, tau: float) -> Array:
+    """A drive after a first-order lag of gain 1, (N,).
 
     In every stretch anew: at its first row the machine has settled at the temperatures that it has
     there, and is cold where speeds are concerned.
@@ -43,19 +42,16 @@ def followed(record: DriftRecord, drive: str, poles: tuple[float, ...]) -> Array
     Args:
         record: With the drive.
         drive: Its name.
-        poles: Of the lags, exp(-step/tau).
+        tau: Time constant of the lag, s.
     """
     values = record.columns([drive])[:, 0]
-    if not poles:
-        return values
-    from scipy.signal import lfilter  # half a second, that only who follows lags shall wait for
+    from scipy.signal import lfilter  # half a second, for lags alone
 
-    denominator = np.poly(poles)
-    gain = [denominator.sum()]
+    pole = np.exp(-record.step / tau)
     out = np.empty_like(values)
     for rows in record.stretches():
         start = 0.0 if is_speed(drive) else values[rows.start]
-        out[rows] = start + lfilter(gain, denominator, values[rows] - start)
+        out[rows] = start + lfilter([1.0 - pole], [1.0, -pole], values[rows] - start)
     return out
 
 

@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
+from matstd.diagnosis.drift.lags import Lagged
 from matstd.diagnosis.drift.record import DriftRecord, IntArray
 from matstd.twin.frames import Array
 
@@ -14,14 +14,6 @@ WEIGHTS = 10.0 ** np.arange(-6.0, 1.1, 0.5)
 
 SAME = 1e-9
 """A column whose spread is less than this of its size is constant."""
-
-
-class Inputs(Protocol):
-    """What a linear law makes of the drives of a record."""
-
-    def __call__(self, record: DriftRecord) -> Array:
-        """Columns, (N, M)."""
-        ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +33,7 @@ class LinearLaw:
         memory: Time in which what is left forgets itself, s.
     """
 
-    inputs: Inputs
+    inputs: Lagged
     mean: Array
     scale: Array
     intercept: Array
@@ -67,7 +59,7 @@ class LinearLaw:
 
 @dataclass(frozen=True, eq=False)
 class Sums:
-    """Sums of products of standardised columns, block by block, from which many fits are made.
+    """Sums of products of standardised columns, by block: each is predicted from the others.
 
     Attributes:
         gram: (B, 1 + M, 1 + M).
@@ -81,25 +73,25 @@ class Sums:
     square: Array
     count: Array
 
-    def left_out(self, sets: IntArray, weight: float) -> Array:
-        """Mean squared error of every block, predicted from the others, (B, C).
+    def left_out(self, weight: float) -> Array:
+        """Mean squared error of every block, predicted from the others, (B,).
 
         Args:
-            sets: Columns of every candidate, (C, m); 0 is the constant and stands in each.
-            weight: Of the ridge.
+            weight: Of the ridge; column 0 is the constant and free of it.
         """
-        at, across = sets[:, :, None], sets[:, None, :]
-        gram, cross = self.gram[:, at, across], self.cross[:, sets]
-        others = gram.sum(axis=0) - gram
+        others = self.gram.sum(axis=0) - self.gram
         count = self.count.sum() - self.count
-        penalty = weight * count[:, None, None, None] * np.diag(np.arange(sets.shape[1]) > 0)
-        theta = np.linalg.solve(others + penalty + _tiny(others), cross.sum(axis=0) - cross)
-        error = (
-            self.square[:, None]
-            - 2.0 * np.einsum("bcmk,bcmk->bck", theta, cross)
-            + np.einsum("bcmk,bcmn,bcnk->bck", theta, gram, theta)
+        free = np.arange(self.gram.shape[-1]) > 0
+        penalty = weight * count[:, None, None] * np.diag(free)
+        theta = np.linalg.solve(
+            others + penalty + _tiny(others), self.cross.sum(axis=0) - self.cross
         )
-        return np.maximum(error, 0.0).mean(axis=2) / self.count[:, None]
+        error = (
+            self.square
+            - 2.0 * np.einsum("bmk,bmk->bk", theta, self.cross)
+            + np.einsum("bmk,bmn,bnk->bk", theta, self.gram, theta)
+        )
+        return np.maximum(error, 0.0).mean(axis=1) / self.count
 
 
 def _tiny(gram: Array) -> Array:
@@ -132,17 +124,16 @@ def sums(record: DriftRecord, Z: Array, parts: Sequence[IntArray]) -> Sums:
     )
 
 
-def ridge(record: DriftRecord, inputs: Inputs, parts: Sequence[IntArray]) -> LinearLaw:
+def ridge(record: DriftRecord, inputs: Lagged, parts: Sequence[IntArray]) -> LinearLaw:
     """A linear law whose weight predicts left-out blocks best."""
     Z, _, _ = standardised(inputs(record), np.concatenate(parts))
     added = sums(record, Z, parts)
-    every = np.arange(Z.shape[1] + 1)[None]
-    errors = [(added.left_out(every, w) @ [1.0]) @ added.count for w in WEIGHTS]
+    errors = [added.left_out(w) @ added.count for w in WEIGHTS]
     return fitted(record, inputs, parts, float(WEIGHTS[int(np.argmin(errors))]))
 
 
 def fitted(
-    record: DriftRecord, inputs: Inputs, parts: Sequence[IntArray], weight: float
+    record: DriftRecord, inputs: Lagged, parts: Sequence[IntArray], weight: float
 ) -> LinearLaw:
     """A linear law with a given weight, from all blocks.
 

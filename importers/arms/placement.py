@@ -63,15 +63,21 @@ def placed(table: ArmTable, chain: Chain, u: float, reflector: Array | None) -> 
     damped least squares from the flange (variable projection, Golub and Pereyra 1973).
 
     Args:
+        table: Readings and measured places.
         chain: The nominal arm.
         u: Standard uncertainty of one coordinate, mm.
-        reflector: Where the reflector sits, tool frame, (3,), mm, if that is known.
+        reflector: Its place in the tool frame, (3,), mm, if that is known.
 
     Raises:
-        DesignError: Several reflectors, and one stated place.
+        DesignError: Readings of other joints than the arm has; several reflectors, and one place.
         NotEnoughData: Too few poses.
     """
-    path = table.sheet.path
+    path, axes = table.sheet.path, chain.programmed_axes
+    if len(table.joints) != len(axes) or chain.axes != axes:
+        raise DesignError(
+            f"{path}: {len(table.joints)} columns of joints, expected {len(axes)}: "
+            f"{', '.join(axes)}"
+        )
     if reflector is not None and len(table.names) > 1:
         raise DesignError(f"{path}: {len(table.names)} reflectors, expected one where it is stated")
     poses = int(table.shots.any(axis=1).sum())

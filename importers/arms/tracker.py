@@ -73,8 +73,7 @@ def import_arm(
         reflector: Its place, mm, in the tool frame, or with `dh` in that of the flange, if known.
 
     Raises:
-        DesignError: Both descriptions or none, readings and places of another arm.
-        NotEnoughData: Poses too few or too alike.
+        DesignError: Both descriptions or none; also what `tracker_run` refuses.
     """
     if (machine is None) == (dh is None):
         given = "both given" if dh else "neither given"
@@ -87,7 +86,6 @@ def import_arm(
         chain, turned = arm_from_dh(dh, table.q, is_modified)
         other = arm_from_dh(dh, table.q, not is_modified)[0]
     assert chain is not None
-    _check_joints(table, chain)
     stated = None if reflector is None else turned @ np.array(reflector)
 
     def left(arm: Chain, q: Array) -> float:
@@ -107,8 +105,8 @@ def import_arm(
 def tracker_run(table: ArmTable, chain: Chain, u: float, reflector: Array | None = None) -> Run:
     """Run of an arm under a tracker: three rows a reflector and pose, along x, y, z of the tracker.
 
-    Times, temperatures, loads and columns of other units (torques, currents) of the sheet go with
-    them.
+    Its set-up is the tracker's frame, `touches.target` the reflector; times, temperatures, loads
+    and columns of other units (torques, currents) of the sheet go with it.
 
     Args:
         table: Readings in the order of the axes of the arm.
@@ -116,14 +114,10 @@ def tracker_run(table: ArmTable, chain: Chain, u: float, reflector: Array | None
         u: Standard uncertainty of one coordinate, mm.
         reflector: In the tool frame, (3,), mm; None finds it.
 
-    Returns:
-        The run; its set-up is the tracker's frame, `touches.target` has the reflector.
-
     Raises:
         DesignError: Readings of other joints than the arm has, or of another arm.
         NotEnoughData: Poses too few or too alike to say where reflector and tracker are.
     """
-    _check_joints(table, chain)
     found = placed(table, chain, u, reflector)
     _check_placed(table.sheet, found, reflector is not None)
     sheet = table.sheet
@@ -146,16 +140,6 @@ def tracker_run(table: ArmTable, chain: Chain, u: float, reflector: Array | None
     )
     lines = np.array(sheet.lines)[which]
     return Run(touches, computed_deviation(touches), np.full(n, u), line=lines)
-
-
-def _check_joints(table: ArmTable, chain: Chain) -> None:
-    """Refuse readings of other joints than the arm has."""
-    axes = chain.programmed_axes
-    if len(table.joints) != len(axes) or chain.axes != axes:
-        raise DesignError(
-            f"{table.sheet.path}: {len(table.joints)} columns of joints, expected {len(axes)}: "
-            f"{', '.join(axes)}"
-        )
 
 
 def _check_placed(sheet: Sheet, found: Placement, is_stated: bool) -> None:

@@ -41,7 +41,7 @@ def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
         ]
         if link.kind == "linear":
             expected = link.expected or usual(high - low)
-            lines.append(f"expected = {expected:.2g}  # PLACEHOLDER: mm; larger errors are told")
+            lines.append(f"expected = {expected:.2g}  # PLACEHOLDER: mm; reports name larger ones")
         if link.kind == "rotary":
             doubt = "" if is_known else "  # PLACEHOLDER: a point of its line, mm"
             lines.append(f"point = {_listed(link.point)}{doubt}")

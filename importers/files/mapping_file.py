@@ -4,9 +4,8 @@ import csv
 import io
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from pydantic import Field
@@ -55,15 +54,8 @@ _TEXT = ("feature", "setup", "pose", "split")
 """Columns of a run that hold names."""
 
 
-@dataclass(frozen=True, eq=False)
-class MappedRun:
-    """A run made by a mapping file.
-
-    Attributes:
-        text: Of its run file.
-        run: As it reads back.
-        left_out: Number of readings without a deviation, which are not in it.
-    """
+class MappedRun(NamedTuple):
+    """Text of a run file, the run that it reads back as, and how many readings had no deviation."""
 
     text: str
     run: Run
@@ -73,12 +65,12 @@ class MappedRun:
 def import_mapped(
     sheet: Sheet, path: str | Path, folder: Path, chain: Chain | None = None
 ) -> MappedRun:
-    """A run by a mapping file, read once as the run file that it will be.
+    """A run by a mapping file, read once as the run file that it will be in a folder.
 
     Args:
         path: The mapping file.
-        folder: Where the run file will stand, from which its head names the machine.
-        chain: The machine; None takes the one that the head names.
+        folder: Of the run file, from which its head names the machine.
+        chain: The machine, in place of the one that the head names.
 
     Raises:
         BadFile: The mapping file's key, or what is wrong in the run that it makes.
@@ -109,12 +101,8 @@ def mapped_run(sheet: Sheet, path: str | Path) -> tuple[str, int]:
     them, with columns of its own beside the common ones; they are one pose. The head stands in the
     mapping file as it shall stand in the run.
 
-    Args:
-        path: The mapping file.
-
     Returns:
-        The text, and the number of readings that were left out because the cell of their deviation
-        is empty.
+        The text, and the number of readings left out because they have no deviation.
 
     Raises:
         BadFile: The mapping file's key, or a column that the table does not have.

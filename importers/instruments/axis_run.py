@@ -34,9 +34,9 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
 
     Every reading is a distance along the motion: its direction is that in which the tool moves
     relative to the workpiece while the reading grows, its deviation the negative of what the
-    instrument says; of a straightness the direction is that of the component. An angle is told
-    times `ARM`, as an autocollimator reads it: it feels neither an eccentric polygon nor an axis
-    that wanders aside.
+    instrument says; of a straightness the direction is that of the component. An angle is
+    written times `ARM`, as an autocollimator reads it: neither an eccentric polygon nor an axis
+    that wanders aside changes it.
 
     Args:
         test: The readings.
@@ -72,7 +72,11 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
         feature=np.array([f"cycle{c}" for c in test.cycle]),
         pose=held_out.astype(np.int64),
         value=_progress(test) if not test.is_log and cycles.max() > 1 else {},
-        instrument=_instrument(test),
+        instrument=Instrument.AUTOCOLLIMATOR
+        if test.is_angle
+        else Instrument.ENCODER
+        if test.is_log
+        else Instrument.LASER,
     )
     # one line of the file may hold many readings: the rows of the run are what messages name
     u_of_row = np.full(n, u * per_unit)
@@ -131,10 +135,3 @@ def _on_line(link: Link) -> tuple[Array, Array]:
     down = np.eye(3)[0] if LETTERS[link.own] == "Z" else -np.eye(3)[2]
     aside = down - (down @ d) * d
     return point, point + ARM * aside / np.linalg.norm(aside)
-
-
-def _instrument(test: PositioningTest) -> Instrument:
-    """What measured: an angle, else the two encoders of a log, or a laser."""
-    if test.is_angle:
-        return Instrument.AUTOCOLLIMATOR
-    return Instrument.ENCODER if test.is_log else Instrument.LASER

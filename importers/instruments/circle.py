@@ -22,13 +22,16 @@ from matstd.twin.record import Instrument, IntArray, Labels, Run, Setup, at_pose
 from matstd.twin.units import MINUTE
 
 BETWEEN = 10.0
-"""Pause (s) between two runs of which nobody says how long it was."""
+"""Pause (s) that is assumed between two runs."""
 
 JUST = 1e-6
 """Angle (rad) before a reading at which its axes last moved for certain."""
 
 IS_RADIUS = 0.1
 """Distance of a column's mean from the radius, as a share of it, up to which it holds radii."""
+
+Order = tuple[IntArray, Labels, IntArray]
+"""Sense and name of the run of every row, and the rows in the order in which they were taken."""
 
 _ANGLE = re.compile(r"angle|winkel|theta|θ|\bphi\b|φ|azimut", re.IGNORECASE)
 _RUN = re.compile(r"\brun|lauf|direction|richtung|sense|\bdir\b|drehsinn", re.IGNORECASE)
@@ -73,37 +76,31 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
         unit: Of deviations whose column names none.
 
     Raises:
-        BadFile: Neither angles and deviations nor two coordinates, a unit or a direction that is
-            not stated.
+        BadFile: No such columns, a unit or a direction that is not stated.
     """
     at = sheet.find(_ANGLE)
-    letters = [sheet.find(_letter(letter)) for letter in plane]
-    if at is None and None not in letters:
-        return _cartesian(sheet, plane, radius, [i for i in letters if i is not None])
-    if at is None:
+    places = [i for i in map(sheet.find, map(_letter, plane)) if i is not None]
+    if at is None and len(places) < 2:
         raise sheet.lacking("a column of angles, or of both coordinates")
-    angle = sheet.quantity(at, ANGLES, "deg")
-    others = [i for i in range(len(sheet.columns)) if i != at]
-    said = next((i for i in others if _says_sense(sheet, i)), None)
-    values = [i for i in others if i != said and _is_value(sheet, i)]
-    if not values:
-        raise sheet.lacking("a column of radial deviations")
+    if at is None:
+        x, y = (sheet.quantity(i, MM, "mm") for i in places)
+        angle, all_rows = np.arctan2(y, x), np.arange(len(sheet))
+        found = [(np.hypot(x, y) - radius, (*_by_motion(angle), all_rows))]
+    else:
+        angle = sheet.quantity(at, ANGLES, "deg")
+        found = _columns(sheet, at, angle, radius, unit)
     parts = []
-    for i in values:
-        reading = sheet.quantity(i, MM, unit)
-        if abs(float(np.nanmean(reading)) - radius) < IS_RADIUS * radius:
-            reading = reading - radius
-        sense, run, order = _order(sheet, i, angle, said, len(values) > 1)
-        whole = CircularTest(
+    for deviation, (sense, run, order) in found:
+        test = CircularTest(
             plane=plane,
             radius=radius,
             angle=angle,
-            deviation=reading,
+            deviation=deviation,
             sense=sense,
             run=run,
             line=np.array(sheet.lines),
         )
-        parts.append(picked(whole, order[np.isfinite(reading + angle)[order]]))
+        parts.append(picked(test, order[np.isfinite(deviation + angle)[order]]))
     return stacked(parts)
 
 
@@ -112,20 +109,22 @@ def _letter(letter: str) -> re.Pattern[str]:
     return re.compile(rf"(?<![a-zA-Z]){letter}(?![a-zA-Z])", re.IGNORECASE)
 
 
-def _cartesian(sheet: Sheet, plane: str, radius: float, columns: list[int]) -> CircularTest:
-    """Places on the circle, as a grid plate or two scales read them."""
-    x, y = (sheet.quantity(i, MM, "mm") for i in columns)
-    angle = np.arctan2(y, x)
-    sense, run = _by_motion(angle)
-    return CircularTest(
-        plane=plane,
-        radius=radius,
-        angle=angle,
-        deviation=np.hypot(x, y) - radius,
-        sense=sense,
-        run=run,
-        line=np.array(sheet.lines),
-    )
+def _columns(
+    sheet: Sheet, at: int, angle: Array, radius: float, unit: str | None
+) -> list[tuple[Array, Order]]:
+    """Deviations of every column that has some, with the order of their rows."""
+    others = [i for i in range(len(sheet.columns)) if i != at]
+    said = next((i for i in others if _says_sense(sheet, i)), None)
+    values = [i for i in others if i != said and _is_value(sheet, i)]
+    if not values:
+        raise sheet.lacking("a column of radial deviations")
+    out = []
+    for i in values:
+        reading = sheet.quantity(i, MM, unit)
+        if abs(float(np.nanmean(reading)) - radius) < IS_RADIUS * radius:
+            reading = reading - radius
+        out.append((reading, _order(sheet, i, angle, said, len(values) > 1)))
+    return out
 
 
 def _by_motion(angle: Array) -> tuple[IntArray, Labels]:
@@ -158,12 +157,8 @@ def _sense(word: str) -> int:
 
 def _order(
     sheet: Sheet, column: int, angle: Array, said: int | None, is_one_of_several: bool
-) -> tuple[IntArray, Labels, IntArray]:
-    """Sense and name of the run of every row, and the rows in the order in which they were taken.
-
-    Raises:
-        BadFile: One of several columns whose name does not state its direction.
-    """
+) -> Order:
+    """The order of the rows of one column; raises BadFile where its name must state it."""
     n = len(sheet)
     order, sense = np.arange(n), _sense(sheet.names[column])
     if said is not None:

@@ -45,19 +45,17 @@ def import_points(
     machine: Chain | None = None,
     unit: str | None = None,
 ) -> PointsImport:
-    """Run of one list of points or several, with its machine.
+    """Run of one list of points, or of several as runs of their own, with its machine.
 
     Args:
-        sheets: Of several, each is a run of its own.
         meaning: Who made and who measured the points: see `reading`.
         u: Standard uncertainty of one coordinate, mm.
         machine: None makes one whose travels are those of the points.
         unit: Of columns whose name has none; None takes mm for coordinates and refuses deviations.
 
     Raises:
-        BadFile: No nominal or no measured coordinate; a deviation without a unit.
-        DesignError: Points that fit a mirrored frame alone.
-        OutsideTravel: A point that the machine does not reach.
+        DesignError: Points that fit a mirrored frame alone; also what `read_points` refuses, and a
+            point that the machine does not reach.
     """
     lists = [read_points(sheet, unit) for sheet in sheets]
     points = joined_points(lists, [sheet.path.stem for sheet in sheets])
@@ -111,11 +109,10 @@ def points_run(
     its rotary axes at zero; table frame and list share their origin, the set-up is free in a fit.
 
     Args:
-        points: The list.
+        points: The list, its deviations those in the frames.
         meaning: `part` or `standard`; it decides the sign.
         u: Standard uncertainty of one coordinate, mm.
-        frames: Where the set-ups of a standard stand that are not where the list says; deviations
-            are those in these frames.
+        frames: Where the set-ups of a standard stand that are not where the list says.
 
     Raises:
         OutsideTravel: A point that the machine does not reach.

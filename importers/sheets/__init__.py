@@ -6,7 +6,7 @@ behind their names, and the line of every row; what they mean is decided by the 
 
 from matstd.importers.sheets.clock import clock_times, has_clock, seconds
 from matstd.importers.sheets.directions import approaches, sign_of, signs, strokes
-from matstd.importers.sheets.rows import picked, stacked
+from matstd.importers.sheets.rows import picked, stacked, timed_by_rows
 from matstd.importers.sheets.sensors import loads, own_columns, temperatures
 from matstd.importers.sheets.sheet import Sheet
 from matstd.importers.sheets.table import read_sheet
@@ -30,5 +30,6 @@ __all__ = [
     "stacked",
     "strokes",
     "temperatures",
+    "timed_by_rows",
     "unit_of_column",
 ]

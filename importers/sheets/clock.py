@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Sequence
-from datetime import date
+from datetime import datetime
 
 import numpy as np
 
@@ -17,6 +17,9 @@ _CLOCK = re.compile(
     r"(?P<h>\d{1,3}):(?P<m>\d{2})(?::(?P<s>\d{2}(?:[.,]\d+)?))?\s*(?P<half>[aApP][mM])?\s*Z?\Z"
 )
 """A time of day, with its date or without."""
+
+_ORDERS = ("%Y-%m-%d", "%d-%m-%Y", "%m-%d-%Y", "%d-%m-%y", "%m-%d-%y")
+"""Orders of the parts of a date: the first in which all dates of a column are dates holds."""
 
 
 def seconds(sheet: Sheet, column: int) -> Array:
@@ -65,20 +68,21 @@ def _days(sheet: Sheet, dates: Sequence[str]) -> Array:
     """Days since the first date of every date, (N,); 0 where there is none, or all are one day."""
     if len(set(dates) - {""}) < 2:
         return np.zeros(len(dates))
-    parts = np.array([[int(p) for p in re.split(r"[-./]", d or "0-0-0")] for d in dates])
-    is_year_first = any(re.match(r"\d{4}", d) for d in dates)
-    if is_year_first:
-        year, month, day = parts.T
-    elif any("/" in d for d in dates) and parts[:, :2].max() <= 12:
-        both = f"{next(d for d in dates if d)!r}, day or month first"
-        raise BadFile(sheet.path, "dates", both, "dates such as 2024-05-31 or 31.5.2024")
-    else:
-        day, month, year = parts.T if parts[:, 1].max() <= 12 else parts[:, [1, 0, 2]].T
-    year = np.where(year < 100, year + 2000, year)
-    ymd = zip(dates, year.tolist(), month.tolist(), day.tolist(), strict=True)
+    found = [days for order in _ORDERS if (days := _ordinals(dates, order)) is not None]
+    shown = repr(next(filter(None, dates)))
+    expected = "dates such as 2024-05-31 or 31.5.2024"
+    if not found:
+        raise BadFile(sheet.path, "dates", shown, expected)
+    if len(found) > 1 and any("/" in d for d in dates):
+        raise BadFile(sheet.path, "dates", f"{shown}, day or month first", expected)
+    return found[0]
+
+
+def _ordinals(dates: Sequence[str], order: str) -> Array | None:
+    """Days of dates in one order of their parts since the first; None where they are in another."""
+    plain = [re.sub(r"[./]", "-", d) for d in dates]
     try:
-        days = [date(y, m, d).toordinal() if text else None for text, y, m, d in ymd]
-    except ValueError as error:
-        raise BadFile(sheet.path, "dates", str(error), "dates such as 2024-05-31") from error
-    first = next(day for day in days if day is not None)
-    return np.array([0.0 if day is None else float(day - first) for day in days])
+        days = np.array([datetime.strptime(d, order).toordinal() if d else 0 for d in plain])
+    except ValueError:
+        return None
+    return np.where(days > 0, days - days[days > 0][0], 0.0)

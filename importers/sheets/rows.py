@@ -1,4 +1,4 @@
-"""Records whose arrays all have a row for every reading: some of their rows, several as one."""
+"""Rows of records: some of them, those of several records as one, and times by their order."""
 
 from __future__ import annotations
 
@@ -7,6 +7,10 @@ from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
+
+from matstd.twin.errors import DesignError
+from matstd.twin.record import Run
+from matstd.twin.units import DAY
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
@@ -34,3 +38,24 @@ def stacked(records: Sequence[Record]) -> Record:
     return replace(
         records[0], **{n: np.concatenate([getattr(r, n) for r in records]) for n in names}
     )
+
+
+def timed_by_rows(run: Run, step: float) -> Run:
+    """The run with times by the order of the rows of its table; those of one row are one moment.
+
+    Args:
+        step: Time from one row to the next, s.
+
+    Raises:
+        DesignError: A step that is none, or a run that has times.
+    """
+    if not 0.0 < step <= DAY:
+        raise DesignError(f"--in-order {step:g}: expected seconds from 0 to {DAY:g}")
+    touches = run.touches
+    if np.ptp(touches.time) > 0.0:
+        raise DesignError("--in-order: the table has times; expected one without")
+    time = np.zeros(len(run))
+    for k in np.unique(touches.run):
+        rows = touches.run == k
+        time[rows] = step * np.unique(run.line[rows], return_inverse=True)[1]
+    return replace(run, touches=replace(touches, time=time))

@@ -70,14 +70,10 @@ class Sheet:
     def quantity(
         self, column: int, units: Mapping[str, float], otherwise: str | None = None
     ) -> Array:
-        """Numbers of a column in base units, (N,).
-
-        Args:
-            units: Those that may stand behind its name, in base units.
-            otherwise: Unit of a column whose name has none; None refuses such a column.
+        """Numbers of a column in base units, (N,), by the unit behind its name.
 
         Raises:
-            BadFile: Another unit, or none.
+            BadFile: None of `units`, or no unit where none is stated by `otherwise`.
         """
         unit = unit_of_column(self.columns[column]) or otherwise
         if unit is None or unit not in units:

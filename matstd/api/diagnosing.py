@@ -206,11 +206,11 @@ def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> li
         if place is not None:
             try_effect(effect, run.touches, place)
         if effect.name in there:
-            raise BadArgument("add", name, "another effect: it is in the model already")
+            raise BadArgument("add", name, "another effect: it is already in the model")
         if effect.name in {e.name for e in out}:
             raise BadArgument("add", name, "every effect once: it is given twice")
         if not is_visible(effect, run.touches):
-            raise BadArgument("add", name, "a visible effect: it moves nothing at these touches")
+            raise BadArgument("add", name, "a visible effect: it has no effect at these touches")
         out.append(effect)
     return out
 
@@ -242,7 +242,7 @@ def candidates(only: Sequence[str], without: Sequence[str], run: Run) -> list[Ef
     out = [e for e in out if not _is_among(e, without)]
     if not out:
         found = f"{' '.join(only)} --without {' '.join(without)}" if without else " ".join(only)
-        expected = "at least one effect that this run could show; nothing is left to look for"
+        expected = "at least one effect that this run could show; nothing is left to search for"
         raise BadArgument("only", found, expected)
     return out
 

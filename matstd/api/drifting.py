@@ -227,7 +227,7 @@ def _record(
         count = int(np.searchsorted(since, until))
     if count < LEAST or len(record) - count < 2:
         raise DesignError(
-            f"{count} rows to learn from and {len(record) - count} held out: "
+            f"{count} rows to fit and {len(record) - count} held out: "
             f"expected {LEAST} and 2 at least (steps of {record.step / MINUTE:g} min)"
         )
     train = np.arange(count)

@@ -3,7 +3,8 @@
 from pathlib import Path
 
 from matstd.drift_law import DRIFT_LAW
-from matstd.twin.library import Kind, load_installed_effects, load_user_effects, register
+from matstd.twin.library import load_installed_effects, load_user_effects, register
+from matstd.twin.model import Kind
 
 
 def register_effects(*files: str | Path) -> tuple[Kind, ...]:

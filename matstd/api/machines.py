@@ -62,7 +62,7 @@ def machine_file(name: str, errors: bool = False) -> Path:
 
 
 def read_machine(path: str | Path) -> Chain:
-    """A machine from a machine file (docs/formats/machine.md).
+    """A machine from a machine file (docs/formats/machines.md).
 
     Raises:
         BadFile: File, key, what stood there, what was expected.

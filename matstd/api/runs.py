@@ -29,7 +29,7 @@ StartingModel = str | Path | Model | SavedModel
 
 
 def read_run(path: str | Path) -> Run:
-    """Measurements from a run file (docs/formats/run.md), with the machine that it names.
+    """Measurements from a run file (docs/formats/measurements.md), with the machine that it names.
 
     Raises:
         BadFile: File, line and column, what stood there, what was expected.
@@ -146,9 +146,7 @@ def _joined(given: Sequence[Run | str], hold_out: Sequence[str]) -> Run:
         is_held_out = name in hold_out or (isinstance(one, str) and one in hold_out)
         runs[name] = replace(run, split=np.full(len(run), "test")) if is_held_out else run
     if all((run.split == "test").all() for run in runs.values()):
-        raise BadArgument(
-            "hold_out", " ".join(hold_out), "at least one run to learn from; no run is left"
-        )
+        raise BadArgument("hold_out", " ".join(hold_out), "at least one run to fit; no run is left")
     return joined(runs)
 
 

@@ -245,6 +245,7 @@ def _fitted(
             break
         deviation = np.einsum("ni,ni->n", normal, ball - point) - radius
         rows = np.concatenate([normal, np.cross(ball, normal) / _ARM], axis=1)
+        # not least_squares: its steps also move what no touch sees, this cut-off does not
         step = np.linalg.lstsq(rows, deviation, rcond=1e-6)[0]
         e, r = step[:3], step[3:] / _ARM
         T_table_artefact = T_table_artefact @ pose(rotation(r), e)

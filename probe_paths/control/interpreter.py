@@ -143,7 +143,7 @@ def interpret(
 
 
 def _begun(path: Path, frame: ProgramFrame, stated: Promise, is_tilted: bool) -> State:
-    """The control when a program is started: nobody knows where its axes stand."""
+    """The control when a program is started: where its axes stand is not known."""
     axes = len(frame.chain.axes)
     return State(
         path,

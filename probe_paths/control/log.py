@@ -1,8 +1,8 @@
 """Reads the log that our programs write, on a control or in the simulator.
 
-A log is half an hour of a machine's time. Lines that cannot be read, cut-off ends and lines of
-somebody else cost the touch that they belong to and no other; every one is remarked. Strict is only
-what no touch means anything without: set-up, probe and calibration in the head of a part.
+A log is half an hour of a machine's time. A line that cannot be read, is cut off or comes from
+elsewhere costs the touch that it belongs to and no other, with a remark. Only set-up, probe and
+calibration in the head of a part must be there: without them no touch has a meaning.
 """
 
 import re
@@ -181,7 +181,7 @@ class _PartReader:
             self.names += [list(rotary), [f"U{a}" for a in rotary]]
 
     def part(self) -> LogPart:
-        """The part; raises BadFile where its head does not tell set-up, probe and calibration."""
+        """The part; raises BadFile whose head lacks set-up, probe or calibration."""
         if self.lines[0][1] == LOG_HEAD:
             self.place = 1
         words = self._peek("PGM <name>").split()

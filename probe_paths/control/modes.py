@@ -100,18 +100,13 @@ def check_cycle(state: State, block: Block, vector: Block, length: float) -> Non
 
 def set_mode(block: Block, state: State) -> None:
     """Execute a block that changes a mode or sets a parameter; raises BadFile."""
+    if block.kind in _SETS:
+        setattr(state, *_SETS[block.kind])
+        return
     setter = _SETTERS.get(block.kind)
     if setter is None:
         raise state.refusal(block, repr(block.text), "a subprogram that is called, after M30")
     setter(block, state)
-
-
-def _tcpm(block: Block, state: State) -> None:
-    state.is_tcpm_off = block.kind is Kind.TCPM_OFF
-
-
-def _shorter_way(block: Block, state: State) -> None:
-    state.is_shorter_way = block.kind is Kind.SHORTER_WAY
 
 
 def _plane_off(block: Block, state: State) -> None:
@@ -164,14 +159,6 @@ def _tool_call(block: Block, state: State) -> None:
     state.is_retracted = False
 
 
-def _spindle_off(block: Block, state: State) -> None:
-    state.is_spindle_off = True
-
-
-def _wait(block: Block, state: State) -> None:
-    state.is_synchronous = True
-
-
 def _assign(block: Block, state: State) -> None:
     state.write(block, int(block.word("q")), block.number("value"))
 
@@ -188,18 +175,22 @@ def _subtract(block: Block, state: State) -> None:
         state.reached[int(block.word("q"))] = held[0], held[1] + other
 
 
-_SETTERS = {
-    Kind.TCPM_ON: _tcpm,
-    Kind.TCPM_OFF: _tcpm,
-    Kind.SHORTER_WAY: _shorter_way,
-    Kind.SHORTER_WAY_OFF: _shorter_way,
+_SETS = {
+    Kind.TCPM_ON: ("is_tcpm_off", False),
+    Kind.TCPM_OFF: ("is_tcpm_off", True),
+    Kind.SHORTER_WAY: ("is_shorter_way", True),
+    Kind.SHORTER_WAY_OFF: ("is_shorter_way", False),
+    Kind.SPINDLE_OFF: ("is_spindle_off", True),
+    Kind.WAIT: ("is_synchronous", True),
+}
+"""What a block alone sets in the state."""
+
+_SETTERS: Mapping[Kind, Callable[[Block, State], None]] = {
     Kind.PLANE_OFF: _plane_off,
     Kind.PLANE: _plane,
     Kind.SHIFT: _shift,
     Kind.PRESET: _preset,
     Kind.TOOL_CALL: _tool_call,
-    Kind.WAIT: _wait,
     Kind.ASSIGN: _assign,
     Kind.SUBTRACT: _subtract,
-    Kind.SPINDLE_OFF: _spindle_off,
 }

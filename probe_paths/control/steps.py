@@ -56,8 +56,8 @@ class ProbeStep:
         back: Retract after the contact, mm.
         side: Sign of the last motion of every axis before the touch, (A,); 0 where unknown.
         number: Of the touch, as the log will name it.
-        pose: Number of the table pose, likewise.
-        feature: Number of the feature, likewise.
+        pose: Number of the table pose in the log.
+        feature: Number of the feature in the log.
         on_miss: What the program does when there is no contact; of one in the air, when there is.
         is_air: It must meet nothing; it has no number, and no line in the log.
     """
@@ -109,7 +109,7 @@ Step = Move | ProbeStep | Print | Halt
 
 @dataclass(frozen=True, eq=False)
 class ReadProgram:
-    """A program as its text alone tells it.
+    """A program as its text alone states it.
 
     Attributes:
         path: Of the file.

@@ -3,7 +3,7 @@
 A closed list of blocks (`Kind`): a language (`klartext`, `gcode`) writes them, `read_blocks` takes
 no others. `Dialect` holds what differs between controls of one language and between workshops, read
 from a file by `read_dialect`; `Q` the parameters that our programs use. A new block needs a
-function in every language, a pattern in its reader and an execution in
+form in every language, a pattern in its reader and an execution in
 `matstd.probe_paths.control`.
 """
 

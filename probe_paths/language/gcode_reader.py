@@ -4,7 +4,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from matstd.nc.grammar import SIGNED
+from matstd.nc.grammar import SIGNED, gcode_lines
 from matstd.probe_paths.language import gcode as g
 from matstd.probe_paths.language.blocks import Block, Kind, physical_lines
 from matstd.probe_paths.language.dialect import TOOL_LENGTH, Label, Q
@@ -77,7 +77,8 @@ def read_gcode(data: bytes, path: str | Path) -> list[Block]:
         BadFile: A byte outside ASCII, mixed line ends, a last line cut off or one that is too long,
             another touch than ours, a line that is not in the closed list.
     """
-    lines = [" ".join(raw.split()) for raw in physical_lines(data, path)]
+    own = gcode_lines(physical_lines(data, path))
+    lines = [" ".join(line.text.split()) for line in own]
     for number, line in enumerate(lines, 1):
         if len(line) > LONGEST:
             found = f"{len(line)} characters: {line[:40]!r}..."

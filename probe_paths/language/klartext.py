@@ -54,8 +54,8 @@ def plane(angles: Sequence[float], master: float) -> str:
 
     Args:
         angles: Spatial angles, degrees.
-        master: Reading of the rotary axis nearest the foundation; its sign tells the two solutions
-            apart. At zero there is one, and the table, not the coordinates, is what has turned.
+        master: Reading of the rotary axis nearest the foundation; its sign selects one of two
+            solutions. At zero there is one, and the table, not the coordinates, has turned.
     """
     words = " ".join(f"SP{a}{signed(v)}" for a, v in zip("ABC", angles, strict=True))
     is_free = signed(master) == signed(0.0)

@@ -47,7 +47,7 @@ def rehearse(
     out: Path,
     count: int | None = None,
     user: str = "",
-    told: Callable[[ProgramSet], None] = lambda made: None,
+    announce: Callable[[ProgramSet], None] = lambda made: None,
 ) -> Rehearsal:
     """Run programs of one set-up on LinuxCNC; programs and logs stay in a folder, come what may.
 
@@ -59,7 +59,7 @@ def rehearse(
         out: Folder for programs, logs and what LinuxCNC said.
         count: Touches that are made; None for all.
         user: Who runs LinuxCNC, as `installed` gives it.
-        told: Told of the programs before they run.
+        announce: Called with the programs before they run.
 
     Raises:
         DesignError: A control that stopped, died or was too busy; the folder says how far it came.
@@ -74,7 +74,7 @@ def rehearse(
     for program in programs:
         check_moves(program, standard, chain)
     contact = TwinContact(programs, standard, machine, rng)
-    told(made)
+    announce(made)
     folder = machine_folder(user)
     try:
         config = machine_files(chain, programs[0].heading.probe, dialect, str(folder / "probe"))

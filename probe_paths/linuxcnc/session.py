@@ -107,7 +107,7 @@ def installed(user: str) -> str:
             "says how to install it"
         )
     if LOCK.exists():
-        raise DesignError(f"LinuxCNC runs already on this computer ({LOCK}); end it first")
+        raise DesignError(f"LinuxCNC is already running on this computer ({LOCK}); stop it first")
     if os.geteuid() == 0 and not user:
         raise DesignError("LinuxCNC refuses to run as root: name an ordinary user by --user")
     if user:
@@ -118,7 +118,7 @@ def installed(user: str) -> str:
         if entry.pw_uid == 0:
             raise DesignError(f"--user {user}: LinuxCNC refuses root, expected an ordinary user")
         if os.geteuid() not in (0, entry.pw_uid):
-            raise DesignError(f"--user {user}: only root can start LinuxCNC as somebody else")
+            raise DesignError(f"--user {user}: only root can start LinuxCNC as another user")
         return user if entry.pw_uid != os.geteuid() else ""
     return ""
 

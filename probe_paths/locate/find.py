@@ -139,7 +139,7 @@ def _check(rms: Array, u: Array) -> None:
         )
     if u[:3].max() > KNOWN or u[3:].max() > KNOWN_ANGLE:
         raise NotEnoughData(
-            f"the touches tell the place to {u[:3].max():.2f} mm and {u[3:].max() / DEG:.2f} "
+            f"the touches fix the position to {u[:3].max():.2f} mm and {u[3:].max() / DEG:.2f} "
             f"degrees only, expected {KNOWN:g} mm and {KNOWN_ANGLE / DEG:g} degrees: align the "
             "standard better and search again"
         )

@@ -148,7 +148,7 @@ def _check_told(relief: Relief, place: Array, spread: Spread) -> None:
         told += bool(u[:3].max() < KNOWN and u[3:].max() < KNOWN_ANGLE)
     if told < _TOLD * _DRAWN:
         raise NotReachable(
-            f"a search from above comes down to flat places: it would tell {told} of {_DRAWN} "
+            f"a search from above comes down to flat places: it would determine {told} of {_DRAWN} "
             f"places within {spread.distance:g} mm and {spread.angle / DEG:g} degrees"
         )
 

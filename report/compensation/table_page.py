@@ -7,8 +7,8 @@ from matstd.compensation.field import MachineErrors, Result
 from matstd.compensation.tables import Header, Played
 from matstd.report.compensation.table_pictures import draw_errors_left, draw_shares
 from matstd.report.compensation.table_words import control_title, extent_of, result_sentence, small
+from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, signed, with_uncertainty
-from matstd.report.pages import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.twin.machine import Chain
 from matstd.twin.numbers import rms_length
 from matstd.twin.units import DEG, UM

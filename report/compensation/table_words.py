@@ -6,7 +6,7 @@ import numpy as np
 
 from matstd.compensation.field import Left, Result
 from matstd.compensation.tables import Played
-from matstd.report.numbers import digits, with_uncertainty
+from matstd.report.numbers import digits
 from matstd.twin.numbers import rms_length
 from matstd.twin.units import NM, UM
 
@@ -50,10 +50,8 @@ def extent_of(played: Played) -> str:
 
 
 def held_words(left: Left) -> str:
-    """`EX0C (20.0 ± 3.0 of 21.0 µm remain)`: an error that a control cannot represent."""
-    u = left.u / UM if left.u > 0.0 else None
-    remaining = with_uncertainty(left.rms / UM, u)
-    return f"{left.name} ({remaining} of {digits(left.before / UM)} µm remain)"
+    """`EX0C (20.1 of 21.0 µm remain)`: an error that a control cannot represent."""
+    return f"{left.name} ({digits(left.rms / UM)} of {digits(left.before / UM)} µm remain)"
 
 
 def table_lines(played: Played) -> Iterator[tuple[str, bool]]:

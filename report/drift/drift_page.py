@@ -12,8 +12,8 @@ from matstd.diagnosis.drift import (
 )
 from matstd.report.drift.drift_pictures import draw_drift, draw_laws
 from matstd.report.drift.drift_words import law_title, law_words, together, units_word
+from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, percent, sentence, span
-from matstd.report.pages import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.twin.frames import Array
 from matstd.twin.units import HOUR
 

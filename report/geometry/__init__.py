@@ -4,17 +4,16 @@ In: a `LearntGeometry`, `DescriptionFault`s, a `Trend`. Out: lines for tables an
 to copy into a machine file, sentences on mistakes and changes.
 """
 
-from matstd.report.geometry.console_words import console_lines
-from matstd.report.geometry.copied_numbers import copy_lines, file_lines
+from matstd.report.geometry.copied_numbers import copy_lines
 from matstd.report.geometry.fault_words import fault_sentences
+from matstd.report.geometry.geometry_section import geometry_sections
 from matstd.report.geometry.geometry_words import (
     USUAL,
     estimate_words,
-    geometry_lines,
     quantity_name,
     shown_unit,
 )
-from matstd.report.geometry.trend_words import change_sentences
+from matstd.report.geometry.trend_words import change_sentences, console_lines
 
 __all__ = [
     "USUAL",
@@ -23,8 +22,7 @@ __all__ = [
     "copy_lines",
     "estimate_words",
     "fault_sentences",
-    "file_lines",
-    "geometry_lines",
+    "geometry_sections",
     "quantity_name",
     "shown_unit",
 ]

@@ -1,12 +1,24 @@
-"""Changes between several runs, in words."""
+"""Changes between several runs in words; all lines on the geometry for the console."""
 
 from collections.abc import Sequence
 
 from matstd.diagnosis.answer import Trend
-from matstd.diagnosis.geometry import CHANGED, Estimate, GeometryRow
+from matstd.diagnosis.faults import DescriptionFault
+from matstd.diagnosis.geometry import CHANGED, Estimate, GeometryRow, LearntGeometry
 from matstd.report.effects import effect_title
-from matstd.report.geometry.geometry_words import USUAL, estimate_words, quantity_name, shown_unit
+from matstd.report.geometry.copied_numbers import copy_lines
+from matstd.report.geometry.fault_words import fault_sentences
+from matstd.report.geometry.geometry_words import (
+    USUAL,
+    estimate_words,
+    far_lines,
+    ladder_sentence,
+    noted_lines,
+    quantity_name,
+    shown_unit,
+)
 from matstd.report.numbers import digits, microns
+from matstd.twin.record import Touches
 from matstd.twin.units import UM
 
 NAMED = 4
@@ -105,3 +117,17 @@ def _detectable(rows: Sequence[GeometryRow], run: int) -> str:
             least = digits(CHANGED * step.u / factor, 2)
             seen.append(f"{quantity_name(row)} {least} {unit}")
     return f"; detection limits of these runs: {', '.join(seen)}" if seen else ""
+
+
+def console_lines(
+    touches: Touches,
+    geometry: LearntGeometry,
+    faults: Sequence[DescriptionFault],
+    trend: Trend | None = None,
+) -> list[tuple[str, bool]]:
+    """Lines, each with whether it should be read first; changes replace the notable quantities."""
+    first = [(text, True) for text in fault_sentences(faults)]
+    first += [(text, False) for text in copy_lines(touches, geometry, faults)]
+    first += [(text, True) for text in trend_lines(trend)]
+    noted = noted_lines(geometry) if trend is None else far_lines(geometry)
+    return first + [(text, False) for text in (ladder_sentence(geometry), *noted)]

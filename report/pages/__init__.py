@@ -4,14 +4,22 @@ A page is a list of `Section`s (sentences, table, pictures) under a verdict and 
 `write_page` renders every page in the same way and writes its tables as CSV and workbook.
 """
 
+from matstd.report.layout import (
+    KeyFigure,
+    Page,
+    Picture,
+    Printer,
+    Section,
+    Table,
+    printer,
+    write_page,
+    write_pdf,
+)
 from matstd.report.pages.compare_page import write_compare_page
 from matstd.report.pages.design_page import write_design_page
 from matstd.report.pages.design_result import Design, Proven
 from matstd.report.pages.diagnosis_page import write_diagnosis_page
 from matstd.report.pages.notebook import drawing
-from matstd.report.pages.page import write_page
-from matstd.report.pages.pdf import Printer, printer, write_pdf
-from matstd.report.pages.section import KeyFigure, Page, Picture, Section, Table
 from matstd.report.pages.setup_page import write_setup_page
 from matstd.report.pages.study_page import write_study_page
 from matstd.report.pages.uncertainty_page import write_uncertainty_page

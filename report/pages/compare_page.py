@@ -7,10 +7,9 @@ import numpy as np
 
 from matstd.diagnosis.answer import Comparison
 from matstd.diagnosis.fit import Reported
-from matstd.report.geometry import fault_sentences
+from matstd.report.geometry import fault_sentences, geometry_sections
+from matstd.report.layout import KeyFigure, Page, Section, Table, write_page
 from matstd.report.numbers import digits, microns, p_value, sentence
-from matstd.report.pages.geometry_section import geometry_sections
-from matstd.report.pages.page import write_page
 from matstd.report.pages.run_sections import (
     extent,
     group_section,
@@ -21,7 +20,6 @@ from matstd.report.pages.run_sections import (
     residual_sections,
     run_foot,
 )
-from matstd.report.pages.section import KeyFigure, Page, Section, Table
 from matstd.report.words import (
     comparison_sentence,
     learnt_lines,

@@ -7,12 +7,11 @@ from pathlib import Path
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import standing_remarks
 from matstd.artefact.worth import Criterion, touch_curve
+from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, plural, um
 from matstd.report.pages.design_result import Design
 from matstd.report.pages.identifiability_section import identifiability_sections
-from matstd.report.pages.page import write_page
 from matstd.report.pages.proof_sections import proof_sections, task_sections, worst_machine
-from matstd.report.pages.section import KeyFigure, Page, Picture, Section, Table
 from matstd.report.pages.standard_sections import (
     at_most,
     cad_sections,
@@ -179,7 +178,7 @@ def _opening(design: Design, folder: Path, remarks: Sequence[str]) -> Section:
         f"{design.programs.duration / 60.0:.0f} minutes. Chain `{chain.notation}`, "
         f"{len(chain.symbols)} error parameters."
     )
-    return Section(sentences=[words], warnings=[*remarks, *assumed])
+    return Section(sentences=[words], warnings=[*assumed, *remarks])
 
 
 def _poses(design: Design) -> int:

@@ -7,10 +7,9 @@ import numpy as np
 
 from matstd.diagnosis.answer import Diagnosis, Step, Verdict
 from matstd.report.effects import class_words, effect_cell
-from matstd.report.geometry import fault_sentences
+from matstd.report.geometry import fault_sentences, geometry_sections
+from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import capital, digits, microns, p_value, sentence
-from matstd.report.pages.geometry_section import geometry_sections
-from matstd.report.pages.page import write_page
 from matstd.report.pages.rival_sections import (
     detection_sections,
     next_sections,
@@ -28,7 +27,6 @@ from matstd.report.pages.run_sections import (
     residual_sections,
     run_foot,
 )
-from matstd.report.pages.section import KeyFigure, Page, Picture, Section, Table
 from matstd.report.pages.trend_section import trend_sections
 from matstd.report.plots import draw_effect, draw_fall, draw_form, is_form
 from matstd.report.style import series

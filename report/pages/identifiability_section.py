@@ -15,10 +15,10 @@ from matstd.report.identifiability import (
     resolution_words,
     short,
 )
+from matstd.report.layout import Picture, Section, Table
 from matstd.report.maps import draw_ties
 from matstd.report.numbers import capital, digits, shown
 from matstd.report.pages.design_result import Design
-from matstd.report.pages.section import Picture, Section, Table
 from matstd.twin.machine import Chain, Link
 from matstd.twin.units import DEG
 

@@ -21,10 +21,10 @@ from matstd.diagnosis.files import SavedModel
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.residual import rank_variables
 from matstd.report.identifiability import gist
+from matstd.report.layout import picture
 from matstd.report.maps import draw_regions
 from matstd.report.numbers import microns
 from matstd.report.pages.design_result import Design
-from matstd.report.pages.page import picture
 from matstd.report.plots import draw_fall, draw_over_variables
 from matstd.report.style import save
 from matstd.report.words import comparison_sentence, study_words, verdict_sentence

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
+from matstd.report.layout import Picture, Section, Table
 from matstd.report.numbers import digits, percent, plural, sentence, um
 from matstd.report.pages.design_result import Design, Proven
-from matstd.report.pages.section import Picture, Section, Table
 from matstd.report.pages.uncertainty_page import budget_table
 from matstd.report.plots import draw_proof
 from matstd.report.task import task_lines

@@ -3,19 +3,20 @@
 import math
 from collections.abc import Sequence
 
-from matstd.diagnosis.answer import Detectable, Diagnosis, Plan, Step
+from matstd.diagnosis.answer import Detectable, Diagnosis, Plan, Step, Verdict
 from matstd.diagnosis.fit import file_unit
 from matstd.report.effects import effect_title, plan_words
-from matstd.report.numbers import digits, p_value, percent, unit_words
+from matstd.report.layout import Picture, Section, Table
+from matstd.report.numbers import digits, noun, p_value, percent, unit_words
 from matstd.report.pages.run_sections import PICTURES
-from matstd.report.pages.section import Picture, Section, Table
 from matstd.report.plots import draw_candidates, draw_rivals
 from matstd.report.style import series
-from matstd.report.words import scanned_sentence
+from matstd.report.words import scanned_sentence, structure_words
 from matstd.twin.files import reading_columns
 from matstd.twin.library import kinds, parse_effect
 from matstd.twin.model import Effect
 from matstd.twin.units import UM
+from matstd.twin.words import listed
 
 NEXT = 3
 """Distinguished effects that are listed below those that are not."""
@@ -221,17 +222,29 @@ def next_sections(result: Diagnosis) -> list[Section]:
     if result.plans:
         plans = [_plan(plan, k) for k, plan in enumerate(result.plans, start=1)]
         return [Section(title), *(one for plan in plans for one in plan)]
+    return [Section(title, sentences=[_without_plan(result)])]
+
+
+def _without_plan(result: Diagnosis) -> str:
+    """What to measure where no effects compete, or no touch distinguishes them."""
     steps = result.steps[1:]
-    if any(s.confusion and s.confusion.rivals for s in steps):
-        words = "No touch at the points and poses of this run would distinguish the rivals."
-    elif steps:
-        words = "The effects found have no rivals; no further touches are needed."
-    else:
-        words = (
-            "No effect was found; no further touches are needed. The detection limits above state "
-            "what this run could not show."
+    if result.verdict is Verdict.UNDECIDED:
+        return "Repeat the touches that the verdict names."
+    if result.verdict is Verdict.UNEXPLAINED and result.depends_on:
+        found = result.depends_on[0].structure
+        names = listed([noun(name) for name in found.variables])
+        return (
+            f"The residual {structure_words(found)}. Probe more touches that differ in {names}, "
+            "with all other readings unchanged."
         )
-    return [Section(title, sentences=[words])]
+    if any(s.confusion and s.confusion.rivals for s in steps):
+        return "No touch at the points and poses of this run would distinguish the rivals."
+    if steps:
+        return "The effects found have no rivals; no further touches are needed."
+    return (
+        "No effect was found; no further touches are needed. The detection limits above state "
+        "what this run could not show."
+    )
 
 
 def _plan(plan: Plan, number: int) -> list[Section]:

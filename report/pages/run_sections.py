@@ -7,8 +7,8 @@ import numpy as np
 from matstd.diagnosis.answer import Diagnosis, GroupResidual
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.residual import Region, Structure, has_poses, rank_variables
+from matstd.report.layout import Picture, Section, Table
 from matstd.report.numbers import capital, digits, p_value, plural, signed, span
-from matstd.report.pages.section import Picture, Section, Table
 from matstd.report.plots import (
     draw_normal_plot,
     draw_on_standard,

@@ -14,9 +14,8 @@ from matstd.probe_paths.plan import (
     calibration_hash,
 )
 from matstd.probe_paths.stations import Station
+from matstd.report.layout import Page, Picture, Section, Table, write_page
 from matstd.report.numbers import plural
-from matstd.report.pages.page import write_page
-from matstd.report.pages.section import Page, Picture, Section, Table
 from matstd.report.plots import draw_setup
 from matstd.report.scenes import PLAYBACK, write_playback
 from matstd.twin.frames import fixed_xyz_angles

@@ -5,9 +5,9 @@ import numpy as np
 from matstd.artefact.body import FreeformPatch, max_slope, min_concave_radius
 from matstd.cad_out.making import FIRST_MODE, ROUGHNESS, SAG, Cutting, FaceHint, Making, Stiffness
 from matstd.cad_out.verify import Conformity
+from matstd.report.layout import Heading, Section, Table
 from matstd.report.numbers import digits, um
 from matstd.report.pages.design_result import Design
-from matstd.report.pages.section import Heading, Section, Table
 from matstd.report.task import modulus_words
 from matstd.twin.units import DEG, UM
 

@@ -5,9 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
+from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, um
-from matstd.report.pages.page import write_page
-from matstd.report.pages.section import KeyFigure, Page, Picture, Section, Table
 from matstd.report.scenes import Scene, draw_volumes
 from matstd.report.words import dominant_words, place_words, sampling_words, unsampled
 from matstd.sensitivity.shares import regions

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from matstd.probe_paths.campaign import Ordering, orders, probing_time
+from matstd.report.layout import Table
 from matstd.report.numbers import digits, percent, um
 from matstd.report.pages.design_result import Design
-from matstd.report.pages.section import Table
 from matstd.twin.units import HOUR, MINUTE, UM, URAD
 from matstd.twin.words import listed
 

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from matstd.diagnosis.answer import Trend
 from matstd.diagnosis.geometry import Estimate, GeometryRow
 from matstd.report.geometry import USUAL, change_sentences, estimate_words, quantity_name
+from matstd.report.layout import Picture, Section, Table
 from matstd.report.numbers import digits, sentence
-from matstd.report.pages.section import Picture, Section, Table
 from matstd.report.plots import draw_trend
 from matstd.twin.units import UM
 

@@ -4,9 +4,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from matstd.diagnosis.task import TaskUncertainty
+from matstd.report.layout import Page, Section, Table, write_page
 from matstd.report.numbers import sentence as as_sentence
-from matstd.report.pages.page import write_page
-from matstd.report.pages.section import Page, Section, Table
 from matstd.report.task import budget_rows
 from matstd.twin.units import UM
 

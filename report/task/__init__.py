@@ -2,12 +2,16 @@
 
 from matstd.report.task.calibration_words import (
     calibration_lines,
+    modulus_words,
     refusal_sentence,
     verdict_lines,
     verdict_rows,
 )
-from matstd.report.task.standard_words import modulus_words
-from matstd.report.task.task_words import budget_rows, measured_sentence, task_lines
+from matstd.report.task.task_words import (
+    budget_rows,
+    measured_sentence,
+    task_lines,
+)
 
 __all__ = [
     "budget_rows",

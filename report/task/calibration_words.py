@@ -1,11 +1,12 @@
-"""Results of a calibration, for the console."""
+"""Results of a calibration and the material of a standard, for pages and console."""
 
 from collections.abc import Sequence
 
-from matstd.artefact.body import Verdict
+from matstd.artefact.body import Material, Verdict
 from matstd.artefact.certify import Calibrated, CommonCause
+from matstd.artefact.layout import SOFT
 from matstd.report.numbers import digits, um
-from matstd.twin.units import T_REF, UM, URAD
+from matstd.twin.units import GPA, T_REF, UM, URAD
 
 PPM = 1e-6
 _SIGNED = ("diameter", "scale")
@@ -93,3 +94,16 @@ def _cause(cause: CommonCause) -> str:
 
 def _um(value: float) -> str:
     return um(value, 2)
+
+
+def modulus_words(material: Material) -> str:
+    """Young's modulus, as used for stiffness and sag."""
+    if material.modulus is None:
+        return (
+            f"unknown: no modulus is stated for '{material.name}'; state material.modulus_MPa. "
+            f"Posts are designed for {SOFT / GPA:g} GPa, sag is not corrected"
+        )
+    return (
+        f"{material.modulus / GPA:g} GPa, Poisson's ratio {material.poisson:g} of "
+        f"'{material.name}' ({material.modulus_source})"
+    )

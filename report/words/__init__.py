@@ -20,7 +20,6 @@ from matstd.report.words.diagnosis_words import (
     stated_noise,
     structure_words,
     values,
-    verdict_sentence,
 )
 from matstd.report.words.probe_words import ball_lines, located_lines
 from matstd.report.words.remark_words import remark_sentence
@@ -31,6 +30,7 @@ from matstd.report.words.sensitivity_words import (
     study_words,
     unsampled,
 )
+from matstd.report.words.verdict_words import verdict_sentence
 
 __all__ = [
     "ball_lines",

@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from matstd.diagnosis.answer import Comparison, Detectable, Diagnosis, Step, Verdict
+from matstd.diagnosis.answer import Comparison, Detectable, Step
 from matstd.diagnosis.fit import SINE, Fit, Reported, Role
 from matstd.diagnosis.remarks import OfAnotherRun
 from matstd.diagnosis.residual import Condition, Shape, Side, Structure
-from matstd.report.effects import class_words, words_of_name
+from matstd.report.effects import words_of_name
 from matstd.report.numbers import (
     condition,
     digits,
@@ -23,7 +23,7 @@ from matstd.report.words.remark_words import memory_words
 from matstd.twin.library import title_of
 from matstd.twin.numbers import rms
 from matstd.twin.record import Run
-from matstd.twin.units import DEG, UM
+from matstd.twin.units import UM
 from matstd.twin.words import listed
 
 _WORDS = {
@@ -40,20 +40,8 @@ _WORDS = {
 _GROUPS = ("feature", "pose", "setup")
 """Columns that number rows without an order."""
 
-PERIODS_NAMED = 4
-"""Indistinguishable periods that are named, the longest ones."""
-
-WITHIN = 0.1
-"""Excess over the stated noise that is not reported: half a per cent of its size."""
-
-HALF = 0.5
-"""Share of the mean square beyond the stated noise that a pattern must have to explain it."""
-
 ALL_NUMBERS = 7
 """Numbers of an effect that are written out; of more, only those that sum them up."""
-
-_NUMBERS = {1: 3, 2: 2, 3: 1}
-"""Numbers of an effect in the verdict by the number of effects; of more effects only the names."""
 
 
 def named_value(reported: Reported) -> tuple[str, str]:
@@ -135,29 +123,6 @@ def noise_words(fit: Fit) -> str:
     return f"{microns(stated)}{after}"
 
 
-def excess(fit: Fit) -> float:
-    """Root mean square of the residual beyond the stated noise, mm."""
-    stated = stated_noise(fit.run)
-    return stated * math.sqrt(max(fit.noise.factor**2 - 1.0, 0.0))
-
-
-def _unexplained(diagnosis: Diagnosis) -> str:
-    """Size of the residual that is not noise: beyond the stated noise, or as a part of it.
-
-    Scatter without a pattern may be noise that was stated too small.
-    """
-    fit, stated = diagnosis.fit, stated_noise(diagnosis.run)
-    beyond = excess(fit)
-    share = min(max((s.share for s in diagnosis.left), default=1.0), 1.0)
-    whole = stated * fit.noise.factor
-    if whole**2 * share < HALF * beyond**2 or beyond < WITHIN * stated:
-        return (
-            f"{microns(whole * math.sqrt(share))} of the residual of {microns(whole)} rms "
-            f"(stated noise: {microns(stated)})"
-        )
-    return f"{microns(beyond)} rms beyond the stated noise of {microns(stated)}"
-
-
 def region_words(conditions: Sequence[Condition]) -> str:
     """Conditions in words, `B > 60 deg and time < 40 min`."""
     parts = []
@@ -192,147 +157,6 @@ def structure_clause(found: Structure) -> str:
     """The same as a clause after a colon."""
     it = "it " if found.shape is Shape.SMOOTH else ""
     return it + structure_words(found)
-
-
-def _fall(diagnosis: Diagnosis) -> str:
-    if diagnosis.choice is not None and not diagnosis.fit.test_rows.any():
-        first, best = diagnosis.choice.rules[0], diagnosis.choice.best
-        return (
-            "the error of blocks left out, with the choice repeated without each, falls from "
-            f"{microns(first.error)} to {microns(best.error)}"
-        )
-    return (
-        f"the error of held-out touches falls from {microns(diagnosis.start.test_rms)} to "
-        f"{microns(diagnosis.fit.test_rms)}"
-    )
-
-
-def _alike(step: Step, places: Sequence[float]) -> str:
-    """Periods that cannot be distinguished from that of an effect, and where to measure.
-
-    Args:
-        step: With an effect.
-        places: Readings of the axis that would distinguish them, mm; empty where none would.
-    """
-    alike = step.confusion.alike if step.confusion else None
-    if alike is None:
-        return ""
-    most = PERIODS_NAMED if len(alike.periods) > PERIODS_NAMED + 1 else None
-    longest = [f"{p:.4g}" for p in alike.periods[:most]]
-    more = len(alike.periods) - len(longest)
-    unit, finer = ("", "higher") if alike.is_harmonic else (" mm", "shorter")
-    others = (
-        f"{', '.join(longest)}{unit} or one of {more} {finer} ones"
-        if more > 0
-        else f"{listed(longest, 'or')}{unit}"
-    )
-    what_else = f"{'harmonic' if alike.is_harmonic else 'a period of'} {others}"
-    at = f"with steps of {alike.step:g} mm" if alike.step else "with these targets"
-    why = f" (chosen for the stated pitch of {alike.pitch:g} mm)" if alike.pitch else ""
-    where = listed([f"{p:g}" for p in places])
-    reading = "°" if alike.is_harmonic else " mm"
-    what = f"; to distinguish them, measure at {alike.axis} {where}{reading}" if places else ""
-    return f"{at} it cannot be distinguished from {what_else}{why}{what}"
-
-
-def _places(diagnosis: Diagnosis, step: Step) -> list[float]:
-    """Three readings, far apart, that distinguish the periods of an effect; mm or degrees."""
-    alike = step.confusion.alike if step.confusion else None
-    name = step.effect.name if step.effect is not None else ""
-    for plan in diagnosis.plans if alike is not None else ():
-        if plan.periods_of == name and alike is not None:
-            unit = DEG if alike.is_harmonic else 1.0
-            readings = sorted({round(q / unit, 2) for q in plan.touches.reading(alike.axis)})
-            return sorted({readings[0], readings[len(readings) // 2], readings[-1]})
-    return []
-
-
-def _added(diagnosis: Diagnosis, step: Step, most: int) -> str:
-    """An effect with its leading numbers and its rivals."""
-    clauses = [sizes(step, most) if most else "", _alike(step, _places(diagnosis, step))]
-    return class_words(step, [clause for clause in clauses if clause])
-
-
-def _covered(diagnosis: Diagnosis) -> str:
-    """A pattern within the stated noise, as a sentence; empty where there is none."""
-    if not diagnosis.left:
-        return ""
-    found = max(diagnosis.left, key=lambda s: s.share)
-    size = stated_noise(diagnosis.run) * diagnosis.fit.noise.factor * math.sqrt(min(found.share, 1))
-    return (
-        f" Within the stated noise, {microns(size)} of the residual follow a pattern: "
-        f"{structure_clause(found)}."
-    )
-
-
-def verdict_sentence(diagnosis: Diagnosis) -> str:
-    """The verdict with numbers and standard uncertainties."""
-    most = _NUMBERS.get(len(diagnosis.steps) - 1, 0)
-    steps = diagnosis.steps[1:]
-    named = [_added(diagnosis, s, most) for s in steps if s.is_named]
-    found = [_added(diagnosis, s, most) for s in steps if not s.is_named]
-    also = f" Added by name: {'; '.join(named)}." if named else ""
-    them = "it" if len(steps) == 1 else "them"
-    if diagnosis.verdict is Verdict.MISSING:
-        what = "one effect" if len(found) == 1 else f"{len(found)} effects"
-        return (
-            f"The model lacks {what}: {'; '.join(found)}.{also} With {them} "
-            f"{_fall(diagnosis)}; the noise is {noise_words(diagnosis.fit)}.{_covered(diagnosis)}"
-        )
-    if diagnosis.verdict is Verdict.UNEXPLAINED:
-        return _unexplained_sentence(diagnosis, [*named, *found])
-    if diagnosis.verdict is Verdict.UNDECIDED:
-        return _undecided_sentence(diagnosis)
-    fall = f" With {them} {_fall(diagnosis)}." if named else ""
-    return (
-        f"No {'further ' if named else ''}effect is missing that this run could show: the error "
-        f"of held-out touches is {microns(diagnosis.fit.test_rms)}, and the noise is "
-        f"{noise_words(diagnosis.fit)}.{also}{fall}{_covered(diagnosis)}"
-    )
-
-
-def _unexplained_sentence(diagnosis: Diagnosis, added: Sequence[str]) -> str:
-    """The size and the pattern of a residual without a name, and the nearest effects."""
-    words = "; ".join(
-        dict.fromkeys(structure_clause(d.structure) for d in diagnosis.depends_on[:2])
-    )
-    what = f" Added: {'; '.join(added)}; {_fall(diagnosis)}." if added else ""
-    rest = "" if diagnosis.nearest else " that no effect of the library explains"
-    return (
-        f"A residual remains{rest}: {_unexplained(diagnosis)}. It is not noise: "
-        f"{words or 'it varies with no recorded variable'}.{what}{_nearest(diagnosis)}"
-    )
-
-
-def _nearest(diagnosis: Diagnosis) -> str:
-    """The effect nearest to the residual, with the error that it would leave; empty for none."""
-    if not diagnosis.nearest:
-        return ""
-    best, *others = diagnosis.nearest
-    before, after = microns(diagnosis.fit.test_rms), microns(best.test_rms)
-    also = f"; next: {listed([o.effect for o in others])}" if others else ""
-    return (
-        f" The nearest effect is {best.effect} (p = {best.p_value:.0e}), which reduces the error "
-        f'of held-out touches from {before} to {after}; add it with --add "{best.effect}"{also}.'
-    )
-
-
-def _undecided_sentence(diagnosis: Diagnosis) -> str:
-    """That the noise alone would explain the run, if it were large enough."""
-    noise = diagnosis.fit.noise
-    lines = [str(line) for line in sorted(diagnosis.run.line[diagnosis.repeat])]
-    shown = (
-        "no touch was repeated"
-        if noise.replicates is None
-        else f"{noise.replicates_dof} repeated touches show {digits(noise.replicates, 2)} times it"
-    )
-    size = noise.factor * stated_noise(diagnosis.run)
-    return (
-        "This run cannot decide whether an effect is missing: the noise would have to be "
-        f"{microns(size)}, {digits(noise.factor, 2)} times the stated one, and {shown}. Repeat the "
-        f"touches of lines {listed(lines)} three times each under unchanged conditions; a residual "
-        "that recurs is not noise."
-    )
 
 
 def scanned_sentence(found: Sequence[Detectable]) -> str:

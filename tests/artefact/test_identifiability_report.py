@@ -123,7 +123,7 @@ def test_a_stylus_that_reaches_nothing_is_said(criterion, requests, monkeypatch)
     monkeypatch.setattr(module, "SETUPS", {})
     (only,) = alternatives(criterion, requests, np.random.default_rng(8))
     assert not only.is_possible
-    assert only.refusal == f"the machine reaches 0 touches, {TOUCHES // 2} are wanted"
+    assert only.refusal == f"the machine reaches 0 touches, {TOUCHES // 2} are required"
 
 
 def test_combinations_know_nothing_of_the_set_up(criterion, requests):

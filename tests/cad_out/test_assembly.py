@@ -16,9 +16,9 @@ from matstd.cad_out.details.places import datum_touches, plan_room
 from matstd.cad_out.details.seats import glue_gap, seat_of
 from matstd.cad_out.details.tolerances import Tolerance, notes_of
 from matstd.cad_out.meshes.mesh import ball_mesh, inner_folds, mesh_volume
+from matstd.cad_out.verify.annotation_check import missing_annotations
 from matstd.cad_out.verify.part21 import read_entities, read_faces, read_instances
 from matstd.cad_out.verify.part21_tolerances import read_notes, read_signs, read_tolerances
-from matstd.cad_out.verify.untold import untold
 from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import apply, pose
 
@@ -208,11 +208,11 @@ def test_a_sign_that_is_lost_is_told(upright, built):
         "notes": read_notes(entities),
         "signs": kernel,
     }
-    assert untold(upright, details, entities, found) == ()
+    assert missing_annotations(upright, details, entities, found) == ()
     kernel["FF1 profile"] = [1.0, 0.0, 0.0, 0.0]
     without = "DRAUGHTING_CALLOUT('datum A'"
     entities = {k: e.replace(without, "DRAUGHTING_CALLOUT(''") for k, e in entities.items()}
-    assert set(untold(upright, details, entities, found)) == {
+    assert set(missing_annotations(upright, details, entities, found)) == {
         "sign of FF1 profile",
         "sign of datum A",
     }

@@ -176,7 +176,7 @@ def test_klartext_is_the_same_geometry(frame, tmp_path):
 @pytest.mark.parametrize(
     ("name", "block", "said"),
     [
-        ("a.ngc", "G41 D1 X5", "tool 1, whose radius nobody has stated, expected --tool-radius"),
+        ("a.ngc", "G41 D1 X5", "tool 1, whose radius is not stated, expected --tool-radius"),
         ("a.ngc", "G87 X1 Y1 Z-3 R2", "G87, expected G0 to G4"),
         ("a.ngc", "#1 = 5", "no parameters, expressions"),
         ("a.ngc", "G1 X[1+2]", "no parameters, expressions"),
@@ -190,7 +190,7 @@ def test_klartext_is_the_same_geometry(frame, tmp_path):
         ("a.ngc", "G2 X9 Y0 I2 J0", "mm off the circle"),
         ("a.ngc", "G2 X90 Y0 R5", "R5 for ends 89.0000 mm apart"),
         ("a.ngc", "G1 X1 ?", "words of G-code"),
-        ("a.H", "L X+1 RL F9", "the tool, whose radius nobody has stated, expected --tool-radius"),
+        ("a.H", "L X+1 RL F9", "the tool, whose radius is not stated, expected --tool-radius"),
         ("a.H", "L X+Q1", "Q1 without a value, expected a parameter that the program has set"),
         ("a.H", "FN 18: SYSREAD Q1 = ID1", "expected FN 0 to FN 8 and FN 13 with"),
         ("a.H", "CALL LBL 3", "LBL 3, expected a label that is defined; available: none"),

@@ -123,7 +123,7 @@ def test_a_law_of_a_kind_that_is_no_longer_offered_is_refused(tmp_path, law, fou
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        (["--train-until", "0.1"], "rows to learn from"),
+        (["--train-until", "0.1"], "rows to fit"),
         (["--probed", "p.csv"], "--law thermal.json"),
         (["--step-min", "0"], "--step-min 0"),
         (["--law", "a.csv"], "a.csv"),

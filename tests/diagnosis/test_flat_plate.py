@@ -6,7 +6,7 @@ from flat_plate import HEIGHT, lag, write_plate
 
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.verdict import Verdict
-from matstd.report.words.diagnosis_words import verdict_sentence
+from matstd.report.words.verdict_words import verdict_sentence
 from matstd.twin.files.run_file import read_run
 from matstd.twin.record.commanded import with_commanded
 from matstd.twin.units import UM

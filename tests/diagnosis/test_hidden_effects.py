@@ -13,7 +13,7 @@ from simulator_experiment import random_experiment, random_noise
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.verdict import Verdict
 from matstd.diagnosis.remarks.run_remarks import OutliersLeftOut
-from matstd.report.words.diagnosis_words import verdict_sentence
+from matstd.report.words.verdict_words import verdict_sentence
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.model.model import columns
 from matstd.twin.units import UM

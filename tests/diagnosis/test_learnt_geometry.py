@@ -196,5 +196,5 @@ def test_what_is_unusual_is_said_by_what_the_axis_expects_and_moves_no_fit(axis_
 def test_only_a_linear_axis_expects_a_length() -> None:
     with pytest.raises(BadValue, match="only a linear axis"):
         make_chain("table", "[w C' f t]", {"C": Axis((-1.0, 1.0), expected=0.01)})
-    with pytest.raises(BadValue, match="more than nothing"):
+    with pytest.raises(BadValue, match="a length in mm above 0"):
         make_chain("column", "[w f Z t]", {"Z": Axis((-1.0, 1.0), expected=0.0)})

@@ -13,8 +13,8 @@ from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.regression.memory import CLEARLY, Memory, likely_memory, whitener
 from matstd.diagnosis.remarks.run_remarks import remarks
-from matstd.report.words.diagnosis_words import verdict_sentence
 from matstd.report.words.remark_words import remark_sentence
+from matstd.report.words.verdict_words import verdict_sentence
 from matstd.twin.effects.setup_error import setup_errors
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.model.model import columns

@@ -15,7 +15,7 @@ from matstd.diagnosis.fit.describe import Role
 from matstd.report.words.diagnosis_words import scanned_sentence
 from matstd.twin.effects.periodic import scanned_periods
 from matstd.twin.frames import Array
-from matstd.twin.model import Tunable
+from matstd.twin.model import is_tunable
 from matstd.twin.record import Run
 from matstd.twin.units import UM
 
@@ -46,7 +46,7 @@ def test_a_fine_log_shows_a_short_period(period: float) -> None:
     assert found.verdict is Verdict.MISSING
     (effect,) = found.found
     assert effect.name == "periodic(EXX)"
-    assert isinstance(effect, Tunable)
+    assert is_tunable(effect)
     assert effect.tuning["period"] == pytest.approx(period, rel=1e-3)
     confusion = found.steps[1].confusion
     assert confusion is not None
@@ -72,7 +72,7 @@ def test_a_fine_log_of_many_rows_shows_two_periods(
     run = replace(run, touches=replace(run.touches, time=0.1 * np.arange(len(x))))
     found = diagnose(run)
     assert found.verdict is Verdict.MISSING
-    tuned = [e for e in found.found if isinstance(e, Tunable)]
+    tuned = [e for e in found.found if is_tunable(e)]
     waves = sorted((e.tuning["period"], e.name.partition("#")[0]) for e in tuned)
     assert [name for _, name in waves] == [name for name, _ in told]
     assert [p for p, _ in waves] == pytest.approx([p for _, p in told], rel=1e-4)
@@ -93,7 +93,7 @@ def test_a_large_sine_keeps_its_name_beside_a_wave_in_time(times: float) -> None
     found = diagnose(evenly_timed(run_of(x, -error + rng.normal(0.0, UM, len(x)), UM)))
     assert found.verdict is Verdict.MISSING
     (effect,) = found.found
-    assert isinstance(effect, Tunable)
+    assert is_tunable(effect)
     assert effect.tuning["period"] == pytest.approx(10.0, rel=1e-3)
     assert found.fit.rms == pytest.approx(UM, rel=0.06)
 
@@ -107,7 +107,7 @@ def test_a_small_sine_is_found_beside_a_large_one_in_a_long_log() -> None:
     run = run_of(x, -error * UM + rng.normal(0.0, 0.1 * UM, len(x)), 0.1 * UM)
     found = diagnose(evenly_timed(run, 0.05))
     assert found.verdict is Verdict.MISSING
-    periods = [e.tuning["period"] for e in found.found if isinstance(e, Tunable)]
+    periods = [e.tuning["period"] for e in found.found if is_tunable(e)]
     assert sorted(periods) == pytest.approx([0.8, 20.0], rel=1e-4)
 
 
@@ -250,7 +250,7 @@ def test_a_stated_pitch_is_named_though_hundreds_of_periods_explain_few_targets(
     chain = run.touches.chain.with_pitch("X", 10.0)
     found = diagnose(replace(run, touches=replace(run.touches, chain=chain)))
     effect = next(e for e in found.found if e.name == "periodic(EXX)")
-    assert isinstance(effect, Tunable)
+    assert is_tunable(effect)
     assert effect.tuning["period"] == pytest.approx(10.0, rel=2e-3)
     confusion = found.steps[-1].confusion
     assert confusion is not None

@@ -275,7 +275,7 @@ def test_candidates_are_narrowed_by_kind_and_by_name() -> None:
     assert all(e.kind != "thermal-field" for e in candidates([], ["thermal-field"], run))
     with pytest.raises(DesignError, match="only thermal-statik: expected a kind"):
         candidates(["thermal-statik"], [], run)
-    with pytest.raises(DesignError, match="nothing is left to look for"):
+    with pytest.raises(DesignError, match="nothing is left to search for"):
         candidates(["drift"], ["drift"], run)
 
 

@@ -159,7 +159,7 @@ def test_harmonics_that_even_targets_confuse_are_listed():
     """A harmonic of 45 at 120 targets may be one of 75, 165, 195, 285; a curve may be anything."""
     (alike,) = told(turned(120, 45), "periodic(ECC)", 45.0)
     assert alike == HarmonicsAlike("C", 120, 45, (75, 165, 195, 285))
-    assert "cannot tell harmonic 45 from 75, 165, 195 or 285" in remark_sentence(alike)
+    assert "cannot distinguish harmonic 45 from 75, 165, 195 or 285" in remark_sentence(alike)
     (curve,) = told(turned(12, 40), "geometric(ECC,2-4)")
     assert curve == HarmonicsAlike("C", 12, 0, ())
     assert (

@@ -137,8 +137,8 @@ def test_points_whose_names_are_mixed_up_are_told(imported, capsys):
     found = {**place, "C": place["D"], "D": place["C"]}
     rows += [f"{n},{x},{y},{found[n][0] + 1.01},{found[n][1]}" for n, (x, y) in place.items()]
     _, said = imported({"list.csv": "\n".join(rows)}, capsys)
-    assert "2 of 5 points were found nearer to the nominal place of another" in said
+    assert "2 of 5 points are closer to the nominal position of another" in said
     assert "'C' at 'D', 'D' at 'C'" in said
     right = [rows[0], *(f"{n},{x},{y},{x + 1.01},{y}" for n, (x, y) in place.items())]
     _, said = imported({"list.csv": "\n".join(right)}, capsys, "--force")
-    assert "nearer" not in said
+    assert "closer" not in said

@@ -7,7 +7,8 @@ import pytest
 
 from matstd.importers.arms import arm_from_dh
 from matstd.importers.instruments.positioning import read_positioning
-from matstd.importers.sheets import read_sheet
+from matstd.importers.points import read_points
+from matstd.importers.sheets import read_sheet, seconds
 from matstd.twin.errors import BadFile
 
 
@@ -49,3 +50,23 @@ def test_a_log_without_a_whole_row_is_refused(tmp_path) -> None:
     table = sheet(tmp_path, "time [s],motor [mm],scale [mm]\n0,1,\n1,,2\n2,3,\n")
     with pytest.raises(BadFile, match="no row with a target and a reading"):
         read_positioning(table, "X", None, ("motor", "scale"))
+
+
+def test_a_measured_coordinate_without_its_nominal_one_is_refused(tmp_path) -> None:
+    wide = "name,x nom [mm],y nom [mm],x ist [mm],y ist [mm]\nA,0,0,0.1,0\nB,,5,1.1,5.1\nC,2,5,,5\n"
+    with pytest.raises(BadFile, match=r"line 3, column 'x nom.*found nothing, expected the nom"):
+        read_points(sheet(tmp_path, wide))
+    points = read_points(sheet(tmp_path, wide.replace("1.1,", ",")))
+    assert np.isnan(points.deviation[1:, 0]).all()
+    assert points.nominal[1].tolist() == [0.0, 5.0, 0.0]
+    long = "point,axis,nominal,actual,tol\n" + "".join(
+        f"{row},0.1\n" for row in ("A,X,1,1.1", "A,Y,,2.1", "B,X,3,3.1", "B,Y,4,4.1")
+    )
+    with pytest.raises(BadFile, match="line 3, column 'nominal': found nothing"):
+        read_points(sheet(tmp_path, long))
+
+
+def test_a_day_that_no_month_has_is_refused(tmp_path) -> None:
+    table = sheet(tmp_path, "Zeit;a;b\n31.02.2024 08:00;1;2\n01.03.2024 08:00;1;2\n")
+    with pytest.raises(BadFile, match=r"'31.02.2024', expected dates such as"):
+        seconds(table, 0)

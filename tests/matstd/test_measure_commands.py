@@ -124,8 +124,8 @@ def test_a_model_says_what_it_rests_upon(folder, tmp_path) -> None:
     ("effects", "expected"),
     [
         (["backlash(Y)", "backlash( Y )"], "given twice"),
-        (["artefact-form(nowhere)"], "moves nothing at these touches"),
-        (["location(EX0w)", "geometric(EXX,linear)"], "is in the model already"),
+        (["artefact-form(nowhere)"], "has no effect at these touches"),
+        (["location(EX0w)", "geometric(EXX,linear)"], "is already in the model"),
         (["backlash(Q)"], "an axis of X, Z, Y"),
         (["backlsh(Y)"], "did you mean backlash(Y)?"),
     ],

@@ -108,7 +108,7 @@ def test_a_page_tells_the_same(place: Path) -> None:
         if cells
     }
     for face in found["by_face"]:
-        mean, spread = (float(cell) for cell in rows[face["feature"]])
+        mean, spread = (float(cell.replace("−", "-")) for cell in rows[face["feature"]])
         assert mean == pytest.approx(face["mean_um"], abs=0.005)
         assert spread == pytest.approx(face["spread_um"], abs=0.005)
     assert "u_w is 0" in text

@@ -18,7 +18,7 @@ from simulator_experiment import MACHINES, STATED_NOISE, random_experiment, rand
 from matstd.twin.files.run_file import read_run
 from matstd.twin.library.catalogue import proposals
 from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.model.effect import Tunable
+from matstd.twin.model import is_tunable
 from matstd.twin.model.model import columns
 
 DETECTABLE = 9.0
@@ -108,7 +108,7 @@ class Ordinary:
         target = target / np.linalg.norm(target)
         found = []
         for effect in proposals(self.touches):
-            inner = effect.inner(self.touches)[0] if isinstance(effect, Tunable) else None
+            inner = effect.inner(self.touches)[0] if is_tunable(effect) else None
             if effect.name == own_name or (inner is not None and inner.acts == "with a period"):
                 continue
             variants = [effect] if inner is None else [effect.tuned(v) for v in inner.grid]

@@ -63,6 +63,19 @@ def test_a_lag_follows_a_straight_temperature(chain, record):
     assert found == pytest.approx([by_hand], abs=1e-9)
 
 
+def test_a_field_follows_what_happened_between_the_touches(chain, record):
+    """Its share after 16 min is what a lag of 16 min does."""
+    field = parse_effect("thermal-field(Z,spindle_rpm)", chain)
+    names = [p.name for p in field.parameters]
+    theta = np.zeros(len(names))
+    theta[names.index("EZ spindle_rpm 16 min")] = 40.0 * UM
+    found = ezz(
+        chain, effects_over_record([(field, theta)], record)(touches_at(chain, [5.0, 40.0]))
+    )
+    by_hand = 40.0 * UM * 0.5 * (1.0 - np.exp(-10.0 / 16.0)) * np.exp(-20.0 / 16.0)
+    assert found == pytest.approx([0.0, by_hand], abs=ROUNDING)
+
+
 def test_effects_without_a_record_are_the_plain_sum(chain, record):
     touches = touches_at(chain, [1.0, 2.0])
     touches.approach[:] = [[1.0], [-1.0]]

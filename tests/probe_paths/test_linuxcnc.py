@@ -330,7 +330,7 @@ def test_without_linuxcnc_there_is_one_line(monkeypatch, tmp_path):
 def test_a_second_linuxcnc_is_not_started(monkeypatch, tmp_path):
     stand_in(tmp_path, monkeypatch, "exit 0")
     (tmp_path / "lock").write_text("")
-    with pytest.raises(DesignError, match="runs already on this computer"):
+    with pytest.raises(DesignError, match="is already running on this computer"):
         installed("")
 
 

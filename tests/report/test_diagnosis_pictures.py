@@ -30,8 +30,8 @@ from matstd.report.words.diagnosis_words import (
     named_value,
     region_words,
     structure_words,
-    verdict_sentence,
 )
+from matstd.report.words.verdict_words import verdict_sentence
 from matstd.twin.effects.backlash import KIND as BACKLASH
 from matstd.twin.effects.periodic import KIND as PERIODIC
 from matstd.twin.library.ordinary import ordinary_model

@@ -12,7 +12,7 @@ import pytest
 from matstd.diagnosis.answer.comparison import compare
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.report.pages import drawing
-from matstd.report.words.diagnosis_words import comparison_sentence, verdict_sentence
+from matstd.report.words import comparison_sentence, verdict_sentence
 from matstd.sensitivity.first_order.workspace import Workspace
 from matstd.sensitivity.population.sampling import Population
 from matstd.sensitivity.study.machine_study import run_study

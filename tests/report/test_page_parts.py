@@ -8,11 +8,11 @@ import openpyxl
 import pytest
 from html_tables import shown_tables
 
-from matstd.report.pages import pdf
-from matstd.report.pages.page import marked, rendered, write_page
-from matstd.report.pages.pdf import printer, write_pdf
-from matstd.report.pages.section import KeyFigure, Page, Section, Table
-from matstd.report.pages.tables import plain, unmarked, value
+from matstd.report.layout import pdf
+from matstd.report.layout.html import marked, rendered, write_page
+from matstd.report.layout.pdf import printer, write_pdf
+from matstd.report.layout.section import KeyFigure, Page, Section, Table
+from matstd.report.layout.tables import plain, unmarked, value
 from matstd.twin.errors import DesignError, MissingLibrary
 from matstd.twin.words import deviations_in
 

@@ -10,7 +10,7 @@ from made_up import MACHINES, arm_poses, made_up
 from matstd.twin.library.catalogue import parse_effect, proposals
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.machine.contribution import Contribution
-from matstd.twin.model.effect import Effect, Tunable, contribution
+from matstd.twin.model.effect import Effect, contribution, is_tunable
 from matstd.twin.model.model import Model, columns
 from matstd.twin.record.instrument import Instrument
 from matstd.twin.thermal.drive_columns import first_order_lag
@@ -161,7 +161,7 @@ def test_what_moves_nothing_is_not_proposed() -> None:
 def test_inner_parameters_have_ascending_grids_and_can_be_set(label: str) -> None:
     touches = RUNS[label]
     for effect in every(label):
-        if not isinstance(effect, Tunable):
+        if not is_tunable(effect):
             continue
         inner = effect.inner(touches)
         assert list(effect.tuning) == [i.name for i in inner]

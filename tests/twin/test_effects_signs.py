@@ -12,7 +12,7 @@ from matstd.twin.effects.joint_sag import KIND as JOINT_SAG
 from matstd.twin.errors import UnknownEffect
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.model.effect import Tunable
+from matstd.twin.model import is_tunable
 from matstd.twin.model.model import columns
 from matstd.twin.record.touches import Setup, Touches
 from matstd.twin.units import DEG, NM, UM, URAD
@@ -60,7 +60,7 @@ def deviation(name, theta, touches, *tuning):
     """dev in um of an effect with parameters theta (base units)."""
     effect = parse_effect(name, HSM)
     if tuning:
-        assert isinstance(effect, Tunable)
+        assert is_tunable(effect)
         effect = effect.tuned(*tuning)
     return columns([effect], touches) @ np.atleast_1d(theta) / UM
 

@@ -141,7 +141,7 @@ def test_readings_of_another_place_move_the_set_up_and_say_so(tmp_path: Path) ->
     table[:, 1] += 80.0
     run = read_run(write(tmp_path, table, stated()))
     (remark,) = run.remarks
-    assert re.search(r"set-up a stands 80(\.0+)? mm", remark)
+    assert re.search(r"set-up a is 80(\.0+)? mm", remark)
     np.testing.assert_allclose(run.deviation, true_deviation(), atol=1e-3 * UM)
 
 
@@ -175,9 +175,13 @@ def test_nominal_readings_agree_with_any_stated_deviation(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("radius", "sign", "expected"),
     [
-        (3.0, -1.0, "nx, ny, nz: found normals by which every side .* 6.* mm inside its place"),
-        (6.0, 1.0, "probe.radius_mm: found 6 by which every side .* 3 mm inside its place"),
-        (0.0, 1.0, "probe.radius_mm: found 0 by which every side .* 3 mm outside its place"),
+        (
+            3.0,
+            -1.0,
+            "nx, ny, nz: found normals with which every side .* 6.* mm inside its position",
+        ),
+        (6.0, 1.0, "probe.radius_mm: found 6 with which every side .* 3 mm inside its position"),
+        (0.0, 1.0, "probe.radius_mm: found 0 with which every side .* 3 mm outside its position"),
     ],
 )
 def test_sides_that_all_stand_off_alike(

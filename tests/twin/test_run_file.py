@@ -198,8 +198,8 @@ def test_bad_head(tmp_path: Path, old: str, new: str, expected: str) -> None:
         (COLUMNS + "\n" + ROW + "\n", "line 1: found 'feature.*', expected a head"),
         (HEAD, "line 8: found nothing, expected a line of column names"),
         (HEAD + COLUMNS + "\n", "table: found no rows"),
-        (HEAD + COLUMNS.replace(",", ";") + "\n", "line 8: found columns parted by semicolons"),
-        (HEAD + COLUMNS.replace(",", "\t") + "\n", "line 8: found columns parted by tabs"),
+        (HEAD + COLUMNS.replace(",", ";") + "\n", "line 8: found columns separated by semicolons"),
+        (HEAD + COLUMNS.replace(",", "\t") + "\n", "line 8: found columns separated by tabs"),
         (HEAD + COLUMNS + '\n"' + ROW * 3000, "as many opening as closing quotes"),
         (
             HEAD.replace("machine.toml", "none.toml"),

@@ -283,8 +283,7 @@ def test_the_effect_of_the_guide_is_one(own_register, tmp_path: Path) -> None:
     code = guide.read_text(encoding="utf-8").split("```python\n")[1].split("```")[0]
     path = tmp_path / "own.py"
     imports = """from dataclasses import dataclass
-from matstd.twin.model import Parameter, Term, Where
-from matstd.twin.model import Kind
+from matstd.twin.model import Declared, Kind, Parameter
 from matstd.twin.units import UM
 """
     path.write_text(imports + code, encoding="utf-8")

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from matstd.twin.effects.jump import between, thinned
+from matstd.twin.effects.setup_error import rigid_shift
 from matstd.twin.fields import SensorName, sensor_record, sensors
 from matstd.twin.frames import Array
 from matstd.twin.model import Declared, Kind, Parameter, Term, Where, scanned
@@ -72,12 +73,7 @@ class ArtefactSlip(Declared):
         """Shifts of the standard."""
         slipped, arm = self._slipped(touches)
         later = slipped.astype(float)
-        out = [Term(i, Where("shift", 0, i), later) for i in range(3)]
-        for i in range(3):  # rotation about i moves the two directions across
-            j, k = (i + 1) % 3, (i + 2) % 3
-            out.append(Term(3 + i, Where("shift", 0, k), later * arm[:, j]))
-            out.append(Term(3 + i, Where("shift", 0, j), -later * arm[:, k]))
-        return tuple(out)
+        return rigid_shift(later, arm * later[:, None])
 
     def _slipped(self, touches: Touches) -> tuple[NDArray[np.bool_], Array]:
         """Which touches came after the slip and in its set-up, (N,); arms p - c, (N, 3), mm."""

@@ -150,20 +150,10 @@ def make(chain: Chain, arguments: Sequence[str]) -> Effect:
     match = _SHAPE.match(rest)
     word = next((s for s in SHAPES if match is not None and s == match.group(1)), None)
     if match is None or word is None:
-        raise refusal(
-            KIND.usage,
-            arguments,
-            f"a degree of 1 to {HIGHEST}, two such as 3-4, or one of {', '.join(SHAPES)}",
-        )
-    _, periods, phase = match.groups()
-    sd = Ranges().sd(chain, symbol)
-    return ComponentError(
-        symbol=symbol,
-        shape=word,
-        periods=float(periods or 1.0),
-        phase=float(phase or 0.0) * DEG,
-        sd=sd,
-    )
+        expected = f"a degree of 1 to {HIGHEST}, two such as 3-4, or one of {', '.join(SHAPES)}"
+        raise refusal(KIND.usage, arguments, expected)
+    periods, phase = float(match[2] or 1.0), float(match[3] or 0.0) * DEG
+    return ComponentError(symbol, word, periods, phase, sd=Ranges().sd(chain, symbol))
 
 
 def propose(touches: Touches) -> Iterable[HigherOrder]:

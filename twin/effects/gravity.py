@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -17,7 +16,7 @@ from matstd.twin.fields import (
     refusal,
 )
 from matstd.twin.machine import Chain, Family, Symbol
-from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter
+from matstd.twin.model import Amounts, Declared, Effect, Kind
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
@@ -82,12 +81,8 @@ class OffCentreLoad(_Sag):
     table: AxisName
 
     called = "tilt under a load off the centre of {table}"
+    amplitudes = ("cos", "sin")  # of the load in phase with the table and a quarter turn on
     usual = (10 * UM, 30 * URAD)
-
-    @cached_property
-    def parameters(self) -> Sequence[Parameter]:
-        """Components of the off-centre load in phase with the table and a quarter turn on."""
-        return (self.sized("cos"), self.sized("sin"))
 
     def amounts(self, touches: Touches) -> Amounts:
         """The tilt times either component of the load."""

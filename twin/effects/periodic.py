@@ -25,7 +25,7 @@ SHORTEST, LONGEST = 1.0, 50.0
 scanned down to what they resolve."""
 TURNS, WIDEST = 6.0, 250.0
 """A pinion on a rack turns once in up to `WIDEST` mm: periods beyond `LONGEST` are scanned where
-the travel holds `TURNS` of them; fewer are hard to tell from a curve of the geometry."""
+the travel holds `TURNS` of them; fewer are hard to distinguish from a curve."""
 FRACTIONS = 4
 """Whole fractions of a stated pitch that are scanned: starts of the thread, balls of the nut, lines
 of the encoder on the screw."""
@@ -36,7 +36,7 @@ MOST_OVERTONES = 12
 FINEST_HARMONIC = 400
 """Of what an instrument of angles reads of an axis: worms have up to 180 teeth, gears more."""
 HIGHEST_HARMONIC = 12
-"""A period of 30 degrees, which 26 distinct readings of the axis can tell from its neighbours."""
+"""A period of 30 degrees, which 26 readings of the axis distinguish from its neighbours."""
 ENOUGH_READINGS = 40
 """Distinct readings of an axis, felt as displacements, from which teeth and gears are looked for:
 fewer poses have more of their own than two numbers of one wave in 400."""
@@ -64,12 +64,8 @@ class _Repeating(Declared):
     symbol: ComponentSymbol
 
     kind, called = "periodic", "{symbol.title}, which repeats"
+    amplitudes = ("sin", "cos")
     usual = (3 * UM, 20 * URAD)
-
-    @cached_property
-    def parameters(self) -> Sequence[Parameter]:
-        """Sine and cosine."""
-        return (self.sized("sin"), self.sized("cos"))
 
     def _wave(self, touches: Touches, factor: float) -> Sequence[Array]:
         """Sine and cosine of factor times the reading."""
@@ -158,7 +154,7 @@ class Overtones(Periodic):
 
 
 def _harmonics(effect: "Harmonic", touches: Touches) -> Array:
-    """As far as the distinct readings of the axis can tell one harmonic from another.
+    """As far as the distinct readings of the axis distinguish one harmonic from another.
 
     Of the positioning of an axis that is as fine as the uneven readings resolve: worms and gears
     turn many times in a turn of their axis.
@@ -209,7 +205,7 @@ def scanned_periods(q: Array, pitch: float | None = None) -> Array:
 
     Args:
         q: Readings of the axis, (N,), mm.
-        pitch: As stated, mm; None where nobody said.
+        pitch: As stated, mm; None where none is stated.
     """
     travel = float(np.ptp(q))
     shortest = min(SHORTEST, _resolved(q)) if travel > 0.0 else SHORTEST
@@ -248,7 +244,7 @@ def finest_harmonic(q: Array) -> int:
 
 
 def _resolved(q: Array) -> float:
-    """Shortest period that readings tell from longer ones, mm.
+    """Shortest period that readings distinguish from longer ones, mm.
 
     Readings on an even grid, all of it or some, show every period below twice its distance as a
     longer one; dense uneven ones have no such period.
@@ -270,7 +266,7 @@ def _grid_distance(places: Array) -> float:
     """
     gaps = np.diff(places)
     for distance in np.unique(np.quantile(gaps, GAPS, method="nearest"))[::-1]:
-        for _ in range(2):  # the second time by a distance that all of the travel tells
+        for _ in range(2):  # the second time by a distance that all of the travel determines
             count = np.r_[0.0, np.cumsum(np.round(gaps / distance))]
             if not count.any():
                 break

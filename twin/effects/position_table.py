@@ -1,8 +1,8 @@
 """Position table of an axis: a smooth curve over its readings, or one for each direction.
 
-What a table of a positioning test shows, and what a control's table of compensation holds. It says
-where an axis is wrong and not why: a pitch, a polynomial or one reversal alike everywhere does the
-same with fewer numbers and then has the better name.
+A positioning test prints such a table, and a control holds it for its compensation. It states where
+an axis is wrong and not why: a pitch, a polynomial or one reversal that is the same everywhere does
+as well with fewer numbers and then has the better name.
 """
 
 from collections.abc import Callable, Iterable, Sequence

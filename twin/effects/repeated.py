@@ -15,6 +15,7 @@ class Repeated:
     """An effect with inner parameters of its own, beside one of the same name.
 
     Only an effect with inner parameters can stand in a model twice: without them both would be one.
+    All but its name is that of the original.
 
     Attributes:
         original: As if it stood there alone.
@@ -25,8 +26,7 @@ class Repeated:
     number: int = 2
 
     @property
-    def kind(self) -> str:
-        """The kind of the effect."""
+    def kind(self) -> str:  # noqa: D102
         return self.original.kind
 
     @property
@@ -35,30 +35,24 @@ class Repeated:
         return f"{self.original.name}{MARK}{self.number}"
 
     @property
-    def title(self) -> Title:
-        """That of the effect."""
+    def title(self) -> Title:  # noqa: D102
         return own_title(self.original) or Title(self.original.name)
 
     @property
-    def parameters(self) -> Sequence[Parameter]:
-        """Those of the effect."""
+    def parameters(self) -> Sequence[Parameter]:  # noqa: D102
         return self.original.parameters
 
-    def terms(self, touches: Touches) -> Sequence[Term]:
-        """Those of the effect."""
+    def terms(self, touches: Touches) -> Sequence[Term]:  # noqa: D102
         return self.original.terms(touches)
 
-    def inner(self, touches: Touches) -> Sequence[Inner]:
-        """Those of the effect."""
+    def inner(self, touches: Touches) -> Sequence[Inner]:  # noqa: D102
         return self.original.inner(touches)
 
-    def tuned(self, *values: float) -> "Repeated":
-        """With these values of the inner parameters."""
+    def tuned(self, *values: float) -> "Repeated":  # noqa: D102
         return replace(self, original=self.original.tuned(*values))
 
     @property
-    def tuning(self) -> Mapping[str, float]:
-        """Values of the inner parameters."""
+    def tuning(self) -> Mapping[str, float]:  # noqa: D102
         return self.original.tuning
 
 

@@ -1,4 +1,4 @@
-"""Servo lag of an axis on a path: while it moves it stands where it was told to be a little ago."""
+"""Servo lag of an axis on a path: while it moves it stands where its command was a little ago."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

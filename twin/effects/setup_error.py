@@ -2,29 +2,47 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
+from matstd.twin.fields import Argument, read_text
 from matstd.twin.frames import Array
-from matstd.twin.model import Parameter, Term, Where
+from matstd.twin.model import Declared, Parameter, Term, Where
 from matstd.twin.record import Body, Touches
 from matstd.twin.units import T_REF, UM
 
 SHIFT_SD = 1000.0 * UM
 TURN_SD = 5e-3
-"""Expected standard deviations of a set-up, mm and rad: wide, since nobody clamps to a micrometre
-and the calibration of a machine must not depend on it."""
+"""Expected standard deviations of a set-up, mm and rad: wide, since no clamping repeats to a
+micrometre and the calibration of a machine must not depend on it."""
 
 STYLUS_SD = 100.0 * UM
-"""Of the calibrated place and radius of a further stylus against the first, mm: wide likewise."""
+"""Of the calibrated place and radius of a further stylus against the first, mm: wide as well."""
 
 _MOST = 10
 """Further styli; a length that changes more often is that of a target which is moved."""
 
 
+def rigid_shift(here: Array, arm: Array) -> list[Term]:
+    """Shifts of a standard that moves and turns: three displacements, then three rotations.
+
+    Args:
+        here: 1 at the touches that are moved, (N,).
+        arm: From the centre of the rotation to the touched points, 0 at other touches, (N, 3), mm.
+    """
+    terms = [Term(i, Where("shift", 0, i), here) for i in range(3)]
+    for turn in range(3):  # moves the two directions across
+        a, b = (turn + 1) % 3, (turn + 2) % 3
+        terms.append(Term(3 + turn, Where("shift", 0, b), arm[:, a]))
+        terms.append(Term(3 + turn, Where("shift", 0, a), -arm[:, b]))
+    return terms
+
+
 @dataclass(frozen=True)
-class SetupError:
+class SetupError(Declared):
     """Displacement and rotation of the standard in one set-up, against the stated one.
 
     ``shift = e + r x (x - c)`` in the table frame, with x the touched point and c the centre. Six
@@ -37,18 +55,13 @@ class SetupError:
         turns_only: Whether an instrument that feels angles alone stands there: three parameters.
     """
 
-    setup: str
+    setup: Annotated[str, Argument("setup", read_text)]
     centre: tuple[float, float, float]
     turns_only: bool = False
 
     kind = "setup"
 
-    @property
-    def name(self) -> str:
-        """`setup(a)`."""
-        return f"setup({self.setup})"
-
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Displacement and rotation in the table frame."""
         shifts = [Parameter(f"d{c}", "mm", SHIFT_SD) for c in "xyz" if not self.turns_only]
@@ -68,16 +81,11 @@ class SetupError:
             )
             return [Term(i, Where("bias"), here * felt[:, i]) for i in range(3)]
         arm = (touches.point_table - np.array(self.centre)) * here[:, None]
-        terms = [Term(i, Where("shift", 0, i), here) for i in range(3)]
-        for turn in range(3):
-            a, b = (turn + 1) % 3, (turn + 2) % 3
-            terms.append(Term(3 + turn, Where("shift", 0, b), arm[:, a]))
-            terms.append(Term(3 + turn, Where("shift", 0, a), -arm[:, b]))
-        return terms
+        return rigid_shift(here, arm)
 
 
 @dataclass(frozen=True)
-class StylusError:
+class StylusError(Declared):
     """How far a further stylus is beside its calibration, against that of the first.
 
     The ball stands e beside its calibrated place in the tool frame, and its effective radius is r
@@ -93,16 +101,12 @@ class StylusError:
     radius: float
 
     kind = "stylus"
+    parameters = tuple(Parameter(name, "mm", STYLUS_SD) for name in ("dx", "dy", "dz", "radius"))
 
-    @property
+    @cached_property
     def name(self) -> str:
         """`stylus(210.004,2.5)`."""
         return f"stylus({self.length:.9g},{self.radius:.9g})"
-
-    @property
-    def parameters(self) -> Sequence[Parameter]:
-        """Place in the tool frame and radius."""
-        return tuple(Parameter(name, "mm", STYLUS_SD) for name in ("dx", "dy", "dz", "radius"))
 
     def here(self, touches: Touches) -> NDArray[np.bool_]:
         """Touches of this stylus, (N,)."""
@@ -117,7 +121,7 @@ class StylusError:
 
 
 @dataclass(frozen=True)
-class BodyTemperature:
+class BodyTemperature(Declared):
     """How far the standard of one run is from its stated temperature, or from 20 degC without one.
 
     ``shift = alpha dT p``, p from the origin of the standard: one scale of all its touches, within
@@ -134,12 +138,12 @@ class BodyTemperature:
 
     kind = "body-temperature"
 
-    @property
+    @cached_property
     def name(self) -> str:
         """`body-temperature`, of several runs with the name of the run."""
         return f"{self.kind}({self.run})" if self.run else self.kind
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """The temperature beyond the stated one."""
         return (Parameter("temperature", "K", self.body.u_temperature),)
@@ -155,7 +159,7 @@ class BodyTemperature:
 
 
 @dataclass(frozen=True)
-class BodyExpansion:
+class BodyExpansion(Declared):
     """How far the expansion of the standard is from the stated one.
 
     ``shift = dalpha (T - 20 degC) p``. Runs that state the same standard share it.
@@ -165,12 +169,12 @@ class BodyExpansion:
 
     kind = "body-expansion"
 
-    @property
+    @cached_property
     def name(self) -> str:
         """`body-expansion(1.05e-05)`."""
         return f"{self.kind}({self.body.alpha:g})"
 
-    @property
+    @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """The expansion beyond the stated one."""
         return (Parameter("expansion", "1/K", self.body.u_alpha),)

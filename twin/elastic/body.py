@@ -10,7 +10,7 @@ import numpy as np
 from matstd.twin.elastic.beam import SUPPORTS, Plane, Support, along, bending
 from matstd.twin.elastic.section import MATERIALS, Material, Section, material, section
 from matstd.twin.errors import UnknownEffect
-from matstd.twin.fields import no_values, read_linear_axis, refusal
+from matstd.twin.fields import Refuse, no_values, read_linear_axis, refusal
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.model import Declared, Kind, Parameter, Term, Where
@@ -63,7 +63,7 @@ class Body(Declared):
     on_tool_side: bool
 
     kind, called = "beam", "bending of the body of {axis} under weight and load"
-    # how many times what the beam says: 1 and 1 where it is as it is stated
+    # multiples of what the theory of the beam predicts: 1 and 1 where it is as stated
     parameters = (Parameter("weight", "1", 1.0), Parameter("load", "1", 1.0))
 
     @cached_property
@@ -175,89 +175,79 @@ def _unit(direction: str) -> Array:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Body:
     """From axis, support, section and `key:value` words."""
-    usage = KIND.usage
+
+    def refuse(expected: str) -> UnknownEffect:
+        return refusal(KIND.usage, arguments, expected)
+
     if len(arguments) < 4:
-        raise refusal(usage, arguments, "an axis, a support, a section and where the frame stands")
-    axis = read_linear_axis(arguments[0], chain, lambda text: refusal(usage, arguments, text))
+        raise refuse("an axis, a support, a section and where the frame stands")
+    axis = read_linear_axis(arguments[0], chain, refuse)
     if arguments[1] not in SUPPORTS:
-        raise refusal(usage, arguments, f"a support: {', '.join(SUPPORTS)}")
-    keys = _keys(usage, arguments)
+        raise refuse(f"a support: {', '.join(SUPPORTS)}")
+    keys = _keys(arguments[3:], refuse)
     stuff = keys.get("material", "steel")
     known = material(stuff)
     if known is None:
-        raise refusal(usage, arguments, f"a material: {', '.join(MATERIALS)}")
+        raise refuse(f"a material: {', '.join(MATERIALS)}")
     if section(arguments[2], known.poisson) is None:
-        raise refusal(usage, arguments, "a section such as 220x180, 220x180x20, d120 or d120x10")
+        raise refuse("a section such as 220x180, 220x180x20, d120 or d120x10")
     if "at" not in keys:
-        raise refusal(usage, arguments, "at:MM, the frame's place from the root at reading zero")
-    sense = 1 if _number(usage, arguments, keys, "sense", 1.0) > 0.0 else -1
-    span = _number(usage, arguments, keys, "span", 0.0)
+        raise refuse("at:MM, the frame's place from the root at reading zero")
+    sense = 1 if _number(keys, "sense", 1.0, refuse) > 0.0 else -1
+    span = _number(keys, "span", 0.0, refuse)
     if arguments[1] != "cantilever" and span <= 0.0:
-        raise refusal(usage, arguments, "span:MM between the supports")
+        raise refuse("span:MM between the supports")
+    down, mass = keys.get("down", "-Z"), keys.get("mass", "")
+    if down not in DIRECTIONS:
+        raise refuse(f"down:{' or '.join(DIRECTIONS)}")
     body = Body(
         axis=axis,
         support=next(s for s in SUPPORTS if s == arguments[1]),
         shape=arguments[2],
-        at=_number(usage, arguments, keys, "at", 0.0),
+        at=_number(keys, "at", 0.0, refuse),
         sense=sense,
         span=span,
-        mass=keys["mass"]
-        if keys.get("mass", "").startswith("V_")
-        else _number(usage, arguments, keys, "mass", 0.0),
-        offset=_offset(usage, arguments, keys),
+        mass=mass if mass.startswith("V_") else _number(keys, "mass", 0.0, refuse),
+        offset=_offset(keys.get("offset", "0:0:0"), refuse),
         stuff=stuff,
-        down=_down(usage, arguments, keys),
-        outward=_outward(usage, arguments, chain, axis, sense),
+        down=down,
+        outward=_outward(chain, axis, sense, refuse),
         on_tool_side=not chain.link(axis).carries_workpiece,
     )
-    _check_travel(usage, arguments, chain, body)
+    _check_travel(chain, body, refuse)
     return body
 
 
-def _keys(usage: str, arguments: Sequence[str]) -> dict[str, str]:
+def _keys(words: Sequence[str], refuse: Refuse) -> dict[str, str]:
     """The `key:value` words, each key once."""
     out: dict[str, str] = {}
-    for word in arguments[3:]:
+    for word in words:
         key, colon, value = word.partition(":")
         if not colon or key not in KEYS or key in out:
-            raise refusal(usage, arguments, f"each of {', '.join(KEYS)} once at most, as KEY:VALUE")
+            raise refuse(f"each of {', '.join(KEYS)} once at most, as KEY:VALUE")
         out[key] = value
     return out
 
 
-def _number(
-    usage: str, arguments: Sequence[str], keys: dict[str, str], key: str, missing: float
-) -> float:
+def _number(keys: dict[str, str], key: str, missing: float, refuse: Refuse) -> float:
     try:
         value = float(keys.get(key, missing))
     except ValueError:
         value = math.nan
     if not math.isfinite(value) or (key in ("span", "mass") and value < 0.0):
-        raise refusal(usage, arguments, f"a number in {key}:{keys[key]}")
+        raise refuse(f"a number in {key}:{keys[key]}")
     return value
 
 
-def _offset(
-    usage: str, arguments: Sequence[str], keys: dict[str, str]
-) -> tuple[float, float, float]:
-    parts = keys.get("offset", "0:0:0").split(":")
+def _offset(text: str, refuse: Refuse) -> tuple[float, float, float]:
     try:
-        x, y, z = (float(p) for p in parts)
+        x, y, z = (float(part) for part in text.split(":"))
     except ValueError:
-        raise refusal(usage, arguments, "offset:X:Y:Z of the mass in mm") from None
+        raise refuse("offset:X:Y:Z of the mass in mm") from None
     return x, y, z
 
 
-def _down(usage: str, arguments: Sequence[str], keys: dict[str, str]) -> str:
-    down = keys.get("down", "-Z")
-    if down not in DIRECTIONS:
-        raise refusal(usage, arguments, f"down:{' or '.join(DIRECTIONS)}")
-    return down
-
-
-def _outward(
-    usage: str, arguments: Sequence[str], chain: Chain, axis: str, sense: int
-) -> tuple[int, int]:
+def _outward(chain: Chain, axis: str, sense: int, refuse: Refuse) -> tuple[int, int]:
     """From root to point along the machine: the way that the body goes when x grows."""
     link = chain.link(axis)
     i = chain.link_index(axis)
@@ -267,24 +257,22 @@ def _outward(
         if k.kind == "rotary" and k.carries_workpiece == link.carries_workpiece
     ]  # fmt: skip
     if turned:
-        raise refusal(usage, arguments, f"an axis that no rotary axis carries ({turned[0]} does)")
+        raise refuse(f"an axis that no rotary axis carries ({turned[0]} does)")
     if not link.points_along_letter and not np.allclose(np.abs(link.direction).max(), 1.0):
-        raise refusal(usage, arguments, "an axis along X, Y or Z of the machine")
+        raise refuse("an axis along X, Y or Z of the machine")
     own = int(np.argmax(np.abs(link.direction)))
     moves = np.sign(link.direction[own]) * (-1.0 if link.carries_workpiece else 1.0)
     return own, int(moves * sense)
 
 
-def _check_travel(usage: str, arguments: Sequence[str], chain: Chain, body: Body) -> None:
+def _check_travel(chain: Chain, body: Body, refuse: Refuse) -> None:
     """The frame stays on the beam over the whole travel."""
     ends = [body.at + body.sense * r for r in chain.link(body.axis).range]
     if min(ends) <= 0.0 or (body.span and max(ends) >= body.span):
         limit = f"below {body.span:g}" if body.span else "more"
-        raise refusal(
-            usage,
-            arguments,
+        raise refuse(
             f"a frame that stays on the beam, above 0 and {limit}; it goes from {min(ends):g} to "
-            f"{max(ends):g} mm from the root",
+            f"{max(ends):g} mm from the root"
         )
 
 
@@ -298,6 +286,6 @@ KIND = Kind(
     typical="1 where the beam is as stated; joints make it 1.5 to 3",
     source="Timoshenko beam with Cowper's shear coefficients; first paper, 2.2",
     make=make,
-    propose=no_values,  # nobody but the user knows sections
+    propose=no_values,  # only the user knows sections
     classes=(Body,),
 )

@@ -180,9 +180,9 @@ def _compare_places(run: Run, remarks: list[str]) -> None:
     far = float(np.median(np.linalg.norm(beside, axis=1)))
     if far > BESIDE:
         remarks.append(
-            f"p stands {far:.3g} mm beside the place of the tool that the readings tell (median): "
+            f"p is {far:.3g} mm from the position of the tool at these readings (median): the "
             "lever arms of the machine are those of the tool; length_mm and offset_mm of probe, or "
-            "tx_mm ty_mm tz_mm of each row, say where on the tool was measured"
+            "tx_mm ty_mm tz_mm of each row, state where on the tool was measured"
         )
 
 
@@ -276,8 +276,8 @@ def _check_offset(run: Run, table: CsvTable) -> None:
     raise BadFile(
         table.path,
         "nx, ny, nz" if inwards else "probe.radius_mm",
-        f"{'normals' if inwards else f'{radius:g}'} by which every side of the standard stands "
-        f"{abs(offset):.3g} mm {'inside' if offset < 0.0 else 'outside'} its place",
+        f"{'normals' if inwards else f'{radius:g}'} with which every side of the standard is "
+        f"{abs(offset):.3g} mm {'inside' if offset < 0.0 else 'outside'} its position",
         "normals that point out of the standard"
         if inwards
         else "the radius of the ball, or deviations of some µm",

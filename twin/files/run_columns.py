@@ -340,8 +340,8 @@ def repeats(table: CsvTable) -> IntArray | None:
 def moved_setup(moved: Moved) -> str:
     """Remark on a set-up that was taken where its touches say that it stands."""
     return (
-        f"set-up {moved.name} stands {moved.shift:.2f} mm and {moved.turn / DEG:.2f}° from where "
-        "the head says, as its touches tell; it is taken there"
+        f"set-up {moved.name} is {moved.shift:.2f} mm and {moved.turn / DEG:.2f}° from its "
+        "position in the head, as its touches show; the position by the touches is used"
     )
 
 

@@ -111,7 +111,7 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     table = CsvTable(body, path, first)
     _check_columns(table, chain)
     if not len(table):
-        raise BadFile(path, "table", "no rows", "a row a touch")
+        raise BadFile(path, "table", "no rows", "one row per touch")
     remarks = list(chain.remarks)
     columns.put_in_order(table, remarks)
     stated = _assemble(table, chain, head, remarks)
@@ -172,7 +172,7 @@ def _machine(path: str | Path, named: str) -> Chain:
     place = Path(path).parent / named
     if not is_file(place):
         found = f"{named!r}, and {place} is no file"
-        raise BadFile(path, "machine", found, "the path of a machine file, seen from this file")
+        raise BadFile(path, "machine", found, "the path of a machine file, relative to this file")
     return read_machine(place)
 
 

@@ -97,7 +97,7 @@ class CsvTable:
         other = next((name for name, mark in _OTHERS.items() if mark in header[0]), None)
         if len(header) == 1 and other is not None:
             where = f"line {self.header_line}"
-            raise BadFile(path, where, f"columns parted by {other}", _EXPECTED)
+            raise BadFile(path, where, f"columns separated by {other}", _EXPECTED)
         for name in self.columns:
             if self.columns.count(name) > 1:
                 raise BadFile(path, f"line {self.header_line}", f"column {name} twice", "it once")

@@ -205,7 +205,6 @@ def _as_bad_file(
     return BadFile(path, key, shown, _expected(first, model, steps))
 
 
-_NUMBERS = {"int_type": "a whole number", "int_from_float": "a whole number"}
 _KINDS = {
     "bool_type": "true or false",
     "string_type": "text in quotes",
@@ -219,10 +218,12 @@ def _expected(error: Any, model: type[BaseModel], steps: list[str]) -> str:
     kind: str = error["type"]
     field = _field(model, steps)
     bounds = _bounds(field.metadata if field else [])
+    is_whole = kind.startswith("int_") or (field is not None and field.annotation is int)
+    number = "a whole number" if is_whole else "a number"
     if kind in ("int_type", "int_from_float", "float_type"):
-        return f"{_NUMBERS.get(kind, 'a number')}{bounds}"
+        return f"{number}{bounds}"
     if kind.startswith(("greater_than", "less_than")):
-        return f"a number{bounds or _bounds([SimpleNamespace(**error['ctx'])])}"
+        return f"{number}{bounds or _bounds([SimpleNamespace(**error['ctx'])])}"
     if kind == "model_type" and (known := list(_keys(model, steps))):
         return f"a table with the keys {', '.join(known)}"
     if kind in ("tuple_type", "too_long", "too_short") and field:

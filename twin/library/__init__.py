@@ -5,7 +5,6 @@ that make sense for some touches.
 """
 
 from matstd.twin.library.catalogue import (
-    Kind,
     find_kinds,
     is_visible,
     kinds,
@@ -23,7 +22,6 @@ from matstd.twin.library.sized_effect import parse_sized_effect, parse_sizes
 from matstd.twin.library.trial import try_effect, try_kind, users_fault, users_lines
 
 __all__ = [
-    "Kind",
     "find_kinds",
     "is_visible",
     "kinds",

@@ -49,21 +49,6 @@ from matstd.twin.thermal import (
 from matstd.twin.units import NM
 from matstd.twin.words import listed, nearest
 
-__all__ = [
-    "ENTRY_POINT_GROUP",
-    "Kind",
-    "find_kinds",
-    "kinds",
-    "load_installed_effects",
-    "load_user_effects",
-    "owner_of",
-    "parse_effect",
-    "proposals",
-    "register",
-    "title_of",
-    "users_files",
-]
-
 ENTRY_POINT_GROUP = "material_standard.effects"
 
 ROUNDING = 1e-3 * NM
@@ -93,7 +78,7 @@ def register(kind: Kind) -> Kind:
 
 
 def _register_from(kind: Kind, path: Path) -> Kind:
-    """Register a kind of a user's file, in the place of what this file said before.
+    """Register a kind of a user's file, in the place of its former version.
 
     Raises:
         BadFile: The word is taken, or is no word.
@@ -131,7 +116,7 @@ def find_kinds(query: str) -> tuple[Kind, ...]:
 
 
 def title_of(effect: Effect) -> Title:
-    """What an effect is called by those who run machines; its kind's title, or its name at last."""
+    """Title of an effect; else that of its kind, else its name."""
     own = own_title(effect)
     if own is not None:
         return own
@@ -140,7 +125,7 @@ def title_of(effect: Effect) -> Title:
 
 
 def owner_of(effect: Effect) -> str:
-    """What an effect belongs to, one of `Kind.OWNERS`, as its kind says."""
+    """What an effect belongs to, one of `Kind.OWNERS`, as its kind states."""
     kind = _REGISTER.get(effect.kind)
     return "machine" if kind is None else kind.belongs_to
 
@@ -190,7 +175,7 @@ def _unknown(text: str, chain: Chain) -> UnknownEffect:
         meant = f"; did you mean {near}{bracket}{inside}?"
     available = ", ".join(k.word for k in kinds())
     return UnknownEffect(
-        f"unknown effect '{text}'{meant}; available: {available} (matstd effects tells all)"
+        f"unknown effect '{text}'{meant}; available: {available} (matstd effects describes them)"
     )
 
 
@@ -267,17 +252,8 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
 
 def _check_card(kind: Kind, path: Path) -> None:
     """What a user wrote into a `Kind` is text, or can be called, where it has to be."""
-    for name in (
-        "word",
-        "arguments",
-        "formula",
-        "units",
-        "typical",
-        "source",
-        "about",
-        "title",
-        "synonyms",
-    ):
+    card = ("formula", "units", "typical", "source", "about", "title", "synonyms")
+    for name in ("word", "arguments", *card):
         if not isinstance(getattr(kind, name), str):
             raise BadFile(path, f"Kind '{kind.word}'", f"{name} = {getattr(kind, name)!r}", "text")
     if kind.belongs_to not in Kind.OWNERS:

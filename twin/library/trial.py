@@ -3,7 +3,7 @@
 An effect is tried at the touches of a run before anything else is computed with it: what it is
 called, what it depends on, what its formula returns at the first, the middle and the last value of
 its inner parameters, and again at the same touches. What it is handed cannot be written to. A fault
-that raises nothing, such as noise or zeros, is told with the line of the method that returned it.
+that raises nothing, such as noise or zeros, is reported with the line of the method behind it.
 """
 
 import traceback
@@ -28,7 +28,7 @@ _HAS = ("name", "kind", "parameters", "terms")
 _TUNABLE_HAS = ("inner", "tuned", "tuning")
 
 SCANNED = 512
-"""Combinations of inner parameters that are looked at before an effect is said to move nothing."""
+"""Combinations of inner parameters that are tried before an effect is reported to move nothing."""
 
 
 def try_kind(kind: Kind, touches: Touches, path: str | Path) -> None:
@@ -160,14 +160,14 @@ def _try_grids(effect: Tunable, grids: Sequence[Inner], path: str | Path) -> Non
 
 
 def _tuned(effect: Tunable, values: tuple[float, ...], path: str | Path) -> Tunable:
-    """The effect at some inner values, which must be those that it then says it has."""
+    """The effect at some inner values, which must be those of its tuning then."""
     out = effect.tuned(*values)
     if not is_tunable(out) or out.name != effect.name:
         found = f"{type(out).__name__} '{getattr(out, 'name', '')}'"
         raise _bad(effect, "tuned", path, found, f"another '{effect.name}'")
-    told = tuple(float(v) for v in out.tuning.values())
-    if told != values:
-        found = f"tuning {told} after tuned{values}"
+    now = tuple(float(v) for v in out.tuning.values())
+    if now != values:
+        found = f"tuning {now} after tuned{values}"
         raise _bad(effect, "tuned", path, found, "the values that it was given")
     return out
 
@@ -250,7 +250,7 @@ def _try_amount(effect: Effect, term: Term, touches: Touches, path: str | Path) 
 
 
 def _bad(effect: object, part: str, path: str | Path, found: str, expected: str) -> BadFile:
-    """A fault of an effect, with the line of the user's file that says the part of it."""
+    """A fault of an effect, with the line of the user's file for that part."""
     name = getattr(effect, "name", None)
     named = name if part and isinstance(name, str) else type(effect).__name__
     attribute = part.partition(",")[0]

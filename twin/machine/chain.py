@@ -352,7 +352,7 @@ def checked_length(kind: Kind, name: str, key: str, value: float | None) -> None
     if kind != "linear":
         raise BadValue(f"axis.{name}.{key}", value, f"none: only a linear axis has a {key} in mm")
     if not 0.0 < value < np.inf:
-        raise BadValue(f"axis.{name}.{key}", value, "a length in mm, more than nothing")
+        raise BadValue(f"axis.{name}.{key}", value, "a length in mm above 0")
 
 
 def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:

@@ -1,6 +1,6 @@
 """What an effect is and how effects add up: columns of the linear model, the exact product.
 
-An effect says where it acts (`Where`) and how much per unit of each parameter (`Term`); `Model`
+An effect states where it acts (`Where`) and how much per unit of each parameter (`Term`); `Model`
 adds terms up, to first order and exactly. `Declared` writes most of an effect from its fields,
 `Kind` is a word of the library with its card, and `traits` answers what others ask of an effect.
 """

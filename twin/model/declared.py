@@ -39,7 +39,7 @@ _SCANNED = "scanned"
 
 @dataclass(frozen=True)
 class _Scanned:
-    """What `scanned` says of a field; see `Inner`."""
+    """How a field is scanned; see `Inner`."""
 
     unit: str
     grid: Grid
@@ -80,10 +80,12 @@ class Declared:
     Attributes:
         kind: First word of the name.
         called: Title, with fields in braces: `sag of {symbol.link} {symbol.motion}`; empty where
-            the title of the kind says it.
+            the title of the kind is enough.
         carrier: What carries it where that is no axis of its fields: "standard", "probe".
         acts_on: Component error whose entry the amounts add to, `EZZ`, or `bias`; empty for that of
             the field `symbol`, or the motion of the field `axis`.
+        amplitudes: Names of its parameters, where all have the unit of the entry and one size.
+        per: What follows that unit: `/K`.
         usual: Expected standard deviations of an amplitude as a length and as an angle, mm and rad.
     """
 
@@ -91,6 +93,8 @@ class Declared:
     called: ClassVar[str] = ""
     carrier: ClassVar[str] = ""
     acts_on: ClassVar[str] = ""
+    amplitudes: ClassVar[Sequence[str]] = ("amplitude",)
+    per: ClassVar[str] = ""
     usual: ClassVar[tuple[float, float]] = (10 * UM, 30 * URAD)
 
     @cached_property
@@ -122,15 +126,13 @@ class Declared:
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """One amplitude, in the unit of the entry."""
-        return (self.sized("amplitude"),)
+        """The amplitudes."""
+        return tuple(self.sized(name) for name in self.amplitudes)
 
     def sized(self, name: str, share: float = 1.0) -> Parameter:
-        """A parameter in the unit of the entry, of its usual size or a share of it."""
-        length, angle = self.usual
-        return Parameter(
-            name, *(("rad", share * angle) if self.is_angular else ("mm", share * length))
-        )
+        """A parameter of the usual size, or a share of it."""
+        unit = "rad" if self.is_angular else "mm"
+        return Parameter(name, f"{unit}{self.per}", share * self.usual[self.is_angular])
 
     def where(self, chain: Chain) -> Where:
         """The entry of the contribution that all amounts add to."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Literal, NamedTuple, Protocol, TypeGuard, runtime_checkable
+from typing import Literal, NamedTuple, Protocol, TypeGuard
 
 import numpy as np
 
@@ -33,7 +33,7 @@ class Parameter(NamedTuple):
 
     Attributes:
         name: Word of the trade, unique within its effect.
-        unit: Base unit, "mm", "rad", "1/K", "mm/K"; `units.shown` tells how a user sees it.
+        unit: Base unit, "mm", "rad", "1/K", "mm/K"; `units.shown` is what a user sees.
         sd: Standard deviation that is expected before any measurement, base unit.
     """
 
@@ -43,18 +43,17 @@ class Parameter(NamedTuple):
 
 
 class Title(NamedTuple):
-    """What an effect is called by those who run machines.
+    """What an effect is called in reports.
 
     Attributes:
         text: Without the body that carries it where another could as well: `growth along Z`.
-        carrier: Axis, `t`, `w`, or "standard", "probe" ...; empty where the text says it.
+        carrier: Axis, `t`, `w`, or "standard", "probe" ...; empty where the text names it.
     """
 
     text: str
     carrier: str = ""
 
 
-@runtime_checkable
 class Effect(Protocol):
     """A physical cause of deviations: thirty lines, one closed formula.
 
@@ -132,7 +131,6 @@ def own_title(effect: Effect) -> Title | None:
     return getattr(effect, "title", None)
 
 
-@runtime_checkable
 class Tunable(Effect, Protocol):
     """An effect with inner parameters."""
 
@@ -153,8 +151,7 @@ class Tunable(Effect, Protocol):
 def is_tunable(effect: Effect) -> TypeGuard[Tunable]:
     """Whether an effect has inner parameters.
 
-    As `isinstance` says, which asks every attribute of the protocol and took a twentieth of a
-    diagnosis.
+    Known by class: the protocol asked attribute by attribute took a twentieth of a diagnosis.
     """
     return _is_tunable(type(effect))
 

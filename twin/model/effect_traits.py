@@ -1,7 +1,7 @@
-"""What the rest of the house may ask of an effect beyond its terms, with the usual answers.
+"""What the rest of the program may ask of an effect beyond its terms, with the usual answers.
 
-Nobody above the twin asks which class an effect is of; it asks for a trait. An effect answers by an
-attribute or a property of the same name, and where it says nothing the answer is the default here.
+Above the twin nothing asks which class an effect is of; it asks for a trait. An effect answers by
+an attribute or a property of the same name, and where it has none the answer is the default here.
 """
 
 from collections.abc import Callable
@@ -101,7 +101,7 @@ _OLD_NAMES = {"is_reported_whole": "is_told_whole"}
 
 
 def traits(effect: Effect) -> Traits:
-    """What an effect says of itself; the defaults where it says nothing."""
+    """The answers of an effect; the defaults where it has none."""
     usual = {name: getattr(_USUAL, name) for name in _NAMES}
     usual |= {name: getattr(effect, old, usual[name]) for name, old in _OLD_NAMES.items()}
     return Traits(**{name: getattr(effect, name, usual[name]) for name in _NAMES})

@@ -1,7 +1,7 @@
 """Effects of temperatures and speeds: what follows a drive, at once or with a lag of its own.
 
 A *drive* is a column of the run that something may follow: a temperature, the speed of the spindle,
-a column of the user's own. One kind a file, as in `effects`; `drives` says what drives a run has.
+a column of the user's own. One kind a file, as in `effects`; `drives` lists those of a run.
 """
 
 from matstd.twin.thermal.drive_columns import CYCLE, PROGRESS, SPINDLE, drives, is_speed

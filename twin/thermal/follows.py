@@ -1,6 +1,6 @@
 """Any component error that follows a recorded drive at once: a sensor, or a column of one's own."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Annotated
@@ -17,7 +17,7 @@ from matstd.twin.fields import (
 )
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Symbol
-from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter, Title, scanned
+from matstd.twin.model import Amounts, Declared, Effect, Kind, Title, scanned
 from matstd.twin.record import Touches
 from matstd.twin.thermal.drive_columns import (
     CYCLE,
@@ -48,18 +48,13 @@ class ThermalStatic(Declared):
     symbol: ComponentSymbol
     sensor: SensorName
 
-    kind, usual = "thermal-static", USUAL
+    kind, usual, per = "thermal-static", USUAL, "/K"
 
     @cached_property
     def title(self) -> Title:
         """`growth along Z with frame`: which body grows is seldom seen."""
         what = "tilt" if self.symbol.is_angular else "growth"
         return Title(f"{what} {self.symbol.motion} with {self.sensor}", self.symbol.link)
-
-    @cached_property
-    def parameters(self) -> Sequence[Parameter]:
-        """The amplitude per kelvin."""
-        return (self.sized("amplitude")._replace(unit=f"{self.symbol.unit}/K"),)
 
     def amounts(self, touches: Touches) -> Amounts:
         """Kelvins above 20 degC."""

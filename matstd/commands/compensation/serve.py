@@ -93,7 +93,7 @@ def _on_linuxcnc(ini: str, machine: Compensation, limits: OutputLimits) -> int:
         say(f"{ini}: add HALFILE = {HAL_FILE} below the others in [HAL]", style="bold")
 
     def ready() -> None:
-        say(f"{ini}: {_corrected(service)}; start LinuxCNC when you like; Ctrl-C stops it")
+        say(f"{ini}: {_corrected(service)}; start LinuxCNC now or later; Ctrl-C stops it")
 
     asyncio.run(serve_linuxcnc(service, Path(ini).parent / SOCKET, ready))
     return 0

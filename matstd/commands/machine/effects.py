@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.table import Table
 
-    from matstd.twin.library import Kind
+    from matstd.twin.model import Kind
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

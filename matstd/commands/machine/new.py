@@ -46,9 +46,9 @@ def run(args: argparse.Namespace) -> int:
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)
     write_whole(output, template(args.kind))
-    say(f"{output}: change it, then give it to matstd")
+    say(f"{output}: edit it, then pass it to matstd")
     machine = output.parent / TEMPLATES["machine"]
     if args.kind in NEEDS_MACHINE and not machine.exists():
         write_whole(machine, template("machine"))
-        say(f"{machine}: the machine that it names; replace its numbers by those of yours")
+        say(f"{machine}: its machine file; replace the numbers by those of your machine")
     return 0

@@ -181,7 +181,7 @@ def run(args: argparse.Namespace) -> int:
     if args.in_order is not None and not (args.arm or args.part or args.standard):
         raise DesignError("--in-order: expected with --arm, --part or --standard alone")
     if len(sheets) > 1 and not (args.part or args.standard):
-        raise DesignError(f"{args.files[1]}: one table at a time; lists of points may be several")
+        raise DesignError(f"{args.files[1]}: one table at a time, except lists of points")
     for sheet in sheets:
         if sheet.left_out:
             lines = ", ".join(map(str, sheet.left_out[:10]))
@@ -205,7 +205,7 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
     say(f"{output}: {len(found.run)} readings by {args.map}")
     if found.left_out:
         readings = "1 reading" if found.left_out == 1 else f"{found.left_out} readings"
-        say(f"- {readings} left out: no deviation stands there")
+        say(f"- {readings} left out: no deviation")
     say_each(found.run.remarks)
 
 
@@ -218,7 +218,7 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     from matstd.commands.measured.kinds import arm, circle, points, positioning
     from matstd.console import say
     from matstd.importers import machine_text
-    from matstd.importers.files import timed_by_rows
+    from matstd.importers.sheets import timed_by_rows
     from matstd.twin.files import refuse_to_overwrite, write_run, write_whole
     from matstd.twin.units import UM
 

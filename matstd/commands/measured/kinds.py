@@ -142,8 +142,9 @@ def points(args: argparse.Namespace, sheets: list[Sheet]) -> tuple[Run, Chain]:
     if found.misplaced:
         some = ", ".join(f"{own!r} at {other!r}" for own, other in found.misplaced[:3])
         say(
-            f"- {len(found.misplaced)} of {found.count} points were found nearer to the nominal "
-            f"place of another point than to their own ({some}): names or their order are mixed up?"
+            f"- {len(found.misplaced)} of {found.count} points are closer to the nominal "
+            f"position of another point than to their own ({some}): "
+            "are names or their order mixed up?"
         )
     for f in found.frames:
         say(

@@ -62,5 +62,5 @@ def run(args: argparse.Namespace) -> int:
     touches = sum(program.touches for program in made.programs)
     say(f"{args.output}: {touches} touches in {len(made.programs)} programs; {SHEET}/setup.html")
     say_each(f"touch dropped: {refusal}" for one in found.stations for refusal in one.plan.refused)
-    say_each(f"programs of set-up {name} were left alone" for name in found.left_alone)
+    say_each(f"programs of set-up {name} were not changed" for name in found.left_alone)
     return 0

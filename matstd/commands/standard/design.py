@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
     say_each(f"touch dropped: {refusal}" for refusal in dropped)
     tools = {one.dialect.tool for one in made.stations}
     say_each(
-        f"tool {tool} has no program: those before it make every touch that it could"
+        f"tool {tool} has no program: the probes before it make every touch that it reaches"
         for tool in brief.programs.further_tools
         if tool not in tools
     )

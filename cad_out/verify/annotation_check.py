@@ -11,7 +11,7 @@ from matstd.twin.frames import Array
 from matstd.twin.units import NM
 
 
-def untold(
+def missing_annotations(
     standard: Standard, details: Details, entities: dict[int, str], found: dict[str, Any]
 ) -> tuple[str, ...]:
     """Tolerances, notes and signs that the text's reader or the kernel's does not find."""

@@ -1,9 +1,10 @@
 """The section of a page on the geometry of the machine, as a run determines it."""
 
 from matstd.diagnosis.geometry import LearntGeometry
-from matstd.report.geometry import file_lines, geometry_lines
+from matstd.report.geometry.copied_numbers import file_lines
+from matstd.report.geometry.geometry_words import geometry_lines
+from matstd.report.layout import Section, Table
 from matstd.report.numbers import digits
-from matstd.report.pages.section import Section, Table
 from matstd.twin.record import Touches
 from matstd.twin.units import UM
 

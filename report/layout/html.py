@@ -10,9 +10,9 @@ from pathlib import Path
 from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescape
 from markupsafe import Markup, escape
 
+from matstd.report.layout.section import Heading, Page, Section, Table
+from matstd.report.layout.tables import unmarked, write_tables
 from matstd.report.numbers import unbroken
-from matstd.report.pages.section import Heading, Page, Section, Table
-from matstd.report.pages.tables import unmarked, write_tables
 from matstd.report.style import save
 from matstd.twin.files import write_whole
 from matstd.twin.versions import versions
@@ -47,7 +47,7 @@ def write_page(path: str | Path, page: Page) -> None:
 def rendered(page: Page, folder: Path) -> str:
     """The HTML of a page whose pictures lie in a folder."""
     environment = Environment(
-        loader=PackageLoader("matstd.report.pages"),
+        loader=PackageLoader("matstd.report.layout"),
         autoescape=select_autoescape(["html"]),
         undefined=StrictUndefined,
         trim_blocks=True,

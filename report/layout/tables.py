@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-from matstd.report.pages.section import Page, Table
+from matstd.report.layout.section import Page, Table
 from matstd.twin.files import write_whole, written_whole
 from matstd.twin.text import csv_text
 from matstd.twin.words import in_own_unit
