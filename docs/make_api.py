@@ -97,8 +97,8 @@ def door_lines() -> list[str]:
         text = described.docstring if described else ""
         lines.append(f"| `{signature(name, thing)}` | {first_line(text)} |")
         if getattr(thing, "__module__", "").startswith("matstd.api"):
-            own = vars(thing) if inspect.isclass(thing) else {}
-            for method, function in own.items():
+            for method in vars(thing) if inspect.isclass(thing) else ():
+                function = getattr(thing, method)  # a class method without its class
                 if inspect.isroutine(function) and not method.startswith("_"):
                     said = first_line(inspect.getdoc(function) or "")
                     lines.append(f"| `{signature(f'{name}.{method}', function)}` | {said} |")

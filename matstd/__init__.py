@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from matstd.api.comparing import Comparison, compare
     from matstd.api.compensating import Compensation, ProgramOptions, compensate
+    from matstd.api.designing import Project, Sensitivities
     from matstd.api.diagnosing import Diagnosis, diagnose
     from matstd.api.drifting import DriftLaws, DriftPrediction, learn_drift, predict_drift
     from matstd.api.effects import register_effects
@@ -41,10 +42,10 @@ if TYPE_CHECKING:
     )
     from matstd.artefact.body import Standard
     from matstd.compensation.field import State
-    from matstd.design import Project
     from matstd.diagnosis.answer import Verdict
     from matstd.diagnosis.files import SavedModel, read_model
     from matstd.diagnosis.fit import Fit
+    from matstd.report.pages import Design
     from matstd.twin.errors import BadArgument, BadFile, DesignError, NotEnoughData
     from matstd.twin.files import write_run
     from matstd.twin.machine import Chain
@@ -55,6 +56,7 @@ if TYPE_CHECKING:
 _PLACES = {
     "api.comparing": ("Comparison", "compare"),
     "api.compensating": ("Compensation", "ProgramOptions", "compensate"),
+    "api.designing": ("Project", "Sensitivities"),
     "api.diagnosing": ("Diagnosis", "diagnose"),
     "api.drifting": ("DriftLaws", "DriftPrediction", "learn_drift", "predict_drift"),
     "api.effects": ("register_effects",),
@@ -79,10 +81,10 @@ _PLACES = {
     ),
     "artefact.body": ("Standard",),
     "compensation.field": ("State",),
-    "design": ("Project",),
     "diagnosis.answer": ("Verdict",),
     "diagnosis.files": ("SavedModel", "read_model"),
     "diagnosis.fit": ("Fit",),
+    "report.pages": ("Design",),
     "twin.errors": ("BadArgument", "BadFile", "DesignError", "NotEnoughData"),
     "twin.files": ("write_run",),
     "twin.machine": ("Chain",),
@@ -105,6 +107,7 @@ __all__ = [
     "Chain",
     "Comparison",
     "Compensation",
+    "Design",
     "DesignError",
     "Diagnosis",
     "DriftLaws",
@@ -119,6 +122,7 @@ __all__ = [
     "Replanned",
     "Run",
     "SavedModel",
+    "Sensitivities",
     "Simulation",
     "Standard",
     "State",

@@ -17,10 +17,6 @@ if TYPE_CHECKING:
 SETUP, GEOMETRY = "setup", "geometry"
 """Words of `--start`."""
 
-REPORT_FILES = ("report.html", "report.pdf", "tables.xlsx", "tables/*.csv")
-"""Results that not every run of such a command leaves."""
-
-
 SHEET = "setup"
 """Folder of the set-up sheet, and of the programs that are run before the others."""
 

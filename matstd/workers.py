@@ -23,10 +23,10 @@ def add_scheduler(parser: argparse.ArgumentParser) -> None:
 
 @contextmanager
 def connected(address: str | None) -> Iterator[Workers]:
-    """The workers at an address; nobody but this process without one.
+    """The workers at an address; None, for this process, without one.
 
     Raises:
-        DesignError: Nobody answers there.
+        DesignError: No scheduler answers there.
     """
     if address is None:
         yield None

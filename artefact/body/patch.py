@@ -59,7 +59,7 @@ class Surface(Protocol):
 def read_only(
     values: ArrayLike, shape: tuple[int, ...] | None = None, what: str = "array"
 ) -> Array:
-    """A float64 copy that nobody can write to, of the stated shape.
+    """A read-only float64 copy of the stated shape.
 
     Raises:
         ShapeMismatch: The shape is another one, or a value is not finite.

@@ -37,9 +37,8 @@ LEAST_SIDE = 160.0
 
 _NARROWEST = 20.0  # mm between two slots of a table, ISO 299
 
-_LOWEST_SPHERE, _HIGHEST_SPHERE = 60.0, 130.0 / 220.0
-"""Of the sphere centres above the seat, mm and as a share of the blank's height: as far apart as
-base and patches leave room for."""
+_HIGHEST_SPHERE = 130.0 / 220.0
+"""Centre of the highest sphere above the seat, as a share of the blank's height."""
 
 
 class StandardTable(Table):
@@ -109,10 +108,9 @@ class BlankTable(Table):
 
     def blank(self, material: Material, limits: Limits) -> Blank:
         """With the fittings that a blank of this height has."""
-        low, high = _LOWEST_SPHERE, _HIGHEST_SPHERE * self.height_mm
         return Blank(
             base=base_of(self.base_mm),
-            fittings=Fittings(sphere_heights=(low, round(0.5 * (low + high), 1), round(high, 1))),
+            fittings=Fittings(highest_sphere=round(_HIGHEST_SPHERE * self.height_mm, 1)),
             material=material,
             height=self.height_mm,
             limits=limits,

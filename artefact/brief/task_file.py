@@ -1,4 +1,4 @@
-"""Task file (TOML, format "task/1"): what somebody measures on a machine, and how well he must."""
+"""Task file (TOML, format "task/1"): what is measured on a machine, and how well."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -37,7 +37,7 @@ class TaskTable(Table):
 
 @dataclass(frozen=True)
 class Task:
-    """Surfaces that somebody measures, at which table poses, within which tolerance.
+    """Surfaces that are measured, at which table poses, within which tolerance.
 
     Attributes:
         name: Of the task.

@@ -214,7 +214,7 @@ def checked_probe(probe: AnyProbe, path: Path, key: str = "probe") -> AnyProbe:
         key: Where it stands there.
 
     Raises:
-        BadFile: A model that nobody knows, no radius or length, a stack that does not go upwards or
+        BadFile: An unknown model, no radius or length, a stack that does not go upwards or
             beyond the gauge line, a stylus that is not thinner than the ball.
     """
     given = probe.model_fields_set

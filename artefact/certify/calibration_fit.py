@@ -140,7 +140,7 @@ def calibrated(nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: flo
 
 
 def _remarks(nominal: Standard, cmm: CmmPoints, known: dict[str, KnownFeature]) -> list[str]:
-    """Features that nobody measured, and points that are of no use."""
+    """Features that were not measured, and points that are of no use."""
     names = [s.name for s in nominal.spheres] + [p.name for p in nominal.patches]
     missing = [name for name in names if name not in known]
     out = []
@@ -171,7 +171,7 @@ def _gross(left: Array, u_point: float) -> NDArray[np.bool_]:
 
 
 def _slips(name: str, cmm: CmmPoints, rows: np.ndarray) -> str:
-    """What is told of points that were left out."""
+    """Remark on points that were left out."""
     lines = ", ".join(str(line) for line in cmm.line[rows])
     return f"{name}: points that stand out are left out, lines {lines} of {cmm.path}"
 
@@ -243,8 +243,8 @@ def _check_size(nominal: Standard, cmm: CmmPoints, balls: dict[str, Ball]) -> No
     if abs(found[a, b] - wanted[a, b]) <= _ASTRAY:
         return
     if swapped := _swapped(found, wanted):
-        told = ", ".join(f"{names[j]} under the name {names[i]}" for i, j in swapped)
-        raise BadFile(cmm.path, "feature", f"points of {told}", "every ball under its own name")
+        mixed = ", ".join(f"{names[j]} under the name {names[i]}" for i, j in swapped)
+        raise BadFile(cmm.path, "feature", f"points of {mixed}", "every ball under its own name")
     raise BadFile(
         cmm.path,
         f"{names[a]}, {names[b]}",

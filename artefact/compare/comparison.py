@@ -145,7 +145,7 @@ def compare(
     library: Visibility,
     rng: np.random.Generator,
 ) -> tuple[tuple[Rival, ...], tuple[str, ...]]:
-    """Other artefacts at as many touches: bodies that people have, and scatter that nobody has.
+    """Other artefacts at as many touches: bodies in use, and scatter that no body has.
 
     Spheres are placed, and table poses and touches on them chosen, as those of the standard are;
     block and face choose theirs from touches drawn at random. The probe needs the same angle,

@@ -38,7 +38,9 @@ WANTED = 0.95
 """Power that counts as found."""
 
 _MIXES = 8  # of the parameters of an effect that has several, averaged
-_SILENT = 1e-9  # share of an effect that reaches the tool point, below which it is nobody's error
+_SILENT = (
+    1e-9  # share of an effect that reaches the tool point, below which it is no error of a task
+)
 
 
 @dataclass(frozen=True, eq=False)

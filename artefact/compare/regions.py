@@ -1,6 +1,6 @@
 """How much of the regions where the machine is wrong again and again the faces see.
 
-A freeform face is for errors that dominate. Which do is told by the Monte Carlo: poses of the
+A freeform face is for errors that dominate. Which do follows from the Monte Carlo: poses of the
 user's workspace that are among the worst of many machines. What touches on the faces alone, without
 a ball, would leave unknown of the tool point there is compared with what is expected of it:
 
@@ -24,7 +24,7 @@ _SEEN = 0.1  # of the expected error: where no more is left, the faces see the r
 
 @dataclass(frozen=True, slots=True)
 class WorstRegions:
-    """Poses that are most often among the worst of a machine, and what touches tell of them.
+    """Poses that are most often among the worst of a machine, and what touches determine of them.
 
     Attributes:
         poses: Their number, a twentieth of those looked at.
@@ -44,7 +44,7 @@ class WorstRegions:
 def worst_regions(
     criterion: Criterion, touches: Requests, q: Array, recurrence: Array
 ) -> WorstRegions:
-    """What touches on some features alone tell of the poses that are wrong again and again.
+    """What touches on some features alone determine of the poses that are wrong again and again.
 
     Args:
         criterion: On the standard, so that the calibration of its features counts.

@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from matstd.artefact.body import DatumSphere, Standard
 from matstd.artefact.brief import Brief
 from matstd.artefact.feasibility.standing import RISEN, stands
+from matstd.artefact.layout import with_spheres
 from matstd.artefact.reach import (
     ANGLE,
     Limit,
@@ -57,7 +57,7 @@ class Wish:
 
     Attributes:
         words: Key and value of the project file.
-        size: To tell small changes of one kind from large ones.
+        size: By which changes of one kind are ordered.
         kind: What is changed; one wish of a kind is named.
         reach: Machine, probe and set-up.
         rotary: Limits of the rotary axes, (R, 2), rad.
@@ -139,28 +139,9 @@ def _to_rise(brief: Brief, wanted: ProbeReach, poses: Array) -> tuple[Array, flo
 
     By what every standard has: its base, and its highest sphere, taken over the middle.
     """
-    made, programs, chain = brief.blank, brief.programs, wanted.chain
-    fit, top = made.fittings, made.base.thickness
-    middle = np.array([0.0, 0.0, max(fit.sphere_heights)])
-    ball = DatumSphere(
-        name="SPH",
-        centre=middle,
-        radius=fit.sphere_radius,
-        stem_radius=fit.stem_radius,
-        foot_radius=fit.foot_radius,
-        foot=top,
-    )
-    least = Standard(
-        name="least",
-        serial="",
-        material=made.material,
-        base=made.base,
-        core=None,
-        patches=(),
-        spheres=(ball,),
-        holes=(),
-        blank_height=made.height,
-    )
+    programs, chain = brief.programs, wanted.chain
+    middle = np.array([0.0, 0.0, brief.blank.fittings.highest_sphere])
+    least = with_spheres(brief.blank, [middle])
     solid = solid_hull(least, wanted.setup, wanted.workshop)
     tool = brief.probe.at_length(wanted.length)
     retract = chain.link("Z").range[1] - programs.retract

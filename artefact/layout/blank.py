@@ -11,22 +11,16 @@ class Fittings:
 
     Attributes:
         sphere_radius: Of the precision balls, mm.
-        sphere_heights: Of their centres above the seat, one a sphere, mm.
+        highest_sphere: Centre of the highest above the seat, mm: the tool passes over it.
         post_radius: Of a post at the centre of its ball, mm.
-        stem_radius: Of a stem made by hand at its ball, mm.
-        foot_radius: Of a stem made by hand at the base, mm.
-        hole_count: Number of mounting holes.
         hole_radius: Of the through hole, mm (M10: 5.5).
         bore_radius: Of the counterbore, mm (M10: 9).
         bore_depth: Mm (M10: 11).
     """
 
     sphere_radius: float = 12.5
-    sphere_heights: tuple[float, ...] = (65.0, 80.0, 95.0)
+    highest_sphere: float = 95.0
     post_radius: float = 8.0
-    stem_radius: float = 6.0
-    foot_radius: float = 9.0
-    hole_count: int = 4
     hole_radius: float = 5.5
     bore_radius: float = 9.0
     bore_depth: float = 11.0

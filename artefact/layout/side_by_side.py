@@ -21,7 +21,7 @@ def most_side_by_side(
     """Sites all of which can stand beside each other: as many as wanted, else the most found.
 
     From sociable sites in turn, the next is always the one that leaves most others free: a lower
-    bound of the largest clique, which nobody can afford.
+    bound of the largest clique, which takes too long to find.
 
     Args:
         fits: Which sites can stand beside each other, (S, S).

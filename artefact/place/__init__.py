@@ -1,4 +1,4 @@
-"""Designs a standard: patches, their shapes, table poses and touches by what they tell.
+"""Designs a standard: patches, their shapes, table poses and touches by information.
 
 In: a `Brief`. Out: a `Placement`: the standard measured against every limit, its touches, the
 criterion they were chosen by, its rivals, and a certificate.

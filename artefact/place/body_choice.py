@@ -1,7 +1,7 @@
 """Balls and faces of a standard: which of all candidates stand on the blank together.
 
 The balls come first, because they identify; faces are drawn all over the room between them, and of
-those that hide nothing of the balls the ones are taken that tell most. A body that breaks a limit
+those that hide nothing of the balls the most informative are taken. A body that breaks a limit
 is chosen again without the faces that are to blame.
 """
 
@@ -73,7 +73,7 @@ class _Asked:
     seen: bool = False
 
     def fewer(self, balls: list[DatumSphere]) -> list[DatumSphere]:
-        """The balls without those that tell least: one, or half where each look takes seconds."""
+        """The balls without the least informative: one, or half where each look takes seconds."""
         return balls[: max(FEWEST_BALLS, len(balls) // 2)] if self.seen else balls[:-1]
 
 
@@ -120,7 +120,7 @@ class BodyChoice:
         Args:
             name: Type of the standard.
             serial: Of the piece.
-            balls: The first tells most; as many of them as leave room.
+            balls: The most informative first; as many of them as leave room.
             touches: On the balls, that shall stay possible.
             count: Of the faces.
             proving: Touches on all faces together.
@@ -132,7 +132,7 @@ class BodyChoice:
         try:
             return self._built(list(balls), *wanted)
         except NotBuildable:
-            # where the balls that tell most leave no room, those of which it is known that they do
+            # where the most informative balls leave no room, those that are known to leave some
             return self._built(list(self.room.balls), *wanted)
 
     def _built(
@@ -249,7 +249,7 @@ class BodyChoice:
         return longest
 
     def rearranged(self, made: Standard, places: BallPlaces, touches: int) -> Standard | None:
-        """The same faces with the balls that tell most beside them; None where a limit is broken.
+        """The same faces with the most informative balls beside them; None where a limit is broken.
 
         The faces were put where they hide few touches on the balls; now the balls move to where
         fewest of theirs are hidden.

@@ -1,7 +1,7 @@
 """Balls with faces between them, and the touches on the balls by which they identify.
 
 The balls are those of the best rival; faces are drawn beside them, again where they cost more than
-a little of what the balls alone tell, and at last balls and table poses are chosen anew beside the
+a little of the balls' information, and at last balls and table poses are chosen anew beside the
 faces that were found.
 """
 
@@ -99,9 +99,9 @@ def identifying(
 ) -> Identifying:
     """Balls with faces between them, of some draws those that cost least, and their touches.
 
-    What faces cost is first told by what they leave of the touches that were chosen on the balls
-    alone, filled up and exchanged: within half a percent of the whole search, in a tenth of its
-    time.
+    What faces cost is first estimated by what they leave of the touches that were chosen on the
+    balls alone, filled up and exchanged: within half a percent of the whole search, in a tenth of
+    its time.
     """
     found = _drawn(criterion, bodies, bases, options)
     here = criterion.on(replace(found.standard, patches=()))
@@ -169,7 +169,7 @@ def rearranged(
     all_poses: Array,
     choice: TouchOptions,
 ) -> Identifying:
-    """The same faces with balls and table poses chosen anew beside them, if that tells more.
+    """The same faces with balls and table poses chosen anew beside them, if that is better.
 
     Nothing is tried where the faces cost next to nothing of what the balls alone are worth.
     """

@@ -1,6 +1,6 @@
-"""Chooses balls, freeform faces, table poses and touches by what they tell of the machine.
+"""Chooses balls, freeform faces, table poses and touches by their information.
 
-Balls on posts identify: nothing tells more of a machine than a precision ball whose centre is known
+Balls on posts identify: nothing determines a machine better than a ball whose centre is known
 to a few tenths of a micrometre, so all identifying touches are made on them. Freeform faces prove:
 they have slopes, curvatures and table poses of real work, they are touched beside the balls and
 held back from the identification, and a model that is wrong shows on them
@@ -37,7 +37,7 @@ from matstd.artefact.place.identifying import (
     rearranged,
     with_proof,
 )
-from matstd.artefact.place.proving import proving_touches, telling_touches
+from matstd.artefact.place.proving import informative_touches, proving_touches
 from matstd.artefact.reach import Requests, joined
 from matstd.artefact.worth import (
     Criterion,
@@ -118,7 +118,7 @@ def design_standard(
     Args:
         brief: Machine, probe, set-up, blank, expected errors, and what is wanted.
         rng: Draws poses, candidates and restarts.
-        progress: Told what is being done.
+        progress: Called with stage, done and total.
         poses: Table poses to choose from, (K, R), rad, as `feasibility` finds them; None for a grid
             over the workspace.
 
@@ -194,7 +194,7 @@ def _proving(
     proof = proving_touches(criterion, standard, on_faces, requests, count)
     others = found.tried[~found.chosen]
     others = others if len(others) >= count else found.tried  # the same ones once more
-    more = telling_touches(criterion, others, requests, min(count, len(others)))
+    more = informative_touches(criterion, others, requests, min(count, len(others)))
     effects, normals = library.effects, task_normals(criterion, proof, rng)
     known = replace(criterion.calibration, patch=0.0, patch_tilt=0.0)
     exact = replace(criterion, calibration=known)

@@ -3,7 +3,7 @@
 A proof measures surfaces, not single points: every part of every face has a touch near it, as many
 on a square centimetre of one face as of another, so that what a model leaves is seen as a pattern.
 Where the touches lie is therefore chosen by how evenly they cover the faces; only at which table
-pose each is made is chosen by what it tells.
+pose each is made is chosen by its information.
 """
 
 import numpy as np
@@ -38,7 +38,7 @@ def proving_touches(
     identifying: Requests,
     count: int,
 ) -> Requests:
-    """Touches that cover the faces evenly, at those table poses where they tell most.
+    """Touches that cover the faces evenly, at the most informative table poses.
 
     Args:
         criterion: On the standard, faces and balls.
@@ -59,10 +59,10 @@ def proving_touches(
     return tried[selection.chosen[given:]]
 
 
-def telling_touches(
+def informative_touches(
     criterion: Criterion, tried: Requests, identifying: Requests, count: int
 ) -> Requests:
-    """Touches that tell most beside the ones that identify.
+    """Most informative touches beside the ones that identify.
 
     Args:
         criterion: On the standard, faces and balls.
@@ -91,7 +91,7 @@ def _beside(criterion: Criterion, tried: Requests, identifying: Requests) -> tup
 def _at_poses(
     selection: Selection, given: int, place: IntArray, pose: IntArray, count: int
 ) -> None:
-    """Choose touches at every place, those that tell most at poses that have room.
+    """Choose touches at every place, the most informative at poses that have room.
 
     Places with the fewest such poses come first, so that something is left for them; where nothing
     is, the least crowded pose takes one more.

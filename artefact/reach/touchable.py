@@ -1,6 +1,6 @@
 """Which touches a machine can make on a standard: angle, travel, room for the probe, free ways.
 
-Whoever chooses touches and whoever plans them asks here; they differ only in the margins they want.
+The choice of touches and the plan both ask here; they differ only in their margins.
 """
 
 from collections import Counter
@@ -29,7 +29,7 @@ ROUNDING = (
 
 @dataclass(frozen=True, eq=False)
 class Requests:
-    """Touches that somebody wants, in any order.
+    """Wanted touches, in any order.
 
     Attributes:
         feature: Names of features, (N,).

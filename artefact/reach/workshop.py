@@ -20,7 +20,7 @@ from matstd.twin.machine import Chain, table_to_tool
 TABLE = "the table"
 
 TABLE_RADIUS = 160.0
-"""Of the rotary table's face where nobody says otherwise, mm."""
+"""Of the rotary table's face where none is stated, mm."""
 
 TABLE_THICKNESS = 60.0
 """How much of the table below its face is kept clear, mm."""
@@ -174,7 +174,7 @@ def clearance_in_workshop(
     Args:
         standard: In the artefact frame.
         T_table_artefact: Where it stands.
-        T_table_tool: Of which the rotation tells the tool axis, shape (N, 4, 4).
+        T_table_tool: Of which the rotation gives the tool axis, shape (N, 4, 4).
         centre: Ball centres, table frame, shape (N, 3), mm.
         probe: Stylus, stem and body.
         workshop: Table and other bodies.

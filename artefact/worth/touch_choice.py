@@ -1,4 +1,4 @@
-"""Which table poses, and which touches in them, tell most on a standard that is there.
+"""The most informative table poses, and touches in them, on a given standard.
 
 Table poses come from a grid of rotary readings: for each the best few touches on every face and
 sphere are taken, and the poses are chosen one after the other by what theirs add. At the chosen
@@ -154,7 +154,7 @@ def chosen_poses(
     poses: Array,
     options: TouchOptions,
 ) -> Array:
-    """Table poses whose touches on some surfaces of a standard tell most, (K, R)."""
+    """Most informative table poses for touches on some surfaces of a standard, (K, R)."""
     tried = touches_at(surfaces, poses, pitch=3)
     tried = tried[criterion.reach.is_reachable(tried)]
     reached = tried
@@ -299,6 +299,6 @@ def _pose_quotas(tried: Requests, options: TouchOptions) -> tuple[Quota, ...]:
 
 
 def _places(touches: Requests) -> NDArray[np.str_]:
-    """What tells touches apart but the name of the feature: point and table pose, (N,)."""
+    """What distinguishes touches beside the name of the feature: point and table pose, (N,)."""
     rows = np.round(np.column_stack([touches.point, touches.rotary]), 6) + 0.0
     return np.array([row.tobytes().hex() for row in rows], dtype=np.str_)

@@ -4,7 +4,7 @@ A touch is a row: what every expected error does to the deviation along its norm
 touch's noise and of the error's own expected size. After touches with rows W the parameters have
 the covariance ``(1 + W^T W)^-1`` in those units, and the tool point at a pose has that of its own
 rows. A criterion condenses it into one number over many poses of the probed volume and of the
-user's workspace. The workpiece's set-up is a free parameter like any other: nobody knows where
+user's workspace. The workpiece's set-up is a free parameter like any other: it is not known where
 exactly the standard stands, and what is predicted is the tool relative to the workpiece.
 """
 

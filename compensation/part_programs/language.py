@@ -16,7 +16,6 @@ from matstd.compensation.part_programs.motion import (
     Keep,
     Motion,
     angle_between,
-    centre_of,
 )
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
@@ -239,21 +238,24 @@ inches to ten of them."""
 def centre_by_radius(
     reading: Reading, line: int, plane: list[int], end: Array, radius: float, positive: bool
 ) -> Array:
-    """Centre of an arc that is given by its radius, (2,), mm.
+    """Centre of an arc that is given by its radius, (2,), mm; below zero for the longer way round.
 
     Raises:
         BadFile: Ends that no such circle joins.
     """
     start, stop = reading.at[plane], end[plane]
-    centre = centre_of(start, stop, radius, positive)
-    if centre is None:
-        apart = float(np.hypot(*(stop - start)))
+    chord = stop - start
+    length = float(np.hypot(*chord))
+    height = radius * radius - 0.25 * length * length
+    if length == 0.0 or height < -1e-6 * radius * radius:
         raise reading.refusal(
             line,
-            f"R{radius:g} for ends {apart:.4f} mm apart",
+            f"R{radius:g} for ends {length:.4f} mm apart",
             "half of that at least, and two ends",
         )
-    return centre
+    side = 1.0 if (radius > 0.0) == positive else -1.0
+    across = np.array([-chord[1], chord[0]]) / length
+    return 0.5 * (start + stop) + side * np.sqrt(max(height, 0.0)) * across
 
 
 def checked_arc(

@@ -138,22 +138,6 @@ def angle_between(start: Array, end: Array, centre: Array, positive: bool, turns
     return angle + (1.0 if positive else -1.0) * 2.0 * np.pi * (turns - 1)
 
 
-def centre_of(start: Array, end: Array, radius: float, positive: bool) -> Array | None:
-    """Centre of an arc that is given by its radius; None where no such circle is.
-
-    Args:
-        radius: Below zero for the longer way round.
-    """
-    chord = end - start
-    length = float(np.hypot(*chord))
-    height = radius * radius - 0.25 * length * length
-    if length == 0.0 or height < -1e-6 * radius * radius:
-        return None
-    side = 1.0 if (radius > 0.0) == positive else -1.0
-    across = np.array([-chord[1], chord[0]]) / length
-    return 0.5 * (start + end) + side * np.sqrt(max(height, 0.0)) * across
-
-
 class Paths:
     """Where motions lead.
 

@@ -49,7 +49,7 @@ def _renumbered(effects: Sequence[ScaledEffect]) -> tuple[ScaledEffect, ...]:
     out = []
     for sized in effects:
         own = traits(sized.effect)
-        if own.number > 1 and own.original is not None and own.original.name not in names:
+        if own.repetition > 1 and own.original is not None and own.original.name not in names:
             sized = replace(sized, effect=own.original)
         out.append(sized)
     return tuple(out)

@@ -194,7 +194,7 @@ def _bridged(grid: Array) -> Array:
     return out
 
 
-def check_alike(records: Sequence[DriftRecord], paths: Sequence[str]) -> None:
+def check_alike(records: Sequence[DriftRecord], paths: Sequence[str | Path]) -> None:
     """Raise BadFile where a log has other columns, or other steps, than the first."""
     first = records[0]
     for path, record in zip(paths[1:], records[1:], strict=True):

@@ -36,7 +36,7 @@ def harmonics_alike(fit: Fit) -> list[HarmonicsAlike]:
     """
     out: list[HarmonicsAlike] = []
     for effect in fit.model.effects:
-        own = traits(original_of(effect) if traits(effect).number > 1 else effect)
+        own = traits(original_of(effect) if traits(effect).repetition > 1 else effect)
         if own.harmonic is None or own.symbol is None:
             continue
         axis, k = own.symbol.link, round(own.harmonic)

@@ -193,7 +193,7 @@ def _with_further_periods(
         state, offered = _as_one_period(task, added, offered, progress, state)
         before = {s.effect.name for s in state.effects}
         found = [e for e in offered if e.name in before and period_of(e, state.library.complement)]
-        first = [e for e in found if traits(e).number == 1]
+        first = [e for e in found if traits(e).repetition == 1]
         further = [a for e in first if (a := repeat(e, number)) is not None]
         if not further or not _is_open(state):
             break
@@ -228,7 +228,7 @@ def _as_one_period(
         return state, offered
     kept = {s.effect.name for s in start} - {start[-1].effect.name}
     gone = {s.effect.name for s in state.effects} - kept
-    others = [e for e in offered if e.name not in gone or traits(e).number == 1]
+    others = [e for e in offered if e.name not in gone or traits(e).repetition == 1]
     others.append(start[-1].effect)
     other = _until_gross_errors_stay(task, added, others, progress, start)
     is_taken = start[-1].effect.name in {s.effect.name for s in other.effects}

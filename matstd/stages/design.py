@@ -65,8 +65,8 @@ def design(brief: Brief, folder: Path, progress: Progress, workers: Workers = No
     Args:
         brief: What is designed, for which machine.
         folder: Empty folder.
-        progress: Told what is going on.
-        workers: Who draws the random machines of the maps; None for this process.
+        progress: Called with stage, done and total.
+        workers: Draw the random machines of the maps; None for this process.
 
     Raises:
         DesignError: A stage that cannot do its work; its message says which constraint binds.

@@ -23,7 +23,7 @@ def write_sheets(
         folder: To be made.
         stations: In their order.
         feeds: Of the programs.
-        printed_by: Prints a sheet as PDF; None where nobody asked.
+        printed_by: Prints a sheet as PDF; None for no PDF.
         raised: By how much dry runs are raised, mm.
     """
     setups: set[str] = set()

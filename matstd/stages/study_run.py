@@ -27,7 +27,7 @@ def study_project(
         brief: Machine and errors.
         poses_file: Where the machines are looked at; None for poses of the project's workspace.
         folder: Empty folder.
-        progress: Told what is going on.
+        progress: Called with stage, done and total.
         workers: Who draws the machines; None for this process.
 
     Returns:

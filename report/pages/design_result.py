@@ -58,7 +58,7 @@ class Design(Displayed):
         making: Reach of cutters, first mode, sag.
         stations: Touches in their order and the programs that make them, by clamping and probe.
         machines: Random machines, probed and identified.
-        known: What the touches can and cannot distinguish.
+        identifiability: What the touches can and cannot distinguish.
         effective: Number of parameters that the first machine's data decide rather than the prior.
         budgets: Uncertainty of the user's task on the first machine, by what corrects results.
         visits: What they rest upon.

@@ -7,11 +7,7 @@ from matstd.report.task.calibration_words import (
     verdict_lines,
     verdict_rows,
 )
-from matstd.report.task.task_words import (
-    budget_rows,
-    measured_sentence,
-    task_lines,
-)
+from matstd.report.task.task_words import budget_rows, measured_sentence, task_lines
 
 __all__ = [
     "budget_rows",

@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial import cKDTree
 
 from matstd.artefact.place.covering import covering, even_shares
-from matstd.artefact.place.proving import proving_touches, telling_touches, touches_on_faces
+from matstd.artefact.place.proving import informative_touches, proving_touches, touches_on_faces
 from matstd.artefact.reach.touchable import Requests
 from matstd.twin.errors import NotReachable
 from matstd.twin.units import DEG
@@ -68,7 +68,7 @@ def test_touches_cover_every_face(criterion, upright, chosen):
         assert len(mine) == pytest.approx(40 * area / sum(areas), abs=1.0)
         spread = left(face.point(face.grid(0.5)), mine.point)
         assert spread < 1.35 * HONEYCOMB * area / len(mine)  # edges are kept clear, slopes longer
-        most = telling_touches(criterion.on(upright), tried, some, 40)
+        most = informative_touches(criterion.on(upright), tried, some, 40)
         told = most[most.feature == face.name]
         assert spread < 0.7 * left(face.point(face.grid(0.5)), told.point)
     assert np.bincount(proof.pose).max() <= np.ceil(1.25 * 40 / 5)
@@ -92,4 +92,4 @@ def test_too_few_touches_are_refused(criterion, upright, chosen):
     with pytest.raises(NotReachable, match="10 touches can be made for the proof, 11 are wanted"):
         proving_touches(criterion.on(upright), upright, tried, tried, 11)
     with pytest.raises(NotReachable, match="10 touches can be made for the proof, 11 are wanted"):
-        telling_touches(criterion.on(upright), tried, tried, 11)
+        informative_touches(criterion.on(upright), tried, tried, 11)

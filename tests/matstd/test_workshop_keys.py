@@ -1,5 +1,6 @@
 """What stands in the workshop: its keys reach placement, plan and programs, or are refused."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,8 @@ from matstd.artefact.body.datum import DatumSphere
 from matstd.artefact.body.standard import STEEL, Base, Standard
 from matstd.artefact.brief.project_file import read_project
 from matstd.artefact.brief.workshop_tables import probe_models
+from matstd.artefact.feasibility.standing import check_seat
+from matstd.artefact.reach import mesh_cover
 from matstd.artefact.reach.mesh_cover import MOST_BOXES, read_drawn_body
 from matstd.artefact.reach.touchable import ProbeReach, Requests
 from matstd.artefact.reach.workshop import Solid, Workshop, still_frames
@@ -83,6 +86,23 @@ def test_a_body_on_an_axis_of_the_tool_is_refused(tmp_path):
     expected = r"workshop.bodies.1.on: .*axis Z, expected one that carries the workpiece: C, B"
     with pytest.raises(BadFile, match=expected):
         project(tmp_path, 'on = "B"', 'on = "Z"')
+
+
+def test_a_mesh_is_read_once(tmp_path, monkeypatch):
+    """However often the workshop is asked for, and wherever its bodies are tried."""
+    trimesh.creation.box((40.0, 25.0, 35.0)).export(tmp_path / "clamp.stl")
+    read, usual = [], mesh_cover._triangles
+    monkeypatch.setattr(mesh_cover, "_triangles", lambda path: read.append(path) or usual(path))
+    stl = 'stl = "clamp.stl"'
+    brief = project(tmp_path, "sides_mm = [40.0, 25.0]\nheight_mm = 35.0", stl)
+    with pytest.raises(BadFile, match=r"CLAMP1 on the table: it reaches 17\.5 mm into it"):
+        check_seat(brief)  # half of the box lies below its origin; other places are tried
+    moved = replace(brief, bodies=tuple(replace(b, at=(150.0, 0.0, 90.0)) for b in brief.bodies))
+    assert [s.low for s in moved.reach.workshop.bodies] != [
+        s.low for s in brief.reach.workshop.bodies
+    ]
+    assert brief.clampings[0].workshop is brief.reach.workshop
+    assert len(read) == 1
 
 
 def test_a_mesh_that_is_none_is_refused(tmp_path):

@@ -83,7 +83,24 @@ def test_terms_act_on_the_motion_of_the_axis() -> None:
 def test_traits_are_said_by_attributes_and_have_defaults() -> None:
     found = traits(Rub("X"))
     assert (found.axis, found.is_table) == ("X", True)
-    assert (found.symbol, found.is_curve, found.number, found.original) == (None, False, 1, None)
+    assert (found.symbol, found.is_curve, found.repetition, found.original) == (
+        None,
+        False,
+        1,
+        None,
+    )
+
+
+def test_a_field_that_has_the_name_of_a_trait_by_chance_is_none() -> None:
+    @dataclass(frozen=True)
+    class Chance(Declared):
+        symbol: str = "EZZ"
+        wave: float = 5.0
+        reversal: float = 1.0
+        since_run: str = "monday"
+
+    found = traits(Chance())
+    assert (found.symbol, found.wave, found.reversal, found.since_run) == (None,) * 4
 
 
 def test_an_old_name_of_a_trait_is_still_read() -> None:

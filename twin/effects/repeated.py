@@ -19,11 +19,11 @@ class Repeated:
 
     Attributes:
         original: As if it stood there alone.
-        number: 2 for the second.
+        repetition: 2 for the second.
     """
 
     original: Tunable
-    number: int = 2
+    repetition: int = 2
 
     @property
     def kind(self) -> str:  # noqa: D102
@@ -32,7 +32,7 @@ class Repeated:
     @property
     def name(self) -> str:
         """`thermal-lag(EZZ,bed)#2`."""
-        return f"{self.original.name}{MARK}{self.number}"
+        return f"{self.original.name}{MARK}{self.repetition}"
 
     @property
     def title(self) -> Title:  # noqa: D102

@@ -6,7 +6,8 @@ an attribute or a property of the same name, and where it has none the answer is
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import NamedTuple
+from numbers import Integral, Real
+from typing import Any, NamedTuple
 
 from matstd.twin.frames import Array
 from matstd.twin.machine import Family, Symbol
@@ -57,7 +58,7 @@ class Traits:
         stated_number: Number of a run that is wrong where this effect acts: `radius`.
         original: The effect that this one repeats, or whose change it is. All other traits are then
             asked of the original.
-        number: 2 for the second of two effects that differ in their inner parameters alone.
+        repetition: 2 for the second of two effects that differ in their inner parameters alone.
         since_run: Of a change: number of the first run that shows it, as in `Touches.run`.
     """
 
@@ -78,7 +79,7 @@ class Traits:
     needs_history: bool = False
     stated_number: str = ""
     original: Effect | None = None
-    number: int = 1
+    repetition: int = 1
     since_run: int | None = None
 
     @property
@@ -94,17 +95,30 @@ class Traits:
         return own if own is not None and own.family is not Family.COMPONENT else None
 
 
-_USUAL = Traits()
-_NAMES = tuple(field.name for field in fields(Traits))
+_USUAL = {one.name: one.default for one in fields(Traits)}
+_TYPES: dict[str, Any] = {name: type(usual) for name, usual in _USUAL.items()} | {
+    "symbol": Symbol,
+    "reversal": Callable,
+    "harmonic": Real,
+    "wave": Wave,
+    "with_sines": Callable,
+    "original": object,
+    "since_run": Integral,
+}
 _OLD_NAMES = {"is_reported_whole": "is_told_whole"}
 """Names that users' effects may still use."""
 
 
 def traits(effect: Effect) -> Traits:
-    """The answers of an effect; the defaults where it has none."""
-    usual = {name: getattr(_USUAL, name) for name in _NAMES}
-    usual |= {name: getattr(effect, old, usual[name]) for name, old in _OLD_NAMES.items()}
-    return Traits(**{name: getattr(effect, name, usual[name]) for name in _NAMES})
+    """The answers of an effect; the defaults where it has none.
+
+    A field of a user's effect may have the name of a trait by chance, so an answer of another type
+    is none: `wave: float` is not a `Wave`.
+    """
+    found = {old: getattr(effect, old, None) for old in (*_USUAL, *_OLD_NAMES.values())}
+    found |= {name: found[old] for name, old in _OLD_NAMES.items() if found[name] is None}
+    answers = {n: found[n] for n in _USUAL if isinstance(found[n], _TYPES[n])}
+    return Traits(**(_USUAL | answers))
 
 
 def original_of(effect: Effect) -> Effect:

@@ -26,9 +26,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
+    from matstd.api.designing import Project
     from matstd.artefact.reach import standing_remarks
     from matstd.console import say, say_assumed, say_each
-    from matstd.design import Project
     from matstd.progress import stages
     from matstd.report.task import modulus_words, task_lines
     from matstd.report.words import design_lines, proof_line

@@ -82,8 +82,8 @@ def _table(args: argparse.Namespace) -> int:
 
 def _study(args: argparse.Namespace) -> int:
     """Data, pictures and page of a study; the folder appears whole or not at all."""
+    from matstd.api.designing import Project
     from matstd.console import say_assumed, say_each
-    from matstd.design import Project
     from matstd.progress import stages
     from matstd.report.words import study_words
 

@@ -23,6 +23,11 @@ class Sensitivities:
         study: Sensitivities, maps, random machines.
         remarks: What could not be drawn.
         folder: With the files.
+
+    Example:
+        >>> made = Project.read("project.toml").sensitivity("study")  # doctest: +SKIP
+        >>> made.study.volumetric.recurrence.shape  # doctest: +SKIP
+        (2000,)
     """
 
     study: Study
@@ -45,9 +50,9 @@ class Project:
         brief: Machine, probe, workshop, blank, expected errors and wishes, in base units.
 
     Example:
-        >>> project = Project.read("examples/hsm600u.toml")
+        >>> project = Project.read("project.toml")
         >>> project
-        Project(examples/hsm600u.toml: 6 faces, 13 balls, 480 + 110 touches on Mikron HSM 600U)
+        Project(project.toml: 6 faces, 13 balls, 480 + 110 touches on Mikron HSM 600U)
         >>> made = project.design("out")  # doctest: +SKIP
         >>> made.standard.patches[0].name  # doctest: +SKIP
         'FF1'
@@ -107,7 +112,8 @@ class Project:
             NotReachable: Travels that do not reach the standard, with the nearest wishes.
             NotBuildable: Limits that no standard meets, with the nearest wishes.
         """
-        from matstd.options import REPORT_FILES, SHEET, SHEET_FILES, print_report
+        from matstd.api.comparing import REPORT_FILES
+        from matstd.options import SHEET, SHEET_FILES, print_report
         from matstd.probe_paths.stations import feeds_of
         from matstd.report.pages import printer, write_design_page
         from matstd.stages.design import design
@@ -151,7 +157,8 @@ class Project:
             scheduler: Address of a Dask scheduler whose workers draw the random machines.
             pdf: Whether the report is printed into report.pdf too.
         """
-        from matstd.options import REPORT_FILES, print_report
+        from matstd.api.comparing import REPORT_FILES
+        from matstd.options import print_report
         from matstd.report.pages import printer
         from matstd.stages.study_run import study_project
         from matstd.twin.files import results_folder
