@@ -12,6 +12,9 @@ from matstd.twin.errors import DesignError, NotBuildable
 REFUSAL = "refusal.txt"
 """File in the shared folder that holds the reason of a refusal."""
 
+HANG = 3600.0
+"""Seconds after which the kernel counts as hung: forty times what it needs, for a busy machine."""
+
 _CALL = """\
 import pathlib, {module}, matstd.twin.errors
 try:
@@ -95,7 +98,7 @@ def run_apart(
     return Ending(done.returncode, reason, lines[-1] if lines else "")
 
 
-def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float = 400.0) -> None:
+def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float = HANG) -> None:
     """Run one task of `matstd.cad_out.kernel.worker` in a process of its own.
 
     Args:
