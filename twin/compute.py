@@ -44,7 +44,6 @@ def compiled_loop(function: Callable[..., None], **options: Any) -> Callable[...
 
     Args:
         function: Of a module, loops over arrays.
-        options: Of `numba.njit`.
     """
     try:
         from numba import njit

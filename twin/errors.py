@@ -36,8 +36,6 @@ class BadValue(DesignError, ValueError):
 
     Args:
         key: What it is the value of.
-        found: What was given.
-        expected: What should stand there.
     """
 
     def __init__(self, key: str, found: object, expected: str) -> None:
@@ -50,8 +48,6 @@ class BadArgument(DesignError, ValueError):
 
     Args:
         name: Of the argument; the option of the same name has hyphens.
-        found: What was given.
-        expected: What should stand there.
     """
 
     def __init__(self, name: str, found: object, expected: str) -> None:

@@ -16,8 +16,6 @@ def even_points(count: int, dimensions: int, start: int = 0) -> Array:
     ``g^(d+1) = g + 1`` in d dimensions.
 
     Args:
-        count: How many.
-        dimensions: d.
         start: Points of the sequence that are left out.
 
     Reference:

@@ -26,7 +26,6 @@ def likely_mistake(
 
     Args:
         q: Readings, (N, J), rad.
-        chain: The arm.
         other: The arm with Denavit and Hartenberg's parameters read in the other convention.
         left: Deviations that an arm and readings leave, mm rms.
     """

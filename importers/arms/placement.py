@@ -64,7 +64,6 @@ def placed(table: ArmTable, chain: Chain, u: float, reflector: Array | None) -> 
 
     Args:
         table: Readings and measured places.
-        chain: The nominal arm.
         u: Standard uncertainty of one coordinate, mm.
         reflector: Its place in the tool frame, (3,), mm, if that is known.
 

@@ -24,11 +24,9 @@ class ArmTable:
     """Joint readings and measured places, a row a pose.
 
     Attributes:
-        sheet: What they stand in.
         q: Readings, (N, J), rad, of a joint that slides mm.
         joints: Columns of the readings.
         place: Where the reflectors were measured, (N, K, 3), mm; not a number where one was not.
-        names: Of the reflectors.
     """
 
     sheet: Sheet
@@ -135,7 +133,6 @@ def coupled(q: Array, how: str) -> Array:
     counts from the horizontal: its angle against link 2 is J3 + J2 (or J3 - J2).
 
     Args:
-        q: Readings as they stand, (N, J), rad.
         how: `J3+J2`.
 
     Raises:

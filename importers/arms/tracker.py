@@ -110,7 +110,6 @@ def tracker_run(table: ArmTable, chain: Chain, u: float, reflector: Array | None
 
     Args:
         table: Readings in the order of the axes of the arm.
-        chain: The arm.
         u: Standard uncertainty of one coordinate, mm.
         reflector: In the tool frame, (3,), mm; None finds it.
 

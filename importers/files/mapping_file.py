@@ -68,7 +68,6 @@ def import_mapped(
     """A run by a mapping file, read once as the run file that it will be in a folder.
 
     Args:
-        path: The mapping file.
         folder: Of the run file, from which its head names the machine.
         chain: The machine, in place of the one that the head names.
 

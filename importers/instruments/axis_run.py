@@ -30,7 +30,7 @@ def one_axis_machine(axis: str, target: Array) -> Chain:
 
 
 def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
-    """Run of a test of one axis on a machine that has it.
+    """Run of a test of one axis on a machine that has it; raises UnknownAxis.
 
     Every reading is a distance along the motion: its direction is that in which the tool moves
     relative to the workpiece while the reading grows, its deviation the negative of what the
@@ -39,12 +39,8 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
     that wanders aside changes it.
 
     Args:
-        test: The readings.
         chain: The machine; its other axes stand at zero.
         u: Standard uncertainty of one deviation, mm, or rad of an angle.
-
-    Raises:
-        UnknownAxis: The machine does not have the axis.
     """
     n = len(test.target)
     i = chain.axis_index(test.axis)

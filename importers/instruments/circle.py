@@ -42,25 +42,15 @@ _DEVIATION = re.compile(r"dev|radial|radius|error|abweich|fehler|δ|delta|\bdr",
 
 @dataclass(frozen=True, eq=False)
 class CircularTest:
-    """Readings of a circular test in the order in which they were taken.
+    """Readings of a circular test in the order in which they were taken."""
 
-    Attributes:
-        plane: Letters of its two axes; angles count from the first to the second.
-        radius: Nominal, mm.
-        angle: (N,), rad.
-        deviation: Actual minus nominal radius, (N,), mm.
-        sense: 1 from the first axis to the second, -1 the other way round, (N,).
-        run: Name of the run, (N,).
-        line: Line of the file, (N,).
-    """
-
-    plane: str
-    radius: float
-    angle: Array
-    deviation: Array
-    sense: IntArray
-    run: Labels
-    line: IntArray
+    plane: str  # letters of its two axes; angles count from the first to the second
+    radius: float  # nominal, mm
+    angle: Array  # (N,), rad
+    deviation: Array  # actual minus nominal radius, (N,), mm
+    sense: IntArray  # 1 from the first axis to the second, -1 the other way round, (N,)
+    run: Labels  # name of the run, (N,)
+    line: IntArray  # line of the file, (N,)
 
 
 def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None) -> CircularTest:
@@ -192,7 +182,6 @@ def circle_run(
     """Run of a circular test: a row a reading, along the radius outwards.
 
     Args:
-        test: The readings.
         chain: A machine with the two axes.
         u: Standard uncertainty of one reading, mm.
         centre: Readings of X, Y and Z at the centre of the circle, mm.

@@ -71,7 +71,6 @@ class PositioningTest:
     """Readings of a positioning test, one entry a reading.
 
     Attributes:
-        axis: Letter of the axis.
         target: Commanded position, (N,), mm or rad.
         deviation: Actual minus target, (N,), mm or rad.
         cycle: Number of the cycle, (N,).

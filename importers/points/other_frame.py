@@ -35,19 +35,12 @@ MIRRORED = 10.0
 
 @dataclass(frozen=True, eq=False)
 class OtherFrame:
-    """Where the points of one set-up were measured.
-
-    Attributes:
-        setup: Label of the set-up.
-        T: Takes nominal places to measured ones, (4, 4), mm.
-        shift: How far the middle of the points was moved, mm.
-        turn: By which angle they were turned, rad.
-    """
+    """Where the points of one set-up were measured."""
 
     setup: str
-    T: Array
-    shift: float
-    turn: float
+    T: Array  # takes nominal places to measured ones, (4, 4), mm
+    shift: float  # how far the middle of the points was moved, mm
+    turn: float  # by which angle they were turned, rad
 
     @property
     def is_far(self) -> bool:

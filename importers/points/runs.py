@@ -26,7 +26,6 @@ class PointsImport:
     """What lists of points became.
 
     Attributes:
-        count: Number of points.
         frames: Set-ups that were measured in another frame than the nominal one.
         misplaced: Points that were found nearer to where another one belongs, with its name.
     """

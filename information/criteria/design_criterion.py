@@ -145,13 +145,7 @@ def mean_prediction(G: Array, W: Array, prior_sd: Array) -> DesignCriterion:
 
 
 def five_criteria(G: Array, W: Array, prior_sd: Array) -> dict[str, DesignCriterion]:
-    """The criteria I, G, D, A and E over the same directions.
-
-    Args:
-        G: Deviation of the tip per unit of every parameter at the poses, (M, 3, P), mm.
-        W: Some whitened rows that span what can be measured, (N, P).
-        prior_sd: Expected standard deviation of every parameter, (P,).
-    """
+    """The criteria I, G, D, A and E over the same directions; arguments as of `mean_prediction`."""
     mean = mean_prediction(G, W, prior_sd)
     V, R = mean.directions, mean.size
     assert isinstance(mean.measure, MeanVariance)
@@ -195,7 +189,6 @@ def with_potential(criterion: DesignCriterion, count: int, worth: float) -> Desi
     Args:
         criterion: Any over the primary terms.
         count: Number of potential terms, Q.
-        worth: Of the potential terms, mm^2.
     """
     priors, R = None, criterion.size
     if criterion.priors is not None:

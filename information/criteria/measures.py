@@ -37,13 +37,9 @@ _LOUD = 1e-6  # share of the largest weight below which a form is left out of a 
 
 @dataclass(frozen=True, eq=False)
 class MeanVariance:
-    """``trace(K M^-1)``: the mean variance of a prediction (I), or of the parameters (A), mm^2.
+    """``trace(K M^-1)``: the mean variance of a prediction (I), or of the parameters (A), mm^2."""
 
-    Attributes:
-        K: Moments of the prediction, (R, R), mm^2; the unit matrix for A.
-    """
-
-    K: Array
+    K: Array  # moments of the prediction, (R, R), mm^2; the unit matrix for A
 
     @property
     def size(self) -> int:
@@ -74,17 +70,11 @@ class MeanVariance:
 
 @dataclass(frozen=True, eq=False)
 class _Largest(ABC):
-    """The largest of several variances, and the mean variance of what counts in any case.
+    """The largest of several variances, and the mean variance of what counts in any case."""
 
-    Attributes:
-        roots: Roots of the forms, (J, R, k).
-        K: Form that counts in any case, (R, R): that of potential terms.
-        sharpness: Power of the mean that stands for the largest in a search.
-    """
-
-    roots: Array
-    K: Array
-    sharpness: float = _SHARPNESS
+    roots: Array  # roots of the forms, (J, R, k)
+    K: Array  # form that counts in any case, (R, R): that of potential terms
+    sharpness: float = _SHARPNESS  # power of the mean that stands for the largest in a search
 
     @property
     def size(self) -> int:
@@ -176,13 +166,9 @@ class LargestEigenvalue(_Largest):
 
 @dataclass(frozen=True)
 class Determinant:
-    """``-log det M``: the volume of what stays unknown (Bayesian D), shown as ``det(M)^(-1/R)``.
+    """``-log det M``: the volume of what stays unknown (Bayesian D), shown as ``det(M)^(-1/R)``."""
 
-    Attributes:
-        size: R.
-    """
-
-    size: int
+    size: int  # R
 
     @property
     def sharpness(self) -> float:

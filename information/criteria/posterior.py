@@ -41,7 +41,6 @@ class Posterior:
     Attributes:
         W: Whitened rows, shape (N, P).
         prior_sd: Expected standard deviation of every parameter, (P,).
-        names: Of the parameters.
     """
 
     W: Array

@@ -50,13 +50,9 @@ class RowStep(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """``trace(K M^-1)``.
+    """``trace(K M^-1)``."""
 
-    Attributes:
-        K: The form, with the weight of the machine in it, (R, R).
-    """
-
-    K: Array
+    K: Array  # the form, with the weight of the machine in it, (R, R)
 
     def value(self, M: Array, inverse: Array) -> float:
         """``trace(K M^-1)``."""
@@ -113,13 +109,9 @@ class Trace:
 
 @dataclass(frozen=True)
 class LogDeterminant:
-    """``-weight log det M``.
+    """``-weight log det M``."""
 
-    Attributes:
-        weight: Of the machine.
-    """
-
-    weight: float
+    weight: float  # of the machine
 
     def value(self, M: Array, inverse: Array) -> float:
         """``-log det M``."""

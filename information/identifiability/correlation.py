@@ -19,13 +19,7 @@ STRONG = 0.9
 
 @dataclass(frozen=True)
 class Pair:
-    """Two parameters that are tied.
-
-    Attributes:
-        first: Index of one.
-        second: Index of the other.
-        r: Their correlation.
-    """
+    """Two tied parameters by their indices, and their correlation."""
 
     first: int
     second: int
@@ -37,7 +31,6 @@ class Ties:
     """Parameters that touches tie together.
 
     Attributes:
-        names: Of all parameters.
         r: Correlations of all of them, (P, P).
         pairs: Tied ones, the strongest first.
         groups: Indices of parameters joined by ties, the largest group first, each in an order in
@@ -60,15 +53,11 @@ def correlation(covariance: Array) -> Array:
 
 
 def ties(covariance: Array, names: Sequence[str], strong: float = STRONG) -> Ties:
-    """Parameters that are tied after a fit.
+    """Parameters that are tied after a fit; raises ShapeMismatch.
 
     Args:
         covariance: Of the parameters after the touches, (P, P).
-        names: Of the parameters, P.
         strong: Absolute correlation from which a pair counts, between 0 and 1.
-
-    Raises:
-        ShapeMismatch: Names and covariance do not go together.
     """
     if covariance.shape != (len(names), len(names)):
         raise ShapeMismatch(f"covariance of shape {covariance.shape} for {len(names)} names")

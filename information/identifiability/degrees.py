@@ -23,7 +23,6 @@ class Degree:
     """What touches support of one component error over its reading.
 
     Attributes:
-        symbol: Name, `EXX`.
         supported: Degrees (harmonics on a rotary axis) whose coefficients the touches determine,
             all of them free together; the first may be 2, where degree 1 is tied to a location
             error or the set-up.
@@ -49,8 +48,6 @@ def supported_degrees(model: Model, touches: Touches, W: Array, noise: float) ->
     of the travel can carry spoils those that they had.
 
     Args:
-        model: Machine and its expected errors.
-        touches: The touches, (N,).
         W: Their whitened rows with the set-up free, (N, P).
         noise: Standard deviation of a touch, mm.
     """

@@ -39,7 +39,6 @@ def combinations(
     Args:
         W: Whitened rows, (N, P).
         prior_sd: Shape (P,).
-        units: Base units of the parameters.
         free: Parameters that count as unknown and of no interest, such as a set-up: rows are first
             freed of what they can imitate.
     """

@@ -53,7 +53,6 @@ class Freedom:
 
     Attributes:
         parameter: That can be left out.
-        unit: Its base unit.
         alike: What imitates it exactly; nothing for a parameter that moves no touch.
         reason: What makes them alike; None where nothing is known of the parameters.
         resolution: What would tell them apart.
@@ -115,11 +114,7 @@ def reason(members: Sequence[int], parameters: Parameters, chain: Chain) -> Reas
 
 
 def in_families(freedoms: Iterable[Freedom]) -> tuple[FreedomFamily, ...]:
-    """Freedoms, those that say the same of several shapes of an error together.
-
-    Returns:
-        In the order of their first members.
-    """
+    """Freedoms, those that say the same of several shapes of an error together."""
     families: dict[object, list[Freedom]] = {}
     for freedom in freedoms:
         families.setdefault(_family(freedom) or (freedom.parameter,), []).append(freedom)

@@ -32,17 +32,11 @@ _NOTHING = 1e-6  # part of a direction's largest weight that counts as zero
 
 @dataclass(frozen=True, eq=False)
 class RankAnalysis:
-    """What rows see of their parameters, without any prior.
+    """What rows see of their parameters, without any prior."""
 
-    Attributes:
-        length: Of every column, (P,).
-        singular: Singular values of the columns brought to length one, largest first, (P,).
-        directions: Right singular vectors, one a row, (P, P); silent columns have their own.
-    """
-
-    length: Array
-    singular: Array
-    directions: Array
+    length: Array  # of every column, (P,)
+    singular: Array  # singular values of the columns brought to length one, largest first, (P,)
+    directions: Array  # right singular vectors, one a row, (P, P); silent columns have their own
 
     @property
     def rank(self) -> int:

@@ -88,7 +88,6 @@ def identifiability(
     Args:
         W: Whitened rows, shape (N, P).
         prior_sd: Shape (P,).
-        names: Of the parameters.
         parameters: The same with their effects (`Model.parameters`), for units, conventions and
             reasons.
         chain: The machine, for reasons; None to do without.

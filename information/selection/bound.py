@@ -30,21 +30,13 @@ from matstd.twin.frames import Array
 
 @dataclass(frozen=True, eq=False)
 class Slope:
-    """Where a criterion falls most, seen from one information.
+    """Where a criterion falls most, seen from one information."""
 
-    Attributes:
-        inverse: ``M_s^-1``, (S, R, R).
-        S: Forms of the gains ``w^T S_s w``, (S, R, R).
-        constant: ``sum_s trace(S_s prior_s)``.
-        value: Of the tangent: the criterion itself, or below it.
-        degree: ``sum_s trace(S_s M_s)``.
-    """
-
-    inverse: Array
-    S: Array
-    constant: float
-    value: float
-    degree: float
+    inverse: Array  # ``M_s^-1``, (S, R, R)
+    S: Array  # forms of the gains ``w^T S_s w``, (S, R, R)
+    constant: float  # ``sum_s trace(S_s prior_s)``
+    value: float  # of the tangent: the criterion itself, or below it
+    degree: float  # ``sum_s trace(S_s M_s)``
 
     def gains(self, W: Array) -> Array:
         """Gain of every candidate, (N,)."""

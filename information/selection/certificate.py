@@ -52,17 +52,13 @@ def certificate(
     tolerance: float = 2e-3,
     quotas: tuple[Quota, ...] = (),
 ) -> Certificate:
-    """Certified efficiency of a choice among candidates.
+    """Certified efficiency of a choice among candidates; raises DesignError.
 
     Args:
-        criterion: What the choice is for.
         W: Rows of all candidates, (N, R).
         chosen: The choice, (N,).
         tolerance: Relative gap to which the relaxed problem is solved.
         quotas: Shares that the choice keeps and every other would have to keep.
-
-    Raises:
-        DesignError: The choice does not keep the shares.
     """
     count = int(chosen.sum())
     best = relaxed(criterion, W, count, chosen, tolerance, quotas)
@@ -87,12 +83,9 @@ def rounded(
     """A choice of whole touches from fractions: the heaviest, then exchanged until none helps.
 
     Args:
-        criterion: What the choice is for.
         W: Rows of all candidates, (N, R).
         weight: Fractions, (N,).
-        count: Number of touches.
         most: Largest number of exchanges.
-        quotas: Shares to be kept.
 
     Raises:
         DesignError: No whole choice near the fractions keeps the shares.

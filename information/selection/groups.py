@@ -29,10 +29,8 @@ def best_groups(
     before it; greedy, then every chosen group is once weighed against all that are left out.
 
     Args:
-        criterion: What for.
         W: Rows in the directions that matter, (N, R).
         group: Of every row, (N,), from 0.
-        count: Number of groups.
         take: Rows that a group will contribute.
         start: W^T W of what is measured anyway, (R, R).
         apart: Which groups may stand beside each other, (groups, groups); None for all.

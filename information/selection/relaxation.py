@@ -37,19 +37,12 @@ _LEAST_FLOW = 1e-12
 
 @dataclass(frozen=True, eq=False)
 class Relaxed:
-    """Nearly optimal design weights, and what no choice can beat.
+    """Nearly optimal design weights, and what no choice can beat."""
 
-    Attributes:
-        weight: Fraction of every candidate, (N,), between 0 and 1.
-        value: Criterion of the fractions; smaller is better.
-        bound: No choice of as many whole touches has a smaller criterion.
-        steps: Vertex exchanges that were made.
-    """
-
-    weight: Array
-    value: float
-    bound: float
-    steps: int
+    weight: Array  # fraction of every candidate, (N,), between 0 and 1
+    value: float  # criterion of the fractions; smaller is better
+    bound: float  # no choice of as many whole touches has a smaller criterion
+    steps: int  # vertex exchanges that were made
 
     @property
     def gap(self) -> float:
@@ -72,9 +65,7 @@ def relaxed(
     kept; it is true however far the fractions are from the best.
 
     Args:
-        criterion: What the touches are for.
         W: Rows of all candidates, (N, R).
-        count: Number of touches.
         start: A choice of as many rows to start from, (N,).
         tolerance: Relative gap between value and bound that is close enough.
         quotas: Shares that fractions and whole choices have to keep.
@@ -237,10 +228,8 @@ def _best_flow(tangents: Sequence[Tangent], h: Array, k: Array, most: float) -> 
     root of the slope of the sum is found.
 
     Args:
-        tangents: Of the machines, S.
         h: ``w M^-1 w`` of the pair, (S, 2, 2).
         k: ``w M^-1 K M^-1 w`` of the pair, (S, 2, 2).
-        most: Largest flow.
     """
     b = (h[:, 0, 0] - h[:, 1, 1]).tolist()
     d = (h[:, 0, 0] * h[:, 1, 1] - h[:, 0, 1] ** 2).tolist()

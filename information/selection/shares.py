@@ -14,15 +14,10 @@ from matstd.twin.record import IntArray
 
 @dataclass(frozen=True, eq=False)
 class Sum:
-    """Fractions of the largest sum, and what no fractions can exceed.
+    """Fractions of the largest sum, and what no fractions can exceed."""
 
-    Attributes:
-        most: No fractions have a larger sum: proven by its multipliers, not by a solver's word.
-        x: Fractions that come near it, (N,).
-    """
-
-    most: float
-    x: Array
+    most: float  # no fractions have a larger sum: proven by its multipliers, not by a solver's word
+    x: Array  # fractions that come near it, (N,)
 
 
 def cells(quotas: tuple[Quota, ...], count: int) -> IntArray:
@@ -99,11 +94,7 @@ def _constraints(quotas: tuple[Quota, ...], rows: IntArray) -> tuple[csr_array, 
 
 
 def heaviest(weight: Array, count: int, quotas: tuple[Quota, ...] = ()) -> Mask:
-    """The `count` rows of the largest weights that keep the shares, (N,).
-
-    Raises:
-        DesignError: None do.
-    """
+    """The `count` rows of the largest weights that keep the shares, (N,); raises DesignError."""
     chosen = np.zeros(len(weight), dtype=bool)
     if quotas:
         # the corners of the shares of poses and kinds are whole numbers; a tiny unevenness keeps

@@ -210,7 +210,6 @@ def exchange(
         selection: Is changed.
         quotas: Hold after every exchange.
         kept: Rows that stay in, (N,).
-        most: Largest number of exchanges.
 
     Returns:
         Number of exchanges made; fewer than `most` means that no exchange that was tried helps.

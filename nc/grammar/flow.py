@@ -17,7 +17,6 @@ def label_places(found: Iterable[tuple[int, int, str]], path: Path) -> dict[str,
 
     Args:
         found: Index of a block, its line and the name of its label; "0" ends a subprogram.
-        path: Of the program, for messages.
 
     Raises:
         BadFile: A label that stands twice.
@@ -37,8 +36,6 @@ class Flow:
     """One run of a program, by the indices of its blocks.
 
     Args:
-        path: Of the program, for messages.
-        places: Index of the block of every label.
         most: Blocks that a program may execute before it counts as one without an end.
     """
 

@@ -48,7 +48,6 @@ def function_value(number: str, text: str, value: str, read: Read) -> float | No
         number: Behind FN.
         text: Right of the equals sign.
         value: Pattern of a number or parameter.
-        read: Gives the value of one.
 
     Raises:
         ValueError, ZeroDivisionError: No such value exists.

@@ -13,7 +13,6 @@ class Ini:
     """An INI file of LinuxCNC.
 
     Attributes:
-        path: Of it.
         letters: Axes of the control, in its order.
     """
 

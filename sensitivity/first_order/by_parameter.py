@@ -28,36 +28,23 @@ _XYZXY = [0, 1, 2, 0, 1]
 
 
 class PoseCache(NamedTuple):
-    """A link of the chain at n poses, table frame.
+    """A link of the chain at n poses, table frame."""
 
-    Attributes:
-        before: Axes of the body on the table's side of the link, (3, 5, n).
-        after: Axes of the body on the tool's side, (3, 5, n).
-        carrier: Axes of the body that the link sits on, one of the two.
-        arm: From the lever point of the link to the tip, (5, n), mm.
-        reading: Shape (n,), mm or rad.
-    """
-
-    before: Array
-    after: Array
-    carrier: Array
-    arm: Array
-    reading: Array
+    before: Array  # axes of the body on the table's side of the link, (3, 5, n)
+    after: Array  # axes of the body on the tool's side, (3, 5, n)
+    carrier: Array  # axes of the body that the link sits on, one of the two
+    arm: Array  # from the lever point of the link to the tip, (5, n), mm
+    reading: Array  # shape (n,), mm or rad
 
 
 class _Run(NamedTuple):
-    """Consecutive parameters of one link that are alike but for their direction.
-
-    Attributes:
-        columns: Of the Jacobian.
-        directions: As many of x, y, z.
-    """
+    """Consecutive parameters of one link that are alike but for their direction."""
 
     link: int
     family: Family
     is_angular: bool
-    columns: slice
-    directions: slice
+    columns: slice  # of the Jacobian
+    directions: slice  # as many of x, y, z
 
 
 def jacobian_by_parameter(

@@ -22,7 +22,6 @@ def mean_squares(population: Population, q: Array) -> Array:
     drawn evenly.
 
     Args:
-        population: The machines that may be drawn.
         q: Readings, shape (N, A).
 
     Returns:
@@ -62,7 +61,6 @@ def mixed_moments(population: Population, q: Array) -> Iterator[tuple[int, int, 
     sines of the same phase at the arguments x and y.
 
     Args:
-        population: The machines that may be drawn.
         q: Readings, shape (N, A).
 
     Yields:

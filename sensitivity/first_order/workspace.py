@@ -114,18 +114,11 @@ def grid(workspace: Workspace, counts: Mapping[str, int] | int) -> Array:
 
 
 def latin_hypercube(workspace: Workspace, count: int, rng: np.random.Generator) -> Array:
-    """Poses that fill a workspace evenly.
+    """Poses that fill a workspace evenly, (N, A).
 
     Without a volume it is a Latin hypercube of the readings. With one, tool points and rotary
     readings are drawn so, the linear readings follow, and what lies beyond the limits is drawn
     again.
-
-    Args:
-        workspace: Limits and volume.
-        count: N.
-
-    Returns:
-        Readings, shape (N, A).
 
     Raises:
         NotReachable: Hardly any pose is within limits and volume at once.
@@ -165,7 +158,6 @@ def section(
     Args:
         first: Axis along the rows.
         second: Axis along the columns.
-        count: Values of each.
         base: Readings of the other axes, (A,); None for the middle of their limits.
 
     Returns:

@@ -19,10 +19,6 @@ _NOBODY = 20.0  # s without any worker after which the work is given up
 def cluster(address: str, answer: float = ANSWER) -> Iterator[Any]:
     """Client of the Dask scheduler at an address, such as `tcp://10.0.0.7:8786`.
 
-    Args:
-        address: Of the scheduler.
-        answer: Seconds in which it has to answer.
-
     Raises:
         MissingLibrary: Dask is not installed.
         DesignError: Nobody answers there, or the scheduler has no worker.

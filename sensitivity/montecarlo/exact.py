@@ -15,8 +15,6 @@ class ExactCheck:
     """How far first order is from the exact product, on some machines and poses.
 
     Attributes:
-        machines: Number of machines looked at.
-        poses: Number of poses looked at.
         rms: Root mean square of the difference between the deviation vectors, mm.
         worst: Largest difference, mm.
         rms_deviation: Root mean square of the deviations themselves, mm.
@@ -39,10 +37,8 @@ def exact_check(
     """Compare first-order deviations of a few random machines with the exact product.
 
     Args:
-        population: What to draw from.
         q: Readings of the poses to look at, shape (N, A).
         length: Tool length, mm.
-        machines: Number of random machines.
     """
     model = population.model
     touches = at_poses(population.chain, q, length)

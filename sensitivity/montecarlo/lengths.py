@@ -68,7 +68,6 @@ def count_lengths(
         tolerance: Longer ones are counted, mm.
         worst: Among how many of the first poses the worst ones are looked for, and how many they
             are; the lengths are then held in single precision, a lot of machines at a time.
-        use_compiled: Count with numba where it is installed.
         threads: Number of threads; None for one a core.
     """
     n, draws = len(G), theta.shape[1]

@@ -54,11 +54,9 @@ def volumetric(
       at every pose.
 
     Args:
-        population: What to draw from.
         q: Readings, shape (N, A).
         length: Tool length, scalar or (N,), mm.
         draws: S, or at most S.
-        progress: Told how many machines are done.
         reference: The worst 5 % are those of the first so many poses, and a later pose counts as
             affected where it reaches their limit; None for all poses.
         tolerance: For the exceedance, mm.

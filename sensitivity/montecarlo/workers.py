@@ -45,10 +45,8 @@ def in_order(
     worker that is lost, what it shared included.
 
     Args:
-        workers: Who does it.
         prepare: Makes what all jobs share; called once in this process, or once on a cluster.
         work: A function of a module, so that other processes find it.
-        jobs: What there is to do.
 
     Raises:
         DesignError: The workers are gone.

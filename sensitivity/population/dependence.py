@@ -33,7 +33,6 @@ class Dependence:
     """Correlated errors.
 
     Attributes:
-        names: Of the n errors.
         correlation: Of their signed amplitudes, (n, n).
         alike: Groups of names whose members also have shape, periods and phase in common.
 
@@ -111,13 +110,7 @@ def grouped(groups: Sequence[Group]) -> Dependence:
 
 
 def amplitude(z: Array, low: Array, high: Array) -> Array:
-    """Signed amplitudes for normal scores, shape of z.
-
-    Args:
-        z: Scores.
-        low: Smallest amplitude.
-        high: Largest amplitude.
-    """
+    """Signed amplitudes for normal scores, shape of z."""
     from scipy.special import ndtr
 
     return np.sign(z) * low + (high - low) * (2.0 * ndtr(z) - 1.0)
@@ -142,11 +135,6 @@ def product_moment(rho: Array, low: Array, high: Array) -> Array:
 
 def score_factor(dependence: Dependence, low: Array, high: Array) -> Array:
     """Factor F of the scores' correlations, ``z = F w`` with independent normal w, (n, n).
-
-    Args:
-        dependence: What is asked for.
-        low: Smallest amplitudes, (n,).
-        high: Largest amplitudes, (n,).
 
     Raises:
         DesignError: These ranges cannot have these correlations; says how much of them they can.

@@ -15,7 +15,6 @@ class Mix:
     """Shapes that one error may have; every machine has one of them.
 
     Attributes:
-        shapes: Drawn from.
         periods: Numbers of periods of a sinusoidal error, drawn with equal chance; over the range
             of a linear axis, over a turn of a rotary one.
         weights: Chance of each shape, in any unit; none for equal chances.

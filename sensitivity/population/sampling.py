@@ -140,19 +140,12 @@ class Population:
 
 @dataclass(frozen=True, eq=False)
 class Draws:
-    """S drawn machines; every array is (S, P) over the symbols of the chain.
+    """S drawn machines; every array is (S, P) over the symbols of the chain."""
 
-    Attributes:
-        amplitude: Peak amplitude with its sign, mm or rad.
-        shape: Index into the shapes that the error may have.
-        periods: Of a sinusoidal error.
-        phase: Of a sinusoidal error, rad.
-    """
-
-    amplitude: Array
-    shape: NDArray[np.int64]
-    periods: NDArray[np.int64]
-    phase: Array
+    amplitude: Array  # peak amplitude with its sign, mm or rad
+    shape: NDArray[np.int64]  # index into the shapes that the error may have
+    periods: NDArray[np.int64]  # of a sinusoidal error
+    phase: Array  # of a sinusoidal error, rad
 
     def __len__(self) -> int:
         return len(self.amplitude)
@@ -162,10 +155,6 @@ def draw(population: Population, count: int, rng: np.random.Generator) -> Draws:
     """Machines with random errors: amplitude even over its range, random sign, shape and phase.
 
     Errors are independent of each other where `Population.dependence` does not say otherwise.
-
-    Args:
-        population: What to draw from.
-        count: S.
     """
     symbols = population.chain.symbols
     mixes = [population.mix_of(s) for s in symbols]
@@ -233,7 +222,6 @@ def shape_columns(population: Population, q: Array) -> list[Array]:
     The value of error p at a pose is its row here times its part of `coefficients`.
 
     Args:
-        population: The machines.
         q: Readings, shape (N, A).
     """
     chain, out = population.chain, []

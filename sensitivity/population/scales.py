@@ -21,8 +21,6 @@ def drawn_scales(
     squares over many machines is one.
 
     Args:
-        population: What to draw from.
-        count: S.
         model: Whose parameters the columns are; None for those of `Population.model`.
     """
     chain = population.chain

@@ -81,11 +81,9 @@ def norm_shares(
     An error changes as a whole: amplitude, sign, shape, periods and phase.
 
     Args:
-        population: What to draw from.
         q: Readings, shape (N, A).
         length: Tool length, scalar or (N,), mm.
         machines: S, pairs of machines.
-        compiled: Use numba where it is installed.
 
     Raises:
         DesignError: The errors depend on each other: an index by changing one error alone then
@@ -119,7 +117,6 @@ def _estimated(J: Array, values: Values, machines: int, compiled: bool) -> Total
         J: Shape (P, 3, N).
         values: Errors of some poses and their changes, (n or 1, P, S) each.
         machines: S.
-        compiled: Use numba where it is installed.
     """
     kernel: Kernel = (_compiled() if compiled else None) or _squares
     kind = np.float64 if kernel is _squares else np.float32

@@ -63,7 +63,6 @@ class Region:
     """Part of a workspace.
 
     Attributes:
-        place: Where it is.
         q: Poses in it, (N, A).
         shares: Share of every error parameter in the variance of the deviation, (N, P).
         mean_shares: The same in the variance summed over the region, (P,).
@@ -87,9 +86,6 @@ def regions(population: Population, workspace: Workspace) -> tuple[Region, ...]:
 
     A rotary axis that turns all round has no ends; two quarters and the opposite side are looked
     at instead.
-
-    Args:
-        population: Errors that are expected.
     """
     out = []
     for place, readings in _places(workspace):
@@ -139,19 +135,10 @@ def region_totals(
     rng: np.random.Generator,
     machines: int = MACHINES,
 ) -> RegionTotals:
-    """What the errors do to the length |d| in each region, by Monte Carlo.
+    """What the errors do to the length |d| in each region, by Monte Carlo; raises DesignError.
 
     The same machines stand at all poses, so the standard error of a mean over poses is taken as the
     mean of theirs, which errs to the safe side.
-
-    Args:
-        population: Errors that are expected, independent ones.
-        workspace: Limits, tool length.
-        found: The regions.
-        machines: Pairs of random machines.
-
-    Raises:
-        DesignError: The errors depend on each other.
     """
     some = [r.q[:_TOTAL_POSES] for r in found]
     # so few poses are done before a compiler has begun

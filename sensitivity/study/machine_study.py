@@ -65,18 +65,12 @@ class Section:
 
 @dataclass(frozen=True, eq=False)
 class PathStudy:
-    """Volumetric error along a trajectory.
-
-    Attributes:
-        volumetric: Statistics at its poses; the worst ones are those of the workspace.
-        closed: The same without sampling, as if every error were normally distributed.
-        effects: What the error motions of single axes do on the way.
-    """
+    """Volumetric error along a trajectory."""
 
     trajectory: Trajectory
-    volumetric: Volumetric
-    closed: NormalLength
-    effects: tuple[AlongPath, ...]
+    volumetric: Volumetric  # statistics at its poses; the worst ones are those of the workspace
+    closed: NormalLength  # the same without sampling, as if every error were normally distributed
+    effects: tuple[AlongPath, ...]  # what the error motions of single axes do on the way
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -85,7 +79,6 @@ class Study(Tabular):
 
     Attributes:
         population: Machines that were drawn from.
-        workspace: Where was looked.
         q: Poses, (N, A), a Latin hypercube of the workspace.
         sensitivity: S of every error parameter, (N, P), mm/mm and mm/rad.
         shares: Share of every parameter in the variance of the deviation, (N, P).
@@ -165,11 +158,8 @@ def run_study(
     """Sensitivities, shares of variance and Monte Carlo over a workspace and along a trajectory.
 
     Args:
-        population: Machines to draw from.
-        workspace: Where to look.
         poses: Number of poses, or their readings, shape (N, A).
         draws: Number of random machines, at most so many with digits.
-        progress: Told what is being done.
         tolerance: For the exceedance, mm.
         digits: Significant digits that have to be stable (JCGM 101); 0 for none.
         workers: Who draws the machines (`matstd.sensitivity.montecarlo.workers`).

@@ -63,7 +63,6 @@ def paper_trajectory(
     ``q = low + s (high - low)`` and ``q = middle + half sin(2 pi n s)`` with s from 0 to 1.
 
     Args:
-        workspace: Limits of the readings, and the tool length.
         linear: Axes that run linearly; None for the first linear axis and the rotary axis with the
             widest limits, X and C on the machine of the paper.
         swinging: Axis that swings; None for the other rotary axis, B there, or else a second
@@ -187,15 +186,12 @@ def _short(effect: Effect) -> str:
 
 
 def axis_errors(chain: Chain, axis: str) -> list[tuple[ComponentError, Array]]:
-    """Error motions of one axis as the D-MT paper draws them.
+    """Error motions of one axis as the D-MT paper draws them; raises UnknownAxis.
 
     A linear axis (figure 2): all six linear, translations of 50, 75 and 100 µm, rotations of as
     many µrad, over which the paper is silent. A rotary axis (figure 3): all six sinusoidal; the two
     radial ones of 10 µm, a quarter turn apart, the others at the lower end of what random machines
     have, so that the radial ones dominate as in the paper.
-
-    Raises:
-        UnknownAxis: An axis that the machine does not have, or that is not programmed.
     """
     if axis not in chain.programmed_axes:
         raise UnknownAxis(axis, chain.programmed_axes)

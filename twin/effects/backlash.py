@@ -31,7 +31,6 @@ class Backlash(Declared):
     is not disturbed.
 
     Attributes:
-        axis: Name of the axis.
         component: Index of the component that reverses: along or about the axis, as a rule.
     """
 

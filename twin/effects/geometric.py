@@ -29,7 +29,6 @@ class ComponentError(Declared):
     amplitude (`matstd.twin.machine.shapes`).
 
     Attributes:
-        symbol: Which component of which axis.
         shape: Distribution over the reading.
         periods: Of the sinusoidal distribution.
         phase: Of the sinusoidal distribution, rad.
@@ -83,7 +82,6 @@ class HigherOrder(Declared):
     expected to fall as ``1/k^1.5`` from the size of the class.
 
     Attributes:
-        symbol: Which component of which axis.
         degree: The highest.
         sd: Expected standard deviation of the first coefficient, mm or rad.
         rotary: Whether harmonics are meant.

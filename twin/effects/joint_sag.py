@@ -47,7 +47,6 @@ class JointSag(Declared):
     positive one, rad a millimetre of lever, turns the arm down.
 
     Attributes:
-        joint: Name of the rotary axis.
         places: Names of the joints at whose points weights are taken to be, and `flange` for the
             gauge point, where a payload hangs.
 

@@ -22,7 +22,6 @@ class LocationError(Declared):
     rotary axis's line, `EX0X`, `EC0C` add to a reading.
 
     Attributes:
-        symbol: Which one.
         sd: Expected standard deviation, mm or rad.
     """
 

@@ -49,7 +49,6 @@ class SetupError(Declared):
     parameters, mm and rad.
 
     Attributes:
-        setup: Label of the set-up.
         centre: c, table frame, mm: the middle of the touched points, so that displacement and
             rotation are estimated nearly independently.
         turns_only: Whether an instrument that feels angles alone stands there: three parameters.
@@ -127,10 +126,6 @@ class BodyTemperature(Declared):
     ``shift = alpha dT p``, p from the origin of the standard: one scale of all its touches, within
     the uncertainty of the temperature. A common scale of X, Y and Z looks the same, so that what it
     leaves open stays in the uncertainty of theirs.
-
-    Attributes:
-        run: Name of the run.
-        body: Its standard.
     """
 
     run: str

@@ -43,8 +43,6 @@ def refusal(usage: str, found: Sequence[str], expected: str) -> UnknownEffect:
     """Exception for arguments that an effect does not take.
 
     Args:
-        usage: How the effect is written.
-        found: The arguments that were given.
         expected: What should stand there, with what is available.
     """
     word = usage.partition("(")[0]

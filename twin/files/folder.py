@@ -29,7 +29,6 @@ def results_folder(
     that killed runs have left are removed.
 
     Args:
-        out: Where the results shall stand.
         force: Whether results of an earlier run may be replaced.
         ours: Patterns of the names of results that not every run has.
         refused: Names of what a refused run leaves; a folder that holds nothing else counts as

@@ -87,7 +87,6 @@ def _is_free(file: IO[str], without: bool = False) -> bool:
     """Take the lock; it is given back when the file is closed.
 
     Args:
-        file: Open.
         without: The answer where the file system knows no locks.
     """
     try:

@@ -67,11 +67,6 @@ _OTHER_UNITS = {
 def checked_run(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     """The run without what cannot be a measurement; whatever is left out is told.
 
-    Args:
-        run: As it stands in the file.
-        table: The file, for its name and columns.
-        remarks: What was noticed; more is added.
-
     Raises:
         BadFile: What concerns too many rows to be a slip of single ones.
     """

@@ -62,7 +62,6 @@ def targets(table: CsvTable, common: Sequence[float]) -> Array:
     """Ball centre or reflector of every row in the tool frame, (N, 3), mm: its own or that of all.
 
     Args:
-        table: The table.
         common: Place in the head of the file, which a column or cell that is not there means.
     """
     cells = [
@@ -143,9 +142,7 @@ def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Ar
     """Temperature of every sensor, (N,) each; missing and absurd values are filled and told.
 
     Args:
-        table: The table.
         at: Time of every row, (N,), s.
-        remarks: What was noticed; more is added.
     """
     out = {}
     for column in table.columns:
@@ -273,12 +270,6 @@ def standing(table: CsvTable, approach: Array, touches: Touches, remarks: list[s
 
     A logger that writes the sign of the speed writes 0 where an axis turns round; the motion before
     is still its last one. Rows stand in the order of time within a feature.
-
-    Args:
-        table: Of the file; what it does not state stays.
-        approach: As the file has it, (N, A).
-        touches: The rows.
-        remarks: What was noticed; more is added.
     """
     out = approach.copy()
     stroke = np.unique(touches.feature, return_inverse=True)[1].reshape(-1)

@@ -90,16 +90,13 @@ class HeadTable(Table):
 
 
 def read_run(path: str | Path, chain: Chain | None = None) -> Run:
-    """Measurements from a run file.
+    """Measurements from a run file; raises BadFile.
 
     What can be put right without guessing is put right and told in `Run.remarks`; what cannot is
     refused.
 
     Args:
         chain: The machine; None reads the machine file that the head names.
-
-    Raises:
-        BadFile: File, line or key, what stood there, what was expected.
     """
     text = read_text(path)
     head_text, body, first = _split_head(text, path)

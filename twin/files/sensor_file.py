@@ -24,7 +24,6 @@ class SensorRecord:
     """Readings of sensors.
 
     Attributes:
-        path: Where they came from.
         clock: Of every reading, s since `EPOCH`, (M,), rising.
         temperature: By sensor, each (M,), degC.
         spindle_rpm: Speed from each reading to the next, (M,), 1/min; None where not recorded.

@@ -80,8 +80,6 @@ class CsvTable:
     cells are looked at one by one only where something in it is refused.
 
     Args:
-        text: The table with its header line.
-        path: The file, for messages.
         first_line: Line number of the header in the file.
     """
 
@@ -168,17 +166,13 @@ class CsvTable:
         largest: float = LARGEST,
         smallest: float = -math.inf,
     ) -> Array:
-        """Column as numbers, (N,).
+        """Column as numbers, (N,); raises BadFile.
 
         Args:
-            name: The column.
             empty: What an empty cell means; None refuses it.
             finite: Whether NaN and infinity are refused.
             largest: Numbers beyond this, of either sign, are refused as slips.
             smallest: Numbers below this are refused.
-
-        Raises:
-            BadFile: Line, what stood there.
         """
         if self._values is not None:
             out = self._values[:, self.columns.index(name)].copy()

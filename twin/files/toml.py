@@ -101,16 +101,11 @@ def _one_line_end(text: str) -> str:
 def parse_toml(
     text: str, path: str | Path, first_line: int = 1, twice: str = "it once"
 ) -> dict[str, Any]:
-    """Tables of a TOML text.
+    """Tables of a TOML text; raises BadFile.
 
     Args:
-        text: The text.
-        path: The file, for messages.
         first_line: Line number of the text in the file.
         twice: What is expected of a table that stands in two places; `{name}` is its name.
-
-    Raises:
-        BadFile: The line, what stood there, what was expected.
     """
     try:
         return tomllib.loads(text, parse_float=_moderate)
@@ -155,16 +150,11 @@ def _no_toml(
 
 
 def checked(model: type[T], data: object, path: str | Path, within: str = "") -> T:
-    """A table checked against its model; the first fault is told in one line.
+    """A table checked against its model; the first fault is told in one line; raises BadFile.
 
     Args:
         model: Pydantic model with the units in its field names.
-        data: What was read.
-        path: The file, for the message.
         within: Key under which the data stood.
-
-    Raises:
-        BadFile: File, key, what stood there, what was expected.
     """
     try:
         return model.model_validate(data)

@@ -49,15 +49,10 @@ _TRIED = 24
 
 
 class SizedEffect(NamedTuple):
-    """An effect and how large it is.
+    """An effect and how large it is."""
 
-    Attributes:
-        effect: With its inner parameters.
-        theta: Its parameters, (P,), base units.
-    """
-
-    effect: Effect
-    theta: Array
+    effect: Effect  # with its inner parameters
+    theta: Array  # its parameters, (P,), base units
 
 
 def parse_sized_effect(text: str, chain: Chain) -> SizedEffect:

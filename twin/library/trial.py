@@ -32,16 +32,7 @@ SCANNED = 512
 
 
 def try_kind(kind: Kind, touches: Touches, path: str | Path) -> None:
-    """Try everything that a user's kind proposes for some touches.
-
-    Args:
-        kind: The kind.
-        touches: Of the run.
-        path: The user's file.
-
-    Raises:
-        BadFile: File, line, effect, what it does, what was expected.
-    """
+    """Try everything that a user's kind proposes for some touches; raises BadFile."""
     guarded = read_only(touches)
     try:
         proposed = list(kind.propose(guarded))
@@ -59,11 +50,7 @@ def try_kind(kind: Kind, touches: Touches, path: str | Path) -> None:
 
 
 def try_effect(effect: Effect, touches: Touches, path: str | Path) -> None:
-    """Try one effect of a user at some touches.
-
-    Raises:
-        BadFile: File, line, effect, what it does, what was expected.
-    """
+    """Try one effect of a user at some touches; raises BadFile."""
     _try_attributes(effect, path)
     _try_parameters(effect, path)
     touches = read_only(touches)

@@ -105,7 +105,6 @@ class Chain(Displayed):
     """A machine: its links in chain order from workpiece to tool, and the place of its table.
 
     Attributes:
-        name: Of the machine.
         notation: ISO chain notation as the user wrote it.
         links: `w` first, `t` last, without the foundation.
         table_origin: Origin of the table frame, machine frame with every axis at zero, (3,), mm.
@@ -168,11 +167,7 @@ class Chain(Displayed):
         return Where("twist", self.link_index(symbol.link), symbol.component)
 
     def axis_index(self, name: str) -> int:
-        """Column of an axis in an array of readings (N, A).
-
-        Raises:
-            UnknownAxis: The machine has no such axis.
-        """
+        """Column of an axis in an array of readings (N, A); raises UnknownAxis."""
         if name not in self.axes:
             raise UnknownAxis(name, self.axes)
         return self.axes.index(name)
@@ -209,11 +204,7 @@ class Chain(Displayed):
         return tuple(component + location + workpiece + tool)
 
     def symbol(self, name: str) -> Symbol:
-        """The error parameter of that name.
-
-        Raises:
-            UnknownSymbol: No such parameter on this machine.
-        """
+        """The error parameter of that name; raises UnknownSymbol."""
         symbol = parse_symbol(name)
         if symbol is None or symbol not in self.symbols:
             raise UnknownSymbol(name, (s.name for s in self.symbols))
@@ -281,8 +272,6 @@ def make_chain(
     """Machine from its notation and what is known of each axis.
 
     Args:
-        name: Of the machine.
-        notation: Chain notation.
         axes: Range, point and direction by axis name, mm and rad; a bracketed spindle may be left
             out.
         table_origin: Origin of the table frame, machine frame with every axis at zero, mm.

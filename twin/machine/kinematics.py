@@ -121,14 +121,11 @@ def table_to_tool(chain: Chain, q: Array) -> Array:
 
 
 def tip(chain: Chain, q: Array, length: Array | float) -> Array:
-    """Nominal tool point (ball centre of a probe) in the table frame.
+    """Nominal tool point (ball centre of a probe) in the table frame, (N, 3), mm.
 
     Args:
         q: Readings, shape (N, A), mm and rad.
         length: Tool length, scalar or (N,), or the tool point in the tool frame, (N, 3), mm.
-
-    Returns:
-        Shape (N, 3), mm.
     """
     return moved_tip(chain, checked_readings(chain, q), length, None)
 

@@ -38,20 +38,16 @@ def tip_in_tool(length: Array | float, n: int) -> Array:
 def moved_tip(
     chain: Chain, q: Array, length: Array | float, contribution: Contribution | None
 ) -> Array:
-    """Tool point in the table frame, exactly, with or without errors.
+    """Tool point in the table frame, exactly, with or without errors, (N, 3), mm.
 
     From the tool to the foundation every link moves the point by its motion and then by its
     component error; from there to the workpiece by its error and then back along its motion, which
     are the products ``G M`` and their inverses without one matrix. No angle is taken for small.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
         length: As of `tip_in_tool`.
         contribution: What all effects add at these readings; None for the nominal machine.
-
-    Returns:
-        Shape (N, 3), mm.
     """
     start = tip_in_tool(length, len(q)).T
     tool = [i for i, link in enumerate(chain.links) if not link.carries_workpiece]

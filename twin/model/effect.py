@@ -84,7 +84,6 @@ def contribution(
 
     Args:
         effects: Pairs of an effect and its parameters (P,), base units.
-        touches: The touches or poses.
     """
     total = Contribution.zeros(len(touches), len(touches.chain.links))
     pairs = effects.items() if isinstance(effects, Mapping) else effects

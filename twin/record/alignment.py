@@ -41,7 +41,6 @@ class Moved:
     """A set-up that was moved.
 
     Attributes:
-        name: Of the set-up.
         shift: Displacement of the middle of its touches, mm.
         turn: Angle of its rotation, rad.
     """

@@ -163,7 +163,7 @@ def lagged(touches: Touches, drive: Array, tau: float, steps: bool = False) -> A
 
 
 def first_order_lag(time: Array, drive: Array, tau: float, steps: bool = False) -> Array:
-    """First-order lag of a record, exact between the records.
+    """First-order lag of a record, exact between the records, (N,), in the unit of the drive.
 
     ``tau dy/dt = d - y``. With ``x = dt/tau`` and a straight drive from d0 to d1 one step is
     ``y1 = e^-x y0 + (1 - e^-x) d0 + (1 - (1 - e^-x)/x) (d1 - d0)``; with a constant one it ends
@@ -175,9 +175,6 @@ def first_order_lag(time: Array, drive: Array, tau: float, steps: bool = False) 
         tau: Time constant, s.
         steps: Whether the drive is constant from one record to the next, and the body cold (y = 0)
             at time zero; otherwise straight, and y = d at the first record.
-
-    Returns:
-        Shape (N,), in the unit of the drive.
     """
     order = np.argsort(time, kind="stable")
     t, d = time[order], drive[order]
