@@ -147,7 +147,7 @@ class BadFile(DesignError, ValueError):
         Args:
             error: With the facts found and expected: BadValue, UnknownAxis, UnknownSymbol.
             within: Key of the table that the value stood in.
-            key: Of the value; empty for the key that the error tells.
+            key: Of the value; empty for the key in the error.
         """
         where = ".".join(part for part in (within, key or str(error.facts["key"])) if part)
         return cls(path, where, error.facts["found"], str(error.facts["expected"]))

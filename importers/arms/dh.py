@@ -19,7 +19,7 @@ _COLUMNS = {
 
 
 def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tuple[Chain, Array]:
-    """An arm from a table of Denavit and Hartenberg's parameters, a row a joint.
+    """An arm from a table of Denavit and Hartenberg's parameters, one row per joint.
 
     The machine frame has the directions of the base and its origin at the flange with every joint
     at zero; the table frame is the base. An axis gets the letter of the direction that its line is
@@ -36,7 +36,7 @@ def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tup
         The arm, and the rotation R (3, 3) that takes flange to tool coordinates.
 
     Raises:
-        BadFile: A column that is not there, or as many rows as there are no joints.
+        BadFile: A missing column, or another number of rows than of joints.
 
     Reference:
         Denavit and Hartenberg 1955; Craig, Introduction to Robotics (modified parameters).

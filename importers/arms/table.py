@@ -21,7 +21,7 @@ _COUPLED = re.compile(r"J?(\d)\s*([+-])\s*J?(\d)\Z", re.IGNORECASE)
 
 @dataclass(frozen=True, eq=False)
 class ArmTable:
-    """Joint readings and measured places, a row a pose.
+    """Joint readings and measured places, one row per pose.
 
     Attributes:
         q: Readings, (N, J), rad, of a joint that slides mm.
@@ -53,7 +53,7 @@ def read_arm(sheet: Sheet, axes: Sequence[str] = ()) -> ArmTable:
         axes: Names of the axes of the arm; columns named so are taken, if all are there.
 
     Raises:
-        BadFile: No such columns, a joint twice or left out, places that may be several things.
+        BadFile: No such columns, a joint twice or missing, ambiguous columns of places.
     """
     joints = _joints(sheet, axes)
     reflectors = _reflectors(sheet, joints)

@@ -1,4 +1,4 @@
-"""Figures of a test of one axis as its standard defines them, straight from the readings."""
+"""Figures of a test of one axis as its standard defines them, from the readings alone."""
 
 from dataclasses import dataclass
 

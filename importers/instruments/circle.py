@@ -1,8 +1,8 @@
 """Circular tests (ISO 230-4): radial deviations of a ball bar or a grid plate over the angle.
 
-The bar says by how much the tool is farther from the centre than the path that was programmed:
-actual minus nominal. A controller that believes in its machine sees the circle outside its place by
-the negative of that, along the radius; a deviation in the file gets the other sign here.
+The bar measures how much farther from the centre the tool is than programmed: actual minus nominal.
+A controller that assumes the nominal machine sees the circle displaced by the negative of that
+along the radius, so a deviation in the file gets the opposite sign here.
 
 Reference:
     ISO 230-4 (circular tests for numerically controlled machine tools).
@@ -21,14 +21,14 @@ from matstd.twin.machine import Axis, Chain, linear_directions, make_chain
 from matstd.twin.record import Instrument, IntArray, Labels, Run, Setup, at_poses
 from matstd.twin.units import MINUTE
 
-BETWEEN = 10.0
-"""Pause (s) that is assumed between two runs."""
+PAUSE_BETWEEN_RUNS = 10.0
+"""Assumed pause between two runs, s."""
 
-JUST = 1e-6
-"""Angle (rad) before a reading at which its axes last moved for certain."""
+ANGLE_BEFORE_READING = 1e-6
+"""Angle (rad) before a reading at which its axes were still moving."""
 
-IS_RADIUS = 0.1
-"""Distance of a column's mean from the radius, as a share of it, up to which it holds radii."""
+RADIUS_TOLERANCE = 0.1
+"""A column holds radii if its mean differs from the radius by less than this share of it."""
 
 Order = tuple[IntArray, Labels, IntArray]
 """Sense and name of the run of every row, and the rows in the order in which they were taken."""
@@ -54,7 +54,7 @@ class CircularTest:
 
 
 def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None) -> CircularTest:
-    """A circular test from a table: a row a reading, or a row an angle and a column a run.
+    """A circular test from a table: one row per reading, or per angle with columns of runs.
 
     Places `X` and `Y` from the centre, as of a grid plate, may stand for angles and deviations.
     Runs are those of a column of directions, or of columns named for theirs (CCW, CW, G3, G2,
@@ -95,23 +95,23 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
 
 
 def _letter(letter: str) -> re.Pattern[str]:
-    """What finds the column of a coordinate."""
+    """Pattern of the column of a coordinate."""
     return re.compile(rf"(?<![a-zA-Z]){letter}(?![a-zA-Z])", re.IGNORECASE)
 
 
 def _columns(
     sheet: Sheet, at: int, angle: Array, radius: float, unit: str | None
 ) -> list[tuple[Array, Order]]:
-    """Deviations of every column that has some, with the order of their rows."""
+    """Deviations of every column that holds some, with the order of their rows."""
     others = [i for i in range(len(sheet.columns)) if i != at]
-    said = next((i for i in others if _says_sense(sheet, i)), None)
+    said = next((i for i in others if _states_sense(sheet, i)), None)
     values = [i for i in others if i != said and _is_value(sheet, i)]
     if not values:
         raise sheet.lacking("a column of radial deviations")
     out = []
     for i in values:
         reading = sheet.quantity(i, MM, unit)
-        if abs(float(np.nanmean(reading)) - radius) < IS_RADIUS * radius:
+        if abs(float(np.nanmean(reading)) - radius) < RADIUS_TOLERANCE * radius:
             reading = reading - radius
         out.append((reading, _order(sheet, i, angle, said, len(values) > 1)))
     return out
@@ -124,9 +124,9 @@ def _by_motion(angle: Array) -> tuple[IntArray, Labels]:
     return sense, np.array([f"run{k}" for k in stroke])
 
 
-def _says_sense(sheet: Sheet, column: int) -> bool:
-    """Whether a column states for every row which way round it was taken."""
-    words = {t for t in sheet.looked_at(column) if t}
+def _states_sense(sheet: Sheet, column: int) -> bool:
+    """Whether a column states the sense of rotation of every row."""
+    words = {t for t in sheet.cells_as_text(column) if t}
     return bool(_RUN.search(sheet.names[column])) and bool(words) and all(map(_sense, words))
 
 
@@ -139,7 +139,7 @@ def _is_value(sheet: Sheet, column: int) -> bool:
 
 
 def _sense(word: str) -> int:
-    """1 counter-clockwise, -1 clockwise, 0 for a word that says neither."""
+    """1 counter-clockwise, -1 clockwise, 0 for any other word."""
     if word in ("1", "-1"):
         return int(word)
     return 1 if _CCW.search(word) else -1 if _CW.search(word) else 0
@@ -210,7 +210,9 @@ def circle_run(
                 f"its travel is {low:g} to {high:g}; --centre states the middle of the circle"
             )
     approach = np.zeros(q.shape)
-    before = test.angle - JUST * test.sense  # at a quadrant an axis has not turned round yet
+    before = (
+        test.angle - ANGLE_BEFORE_READING * test.sense
+    )  # at a quadrant an axis has not reversed yet
     turned = np.column_stack([-np.sin(before), np.cos(before)]) * test.sense[:, None]
     approach[:, [first, second]] = np.sign(turned)
     D = linear_directions(chain, at_centre)
@@ -237,5 +239,5 @@ def _times(test: CircularTest, feed: float | None) -> Array:
     step = np.abs(np.diff(np.unwrap(test.angle), prepend=test.angle[:1]))
     took = step * test.radius / (feed / MINUTE)
     changes = np.flatnonzero(test.run[1:] != test.run[:-1]) + 1
-    took[changes] = BETWEEN
+    took[changes] = PAUSE_BETWEEN_RUNS
     return np.asarray(np.cumsum(took))

@@ -1,4 +1,4 @@
-"""Points with their nominal places and what was found of them, before it is said who found it."""
+"""Points with nominal and measured coordinates, whichever machine measured them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -9,16 +9,16 @@ from matstd.importers.sheets import stacked
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Labels
 
-NEARER = 2.0
-"""So many times nearer to the place of another than to its own a point is called misplaced."""
+MISPLACED_RATIO = 2.0
+"""A point this many times nearer to another one's place than to its own is misplaced."""
 
-FEWEST = 4
-"""Points from which a list has a common displacement."""
+MIN_POINTS = 4
+"""Points needed to determine a common displacement."""
 
 
 @dataclass(frozen=True, eq=False)
 class PointList:
-    """Points with their nominal place and what was found of each coordinate.
+    """Points with their nominal place and the deviation of each coordinate.
 
     Attributes:
         nominal: (N, 3), mm.
@@ -40,10 +40,10 @@ class PointList:
 
 
 def misplaced(points: PointList) -> list[tuple[str, str]]:
-    """Points that were found nearer to where another one belongs: (its name, the other's).
+    """Points found nearer to the nominal place of another one: (its name, the other's).
 
-    What all points of a coordinate have in common is taken off first. Names mixed up, or a list in
-    another order, look so. A point without a name is named by its line.
+    The median of each coordinate is subtracted first. Mixed-up names, or a list in another order,
+    cause this. A point without a name is named by its line.
 
     Args:
         points: Brought to the nominal frame.
@@ -54,7 +54,7 @@ def misplaced(points: PointList) -> list[tuple[str, str]]:
     for one in np.unique(points.setup):
         of = points.setup == one
         nominal, seen = points.nominal[of], np.isfinite(points.deviation[of])
-        if len(nominal) < FEWEST or not seen.any():
+        if len(nominal) < MIN_POINTS or not seen.any():
             continue
         off = points.deviation[of]
         common = [np.median(v[s]) if s.any() else 0.0 for v, s in zip(off.T, seen.T, strict=True)]
@@ -64,13 +64,13 @@ def misplaced(points: PointList) -> list[tuple[str, str]]:
         own = near[:, 0] == np.arange(len(near))  # then the second is the nearest other one
         other = np.where(own, near[:, 1], near[:, 0])
         distance = np.where(own, distance[:, 1], distance[:, 0])
-        nearer = NEARER * distance < np.linalg.norm(off, axis=1)
+        nearer = MISPLACED_RATIO * distance < np.linalg.norm(off, axis=1)
         out += [(str(name[k]), str(name[other[k]])) for k in np.flatnonzero(nearer)]
     return out
 
 
 def joined_points(lists: Sequence[PointList], names: Sequence[str] = ()) -> PointList:
-    """Several lists as one; each is a run of its own, with set-ups that bear its name."""
+    """Several lists as one; each becomes a run, with its name in those of its set-ups."""
     if len(lists) == 1:
         return lists[0]
     if len(set(names)) < len(names):

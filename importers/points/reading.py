@@ -1,6 +1,6 @@
 """Lists of nominal and measured coordinates: a machined part, or a calibrated plate.
 
-Both compare where a point is with where it should be, and mean opposite things:
+Both compare the actual with the nominal place of a point, with opposite signs:
 
 - ``part``: the machine under test made the point, a better one measured it. Measured minus nominal
   is where the tool really went relative to the workpiece: the machine's own deviation. A controller
@@ -25,7 +25,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 
 Meaning = Literal["part", "standard"]
-"""Who made a list: see the module."""
+"""What a list is of: see the module."""
 
 _NOMINAL = re.compile(r"nom|soll|target|calib|ref|theor|théor|cad", re.IGNORECASE)
 _MEASURED = re.compile(r"meas|act|ist\b|\bist|gemessen|mesur|réel|cmm|found", re.IGNORECASE)

@@ -29,23 +29,14 @@ from matstd.twin.frames import Array
 
 
 class RowStep(NamedTuple):
-    """One row that comes in or goes out (Sherman and Morrison): ``M^-1`` falls by ``c a a^T``.
+    """One row that comes in or goes out (Sherman and Morrison): ``M^-1`` falls by ``c a a^T``."""
 
-    Attributes:
-        W: All rows, (N, R).
-        inverse: ``M^-1`` before, (R, R).
-        a: ``M^-1 w``, (R,).
-        along: ``W a``, (N,).
-        signed: Leverage of the row, negative where it goes out.
-        c: ``sign / (1 + sign leverage)``.
-    """
-
-    W: Array
-    inverse: Array
-    a: Array
-    along: Array
-    signed: float
-    c: float
+    W: Array  # all rows, (N, R)
+    inverse: Array  # ``M^-1`` before, (R, R)
+    a: Array  # ``M^-1 w``, (R,)
+    along: Array  # ``W a``, (N,)
+    signed: float  # leverage of the row, negative where it goes out
+    c: float  # ``sign / (1 + sign leverage)``
 
 
 @dataclass(frozen=True, eq=False)

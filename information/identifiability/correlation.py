@@ -1,4 +1,4 @@
-"""Which parameters the touches tie together: correlations after the fit, groups and pairs.
+"""Parameters that touches tie together: correlations after the fit, pairs and groups.
 
 Two parameters whose estimates rise and fall together (r near +1) are known by their difference;
 where one falls as the other rises (r near -1) by their sum; difference and sum of both in units of
@@ -13,8 +13,8 @@ import numpy as np
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array
 
-STRONG = 0.9
-"""Absolute correlation from which two parameters are called tied."""
+STRONG_CORRELATION = 0.9
+"""Absolute correlation from which two parameters count as tied."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ def correlation(covariance: Array) -> Array:
     return r
 
 
-def ties(covariance: Array, names: Sequence[str], strong: float = STRONG) -> Ties:
+def ties(covariance: Array, names: Sequence[str], strong: float = STRONG_CORRELATION) -> Ties:
     """Parameters that are tied after a fit; raises ShapeMismatch.
 
     Args:
@@ -90,7 +90,7 @@ def _groups(pairs: Sequence[Pair], r: Array) -> tuple[tuple[int, ...], ...]:
 
 
 def _alike_beside_alike(group: list[int], r: Array) -> list[int]:
-    """Start with the parameter of the strongest ties, then always the one nearest to the last."""
+    """Order from the parameter of the strongest ties, each followed by its nearest one."""
     left = list(group)
     strength = np.abs(r[np.ix_(group, group)]).sum(axis=1)
     out = [left.pop(int(np.argmax(strength)))]

@@ -13,20 +13,13 @@ class EstimableCombination:
     """A combination of parameters that touches determine by itself.
 
     ``sum_k weight_k theta_k`` with weight 1 at the leading parameter, in whose unit u is.
-
-    Attributes:
-        u: Standard uncertainty after the touches, base unit of the leading parameter.
-        gain: Prior over posterior standard deviation.
-        unit: Base unit of the leading parameter.
-        weights: Of every parameter, (P,).
-        importance: Weights in units of what is expected of each parameter, (P,).
     """
 
-    u: float
-    gain: float
-    unit: str
-    weights: Array
-    importance: Array
+    u: float  # standard uncertainty after the touches, base unit of the leading parameter
+    gain: float  # prior over posterior standard deviation
+    unit: str  # base unit of the leading parameter
+    weights: Array  # of every parameter, (P,)
+    importance: Array  # weights in units of what is expected of each parameter, (P,)
 
 
 def combinations(

@@ -1,6 +1,6 @@
-"""What touches can and cannot separate: rank, condition, gauge freedoms, confounded groups.
+"""Identifiability of touches: rank, condition, gauge freedoms, confounded groups.
 
-A gauge freedom is a direction of parameter space that no touch notices: the constants of an axis
+A gauge freedom is a direction of parameter space that changes no touch: the constants of an axis
 and the set-up of the standard, the tilt of a ram and its straightness at one tool length. They come
 from the null space of the rows, by `matstd.information.identifiability.nullspace`, and are checked,
 one by one, against richer touches that could have been made: another stylus length, another set-up,
@@ -21,7 +21,7 @@ from matstd.information.identifiability.freedoms import (
     reason,
 )
 from matstd.information.identifiability.nullspace import (
-    INVISIBLE,
+    MIN_SINGULAR_RATIO,
     condition,
     groups,
     rank_analysis,
@@ -32,25 +32,22 @@ from matstd.twin.machine import Chain, Family, Symbol
 from matstd.twin.model import traits
 from matstd.twin.units import UM, URAD
 
-_KEPT = 1e-6  # part of its length that a gauge direction must show in richer touches to be resolved
+_MIN_RESOLVED_SHARE = (
+    1e-6  # part of its length that a gauge direction must show in richer touches to be resolved
+)
 
 
 @dataclass(frozen=True)
 class Group:
-    """Parameters that are tied to one another by gauge freedoms, and to no others.
+    """Parameters that are tied to one another by gauge freedoms, and to no others."""
 
-    Attributes:
-        members: Names.
-        known: Number of their combinations that the touches see; the rest is gauge.
-    """
-
-    members: tuple[str, ...]
-    known: int
+    members: tuple[str, ...]  # names
+    known: int  # number of their combinations that the touches see; the rest is gauge
 
 
 @dataclass(frozen=True, eq=False)
 class Identifiability:
-    """What the touches can and cannot separate.
+    """Identifiability of the parameters by some touches.
 
     Attributes:
         parameters: Their number.
@@ -82,15 +79,15 @@ def identifiability(
 ) -> Identifiability:
     """Rank, condition, gauge freedoms and confounded groups of some touches.
 
-    Freedoms have as few members as could be found. Where it is free which member is named as the
-    one to leave out, set-up, tool and zero positions go first, as conventions have it.
+    Freedoms have as few members as could be found. By convention set-up, tool and zero positions
+    are named first as the member to leave out.
 
     Args:
         W: Whitened rows, shape (N, P).
         prior_sd: Shape (P,).
         parameters: The same with their effects (`Model.parameters`), for units, conventions and
             reasons.
-        chain: The machine, for reasons; None to do without.
+        chain: The machine, for reasons, or None.
         richer: Rows of touches that could be made instead, by what they are called, cheapest first;
             columns as those of W, and after them those of set-ups and tools of their own.
     """
@@ -151,7 +148,7 @@ def _without_own(W: Array, P: int) -> Array:
     left = W[:, :P]
     if own.shape[1]:
         U, s, _ = np.linalg.svd(own, full_matrices=False)
-        U = U[:, s > INVISIBLE * s[0]]
+        U = U[:, s > MIN_SINGULAR_RATIO * s[0]]
         left = left - U @ (U.T @ left)
         left = left - U @ (U.T @ left)
     return left
@@ -162,7 +159,7 @@ def _resolved_by(
 ) -> tuple[Resolution, str]:
     """The first of the richer touches, freed of what is their own, in which a direction shows."""
     for name, W in richer.items():
-        if np.linalg.norm(W @ z) > _KEPT * np.linalg.norm(W, axis=0).max():
+        if np.linalg.norm(W @ z) > _MIN_RESOLVED_SHARE * np.linalg.norm(W, axis=0).max():
             return Resolution.TOUCHES, name
     if not richer:
         return Resolution.UNTRIED, ""

@@ -1,4 +1,4 @@
-"""Choosing what brings many touches at once: patches of a standard, table poses."""
+"""Choosing groups of touches: patches of a standard, table poses."""
 
 from collections.abc import Sequence
 
@@ -84,7 +84,7 @@ class _Groups:
         tangents = self.criterion.tangents(information)
         prior = self.criterion.prior
         unit = np.eye(self.criterion.size)
-        # a third of the time that solving for every row takes
+        # takes a third of the time of solving for every row
         reaches = [self.W @ np.linalg.solve(p + information, unit) for p in prior]
         gain = np.zeros(len(self.W))
         for reach, tangent in zip(reaches, tangents, strict=True):

@@ -1,4 +1,4 @@
-"""Shares of poses and features: what a sum over touches can be at most when they are kept."""
+"""Largest sums over touches under quotas of poses and features."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Where a program goes on: labels, subprograms within one another, repeats.
+"""Flow of a program: labels, nested subprograms, repeats.
 
 The rules are those of Klartext; a reader of another language brings its subprograms as labels.
 """
@@ -8,8 +8,8 @@ from pathlib import Path
 
 from matstd.twin.errors import BadFile
 
-DEEPEST = 8
-"""Subprograms within one another, as Heidenhain's controls have them."""
+MAX_DEPTH = 8
+"""Nesting of subprograms on Heidenhain's controls."""
 
 
 def label_places(found: Iterable[tuple[int, int, str]], path: Path) -> dict[str, int]:
@@ -63,9 +63,9 @@ class Flow:
     def call(self, index: int, line: int, name: str) -> int:
         """Index of the first block of a subprogram that a block calls; raises BadFile."""
         start = self.behind(line, name)
-        if len(self.returns) >= DEEPEST:
+        if len(self.returns) >= MAX_DEPTH:
             found = f"subprograms {len(self.returns) + 1} deep"
-            raise BadFile(self.path, f"line {line}", found, f"{DEEPEST} at most")
+            raise BadFile(self.path, f"line {line}", found, f"{MAX_DEPTH} at most")
         self.returns.append(index + 1)
         return start
 

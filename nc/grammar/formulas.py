@@ -82,7 +82,7 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
 
 
 class NotAFormulaError(Exception):
-    """What stands where a formula cannot go on."""
+    """The text at which a formula is invalid."""
 
 
 class Formula:

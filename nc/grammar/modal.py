@@ -1,4 +1,4 @@
-"""Modal groups of G-code: what a G word leaves in force until another of its group."""
+"""Modal groups of G-code: a G word stays in force until another of its group."""
 
 from dataclasses import dataclass
 

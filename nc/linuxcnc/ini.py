@@ -1,4 +1,4 @@
-"""The INI file of a LinuxCNC: values by section and key, refused where they are not there."""
+"""The INI file of LinuxCNC: values by section and key; missing ones are refused."""
 
 import configparser
 import re

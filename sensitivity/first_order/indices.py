@@ -1,4 +1,4 @@
-"""Which error makes how much of the volumetric deviation: exact to first order."""
+"""Share of every error in the volumetric deviation, exact to first order."""
 
 from collections.abc import Iterator
 from itertools import combinations, groupby
@@ -119,8 +119,8 @@ def variance_parts(population: Population, q: Array, length: Array | float) -> A
     """Part of every error in the mean square of the deviation, (N, P), mm^2, first order.
 
     ``E|d|^2 = sum_p |dp/dE_p|^2 E[e_p^2]`` for independent errors of mean zero. Of the mixed term
-    of two errors that depend on each other each gets a half, so a part may be negative: an error
-    that takes away from what another one makes.
+    of two errors that depend on each other each gets a half, so a part may be negative, where an
+    error compensates another one.
 
     Reference:
         Li et al., Anal. Chem. 82 (2010) 2417: shares of covariance for correlated inputs.

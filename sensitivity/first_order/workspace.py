@@ -1,4 +1,4 @@
-"""Poses over which sensitivities are looked at: grids, Latin hypercubes and sections."""
+"""Poses of a workspace: grids, Latin hypercubes and sections."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -18,14 +18,14 @@ _MOST_POSES = 2_000_000  # Jacobians of more, with 60 errors, take over 3 GiB
 
 @dataclass(frozen=True, eq=False)
 class Workspace:
-    """Where a user works.
+    """Limits of the readings and of the tool point that a user needs.
 
     Attributes:
         limits: Smallest and largest reading by axis, mm or rad; an axis left out has its whole
             range, a spindle that is not programmed stands at zero.
         length: Tool length, mm.
         volume: Lowest and highest corner of a box of the table frame in which the tool point has to
-            stay, mm; None where the readings alone say what is meant.
+            stay, mm, or None.
     """
 
     chain: Chain

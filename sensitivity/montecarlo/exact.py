@@ -1,4 +1,4 @@
-"""How far the first order is from the exact product, on some machines and poses."""
+"""First-order deviations against the exact product, for some machines and poses."""
 
 from dataclasses import dataclass
 
@@ -12,19 +12,13 @@ from matstd.twin.record import at_poses
 
 @dataclass(frozen=True, eq=False)
 class ExactCheck:
-    """How far first order is from the exact product, on some machines and poses.
-
-    Attributes:
-        rms: Root mean square of the difference between the deviation vectors, mm.
-        worst: Largest difference, mm.
-        rms_deviation: Root mean square of the deviations themselves, mm.
-    """
+    """Differences of first order from the exact product, for some machines and poses."""
 
     machines: int
     poses: int
-    rms: float
-    worst: float
-    rms_deviation: float
+    rms: float  # root mean square of the difference between the deviation vectors, mm
+    worst: float  # largest difference, mm
+    rms_deviation: float  # root mean square of the deviations themselves, mm
 
 
 def exact_check(

@@ -1,4 +1,4 @@
-"""What the errors of random machines look like over the readings of their axes."""
+"""Shapes of the errors of random machines over the readings of their axes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -119,7 +119,7 @@ class Population:
         return Model(self.chain, tuple(effects))
 
     def expected(self, free: str = "") -> Model:
-        """The same without errors that are stated to be zero: nothing is to be found out of them.
+        """The same without errors that are stated to be zero.
 
         Args:
             free: Letters of the links whose set-up stays all the same: "w", "t" or both.
@@ -217,7 +217,7 @@ def coefficients(population: Population, draws: Draws) -> Array:
 
 
 def shape_columns(population: Population, q: Array) -> list[Array]:
-    """What turns the coefficients of each error into its value at every pose, (N, K_p) each.
+    """Shape functions of each error at every pose, (N, K_p) each.
 
     The value of error p at a pose is its row here times its part of `coefficients`.
 

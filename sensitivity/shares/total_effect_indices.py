@@ -1,4 +1,4 @@
-"""Total-effect indices of the length |d| at many poses: which error matters, interactions included.
+"""Total-effect indices of the length |d| at many poses, interactions included.
 
 Jansen's estimator, ``T_p = mean (f(a) - f(a with p from b))^2 / (2 Var f)``. The deviation is
 linear in the errors, so the change of one error is a rank-one update of d: six operations in place
@@ -30,19 +30,12 @@ Values = Callable[[slice], tuple[Array, Array]]
 
 
 class TotalEffects(NamedTuple):
-    """Total-effect indices of |d|.
+    """Total-effect indices of |d|."""
 
-    Attributes:
-        total: Index of every error at every pose, (P, N); zero where |d| does not vary.
-        u: Its standard error by sampling, (P, N).
-        machines: Pairs of random machines.
-        seed: Where they came from; empty where they were given.
-    """
-
-    total: Array
-    u: Array
-    machines: int
-    seed: str = ""
+    total: Array  # index of every error at every pose, (P, N); zero where |d| does not vary
+    u: Array  # its standard error by sampling, (P, N)
+    machines: int  # pairs of random machines
+    seed: str = ""  # where they came from; empty where they were given
 
 
 def total_effects(J: Array, a: Array, b: Array, compiled: bool = True) -> TotalEffects:
@@ -86,8 +79,7 @@ def norm_shares(
         machines: S, pairs of machines.
 
     Raises:
-        DesignError: The errors depend on each other: an index by changing one error alone then
-            means nothing.
+        DesignError: The errors depend on each other, so changing one alone is meaningless.
     """
     if population.dependence is not None:
         raise DesignError("total effects want independent errors; these are correlated")

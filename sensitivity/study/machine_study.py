@@ -46,21 +46,13 @@ class _Streams(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """Volumetric error over two readings, the others as in the worst pose of the study.
+    """Volumetric error over two readings, the others as in the worst pose of the study."""
 
-    Attributes:
-        axes: Names of the two axes.
-        first: Values of the first reading, (n,), mm or rad.
-        second: Values of the second one, (n,).
-        q: Readings, (n n, A), the second reading fastest.
-        volumetric: Statistics at these poses.
-    """
-
-    axes: tuple[str, str]
-    first: Array
-    second: Array
-    q: Array
-    volumetric: Volumetric
+    axes: tuple[str, str]  # names of the two axes
+    first: Array  # values of the first reading, (n,), mm or rad
+    second: Array  # values of the second one, (n,)
+    q: Array  # readings, (n n, A), the second reading fastest
+    volumetric: Volumetric  # statistics at these poses
 
 
 @dataclass(frozen=True, eq=False)

@@ -53,8 +53,7 @@ def points_over_rotary(workspace: Workspace) -> tuple[PointOverRotary, ...]:
     Args:
         workspace: Limits; the points are those of its linear readings with the table level.
 
-    Returns:
-        None where no rotary axis moves, or there are not three linear axes with room.
+    Returns: Empty where no rotary axis moves, or fewer than three linear axes can move.
     """
     chain = workspace.chain
     turning = sorted(a for a in workspace.open_axes if a in chain.rotary_axes)[:2]

@@ -1,4 +1,4 @@
-"""Poses in the order in which a machine passes them, and what errors do to the tool on its way.
+"""Poses along a path of the machine, and the deviations that errors cause on it.
 
 The D-MT paper shows the effect of the error motions of one axis along a path on which X and C run
 linearly and B swings (its figures 2 and 3). Everything that takes poses takes the readings of a
@@ -25,18 +25,12 @@ _QUARTER = 0.5 * np.pi
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """A path through readings.
-
-    Attributes:
-        q: Readings, (N, A), mm and rad.
-        length: Tool length, mm.
-        name: What it is, in words.
-    """
+    """A path through readings."""
 
     chain: Chain
-    q: Array
-    length: float
-    name: str
+    q: Array  # readings, (N, A), mm and rad
+    length: float  # tool length, mm
+    name: str  # what it is, in words
 
     @property
     def along(self) -> Array:
@@ -117,7 +111,7 @@ def _name(linear: Sequence[str], swinging: str | None) -> str:
 
 
 def _roles(workspace: Workspace) -> tuple[tuple[str, ...], str | None]:
-    """Axes that run and the one that swings, where nobody says."""
+    """Default axes that run, and the one that swings."""
     chain = workspace.chain
     moves = [a for a in chain.programmed_axes if np.ptp(workspace.limit(a)) > 0.0]
     linear = sorted(a for a in moves if a in chain.linear_axes)
@@ -132,7 +126,7 @@ def _roles(workspace: Workspace) -> tuple[tuple[str, ...], str | None]:
 
 @dataclass(frozen=True, eq=False)
 class AlongPath:
-    """What some errors do to the tool point along a trajectory.
+    """Deviations of the tool point along a trajectory by some errors.
 
     Attributes:
         errors: Effects with their amplitudes, mm and rad.

@@ -1,8 +1,7 @@
-"""The box of the linear readings at fixed rotary readings: what a map in three dimensions shows.
+"""Maps in three dimensions: the box of the linear readings at fixed rotary readings.
 
-The map is drawn over readings, because these are what a user sets. At fixed rotary readings the
-tool point is an affine function of them, so whatever stands on the table, and every rotary axis,
-has its place in the map: where the readings bring the tool point to it.
+Maps are drawn over readings, because a user sets these. At fixed rotary readings the tool point is
+an affine function of them, so objects on the table and rotary axes have a place in the map.
 """
 
 from collections.abc import Mapping

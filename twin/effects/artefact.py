@@ -18,9 +18,9 @@ HOUR = 3600.0
 """Drift is reported per hour, s."""
 
 ON_EACH_SIDE = 2
-"""Fewest touches of a set-up before and after a slip: one alone is a touch gone wrong."""
+"""Touches of a set-up needed before and after a slip; a single one may be an outlier."""
 INSTANTS = 256
-"""Most instants that are scanned for a slip; between them it is refined."""
+"""Largest number of instants scanned for a slip; the search refines between them."""
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
 DEGREES = ("1", "2", "3", "4")
-"""Of a coupling: no guide bends in more waves, and no run resolves them."""
+"""Degrees of a coupling: no guide bends in more waves, and no run resolves them."""
 
 
 def _degree(text: str, chain: Chain, refuse: Refuse) -> int:

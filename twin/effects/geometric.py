@@ -14,7 +14,7 @@ from matstd.twin.record import Touches
 from matstd.twin.units import DEG
 
 HIGHEST = 12
-"""Degree beyond which a name is a slip: what varies faster is `periodic`."""
+"""Highest degree accepted; faster variations are `periodic`."""
 PROPOSED_DEGREE = 4
 """Two degrees beyond the ordinary model of a linear axis; what changes faster is `periodic`."""
 _DEGREES = re.compile(r"(?:(\d+)-)?(\d+)\Z")

@@ -1,4 +1,4 @@
-"""Sag under the weight of what the axes carry about: rams, heads, cradles, loads off centre."""
+"""Sag under moved weight: rams, heads, cradles, loads off centre."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass

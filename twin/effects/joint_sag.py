@@ -1,9 +1,8 @@
 """Sag of the joints of a serial arm under the weight of the links that follow.
 
-The gears of a joint give way in proportion to the torque of gravity on it. It is known from
-the geometry of the chain but for the weights: a weight anywhere on the line between two joints
-pulls at every joint before them as its shares at both ends do, so weights at the points of the
-joints that follow, and at the flange, stand for all links that reach from joint to joint.
+The gears of a joint give way in proportion to the torque of gravity on it. Geometry gives all of it
+but the weights. A weight on the line between two joints acts like its shares at both ends, so
+weights at the joints that follow and at the flange represent all straight links.
 """
 
 from collections.abc import Iterable, Sequence
@@ -21,8 +20,8 @@ from matstd.twin.model import Declared, Kind, Parameter, Term, Title, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import URAD
 
-SAME = 1e-6
-"""Points closer than this (mm) with every axis at zero are one."""
+SAME_POINT = 1e-6
+"""Points closer than this (mm) with every axis at zero are equal."""
 
 FLANGE = "flange"
 """Name of the gauge point among the places of weights."""
@@ -122,7 +121,7 @@ def weights_behind(chain: Chain, joint: str) -> tuple[str, ...]:
     for before, after in pairwise(ends):
         lever = after.point - before.point
         lever = np.cross(own.direction, lever) if before is own else lever
-        if np.linalg.norm(lever) > SAME:
+        if np.linalg.norm(lever) > SAME_POINT:
             places.append(FLANGE if after.kind == "fixed" else after.name)
     return tuple(places)
 

@@ -1,4 +1,4 @@
-"""What a touch probe adds of its own: lobes, its effective radius, a stylus that bends."""
+"""Errors of a touch probe: lobes, effective radius, bending of the stylus."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""Effects made of another effect: repeated beside it, or its change from some run on."""
+"""Effects derived from another: a second one beside it, or its change from some run on."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,8 +14,7 @@ MARK = "#"
 class Repeated:
     """An effect with inner parameters of its own, beside one of the same name.
 
-    Only an effect with inner parameters can stand in a model twice: without them both would be one.
-    All but its name is that of the original.
+    Only an effect with inner parameters can be in a model twice, because others would be identical.
 
     Attributes:
         original: As if it stood there alone.
@@ -63,10 +62,10 @@ def repeat(effect: Effect, number: int = 2) -> Repeated | None:
 
 @dataclass(frozen=True)
 class Change:
-    """By how much the parameters of an effect differ from some run on.
+    """Change of the parameters of an effect from some run on.
 
-    The effect itself stands in the model beside it and is that of the runs before; what happened
-    between two runs stays until the next change.
+    The effect itself stays in the model and describes the runs before; a change lasts until the
+    next one.
 
     Attributes:
         original: What changed.

@@ -1,4 +1,4 @@
-"""Free with every run: where the standard stands, every further stylus, and how large it is."""
+"""Free parameters of every run: pose of the standard, further styli, size of the standard."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,14 +16,15 @@ from matstd.twin.units import T_REF, UM
 
 SHIFT_SD = 1000.0 * UM
 TURN_SD = 5e-3
-"""Expected standard deviations of a set-up, mm and rad: wide, since no clamping repeats to a
+"""Prior standard deviations of a set-up, mm and rad: wide, since no clamping repeats to a
 micrometre and the calibration of a machine must not depend on it."""
 
 STYLUS_SD = 100.0 * UM
-"""Of the calibrated place and radius of a further stylus against the first, mm: wide as well."""
+"""Prior standard deviation of place and radius of a further stylus against the first, mm: also
+wide."""
 
-_MOST = 10
-"""Further styli; a length that changes more often is that of a target which is moved."""
+_MAX_STYLI = 10
+"""Largest number of further styli; more lengths belong to a target that is moved."""
 
 
 def rigid_shift(here: Array, arm: Array) -> list[Term]:
@@ -85,7 +86,7 @@ class SetupError(Declared):
 
 @dataclass(frozen=True)
 class StylusError(Declared):
-    """How far a further stylus is beside its calibration, against that of the first.
+    """Calibration error of a further stylus against that of the first.
 
     The ball stands e beside its calibrated place in the tool frame, and its effective radius is r
     larger: ``dev = -n . (R e) + r``. Four parameters, mm; what is wrong with all styli alike is an
@@ -121,7 +122,7 @@ class StylusError(Declared):
 
 @dataclass(frozen=True)
 class BodyTemperature(Declared):
-    """How far the standard of one run is from its stated temperature, or from 20 degC without one.
+    """Deviation of the standard of one run from its stated temperature, or from 20 degC.
 
     ``shift = alpha dT p``, p from the origin of the standard: one scale of all its touches, within
     the uncertainty of the temperature. A common scale of X, Y and Z looks the same, so that what it
@@ -155,7 +156,7 @@ class BodyTemperature(Declared):
 
 @dataclass(frozen=True)
 class BodyExpansion(Declared):
-    """How far the expansion of the standard is from the stated one.
+    """Deviation of the expansion of the standard from the stated one.
 
     ``shift = dalpha (T - 20 degC) p``. Runs that state the same standard share it.
     """
@@ -194,11 +195,11 @@ def _grown(touches: Touches, strain: Array) -> Sequence[Term]:
 
 
 Free = SetupError | StylusError | BodyTemperature | BodyExpansion
-"""What is estimated beside the model of the machine."""
+"""Parameters estimated beside the model of the machine."""
 
 
 def setup_errors(touches: Touches) -> tuple[Free, ...]:
-    """What places every set-up and further stylus, and what the standard's size leaves open."""
+    """Free parameters of set-ups, further styli and the size of the standard."""
     return (*placing_errors(touches), *body_errors(touches))
 
 
@@ -215,7 +216,7 @@ def placing_errors(touches: Touches) -> tuple[SetupError | StylusError, ...]:
 
 
 def body_errors(touches: Touches) -> tuple[BodyTemperature | BodyExpansion, ...]:
-    """What is not known of the size of every standard that states its expansion."""
+    """Free parameters of the size of every standard with a stated expansion."""
     stated = [touches.setups[i] for i in np.unique(touches.setup)]
     pairs = dict.fromkeys((s.run, s.body) for s in stated if s.body is not None)
     warm = [BodyTemperature(run, body) for run, body in pairs]
@@ -230,6 +231,6 @@ def further_styli(touches: Touches) -> tuple[StylusError, ...]:
         return ()
     pairs = zip(touches.length.tolist(), touches.radius.tolist(), strict=True)
     _, *others = dict.fromkeys(pairs)
-    if len(others) > _MOST or not np.all(touches.radius > 0.0):
+    if len(others) > _MAX_STYLI or not np.all(touches.radius > 0.0):
         return ()
     return tuple(StylusError(length, radius) for length, radius in others)

@@ -20,7 +20,8 @@ GRAVITY = 9.80665
 """Standard acceleration, m/s2, N/kg."""
 
 SLENDER = 3.0
-"""Length over depth below which what holds a beam counts as much as the beam: warned about."""
+"""Below this ratio of length to depth the supports of a beam yield as much as the beam; a warning
+is given."""
 
 KEYS = ("at", "sense", "span", "mass", "offset", "material", "down")
 DIRECTIONS = {s + a: i for i, (s, a) in enumerate((s, a) for a in "XYZ" for s in "+-")}

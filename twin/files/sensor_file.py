@@ -1,4 +1,4 @@
-"""Temperatures and spindle speeds by the clock, and what they were at every touch."""
+"""Temperatures and spindle speeds by the clock, interpolated to the touches of a run."""
 
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
@@ -15,8 +15,8 @@ from matstd.twin.record import Run, Touches
 
 EPOCH = datetime(2000, 1, 1)
 
-BEYOND = 300.0
-"""Longest time that a touch may lie outside the record, s; its first or last reading then holds."""
+MAX_OUTSIDE_RECORD = 300.0
+"""Longest time of a touch outside the record, s; the first or last reading then holds."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +45,7 @@ class SensorRecord:
         Raises:
             BadFile: The record does not cover the run.
         """
-        touches = self.seen_by(run.touches, begin)
+        touches = self.at_touches(run.touches, begin)
         return replace(run, touches=touches, remarks=(*run.remarks, *self.remarks))
 
     @property
@@ -58,7 +58,7 @@ class SensorRecord:
         times: Array = self.clock - _seconds(begin)
         return times
 
-    def seen_by(self, touches: Touches, begin: datetime) -> Touches:
+    def at_touches(self, touches: Touches, begin: datetime) -> Touches:
         """Touches with what the sensors read at their times.
 
         Temperatures are linear in time between readings, the speed stays until the next one.
@@ -72,7 +72,7 @@ class SensorRecord:
         """
         at = _seconds(begin) + touches.time
         first, last = self.clock[0], self.clock[-1]
-        if at.min() < first - BEYOND or at.max() > last + BEYOND:
+        if at.min() < first - MAX_OUTSIDE_RECORD or at.max() > last + MAX_OUTSIDE_RECORD:
             raise BadFile(
                 self.path, "column clock",
                 f"readings from {_words(first)} to {_words(last)}",

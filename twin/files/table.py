@@ -17,13 +17,13 @@ from matstd.twin.frames import Array
 from matstd.twin.words import did_you_mean
 
 LARGEST = 1e12
-"""Whatever a column holds, a number beyond this is a slip."""
+"""Largest number of any column; larger ones are refused."""
 
-COLDEST, HOTTEST, NOZZLE = -60.0, 200.0, 500.0
+COLDEST, HOTTEST, HOTTEST_HEATED = -60.0, 200.0, 500.0
 """Temperatures (degC) of a machine lie between the first two; a logger writes -9999 for none. A
 sensor of what is heated, such as the nozzle of a printer, may go up to the third."""
 
-HEATED = 0.1
+MIN_HEATED_SHARE = 0.1
 """Share of the readings above `HOTTEST` from which it is hot there, unless the sensor is stuck."""
 
 KELVIN = (240.0, 350.0)
@@ -204,10 +204,12 @@ class CsvTable:
         """A column of temperatures, (N,), degC, and where no sensor of a machine gives it, (N,)."""
         values = self.numbers(name, empty=math.nan, finite=False, largest=math.inf)
         known = values[np.isfinite(values)]
-        hot = known[(known > HOTTEST) & (known <= NOZZLE)]
+        hot = known[(known > HOTTEST) & (known <= HOTTEST_HEATED)]
         is_kelvin = bool(np.all((known > KELVIN[0]) & (known < KELVIN[1])))
-        is_heated = len(hot) > HEATED * len(known) and len(np.unique(hot)) > 2 and not is_kelvin
-        top = NOZZLE if is_heated else HOTTEST
+        is_heated = (
+            len(hot) > MIN_HEATED_SHARE * len(known) and len(np.unique(hot)) > 2 and not is_kelvin
+        )
+        top = HOTTEST_HEATED if is_heated else HOTTEST
         return values, ~((values >= COLDEST) & (values <= top))
 
     def bad(self, row: int, name: str, found: object, expected: str) -> BadFile:

@@ -1,4 +1,4 @@
-"""The library of effects by name: what can be added to a model, proposed, and written by a user.
+"""The library of effects: register, find, parse, propose and load the effects of users.
 
 A user's own effect is a `Kind` in a Python file (`load_user_effects`) or behind the entry point
 group `material_standard.effects`; from then on it is named, proposed and diagnosed like the rest.
@@ -162,7 +162,7 @@ def _parse_repeated(whole: str, number: str, text: str, chain: Chain) -> Effect:
 
 
 def _unknown(text: str, chain: Chain) -> UnknownEffect:
-    """What an unknown name may have meant, and what is available."""
+    """The exception for an unknown name, with suggestions."""
     word, bracket, inside = (part.strip() for part in text.partition("("))
     near = nearest(word.replace("_", "-"), _REGISTER)
     written = [f"{k.word}({word})" for k in kinds() if _is_taken(k, chain, word)]

@@ -44,7 +44,7 @@ _UNITS: Mapping[str, tuple[float, str]] = {
 }
 """Factor to the base unit and that unit; an angle is a number, as um/m is an angle."""
 
-_TRIED = 24
+_TRIAL_POSES = 24
 """Poses and minutes at which an effect is asked for the units of its inner parameters."""
 
 
@@ -96,9 +96,9 @@ def parse_sized_effect(text: str, chain: Chain) -> SizedEffect:
 def _trial_touches(chain: Chain) -> Touches:
     """Poses spread over the travels, a minute apart."""
     low, high = np.array([chain.link(axis).range for axis in chain.axes]).T
-    share = np.linspace(0.0, 1.0, _TRIED)[:, None]
+    share = np.linspace(0.0, 1.0, _TRIAL_POSES)[:, None]
     touches = at_poses(chain, low + share * (high - low), 100.0)
-    touches.time[:] = MINUTE * np.arange(_TRIED)
+    touches.time[:] = MINUTE * np.arange(_TRIAL_POSES)
     return touches
 
 

@@ -1,4 +1,4 @@
-"""Everything that disturbs a measurement ends here; nothing downstream asks which effect it was."""
+"""The sum of all effects at some touches; nothing downstream depends on which effect it was."""
 
 from typing import Literal, NamedTuple
 
@@ -23,7 +23,7 @@ class Where(NamedTuple):
 
     @property
     def entry(self) -> tuple[slice | int, ...]:
-        """Of the entry at all touches in the array of its part."""
+        """Index of this entry in the array of its part, over all touches."""
         if self.moves_tip:
             return (slice(None), self.link, self.component)
         return (slice(None), self.component) if self.part == "shift" else (slice(None),)

@@ -29,7 +29,7 @@ class Kind:
         propose: Every effect of the kind that makes sense for some touches.
         classes: Classes of its effects, whose docstrings describe them.
         about: What the family is, in one line; empty for the first line of its first class.
-        title: What those who run machines call it.
+        title: Its name on the shop floor.
         synonyms: Other words for it, commas between them.
         belongs_to: One of OWNERS, where it is to be expected again: in every run of the
             machine, in those with the same probe, or in no other run, as a slip on a certain day.

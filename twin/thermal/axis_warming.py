@@ -1,4 +1,4 @@
-"""Growth of a screw or scale, and of what holds it, while its axis works."""
+"""Thermal growth of a screw or scale and its bearing while its axis works."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,8 +16,8 @@ from matstd.twin.thermal.thermal_lag import LONGEST, SHORTEST, STEPS
 from matstd.twin.units import MINUTE, UM
 
 FASTEST, SLOWEST = 0.3, 1.0
-"""Time constants that are scanned without times: in cycles, and in lengths of the test. What is
-slower is a straight line, which needs no time constant and has no size to settle at."""
+"""Shortest time constant scanned in cycles, and longest in durations of the test: a slower one
+cannot be distinguished from a straight line, which has no final value."""
 
 
 def _clock_name(text: str, chain: Chain, refuse: Refuse) -> str:

@@ -1,4 +1,4 @@
-"""What an effect may follow: a sensor, the spindle speed, or a column of the user's own.
+"""Drives that an effect may follow: a sensor, the spindle speed, or a column of the user's own.
 
 A body that is driven settles with its own time constant. What drives it is recorded at the touches
 only, so the equation is integrated exactly for a drive that is straight between two records (or
@@ -32,12 +32,12 @@ PER_KELVIN = 0.2
 """Usual size of an error per kelvin, over that at 10 000 rpm or after a step of an own column."""
 
 
-MOST_KNOWN = 64
-"""Responses that are kept of one record: of one drive with every time constant of a grid."""
+MAX_CACHED_RESPONSES = 64
+"""Responses cached for one record: one drive with every time constant of a grid."""
 
-_KNOWN: WeakKeyDictionary[Touches, dict[tuple[str, float, float], Array]] = WeakKeyDictionary()
-"""What follows a drive, by drive, time constant and step: every component error of every axis asks
-for the same, and without this a search spent a tenth of its time here."""
+_RESPONSES: WeakKeyDictionary[Touches, dict[tuple[str, float, float], Array]] = WeakKeyDictionary()
+"""Responses by drive, time constant and step. Every component error of every axis uses the same
+ones; without the cache a search spent a tenth of its time here."""
 
 
 def drives(touches: Touches) -> list[str]:
@@ -80,13 +80,13 @@ def amplitude_unit(drive: str, unit: str, sd: float) -> tuple[str, float]:
 
 
 def driven(touches: Touches, drive: str, tau: float, effect: str, step: float = 1.0) -> Array:
-    """What has followed of a drive with a time constant at every touch, (N,).
+    """Response to a drive with a time constant at every touch, (N,).
 
     Args:
         drive: A sensor, followed as its difference from 20 degC, `spindle_rpm` in units of
             10 000 rpm, or an own column in units of a step.
         tau: Time constant, s; zero follows at once.
-        effect: Who asks, for the message.
+        effect: Name of the effect, for the message.
         step: Of an own column, in its unit.
 
     Raises:
@@ -94,10 +94,10 @@ def driven(touches: Touches, drive: str, tau: float, effect: str, step: float = 
     """
     if is_speed(drive) and touches.spindle_rpm is None:
         raise UnknownEffect(f"'{effect}': the spindle speed of these touches is unknown")
-    known = _KNOWN.setdefault(touches, {})
+    known = _RESPONSES.setdefault(touches, {})
     key = (drive, tau, step)
     if key not in known:
-        if len(known) >= MOST_KNOWN:
+        if len(known) >= MAX_CACHED_RESPONSES:
             known.clear()
         known[key] = _driven(touches, drive, tau, step)
         known[key].flags.writeable = False

@@ -30,7 +30,7 @@ from matstd.twin.thermal.drive_columns import (
 )
 from matstd.twin.units import UM, URAD
 
-USUAL = (6 * UM, 20 * URAD)
+USUAL_AMPLITUDE = (6 * UM, 20 * URAD)
 """Usual size of an error after a kelvin or a step, mm and rad."""
 
 
@@ -48,7 +48,7 @@ class ThermalStatic(Declared):
     symbol: ComponentSymbol
     sensor: SensorName
 
-    kind, usual, per = "thermal-static", USUAL, "/K"
+    kind, usual, per = "thermal-static", USUAL_AMPLITUDE, "/K"
 
     @cached_property
     def title(self) -> Title:
@@ -87,7 +87,7 @@ class Follows(Declared):
     column: Annotated[str, Argument("column of the user's own", _column)]
     step: float = scanned("1", _steps, default=1.0, continuous=False)
 
-    kind, usual = "follows", USUAL
+    kind, usual = "follows", USUAL_AMPLITUDE
 
     @cached_property
     def title(self) -> Title:

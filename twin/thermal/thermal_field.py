@@ -1,9 +1,8 @@
-"""A body of the machine after every drive, at once and through a few lags, shrunk together.
+"""Response of a body of the machine to all drives, each at once and through lags, with one prior.
 
-Sensors of one machine share what they know. Picked one by one they stand in for each other, and
-which one is picked is chance; fitted together with one common prior each contributes a little,
-and their sum predicts. Time constants need not be searched: a lag between two of the fixed ones
-is nearly a mean of both.
+Sensors of one machine are correlated, so a choice of single ones is arbitrary. Fitted together with
+one common prior (ridge regression), each contributes a little and their sum predicts. Time
+constants are fixed: a lag between two of them is nearly a mean of both.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -135,7 +134,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> ThermalField:
 
 
 def propose(touches: Touches) -> Iterable[ThermalField]:
-    """None: a field is weighed against single effects by what it predicts, not found among them."""
+    """None: a field competes with single effects by its prediction error."""
     return ()
 
 

@@ -90,7 +90,7 @@ class ThermalLag(Declared):
         return (self.response(touches),)
 
     def response(self, touches: Touches) -> Array:
-        """What has followed of the drive at every touch, per unit of amplitude, (N,)."""
+        """Response to the drive at every touch, per unit of amplitude, (N,)."""
         if not self.drive:
             return -np.expm1(-touches.since_start / self.tau)
         return driven(touches, self.drive, self.tau, self.name, self.step)
