@@ -1,7 +1,7 @@
 """Points that fill a cube evenly, for readings over the travels of a machine.
 
-The quasi-Monte Carlo module of scipy is not used: its import takes two seconds, longer than most commands that need a few
-hundred poses, and its sequences are even only at powers of two.
+The quasi-Monte Carlo module of scipy is not used: its import takes two seconds, longer than most
+commands that need a few hundred poses, and its sequences are even only at powers of two.
 """
 
 import numpy as np

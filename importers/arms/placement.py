@@ -31,22 +31,14 @@ MIN_COMPONENT = 0.05
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """Positions of tracker and reflectors, and whether the poses determine them.
+    """Positions of tracker and reflectors, and whether the poses determine them."""
 
-    Attributes:
-        T_table_tracker: Pose of the tracker's frame in the table frame, (4, 4).
-        reflector: Places in the tool frame, (K, 3), mm.
-        rms: Of the residuals of the coordinates, mm.
-        spread: Of the measured coordinates about their mean, rms, mm.
-        is_settled: Whether the search for the reflectors has converged.
-        free: Directions that the poses do not determine, in words; empty where they do.
-    """
-
-    T_table_tracker: Array
-    reflector: Array
-    rms: float
-    spread: float
-    is_settled: bool
+    T_table_tracker: Array  # pose of the tracker's frame in the table frame, (4, 4)
+    reflector: Array  # places in the tool frame, (K, 3), mm
+    rms: float  # of the residuals of the coordinates, mm
+    spread: float  # of the measured coordinates about their mean, rms, mm
+    is_settled: bool  # whether the search for the reflectors has converged
+    # directions that the poses do not determine, in words; empty where they do
     free: tuple[str, ...]
 
     @property

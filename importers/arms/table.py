@@ -21,17 +21,12 @@ _COUPLED = re.compile(r"J?(\d)\s*([+-])\s*J?(\d)\Z", re.IGNORECASE)
 
 @dataclass(frozen=True, eq=False)
 class ArmTable:
-    """Joint readings and measured places, one row per pose.
-
-    Attributes:
-        q: Readings, (N, J), rad, of a joint that slides mm.
-        joints: Columns of the readings.
-        place: Where the reflectors were measured, (N, K, 3), mm; not a number where one was not.
-    """
+    """Joint readings and measured places, one row per pose."""
 
     sheet: Sheet
-    q: Array
-    joints: tuple[str, ...]
+    q: Array  # readings, (N, J), rad, of a joint that slides mm
+    joints: tuple[str, ...]  # columns of the readings
+    # where the reflectors were measured, (N, K, 3), mm; not a number where one was not
     place: Array
     names: tuple[str, ...]
 

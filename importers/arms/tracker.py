@@ -26,16 +26,13 @@ _TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
 
 @dataclass(frozen=True, eq=False)
 class ArmImport:
-    """Run and machine of a table of joints and reflectors.
-
-    Attributes:
-        joints: Columns of the readings, in the order of the programmed axes of the arm.
-        mistake: Likely mistake in readings or description, and the remaining deviations, mm rms.
-    """
+    """Run and machine of a table of joints and reflectors."""
 
     run: Run
     chain: Chain
+    # columns of the readings, in the order of the programmed axes of the arm
     joints: tuple[str, ...]
+    # likely mistake in readings or description, and the remaining deviations, mm rms
     mistake: tuple[str, float] | None
 
     @property

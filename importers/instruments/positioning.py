@@ -69,30 +69,19 @@ _MAX_DIGITS = 9  # digits of the number of a cycle
 
 @dataclass(frozen=True, eq=False)
 class PositioningTest:
-    """Readings of a positioning test, one entry per reading.
-
-    Attributes:
-        target: Commanded position, (N,), mm or rad.
-        deviation: Actual minus target, (N,), mm or rad.
-        cycle: Number of the cycle, (N,).
-        direction: 1 where the target was reached with a growing reading, -1 else, 0 unknown.
-        line: Line of the file, (N,).
-        time: Since the start of a log, (N,), s; None of a table.
-        temperature: By sensor, each (N,), degC; of a log.
-        is_by_order: Whether directions are those in which the rows follow each other.
-        component: Component error that was measured, such as EYX; "" of positioning.
-    """
+    """Readings of a positioning test, one entry per reading."""
 
     axis: str
-    target: Array
-    deviation: Array
-    cycle: IntArray
-    direction: IntArray
-    line: IntArray
-    time: Array | None = None
+    target: Array  # commanded position, (N,), mm or rad
+    deviation: Array  # actual minus target, (N,), mm or rad
+    cycle: IntArray  # number of the cycle, (N,)
+    direction: IntArray  # 1 where the target was reached with a growing reading, -1 else, 0 unknown
+    line: IntArray  # line of the file, (N,)
+    time: Array | None = None  # since the start of a log, (N,), s; None of a table
+    # by sensor, each (N,), degC; of a log
     temperature: Mapping[str, Array] = field(default_factory=dict)
-    is_by_order: bool = False
-    component: str = ""
+    is_by_order: bool = False  # whether directions are those in which the rows follow each other
+    component: str = ""  # component error that was measured, such as EYX; "" of positioning
 
     @property
     def is_own(self) -> bool:

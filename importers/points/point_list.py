@@ -18,24 +18,15 @@ MIN_POINTS = 4
 
 @dataclass(frozen=True, eq=False)
 class PointList:
-    """Points with their nominal place and the deviation of each coordinate.
+    """Points with their nominal place and the deviation of each coordinate."""
 
-    Attributes:
-        nominal: (N, 3), mm.
-        deviation: Measured minus nominal, (N, 3), mm; not a number where it was not measured.
-        feature: Names of the points, (N,).
-        setup: Which part or set-up a point belongs to, (N,).
-        approach: Sign of the last motion of X, Y and Z towards the point, (N, 3); 0 unknown.
-        run: Which list it stands in where there are several, (N,); "" of one.
-        line: Line of the file, (N,).
-    """
-
-    nominal: Array
-    deviation: Array
-    feature: Labels
-    setup: Labels
-    line: IntArray
-    approach: IntArray
+    nominal: Array  # (N, 3), mm
+    deviation: Array  # measured minus nominal, (N, 3), mm; not a number where it was not measured
+    feature: Labels  # names of the points, (N,)
+    setup: Labels  # which part or set-up a point belongs to, (N,)
+    line: IntArray  # line of the file, (N,)
+    approach: IntArray  # sign of the last motion of X, Y and Z towards the point, (N, 3); 0 unknown
+    # which list it stands in where there are several, (N,); "" of one
     run: Labels = field(default_factory=lambda: np.zeros(0, dtype="U1"))
 
 

@@ -23,17 +23,14 @@ from matstd.twin.record import Instrument, Run, Setup, at_poses
 
 @dataclass(frozen=True, eq=False)
 class PointsImport:
-    """Run and machine of lists of points.
-
-    Attributes:
-        frames: Set-ups that were measured in another frame than the nominal one.
-        misplaced: Points that were found nearer to where another one belongs, with its name.
-    """
+    """Run and machine of lists of points."""
 
     run: Run
     chain: Chain
     count: int
+    # set-ups that were measured in another frame than the nominal one
     frames: tuple[OtherFrame, ...]
+    # points that were found nearer to where another one belongs, with its name
     misplaced: tuple[tuple[str, str], ...]
 
 

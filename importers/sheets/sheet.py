@@ -18,26 +18,18 @@ LARGEST_CELL = 1e15
 
 @dataclass(frozen=True)
 class Sheet:
-    """One table of a foreign file.
-
-    Attributes:
-        columns: Names in its header, with their units as they stand there.
-        cells: Rows of numbers, each as long as `columns`; "" where a cell is empty.
-        lines: Line or row of the file that each of them stands in.
-        title: Lines above the header.
-        left_out: Lines below the header that hold no row of numbers.
-        above: For each row the words above its block of numbers, such as the names of parts.
-        used: Columns that were read.
-    """
+    """One table of a foreign file."""
 
     path: Path
-    columns: tuple[str, ...]
+    columns: tuple[str, ...]  # names in its header, with their units as they stand there
+    # rows of numbers, each as long as `columns`; "" where a cell is empty
     cells: tuple[tuple[str | float, ...], ...]
-    lines: tuple[int, ...]
-    title: tuple[str, ...] = ()
-    left_out: tuple[int, ...] = ()
+    lines: tuple[int, ...]  # line or row of the file that each of them stands in
+    title: tuple[str, ...] = ()  # lines above the header
+    left_out: tuple[int, ...] = ()  # lines below the header that hold no row of numbers
+    # for each row the words above its block of numbers, such as the names of parts
     above: tuple[str, ...] = ()
-    used: set[int] = field(default_factory=set, compare=False, repr=False)
+    used: set[int] = field(default_factory=set, compare=False, repr=False)  # columns that were read
 
     def __len__(self) -> int:
         return len(self.cells)

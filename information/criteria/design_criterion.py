@@ -30,20 +30,14 @@ from matstd.twin.frames import Array
 
 @dataclass(frozen=True, eq=False)
 class DesignCriterion:
-    """A criterion over the relevant directions of parameter space; smaller is better.
+    """A criterion over the relevant directions of parameter space; smaller is better."""
 
-    Attributes:
-        directions: Orthonormal columns, (P, R'): all that moves a tool point or a touch.
-        measure: Of the uncertainty of one machine, over R directions and potential terms.
-        priors: Inverse covariances of drawn machines, (S, R, R); None for the unit matrix.
-        tail: Share of the machines, the worst, over which is averaged; 1 for all.
-        primary: The same without potential terms; None where there are none.
-    """
-
-    directions: Array
-    measure: Measure
+    directions: Array  # orthonormal columns, (P, R'): all that moves a tool point or a touch
+    measure: Measure  # of the uncertainty of one machine, over R directions and potential terms
+    # inverse covariances of drawn machines, (S, R, R); None for the unit matrix
     priors: Array | None = None
-    tail: float = 1.0
+    tail: float = 1.0  # share of the machines, the worst, over which is averaged; 1 for all
+    # the same without potential terms; None where there are none
     primary: "DesignCriterion | None" = None
 
     def __post_init__(self) -> None:

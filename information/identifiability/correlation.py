@@ -28,18 +28,13 @@ class Pair:
 
 @dataclass(frozen=True, eq=False)
 class Ties:
-    """Parameters that touches tie together.
-
-    Attributes:
-        r: Correlations of all of them, (P, P).
-        pairs: Tied ones, the strongest first.
-        groups: Indices of parameters joined by ties, the largest group first, each in an order in
-            which neighbours are alike.
-    """
+    """Parameters that touches tie together."""
 
     names: tuple[str, ...]
-    r: Array
-    pairs: tuple[Pair, ...]
+    r: Array  # correlations of all of them, (P, P)
+    pairs: tuple[Pair, ...]  # tied ones, the strongest first
+    # indices of parameters joined by ties, the largest group first, each in an order in which
+    # neighbours are alike
     groups: tuple[tuple[int, ...], ...]
 
 

@@ -20,22 +20,16 @@ MAX_POSTERIOR_SHARE = 0.5
 
 @dataclass(frozen=True)
 class Degree:
-    """Supported degrees of one component error.
-
-    Attributes:
-        supported: Degrees (harmonics on a rotary axis) whose coefficients the touches determine,
-            all of them free together; the first may be 2, where degree 1 is tied to a location
-            error or the set-up.
-        largest: Largest of them; 0 where there is none.
-        u: Standard uncertainty of the coefficient of that degree, mm or rad; 0 where there is none.
-        unit: Base unit of u.
-    """
+    """Supported degrees of one component error."""
 
     symbol: str
+    # degrees (harmonics on a rotary axis) whose coefficients the touches determine, all of them
+    # free together; the first may be 2, where degree 1 is tied to a location error or the set-up
     supported: tuple[int, ...]
-    largest: int
+    largest: int  # largest of them; 0 where there is none
+    # standard uncertainty of the coefficient of that degree, mm or rad; 0 where there is none
     u: float
-    unit: str
+    unit: str  # base unit of u
 
 
 def supported_degrees(model: Model, touches: Touches, W: Array, noise: float) -> tuple[Degree, ...]:

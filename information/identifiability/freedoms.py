@@ -49,22 +49,15 @@ class Term(NamedTuple):
 
 @dataclass(frozen=True)
 class Freedom:
-    """A parameter that the touches cannot distinguish from others: only their sum is determined.
+    """A parameter that the touches cannot distinguish from others: only their sum is determined."""
 
-    Attributes:
-        parameter: That can be left out.
-        alike: What imitates it exactly; nothing for a parameter that moves no touch.
-        reason: What makes them alike; None where nothing is known of the parameters.
-        resolution: Measurement that would distinguish them.
-        resolved_by: Name of the tried touches that would.
-    """
-
-    parameter: str
+    parameter: str  # that can be left out
     unit: str
-    alike: tuple[Term, ...]
+    alike: tuple[Term, ...]  # what imitates it exactly; nothing for a parameter that moves no touch
+    # what makes them alike; None where nothing is known of the parameters
     reason: Reason | None = None
-    resolution: Resolution = Resolution.UNTRIED
-    resolved_by: str = ""
+    resolution: Resolution = Resolution.UNTRIED  # measurement that would distinguish them
+    resolved_by: str = ""  # name of the tried touches that would
 
     @property
     def values(self) -> dict[str, float]:
@@ -74,18 +67,13 @@ class Freedom:
 
 @dataclass(frozen=True)
 class FreedomFamily:
-    """Equal freedoms of several shapes of one error.
+    """Equal freedoms of several shapes of one error."""
 
-    Attributes:
-        first: One of them; of several shapes with the component errors themselves for names,
-            `geometric(EXX,)`.
-        shapes: Of the errors, in their usual order; empty for a freedom by itself.
-        count: Number of freedoms.
-    """
-
+    # one of them; of several shapes with the component errors themselves for names,
+    # `geometric(EXX,)`
     first: Freedom
-    shapes: tuple[str, ...]
-    count: int
+    shapes: tuple[str, ...]  # of the errors, in their usual order; empty for a freedom by itself
+    count: int  # number of freedoms
 
 
 def reason(members: Sequence[int], parameters: Parameters, chain: Chain) -> Reason | None:

@@ -47,26 +47,16 @@ class Group:
 
 @dataclass(frozen=True, eq=False)
 class Identifiability:
-    """Identifiability of the parameters by some touches.
+    """Identifiability of the parameters by some touches."""
 
-    Attributes:
-        parameters: Their number.
-        rank: Number of independent combinations that move any touch.
-        condition: Largest over smallest visible singular value of the columns, each scaled to
-            length one.
-        condition_prior: The same with every column times its parameter's expected size.
-        condition_raw: The same unscaled, per µm and µrad.
-        freedoms: One for every parameter beyond the rank.
-        groups: Of parameters that are confounded with one another.
-    """
-
-    parameters: int
-    rank: int
+    parameters: int  # their number
+    rank: int  # number of independent combinations that move any touch
+    # largest over smallest visible singular value of the columns, each scaled to length one
     condition: float
-    condition_prior: float
-    condition_raw: float
-    freedoms: tuple[Freedom, ...]
-    groups: tuple[Group, ...]
+    condition_prior: float  # the same with every column times its parameter's expected size
+    condition_raw: float  # the same unscaled, per µm and µrad
+    freedoms: tuple[Freedom, ...]  # one for every parameter beyond the rank
+    groups: tuple[Group, ...]  # of parameters that are confounded with one another
 
 
 def identifiability(

@@ -138,17 +138,12 @@ class Selection:
 
 @dataclass(frozen=True, eq=False)
 class Quota:
-    """How many rows of a kind may be chosen.
+    """How many rows of a kind may be chosen."""
 
-    Attributes:
-        kind: Of every row, (N,), from 0.
-        most: Of each kind.
-        least: Of each kind; None where there may be none. Exchanges and bounds keep to it; `fill`
-            does not, which is asked for one kind after another.
-    """
-
-    kind: IntArray
-    most: IntArray
+    kind: IntArray  # of every row, (N,), from 0
+    most: IntArray  # of each kind
+    # of each kind; None where there may be none. Exchanges and bounds keep to it; `fill` does not,
+    # which is asked for one kind after another
     least: IntArray | None = None
 
     def count(self, chosen: Mask) -> IntArray:

@@ -29,24 +29,15 @@ class Batch(NamedTuple):
 
 
 class SharedArrays(NamedTuple):
-    """Data that all batches share; made once per process.
+    """Data that all batches share; made once per process."""
 
-    Attributes:
-        population: What to draw from.
-        G: Deviation of the tip per unit of every parameter, (N, 3, K), mm.
-        width: Of a bin of the histogram at every pose, (N,), mm.
-        tolerance: mm.
-        worst: Number of first poses among which the worst are searched, and how many count as
-            worst.
-        threads: Of one batch; None for one a core.
-    """
-
-    population: Population
-    G: Array
-    width: Array
-    tolerance: float
+    population: Population  # what to draw from
+    G: Array  # deviation of the tip per unit of every parameter, (N, 3, K), mm
+    width: Array  # of a bin of the histogram at every pose, (N,), mm
+    tolerance: float  # mm
+    # number of first poses among which the worst are searched, and how many count as worst
     worst: tuple[int, int]
-    threads: int | None
+    threads: int | None  # of one batch; None for one a core
 
 
 def shared_arrays(

@@ -38,17 +38,12 @@ def numerical_tolerance(u: Array, digits: int) -> Array:
 
 @dataclass(frozen=True)
 class Stability:
-    """Result of the adaptive procedure.
+    """Result of the adaptive procedure."""
 
-    Attributes:
-        digits: Significant digits of the standard deviation that were asked for.
-        batches: Batches drawn.
-        ratio: Largest of twice the standard deviation of any statistic over its tolerance, at any
-            pose; at most one when everything is stable.
-    """
-
-    digits: int
-    batches: int
+    digits: int  # significant digits of the standard deviation that were asked for
+    batches: int  # batches drawn
+    # largest of twice the standard deviation of any statistic over its tolerance, at any pose; at
+    # most one when everything is stable
     ratio: float
 
     @property

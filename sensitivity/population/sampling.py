@@ -26,11 +26,6 @@ _QUARTER = 0.5 * np.pi
 class Population:
     """All machines that may be drawn.
 
-    Attributes:
-        ranges: Smallest and largest peak amplitude of every error.
-        distributions: Shapes over the readings.
-        dependence: Which errors depend on each other; None for independent ones.
-
     Raises:
         UnknownSymbol: A name that the machine does not have.
         DesignError: Shapes of a constant, correlations that the ranges do not allow, or errors with
@@ -38,8 +33,10 @@ class Population:
     """
 
     chain: Chain
+    # smallest and largest peak amplitude of every error
     ranges: Ranges = field(default_factory=Ranges)
-    distributions: Distributions = field(default_factory=Distributions)
+    distributions: Distributions = field(default_factory=Distributions)  # shapes over the readings
+    # which errors depend on each other; None for independent ones
     dependence: Dependence | None = None
 
     def __post_init__(self) -> None:

@@ -67,33 +67,21 @@ class PathStudy:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Study(Tabular):
-    """Where errors show on a machine.
+    """Where errors show on a machine."""
 
-    Attributes:
-        population: Machines that were drawn from.
-        q: Poses, (N, A), a Latin hypercube of the workspace.
-        sensitivity: S of every error parameter, (N, P), mm/mm and mm/rad.
-        shares: Share of every parameter in the variance of the deviation, (N, P).
-        rms: Root mean square of the volumetric error without sampling, (N,), mm.
-        volumetric: Its statistics over random machines.
-        sections: The same over pairs of readings.
-        exact: How far first order is from the exact product.
-        total: Total effects of the errors on the length |d| at the first poses; None for errors
-            that depend on each other.
-        path: Volumetric error along a trajectory; None where nothing moves.
-    """
-
-    population: Population
+    population: Population  # machines that were drawn from
     workspace: Workspace
-    q: Array
-    sensitivity: Array
-    shares: Array
-    rms: Array
-    volumetric: Volumetric
-    sections: tuple[Section, ...]
-    exact: ExactCheck
+    q: Array  # poses, (N, A), a Latin hypercube of the workspace
+    sensitivity: Array  # s of every error parameter, (N, P), mm/mm and mm/rad
+    shares: Array  # share of every parameter in the variance of the deviation, (N, P)
+    rms: Array  # root mean square of the volumetric error without sampling, (N,), mm
+    volumetric: Volumetric  # its statistics over random machines
+    sections: tuple[Section, ...]  # the same over pairs of readings
+    exact: ExactCheck  # how far first order is from the exact product
+    # total effects of the errors on the length |d| at the first poses; None for errors that depend
+    # on each other
     total: TotalEffects | None
-    path: PathStudy | None
+    path: PathStudy | None  # volumetric error along a trajectory; None where nothing moves
 
     @property
     def chain(self) -> Chain:

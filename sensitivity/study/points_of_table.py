@@ -19,21 +19,14 @@ _SLACK = 1e-9  # mm
 
 @dataclass(frozen=True, eq=False)
 class PointOverRotary:
-    """One point of the workpiece while the table turns.
+    """One point of the workpiece while the table turns."""
 
-    Attributes:
-        linear: Where it is: linear readings by axis with the rotary axes next to zero, mm.
-        axes: Names of the rotary axes shown, one or two.
-        readings: Their values, an array each, rad.
-        q: Readings with the tool point there, (N, A), the second rotary reading fastest.
-        reached: Whether the travels of the linear axes allow it, (N,).
-    """
-
+    # where it is: linear readings by axis with the rotary axes next to zero, mm
     linear: dict[str, float]
-    axes: tuple[str, ...]
-    readings: tuple[Array, ...]
-    q: Array
-    reached: Array
+    axes: tuple[str, ...]  # names of the rotary axes shown, one or two
+    readings: tuple[Array, ...]  # their values, an array each, rad
+    q: Array  # readings with the tool point there, (N, A), the second rotary reading fastest
+    reached: Array  # whether the travels of the linear axes allow it, (N,)
 
     def shown(self, values: Array) -> Array:
         """Values (N,) on the grid of readings, not a number where out of reach."""

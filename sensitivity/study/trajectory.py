@@ -126,20 +126,14 @@ def _roles(workspace: Workspace) -> tuple[tuple[str, ...], str | None]:
 
 @dataclass(frozen=True, eq=False)
 class AlongPath:
-    """Deviations of the tool point along a trajectory by some errors.
-
-    Attributes:
-        errors: Effects with their amplitudes, mm and rad.
-        deviation: Exact deviation of the tool point in the table frame, (N, 3), mm.
-        each: Length of the deviation that each error makes alone, by its name, (N,) each, mm.
-        axis: Whose error motions they are; empty for any others.
-    """
+    """Deviations of the tool point along a trajectory by some errors."""
 
     trajectory: Trajectory
-    errors: tuple[tuple[Effect, Array], ...]
-    deviation: Array
+    errors: tuple[tuple[Effect, Array], ...]  # effects with their amplitudes, mm and rad
+    deviation: Array  # exact deviation of the tool point in the table frame, (N, 3), mm
+    # length of the deviation that each error makes alone, by its name, (N,) each, mm
     each: Mapping[str, Array] = field(default_factory=dict)
-    axis: str = ""
+    axis: str = ""  # whose error motions they are; empty for any others
 
     @property
     def size(self) -> Array:

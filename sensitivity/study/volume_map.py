@@ -21,21 +21,14 @@ POINTS = (19, 19, 17)
 
 @dataclass(frozen=True, eq=False)
 class Volume:
-    """Poses that fill the box of three linear readings.
+    """Poses that fill the box of three linear readings."""
 
-    Attributes:
-        workspace: Limits, tool length.
-        axes: Names of the three linear axes, in alphabetical order.
-        readings: Their values, three arrays, mm.
-        q: Readings of all axes at every point, (N, A); the last of the three runs fastest.
-        T_readings_table: Takes a point of the table frame to the linear readings that bring the
-            tool point there, (4, 4).
-    """
-
-    workspace: Workspace
-    axes: tuple[str, ...]
-    readings: tuple[Array, ...]
-    q: Array
+    workspace: Workspace  # limits, tool length
+    axes: tuple[str, ...]  # names of the three linear axes, in alphabetical order
+    readings: tuple[Array, ...]  # their values, three arrays, mm
+    q: Array  # readings of all axes at every point, (N, A); the last of the three runs fastest
+    # takes a point of the table frame to the linear readings that bring the tool point there, (4,
+    # 4)
     T_readings_table: Array
 
     @property

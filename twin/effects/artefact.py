@@ -39,7 +39,6 @@ class ArtefactExpansion(Declared):
     parameters = (Parameter("amplitude", "1/K", 20e-6),)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """A shift of the standard."""
         warmth = sensor_record(touches, self.sensor) - touches.body_temperature
         p = touches.point_table
         return tuple(Term(0, Where("shift", 0, i), warmth * p[:, i]) for i in range(3))
@@ -70,7 +69,6 @@ class ArtefactSlip(Declared):
     )
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Shifts of the standard."""
         slipped, arm = self._slipped(touches)
         later = slipped.astype(float)
         return rigid_shift(later, arm * later[:, None])
@@ -96,7 +94,6 @@ class Drift(Declared):
     parameters = tuple(Parameter(name, "mm/h", 5 * UM) for name in "XYZ")
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Shifts of the standard."""
         hours = touches.since_start / HOUR
         return tuple(Term(i, Where("shift", 0, i), hours) for i in range(3))
 

@@ -42,7 +42,6 @@ class ArtefactForm(Declared):
     )
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """A bias along the normal on the patch, nothing elsewhere."""
         rows = np.flatnonzero(touches.feature == self.patch)
         v, w = _legendre(_local(touches.point[rows]))
         out = []

@@ -47,7 +47,6 @@ class Backlash(Declared):
 
     @cached_property
     def title(self) -> Title:
-        """Reversal of the axis, or of a component error of it."""
         what = self.axis if self._is_own else f"the {self._symbol.title}"
         return Title(f"reversal of {what}", self.axis)
 
@@ -61,15 +60,12 @@ class Backlash(Declared):
 
     @property
     def is_angular(self) -> bool:
-        """Whether it turns."""
         return self._symbol.is_angular
 
     def where(self, chain: Chain) -> Where:
-        """A twist of the axis."""
         return chain.twist_of(self._symbol)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Half of the reversal to either side."""
         return (0.5 * touches.last_move(self.axis),)
 
 

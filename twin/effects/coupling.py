@@ -73,14 +73,12 @@ class Coupling(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """Peak amplitudes."""
         # guides are smooth: a shape of order j k is expected that much smaller
         own, other = (_orders(a, self.degree) for a in (self.symbol.link, self.other))
         shares = [1.0 / (j * k) for j in own for k in other]
         return tuple(self.sized(w, share) for w, share in zip(self._words, shares, strict=True))
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Products of a function of either reading."""
         own, other = (_factors(touches, a, self.degree) for a in (self.symbol.link, self.other))
         return [f * g for f in own for g in other]
 

@@ -58,11 +58,9 @@ class ComponentError(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """The peak amplitude."""
         return (Parameter("amplitude", self.symbol.unit, self.sd),)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """The distribution at the readings."""
         q, link = touches.reading(self.symbol.link), touches.chain.link(self.symbol.link)
         return (shape(self.shape, q, link, self.periods, self.phase),)
 
@@ -111,13 +109,11 @@ class HigherOrder(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """Coefficients, by rising degree; sine before cosine."""
         words = ("sin", "cos") if self.rotary else ("T",)
         unit, each = self.symbol.unit, [(word, k) for k in self.degrees for word in words]
         return tuple(Parameter(f"{word}{k}", unit, self.sd / k**1.5) for word, k in each)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Chebyshev polynomials, or harmonics, of the reading."""
         q = touches.reading(self.symbol.link)
         if self.rotary:
             return [f(k * q) for k in self.degrees for f in (np.sin, np.cos)]

@@ -63,7 +63,6 @@ class JointSag(Declared):
 
     @cached_property
     def title(self) -> Title:
-        """With the joint for its carrier."""
         return Title(f"sag of joint {self.joint} under the weight of the arm", self.joint)
 
     def on(self, chain: Chain, refuse: Refuse) -> Self:
@@ -75,7 +74,6 @@ class JointSag(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """Rotation per lever arm of every weight."""
         # 200 N at 1 m on a joint of 200 N m/mrad: 1 mrad over 1000 mm
         return tuple(Parameter(f"weight at {p}", "rad/mm", URAD) for p in self.places)
 

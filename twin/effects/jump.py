@@ -50,7 +50,6 @@ class Jump(Declared):
     usual = (10 * UM, 30 * URAD)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """One from the instant on."""
         return ((touches.time > self.instant).astype(float),)
 
 

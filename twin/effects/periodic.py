@@ -89,11 +89,9 @@ class Periodic(_Repeating):
     period: float = scanned("mm", _periods, default=10.0, acts="with a period")
 
     def amounts(self, touches: Touches) -> Amounts:
-        """One sine."""
         return self._wave(touches, 2.0 * np.pi / self.period)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The period, over the axis."""
         (period,) = super().inner(touches)
         return (period._replace(over=self.symbol.link),)
 
@@ -135,12 +133,10 @@ class Overtones(Periodic):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """Sine and cosine of every k, by rising k."""
         orders = range(1, self.order + 1)
         return tuple(self.sized(f"{word}{k}", k**-1.5) for k in orders for word in ("sin", "cos"))
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Sine and cosine of every k, by rising k."""
         turn = 2.0 * np.pi / self.period * touches.reading(self.symbol.link)
         return [f(k * turn) for k in range(1, self.order + 1) for f in (np.sin, np.cos)]
 
@@ -186,11 +182,9 @@ class Harmonic(_Repeating):
         return self.symbol.component == chain.link(self.symbol.link).own_component
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Waves over the turn."""
         return self._wave(touches, self.harmonic)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The harmonic; of the positioning the waves repeat over the axis."""
         (harmonic,) = super().inner(touches)
         over = self.symbol.link if self.is_positioning(touches.chain) else ""
         return (harmonic._replace(over=over),)

@@ -89,7 +89,6 @@ class PositionTable(Declared):
 
     @cached_property
     def title(self) -> Title:
-        """By position, or by position and direction."""
         by = "position and direction" if self.by_direction else "position"
         return Title(f"{self.symbol.title} by {by}", self.symbol.link)
 
@@ -110,7 +109,6 @@ class PositionTable(Declared):
         return (*mean, self.sized("reversal"), *turned)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """The curves; of two then half of their difference to either side."""
         mean = self._curves(touches)
         half = 0.5 * touches.last_move(self.symbol.link)
         turned = [half, *(half * c for c in mean)] if self.by_direction else []

@@ -34,7 +34,6 @@ class ProbeLobing(Declared):
     parameters = (Parameter("cos", "mm", 3 * UM), Parameter("sin", "mm", 3 * UM))
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Cosine and sine, in proportion to how far the stylus is deflected sideways."""
         n = normal_in_tool(touches)
         sideways = np.hypot(n[:, 0], n[:, 1])
         phi = np.arctan2(n[:, 1], n[:, 0])
@@ -54,7 +53,6 @@ class ProbeRadius(Declared):
     parameters = (Parameter("amplitude", "mm", 5 * UM),)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """One everywhere."""
         return (np.ones(len(touches)),)
 
 
@@ -70,7 +68,6 @@ class StylusBending(Declared):
     parameters = (Parameter("amplitude", "mm", 5 * UM),)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """One at a touch square to the stylus."""
         n = normal_in_tool(touches)
         return (n[:, 0] ** 2 + n[:, 1] ** 2,)
 

@@ -25,7 +25,7 @@ class Repeated:
     repetition: int = 2
 
     @property
-    def kind(self) -> str:  # noqa: D102
+    def kind(self) -> str:
         return self.original.kind
 
     @property
@@ -34,24 +34,24 @@ class Repeated:
         return f"{self.original.name}{MARK}{self.repetition}"
 
     @property
-    def title(self) -> Title:  # noqa: D102
+    def title(self) -> Title:
         return own_title(self.original) or Title(self.original.name)
 
     @property
-    def parameters(self) -> Sequence[Parameter]:  # noqa: D102
+    def parameters(self) -> Sequence[Parameter]:
         return self.original.parameters
 
-    def terms(self, touches: Touches) -> Sequence[Term]:  # noqa: D102
+    def terms(self, touches: Touches) -> Sequence[Term]:
         return self.original.terms(touches)
 
-    def inner(self, touches: Touches) -> Sequence[Inner]:  # noqa: D102
+    def inner(self, touches: Touches) -> Sequence[Inner]:
         return self.original.inner(touches)
 
-    def tuned(self, *values: float) -> "Repeated":  # noqa: D102
+    def tuned(self, *values: float) -> "Repeated":
         return replace(self, original=self.original.tuned(*values))
 
     @property
-    def tuning(self) -> Mapping[str, float]:  # noqa: D102
+    def tuning(self) -> Mapping[str, float]:
         return self.original.tuning
 
 
@@ -86,16 +86,13 @@ class Change:
 
     @property
     def title(self) -> Title:
-        """That of the effect."""
         own = own_title(self.original) or Title(self.original.name)
         return Title(f"change of {own.text}", own.carrier)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
-        """Those of the effect: what may be anything may also become anything."""
         return self.original.parameters
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Those of the effect, at the touches of this run and of later ones."""
         here = touches.run >= self.since_run
         return tuple(t._replace(amount=t.amount * here) for t in self.original.terms(touches))

@@ -40,7 +40,6 @@ class ServoLag(Declared):
     parameters = (Parameter("lag", "s", 3e-4),)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Against the motion."""
         return (-speed(touches, self.axis),)
 
 

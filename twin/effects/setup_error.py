@@ -63,7 +63,6 @@ class SetupError(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """Displacement and rotation in the table frame."""
         shifts = [Parameter(f"d{c}", "mm", SHIFT_SD) for c in "xyz" if not self.turns_only]
         return (*shifts, *(Parameter(f"r{c}", "rad", TURN_SD) for c in "xyz"))
 
@@ -73,7 +72,6 @@ class SetupError(Declared):
         return touches.setup == (names.index(self.setup) if self.setup in names else -1)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Shifts of the standard, at the touches of this set-up."""
         here = self.here(touches).astype(float)
         if self.turns_only:
             felt = np.cross(
@@ -114,7 +112,6 @@ class StylusError(Declared):
         return is_it
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Displacements of the tool and a bias along the normal, at the touches of this stylus."""
         here, tool = self.here(touches).astype(float), touches.chain.link_index("t")
         moves = [Term(i, Where("place", tool, i), here) for i in range(3)]
         return [*moves, Term(3, Where("bias"), here)]
@@ -141,7 +138,6 @@ class BodyTemperature(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """The temperature beyond the stated one."""
         return (Parameter("temperature", "K", self.body.u_temperature),)
 
     def here(self, touches: Touches) -> NDArray[np.bool_]:
@@ -150,7 +146,6 @@ class BodyTemperature(Declared):
         return np.asarray(own[touches.setup])
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Shifts of the standard."""
         return _grown(touches, self.here(touches).astype(float) * self.body.alpha)
 
 
@@ -172,7 +167,6 @@ class BodyExpansion(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """The expansion beyond the stated one."""
         return (Parameter("expansion", "1/K", self.body.u_alpha),)
 
     def here(self, touches: Touches) -> NDArray[np.bool_]:
@@ -184,7 +178,6 @@ class BodyExpansion(Declared):
         return np.asarray(np.array(own)[touches.setup])
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Shifts of the standard."""
         return _grown(touches, self.here(touches) * (touches.body_temperature - T_REF))
 
 

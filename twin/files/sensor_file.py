@@ -21,20 +21,14 @@ MAX_OUTSIDE_RECORD = 300.0
 
 @dataclass(frozen=True, eq=False)
 class SensorRecord:
-    """Readings of sensors.
-
-    Attributes:
-        clock: Of every reading, s since `EPOCH`, (M,), rising.
-        temperature: By sensor, each (M,), degC.
-        spindle_rpm: Speed from each reading to the next, (M,), 1/min; None where not recorded.
-        remarks: On sensors that were left out, or are constant.
-    """
+    """Readings of sensors."""
 
     path: Path
-    clock: Array
-    temperature: dict[str, Array]
+    clock: Array  # of every reading, s since `EPOCH`, (M,), rising
+    temperature: dict[str, Array]  # by sensor, each (M,), degC
+    # speed from each reading to the next, (M,), 1/min; None where not recorded
     spindle_rpm: Array | None
-    remarks: tuple[str, ...]
+    remarks: tuple[str, ...]  # on sensors that were left out, or are constant
 
     def joined(self, run: Run, begin: datetime) -> Run:
         """A run with the temperatures and the spindle speed at its touches.

@@ -63,24 +63,16 @@ def moved_tip(
 
 
 class _Step(NamedTuple):
-    """A link on the way of the point; arrays have a last dimension of one where all poses agree.
-
-    Attributes:
-        travel: Reading of the axis, (N,).
-        far: The reading with the error of its zero, (N,).
-        along: Direction of the displaced line, (3, N).
-        point: On that line, (3, N).
-        place: Displacement of the workpiece or the tool, (6, N); None where there is none.
-        twist: Component errors, (6, N); None where all are zero.
-    """
+    """A link on the way of the point; arrays have a last dimension of one where all poses agree."""
 
     link: Link
-    travel: Array
-    far: Array
-    along: Array
-    point: Array
+    travel: Array  # reading of the axis, (N,)
+    far: Array  # the reading with the error of its zero, (N,)
+    along: Array  # direction of the displaced line, (3, N)
+    point: Array  # on that line, (3, N)
+    # displacement of the workpiece or the tool, (6, N); None where there is none
     place: Array | None
-    twist: Array | None
+    twist: Array | None  # component errors, (6, N); None where all are zero
 
     def at(self, rows: slice) -> "_Step":
         """The same at some poses."""

@@ -77,25 +77,18 @@ def contribution(
 
 
 class Inner(NamedTuple):
-    """A parameter that an effect depends on non-linearly: scanned on a grid, then refined.
+    """A parameter that an effect depends on non-linearly: scanned on a grid, then refined."""
 
-    Attributes:
-        name: Any word, unique within its effect.
-        unit: Base unit: "s", "mm", "rad", "1".
-        grid: Values to scan, ascending, (G,), base units.
-        continuous: Whether values between those of the grid make sense.
-        acts: "smoothly", such as a time constant or a width; "with a period", the reading in which
-            the effect repeats; "at an instant", a time at which something jumps, so that every
-            instant between two touches is as good as another.
-        over: Of a period, or of the waves of a turn, whose unit is "1", the axis over whose
-            reading it repeats; empty where it repeats over something else.
-    """
-
-    name: str
-    unit: str
-    grid: Array
-    continuous: bool = True
+    name: str  # any word, unique within its effect
+    unit: str  # base unit: "s", "mm", "rad", "1"
+    grid: Array  # values to scan, ascending, (G,), base units
+    continuous: bool = True  # whether values between those of the grid make sense
+    # "smoothly", such as a time constant or a width; "with a period", the reading in which the
+    # effect repeats; "at an instant", a time at which something jumps, so that every instant
+    # between two touches is as good as another
     acts: Acts = "smoothly"
+    # of a period, or of the waves of a turn, whose unit is "1", the axis over whose reading it
+    # repeats; empty where it repeats over something else
     over: str = ""
 
     @property

@@ -42,21 +42,14 @@ class Body:
 
 @dataclass(frozen=True, eq=False)
 class Setup:
-    """One placement of the standard on the table.
+    """One placement of the standard on the table."""
 
-    Attributes:
-        name: Label in the run file.
-        T_table_artefact: Pose (4, 4), takes artefact coordinates to table coordinates.
-        run: Name of the run that it belongs to, where several were joined.
-        start: Time at which that run started, s.
-        body: The standard as it expands; None where the run does not state it.
-    """
-
-    name: str
+    name: str  # label in the run file
+    # pose (4, 4), takes artefact coordinates to table coordinates
     T_table_artefact: Array = field(default_factory=lambda: np.eye(4))
-    run: str = ""
-    start: float = 0.0
-    body: Body | None = None
+    run: str = ""  # name of the run that it belongs to, where several were joined
+    start: float = 0.0  # time at which that run started, s
+    body: Body | None = None  # the standard as it expands; None where the run does not state it
 
 
 class Signature:

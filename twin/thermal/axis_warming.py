@@ -54,7 +54,6 @@ class AxisWarming(Declared):
         return replace(self, tau=1.0) if self.clock else self
 
     def amounts(self, touches: Touches) -> Amounts:
-        """What has warmed, at either end."""
         low, high = touches.chain.link(self.axis).range
         s = (touches.reading(self.axis) - low) / (high - low)
         y = -np.expm1(-self._clock(touches) / self.tau)
@@ -76,12 +75,10 @@ class AxisWarming(Declared):
         return (Inner("tau", "s", np.geomspace(SHORTEST, high, STEPS)),)
 
     def tuned(self, *values: float) -> Self:
-        """With this time constant."""
         return replace(self, tau=float(values[0]))
 
     @property
     def tuning(self) -> Mapping[str, float]:
-        """The time constant."""
         return {"cycles" if self.clock else "tau": self.tau}
 
 

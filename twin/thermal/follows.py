@@ -57,7 +57,6 @@ class ThermalStatic(Declared):
         return Title(f"{what} {self.symbol.motion} with {self.sensor}", self.symbol.link)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Kelvins above 20 degC."""
         return (driven(touches, self.sensor, 0.0, self.name),)
 
 
@@ -91,7 +90,6 @@ class Follows(Declared):
 
     @cached_property
     def title(self) -> Title:
-        """With the column in words."""
         if self.column in (CYCLE, PROGRESS):
             how = "with every cycle" if self.column == CYCLE else "steadily over the cycles"
             return Title(f"{self.symbol.title} that grows {how}", self.symbol.link)
@@ -99,7 +97,6 @@ class Follows(Declared):
         return Title(f"{self.symbol.title} that follows {column}", self.symbol.link)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """The column in steps."""
         return (driven(touches, OWN + self.column, 0.0, self.name, self.step),)
 
 

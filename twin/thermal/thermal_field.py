@@ -90,7 +90,6 @@ class ThermalField(Declared):
         return tuple(out)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Twists of the axis, one for every parameter."""
         link = touches.chain.link_index(self.axis)
         step = dict(zip(self._own, self.tuning.values(), strict=True))
         amounts = [driven(touches, d, tau, self.name, step.get(d, 1.0)) for d, tau in self.places]
@@ -105,16 +104,13 @@ class ThermalField(Declared):
         return [d for d in self.drives if is_own(d)]
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The steps of own columns."""
         return [step_inner(touches, d, f"step_{d.removeprefix(OWN)}") for d in self._own]
 
     def tuned(self, *values: float) -> "ThermalField":
-        """With these steps."""
         return replace(self, steps=tuple(map(float, values)))
 
     @property
     def tuning(self) -> Mapping[str, float]:
-        """The steps."""
         names = [f"step_{d.removeprefix(OWN)}" for d in self._own]
         return dict(zip(names, self.steps or [1.0] * len(names), strict=True))
 

@@ -81,12 +81,10 @@ class ThermalLag(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """The settled amplitude."""
         whole = self.sized("amplitude")
         return (Parameter("amplitude", *amplitude_unit(self.drive, whole.unit, whole.sd)),)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """What has followed."""
         return (self.response(touches),)
 
     def response(self, touches: Touches) -> Array:
@@ -97,7 +95,6 @@ class ThermalLag(Declared):
 
     @property
     def searched(self) -> Sequence[str]:
-        """The time constant, and the step of an own column."""
         return ("tau", "step") if is_own(self.drive) else ("tau",)
 
 
