@@ -89,11 +89,7 @@ class Tabular(Displayed, ABC):
         """Columns by name, all of one length."""
 
     def to_csv(self, path: str | Path | None = None) -> str:
-        """The table as CSV with a line of names; written to a file, whole or not at all, if named.
-
-        Returns:
-            The text.
-        """
+        """The table as CSV with a line of names; also written to a file, if one is named."""
         table = self.columns()
         rows = zip(*table.values(), strict=True)
         written = csv_text(table, ([self.cell(value) for value in row] for row in rows))

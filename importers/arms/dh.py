@@ -45,6 +45,7 @@ def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tup
     if len(a) != readings.shape[1]:
         found = f"{len(a)} rows for {readings.shape[1]} columns of joints"
         raise BadFile(sheet.path, "table", found, "a row a joint")
+    # an axis is the z of the frame before its own rotation: modified parameters first go across
     T, origins, lines = np.eye(4), [], []
     ex, ez = np.eye(3)[0], np.eye(3)[2]
     for i in range(len(a)):

@@ -55,7 +55,6 @@ def located(table: ArmTable, chain: Chain, u: float, reflector: Array | None) ->
     damped least squares from the flange (variable projection, Golub and Pereyra 1973).
 
     Args:
-        table: Readings and measured places.
         u: Standard uncertainty of one coordinate, mm.
         reflector: Its place in the tool frame, (3,), mm, if that is known.
 

@@ -122,16 +122,13 @@ def _reflectors(sheet: Sheet, joints: Sequence[int]) -> list[dict[str, int]]:
 
 
 def coupled(q: Array, how: str) -> Array:
-    """Readings of joints one of which counts from another one's link, (N, J).
+    """Readings of joints one of which counts from another one's link, (N, J); raises DesignError.
 
     On arms with a parallel linkage, and in the readings of some controls without one, joint 3
     counts from the horizontal: its angle against link 2 is J3 + J2 (or J3 - J2).
 
     Args:
         how: `J3+J2`.
-
-    Raises:
-        DesignError: Joints that are not there.
     """
     match = _COUPLED.match(how.strip())
     joint, other = (int(match[1]) - 1, int(match[3]) - 1) if match else (-1, -1)

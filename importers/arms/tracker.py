@@ -79,6 +79,7 @@ def import_arm(
     chain, turned, other = machine, np.eye(3), None
     if dh is not None:
         chain, turned = arm_from_dh(dh, table.q, is_modified)
+        # reading the parameters in the other convention is one of the likely mistakes
         other = arm_from_dh(dh, table.q, not is_modified)[0]
     assert chain is not None
     stated = None if reflector is None else turned @ np.array(reflector)

@@ -92,7 +92,7 @@ def import_mapped(
 
 
 def mapped_run(sheet: Sheet, path: str | Path) -> tuple[str, int]:
-    """Text of a run file from a foreign table and a mapping file.
+    """Text of a run file from a foreign table and a mapping file; raises BadFile.
 
     A column is `factor * cell + offset` of a foreign one, or a constant (a number, or a name for
     `feature`, `setup`, `split`); with `of` the cosine, sine or sign of the cell stands for it.
@@ -102,9 +102,6 @@ def mapped_run(sheet: Sheet, path: str | Path) -> tuple[str, int]:
 
     Returns:
         The text, and the number of readings left out because they have no deviation.
-
-    Raises:
-        BadFile: The mapping file's key, or a column that the table does not have.
     """
     import tomli_w
 

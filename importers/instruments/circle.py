@@ -74,6 +74,7 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
         raise sheet.lacking("a column of angles, or of both coordinates")
     if at is None:
         x, y = (sheet.quantity(i, MM, "mm") for i in places)
+        # rows of places are in the order of time, those of a table over angles need not be
         angle, all_rows = np.arctan2(y, x), np.arange(len(sheet))
         found = [(np.hypot(x, y) - radius, (*_by_motion(angle), all_rows))]
     else:
@@ -182,7 +183,6 @@ def circle_run(
     """Run of a circular test: a row a reading, along the radius outwards.
 
     Args:
-        chain: A machine with the two axes.
         u: Standard uncertainty of one reading, mm.
         centre: Readings of X, Y and Z at the centre of the circle, mm.
         feed: Along the path, mm/min: times of the rows follow from it; None leaves them 0.

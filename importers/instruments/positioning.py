@@ -147,6 +147,7 @@ def read_positioning(
     sign, stroke = (
         approaches(_filled_forward(at)) if clock is None else strokes(_filled_forward(at))
     )
+    # words above the parts of a table are surer than the order of its rows
     parted = _ways_of_parts(sheet)
     if clock is None and np.any(parted):
         sign = parted
@@ -235,6 +236,7 @@ def _wide(
     if not parts:
         expected = "a column of deviations, or a column a cycle and direction (1 up, 1 down, ...)"
         raise sheet.lacking(expected)
+    # one direction without a word is one run; beside others with words it would be a guess
     unsaid = next((i for i, sign in found.items() if sign == 0), None)
     if unsaid is not None and any(found.values()):
         expected = "up or down (fwd, bwd, +, -) in its name, as in others"

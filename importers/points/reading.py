@@ -78,6 +78,7 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
             deviation[:, i] = measured - np.nan_to_num(nominal[:, i])
         elif ("deviation", letter) in found:
             deviation[:, i] = sheet.quantity(found["deviation", letter], MM, unit)
+        # only now: a coordinate without a measurement needs no nominal value
         if at is not None:
             nominal[:, i] = _stated(sheet, at, nominal[:, i], deviation[:, i])
     if not np.isfinite(deviation).any() or not any(role == "nominal" for role, _ in found):

@@ -40,11 +40,7 @@ class Sheet:
         return tuple(map(bare, self.columns))
 
     def numbers(self, column: int, missing: float | None = None) -> Array:
-        """Numbers of a column, (N,); NaN where a cell is empty or `missing`.
-
-        Raises:
-            BadFile: A cell that is no number; its line and what stood there.
-        """
+        """Numbers of a column, (N,); NaN where a cell is empty or `missing`; raises BadFile."""
         self.used.add(column)
         out = np.full(len(self), np.nan)
         for i, row in enumerate(self.cells):
@@ -101,11 +97,7 @@ class Sheet:
         )
 
     def column(self, name: str) -> int:
-        """Index of a column by its whole name or its name without unit.
-
-        Raises:
-            BadFile: No such column, with those that are there.
-        """
+        """Index of a column by its whole name or its name without unit; raises BadFile."""
         for names in (self.columns, self.names):
             if name in names:
                 return names.index(name)

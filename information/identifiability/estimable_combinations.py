@@ -31,7 +31,6 @@ def combinations(
 
     Args:
         W: Whitened rows, (N, P).
-        prior_sd: Shape (P,).
         free: Parameters that count as unknown and of no interest, such as a set-up: rows are first
             freed of what they can imitate.
     """
@@ -41,6 +40,7 @@ def combinations(
         U, s, _ = np.linalg.svd(W[:, list(free)], full_matrices=False)
         U = U[:, s > 1e-12 * s[0]]
         rows = rows - U @ (U.T @ rows)
+    # R has the singular values of the rows at (P, P) instead of (N, P)
     _, s, Vt = np.linalg.svd(np.linalg.qr(rows, mode="r"))
     out = []
     for v, x in zip(Vt, s, strict=False):

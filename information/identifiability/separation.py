@@ -74,7 +74,6 @@ def identifiability(
 
     Args:
         W: Whitened rows, shape (N, P).
-        prior_sd: Shape (P,).
         parameters: The same with their effects (`Model.parameters`), for units, conventions and
             reasons.
         chain: The machine, for reasons, or None.
@@ -90,6 +89,7 @@ def identifiability(
     freedoms = []
     for lead, z in sparse(null, order, never):
         size = np.abs(z).max()
+        # W is per prior standard deviation, a freedom is stated in base units
         base = -z * prior_sd / prior_sd[lead]
         others = [k for k in np.argsort(-np.abs(z), kind="stable").tolist() if k != lead and z[k]]
         why = reason([lead, *others], parameters, chain) if chain is not None else None

@@ -48,7 +48,6 @@ def certificate(
 
     Args:
         W: Rows of all candidates, (N, R).
-        chosen: The choice, (N,).
         tolerance: Relative gap to which the relaxed problem is solved.
         quotas: Shares that the choice keeps and every other would have to keep.
     """
@@ -77,7 +76,6 @@ def rounded(
     Args:
         W: Rows of all candidates, (N, R).
         weight: Fractions, (N,).
-        most: Largest number of exchanges.
 
     Raises:
         DesignError: No whole choice near the fractions keeps the shares.

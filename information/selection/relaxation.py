@@ -95,6 +95,7 @@ def relaxed(
             lowest, best = value, x
         if bound >= (1.0 - tolerance) * lowest:
             break
+        # a sharper mean gets nearer to the largest, but is harder to follow: only at a standstill
         if stalled >= _PATIENCE:
             if criterion.sharpness > _SHARPEST:
                 break

@@ -43,6 +43,7 @@ def largest_sum(gain: Array, count: int, quotas: tuple[Quota, ...] = ()) -> Sum:
         top = np.argpartition(gain, len(gain) - count)[len(gain) - count :]
         x[top] = 1.0
         return Sum(float(gain[top].sum()), x)
+    # within a cell rows differ in gain alone, so only the best ones can enter the optimum
     few = _first_of_each_cell(gain, count, quotas)
     A, b = _constraints(quotas, few)
     scale = float(np.abs(gain).max()) or 1.0

@@ -42,11 +42,7 @@ class _Machine:
         self.numerator = tangent.numerators(reach, self.leverage)
 
     def update(self, row: int, sign: float) -> float:
-        """Rank-one update of everything, sign 1 in and -1 out.
-
-        Returns:
-            By how much the tangent falls.
-        """
+        """Rank-one update of everything, sign 1 in and -1 out."""
         a = self.inverse @ self.W[row]
         signed = sign * float(self.leverage[row])
         c = sign / (1.0 + signed)
@@ -60,11 +56,7 @@ class _Machine:
 
 
 class Selection:
-    """Rows chosen so far, with what every other row would add; updated row by row.
-
-    Attributes:
-        chosen: Which rows are in, (N,).
-    """
+    """Rows chosen so far, with what every other row would add; updated row by row."""
 
     def __init__(self, criterion: DesignCriterion, W: Array, chosen: Mask | None = None) -> None:
         self.criterion, self.W = criterion, W
@@ -201,7 +193,6 @@ def exchange(
     and fewer are tried where it grew.
 
     Args:
-        selection: Is changed.
         quotas: Hold after every exchange.
         kept: Rows that stay in, (N,).
 

@@ -13,13 +13,10 @@ MAX_DEPTH = 8
 
 
 def label_places(found: Iterable[tuple[int, int, str]], path: Path) -> dict[str, int]:
-    """Index of the block of every label.
+    """Index of the block of every label; raises BadFile.
 
     Args:
         found: Index of a block, its line and the name of its label; "0" ends a subprogram.
-
-    Raises:
-        BadFile: A label that stands twice.
     """
     places: dict[str, int] = {}
     lines: dict[str, int] = {}

@@ -45,8 +45,6 @@ def function_value(number: str, text: str, value: str, read: Read) -> float | No
     """Value of FN 0 to FN 8 and FN 13; None for another function or other words.
 
     Args:
-        number: Behind FN.
-        text: Right of the equals sign.
         value: Pattern of a number or parameter.
 
     Raises:

@@ -17,11 +17,7 @@ class Ini:
     """
 
     def __init__(self, path: Path) -> None:
-        """Read it.
-
-        Raises:
-            BadFile: No such file, no INI file, or one without the axes.
-        """
+        """Read it; raises BadFile."""
         self.path, self._text = path, read_text(path)
         self._ini = configparser.ConfigParser(
             strict=False, interpolation=None, inline_comment_prefixes=("#", ";")

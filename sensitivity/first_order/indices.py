@@ -163,6 +163,7 @@ def covariance(population: Population, q: Array, length: Array | float) -> Array
     """
     chain = population.chain
     q = checked_readings(chain, q)
+    # errors with one mean square follow each other, so a slice of the columns is one sum
     order = sorted(chain.symbols, key=lambda s: (s.link, str(population.mix_of(s))))
     weight = np.array([population.ranges.sd(chain, s) ** 2 for s in order])
     over = [_over(population, symbol) for symbol in order]

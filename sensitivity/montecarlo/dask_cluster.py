@@ -80,11 +80,7 @@ def is_cluster(workers: object) -> bool:
 
 
 def awaited(client: Any, future: Any) -> Any:
-    """Result of a future, or the reason why there will be none.
-
-    Raises:
-        DesignError: The scheduler or all workers are gone, or a worker cannot do the work.
-    """
+    """Result of a future, or the reason why there will be none; raises DesignError."""
     from distributed import KilledWorker
 
     alone_since = None

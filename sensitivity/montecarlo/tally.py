@@ -131,7 +131,6 @@ def quantiles(
     Args:
         histogram: Counts from zero up, (N, BINS).
         width: Of a bin in each row, (N,), mm.
-        levels: Q probabilities.
     """
     out = np.empty((len(levels), len(histogram)))
     for rows in blocks(len(histogram), _ROWS):

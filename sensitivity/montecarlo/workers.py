@@ -47,9 +47,6 @@ def in_order(
     Args:
         prepare: Makes what all jobs share; called once in this process, or once on a cluster.
         work: A function of a module, so that other processes find it.
-
-    Raises:
-        DesignError: The workers are gone.
     """
     if workers is None:
         shared = prepare()

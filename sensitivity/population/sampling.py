@@ -102,17 +102,12 @@ class Population:
                 if shape != "sinusoidal":
                     effects.append(ComponentError(symbol, shape, sd=sd))
                     continue
-                for n in mix.periods:
-                    effects.append(
-                        ComponentError(
-                            symbol=symbol, shape=shape, periods=float(n), phase=0.0, sd=sd
-                        )
-                    )
-                    effects.append(
-                        ComponentError(
-                            symbol=symbol, shape=shape, periods=float(n), phase=_QUARTER, sd=sd
-                        )
-                    )
+                # sine and cosine together are a sine of any phase
+                effects += [
+                    ComponentError(symbol, shape, periods=float(n), phase=phase, sd=sd)
+                    for n in mix.periods
+                    for phase in (0.0, _QUARTER)
+                ]
         return Model(self.chain, tuple(effects))
 
     def expected(self, free: str = "") -> Model:

@@ -76,7 +76,6 @@ def norm_shares(
     Args:
         q: Readings, shape (N, A).
         length: Tool length, scalar or (N,), mm.
-        machines: S, pairs of machines.
 
     Raises:
         DesignError: The errors depend on each other, so changing one alone is meaningless.
@@ -108,7 +107,6 @@ def _estimated(J: Array, values: Values, machines: int, compiled: bool) -> Total
     Args:
         J: Shape (P, 3, N).
         values: Errors of some poses and their changes, (n or 1, P, S) each.
-        machines: S.
     """
     kernel: Kernel = (_compiled() if compiled else None) or _squares
     kind = np.float64 if kernel is _squares else np.float32

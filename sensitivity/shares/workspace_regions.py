@@ -16,7 +16,6 @@ from matstd.sensitivity.first_order import Workspace, variance_parts
 from matstd.sensitivity.population import Population
 from matstd.sensitivity.shares.total_effect_indices import MACHINES, norm_shares
 from matstd.twin.frames import Array
-from matstd.twin.machine import tip
 from matstd.twin.sampling import even_points
 from matstd.twin.units import DEG
 
@@ -194,11 +193,7 @@ def _poses(workspace: Workspace, readings: dict[str, Squeeze]) -> Array:
         for i, name in enumerate(chain.axes):
             low, high = workspace.limit(name)
             q[:, i] = readings.get(name, _interval(low, high))(unit[:, i])
-        if workspace.volume is not None:
-            p = tip(chain, q, workspace.length)
-            box = np.array(workspace.volume)
-            q = q[np.all((p >= box[0]) & (p <= box[1]), axis=1)]
-        found = np.concatenate([found, q])[:POSES]
+        found = np.concatenate([found, q[workspace.in_volume(q)]])[:POSES]
         if len(found) == POSES:
             break
     return found

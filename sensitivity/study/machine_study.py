@@ -157,6 +157,7 @@ def run_study(
         (pair, *section(workspace, *pair, SECTION, worst)) for pair in section_pairs(workspace)
     ]
     way = paper_trajectory(workspace) if workspace.open_axes else None
+    # one Monte Carlo for all: sections and path share its machines and the limits of the worst 5 %
     everywhere = np.concatenate([q, *(plane[3] for plane in planes), *([way.q] if way else [])])
     found = volumetric(
         population,

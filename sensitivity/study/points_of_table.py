@@ -59,6 +59,7 @@ def points_over_rotary(workspace: Workspace) -> tuple[PointOverRotary, ...]:
     each = tuple(np.linspace(*workspace.limit(a), _VALUES) for a in turning)
     mesh = [m.ravel() for m in np.meshgrid(*each, indexing="ij")]
     out = []
+    # ends of the linear travels: middle, top, one side, a lower corner
     for ends in ((0, 0, 0), (0, 0, 1), (1, 0, 0), (1, 1, -1)):
         start, place = base.copy(), {}
         for name, end in zip(linear, ends, strict=True):

@@ -61,8 +61,6 @@ def paper_trajectory(
             widest limits, X and C on the machine of the paper.
         swinging: Axis that swings; None for the other rotary axis, B there, or else a second
             linear one.
-        periods: Of the swing.
-        count: N.
         held: Readings of other axes; those left out stay in the middle of their limits.
 
     Raises:
@@ -85,6 +83,7 @@ def paper_trajectory(
         raise DesignError(f"a path of {', '.join(named)}: expected every axis in one role")
     if count < 2:
         raise DesignError(f"a path of {count} poses: expected two at least")
+    # equal steps of s, not of time: no feed is implied
     s = np.linspace(0.0, 1.0, count)
     q = np.tile(workspace.centre, (count, 1))
     for name, value in held.items():

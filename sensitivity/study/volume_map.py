@@ -59,12 +59,7 @@ class Volume:
 
     def _shown(self, values: Array) -> Array:
         """Values on the grid, without the points that are no poses of the workspace."""
-        box = self.workspace.volume
-        if box is not None:
-            p = tip(self.workspace.chain, self.q, self.workspace.length)
-            inside = np.all((p >= np.array(box[0])) & (p <= np.array(box[1])), axis=1)
-            values = np.where(inside, values, np.nan)
-        return values.reshape(self.shape)
+        return np.where(self.workspace.in_volume(self.q), values, np.nan).reshape(self.shape)
 
     def lines(self) -> dict[str, Array]:
         """Lines of the rotary axes in the map: a point and a unit direction each, (2, 3).
@@ -96,14 +91,11 @@ def has_volume(workspace: Workspace) -> bool:
 def volume(
     workspace: Workspace, rotary: Mapping[str, float], points: tuple[int, int, int] = POINTS
 ) -> Volume:
-    """Poses that fill the box of the linear readings.
+    """Poses that fill the box of the linear readings; raises NotReachable.
 
     Args:
         rotary: Readings of the rotary axes, rad; an axis left out stands in the middle.
         points: Values of each linear reading.
-
-    Raises:
-        NotReachable: There are not three linear axes with room to move.
     """
     chain = workspace.chain
     if not has_volume(workspace):

@@ -12,10 +12,7 @@ from matstd.twin.fields import SensorName, sensor_record, sensors
 from matstd.twin.frames import Array
 from matstd.twin.model import Declared, Kind, Parameter, Term, Where, scanned
 from matstd.twin.record import Touches
-from matstd.twin.units import UM, URAD
-
-HOUR = 3600.0
-"""Drift is reported per hour, s."""
+from matstd.twin.units import HOUR, UM, URAD
 
 ON_EACH_SIDE = 2
 """Touches of a set-up needed before and after a slip; a single one may be an outlier."""

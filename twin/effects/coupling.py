@@ -44,7 +44,6 @@ class Coupling(Declared):
 
     Attributes:
         other: Name of the axis it also depends on.
-        degree: n.
     """
 
     symbol: ComponentSymbol

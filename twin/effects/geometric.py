@@ -29,8 +29,6 @@ class ComponentError(Declared):
     amplitude (`matstd.twin.machine.shapes`).
 
     Attributes:
-        shape: Distribution over the reading.
-        periods: Of the sinusoidal distribution.
         phase: Of the sinusoidal distribution, rad.
         sd: Expected standard deviation of the amplitude, mm or rad.
     """
@@ -80,10 +78,7 @@ class HigherOrder(Declared):
     expected to fall as ``1/k^1.5`` from the size of the class.
 
     Attributes:
-        degree: The highest.
         sd: Expected standard deviation of the first coefficient, mm or rad.
-        rotary: Whether harmonics are meant.
-        lowest: The lowest degree.
     """
 
     symbol: Symbol

@@ -72,7 +72,6 @@ class OffCentreLoad(_Sag):
     ``E = sin(q_tilt) (a cos(q_table) + b sin(q_table))``: the moment ``m g r sin B cos(C - phi)``.
 
     Attributes:
-        symbol: The component error of the tilting axis.
         table: Name of the axis that turns the load.
     """
 

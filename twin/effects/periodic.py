@@ -114,7 +114,6 @@ class Overtones(Periodic):
     expected to be smaller by ``k^1.5``.
 
     Attributes:
-        order: The highest k.
         near: Period around which p is looked for, mm; None for every one that can be seen.
     """
 
@@ -170,9 +169,6 @@ class Harmonic(_Repeating):
     ``E = s sin(k q) + c cos(k q)``, k = 2, 3 ...; k = 1 is eccentricity and tilt, part of every
     geometric model. k = 2 comes from two reading heads or an oval seat, 4 from four screws, the
     line count from the encoder.
-
-    Attributes:
-        harmonic: k.
     """
 
     harmonic: float = scanned("1", _harmonics, default=2.0, continuous=False)

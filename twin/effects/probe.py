@@ -22,9 +22,6 @@ class ProbeLobing(Declared):
 
     theta and phi are latitude from the tool axis and azimuth of the surface normal in the tool
     frame; k = 3 for the three seats of a kinematic probe.
-
-    Attributes:
-        lobes: k.
     """
 
     # one lobe is the offset of the stylus

@@ -194,6 +194,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> Body:
         raise refuse("a section such as 220x180, 220x180x20, d120 or d120x10")
     if "at" not in keys:
         raise refuse("at:MM, the frame's place from the root at reading zero")
+    # any positive number is the sense 1: only its sign matters
     sense = 1 if _number(keys, "sense", 1.0, refuse) > 0.0 else -1
     span = _number(keys, "span", 0.0, refuse)
     if arguments[1] != "cantilever" and span <= 0.0:

@@ -96,6 +96,7 @@ def _without_slips(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     ):
         _report_slip(run, table, rows, f"column {column}", found, wanted, remarks)
         astray[rows] = True
+    # an instrument of angles writes them times its arm, which may be a metre
     touches = run.touches
     arm = float(np.linalg.norm(touches.point, axis=1).max(initial=0.0))
     absurd = LARGEST_ANGLE * arm if touches.instrument.reads_angle else LARGEST_DEVIATION

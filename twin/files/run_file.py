@@ -213,6 +213,7 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         pose=columns.poses(table, chain, q, setup),
         value=columns.own_columns(table, time, remarks),
     )
+    # implied directions need the normals and set-ups of the touches, so they come second
     signs = columns.approach(table, touches)
     if not head.instrument.is_ball_on_standard:
         signs = columns.standing(table, signs, touches, remarks)

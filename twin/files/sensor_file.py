@@ -31,13 +31,10 @@ class SensorRecord:
     remarks: tuple[str, ...]  # on sensors that were left out, or are constant
 
     def joined(self, run: Run, begin: datetime) -> Run:
-        """A run with the temperatures and the spindle speed at its touches.
+        """A run with the temperatures and the spindle speed at its touches; raises BadFile.
 
         Args:
             begin: What the clock said at the run's time zero.
-
-        Raises:
-            BadFile: The record does not cover the run.
         """
         touches = self.at_touches(run.touches, begin)
         return replace(run, touches=touches, remarks=(*run.remarks, *self.remarks))
@@ -53,16 +50,13 @@ class SensorRecord:
         return times
 
     def at_touches(self, touches: Touches, begin: datetime) -> Touches:
-        """Touches with what the sensors read at their times.
+        """Touches with what the sensors read at their times; raises BadFile.
 
         Temperatures are linear in time between readings, the speed stays until the next one.
 
         Args:
             touches: Their times count from `begin`.
             begin: What the clock said at time zero.
-
-        Raises:
-            BadFile: The record does not cover the touches.
         """
         at = _seconds(begin) + touches.time
         first, last = self.clock[0], self.clock[-1]
@@ -100,6 +94,7 @@ def read_sensors(path: str | Path) -> SensorRecord:
         except (ValueError, TypeError):
             expected = "local date and time such as 2031-05-06T07:08:09"
             raise table.bad(i, "clock", repr(cell), expected) from None
+        # interpolation needs a rising clock
         if i and clock[i] <= clock[i - 1]:
             raise table.bad(i, "clock", cell, "a later reading in every row")
     remarks: list[str] = []

@@ -180,6 +180,7 @@ class CsvTable:
             wrong = (finite & ~known) | (known & (np.abs(out) > largest)) | (out < smallest)
             if not wrong.any():
                 return out
+        # the slow way names the line of the fault
         out = np.empty(len(self))
         for i, cell in enumerate(self.text(name)):
             if not cell and empty is not None:

@@ -63,11 +63,7 @@ _FILES: dict[str, Path] = {}
 
 
 def register(kind: Kind) -> Kind:
-    """Make a kind known by its word, which must be new.
-
-    Raises:
-        DesignError: The word is taken by another kind, or is no word.
-    """
+    """Make a kind known by its word, which must be new; raises DesignError."""
     if _NAME.match(kind.word) is None or "(" in kind.word:
         raise DesignError(f"kind '{kind.word}': expected letters, digits and hyphens")
     known = _REGISTER.get(kind.word)
@@ -78,11 +74,7 @@ def register(kind: Kind) -> Kind:
 
 
 def _register_from(kind: Kind, path: Path) -> Kind:
-    """Register a kind of a user's file, in the place of its former version.
-
-    Raises:
-        BadFile: The word is taken, or is no word.
-    """
+    """Register a kind of a user's file, in the place of its former version; raises BadFile."""
     place = path.resolve()
     if _FILES.get(kind.word) == place:
         del _REGISTER[kind.word]

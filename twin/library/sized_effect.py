@@ -76,6 +76,7 @@ def parse_sized_effect(text: str, chain: Chain) -> SizedEffect:
     units = {p.name: p.unit for p in effect.parameters}
     inner = effect.inner(touches) if is_tunable(effect) else ()
     inner_units = {i.name: i.unit for i in inner}
+    # a size without a name is clear only where the effect has one parameter
     only = next(iter(units)) if len(units) == 1 else None
     sizes = parse_sizes(text, rest, {**units, **inner_units}, only) if equals else {}
     if not set(sizes) & set(units) or not set(inner_units) <= set(sizes):

@@ -285,32 +285,13 @@ def make_chain(
     for key in axes:
         if key not in [n for n, _, _ in parsed]:
             raise UnknownAxis(key, [n for n, _, _ in parsed])
-    zero = np.zeros(3)
     origin = np.array(table_origin, dtype=float)
-    links = [
-        Link(
-            name="w",
-            kind="fixed",
-            carries_workpiece=True,
-            direction=zero,
-            point=origin,
-            range=(0.0, 0.0),
-        )
-    ]
-    links += [_make_link(n, primed, prog, axes.get(n, Axis())) for n, primed, prog in parsed]
-    _check_directions([link for link in links if link.kind == "linear"])
-    links.append(
-        Link(
-            name="t",
-            kind="fixed",
-            carries_workpiece=False,
-            direction=zero,
-            point=zero,
-            range=(0.0, 0.0),
-        )
-    )
+    moving = [_make_link(n, primed, prog, axes.get(n, Axis())) for n, primed, prog in parsed]
+    _check_directions([link for link in moving if link.kind == "linear"])
+    links = [_end("w", True, origin), *moving, _end("t", False, np.zeros(3))]
     rotary = [link for link in links if link.kind == "rotary" and link.programmed]
     assumed = tuple(k.name for k in rotary if axes.get(k.name, Axis()).point is None)
+    # a long series of rotary axes is an arm: its links have tolerances of another class
     in_series = [link for link in rotary if not link.carries_workpiece]
     is_open = len(in_series) >= OPEN_CHAIN
     return Chain(
@@ -319,6 +300,18 @@ def make_chain(
         links=tuple(replace(k, is_joint=True) if is_open and k in in_series else k for k in links),
         table_origin=origin,
         assumed_points=assumed,
+    )
+
+
+def _end(name: str, carries_workpiece: bool, point: Array) -> Link:
+    """The workpiece or the tool: a link that does not move."""
+    return Link(
+        name=name,
+        kind="fixed",
+        carries_workpiece=carries_workpiece,
+        direction=np.zeros(3),
+        point=point,
+        range=(0.0, 0.0),
     )
 
 
@@ -355,6 +348,7 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
         found = [significant(end / unit, 12) for end in reach]
         raise BadValue(f"axis.{name}.range", found, "the smaller reading first")
     own = np.eye(3)["XYZ".index(ALONG[name[0]])]
+    # letters give the direction by ISO 841 unless the file states another
     direction = own if axis.direction is None else np.array(axis.direction, dtype=float)
     length = float(np.linalg.norm(direction))
     if not length > SHORTEST:

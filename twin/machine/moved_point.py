@@ -117,28 +117,15 @@ def _step(chain: Chain, i: int, q: Array, contribution: Contribution | None) -> 
     along, point = link.direction[:, None], link.point[:, None]
     travel = np.zeros(1) if link.kind == "fixed" else q[:, chain.axis_index(link.name)]
     twist, place = _rows(contribution, "twist", i), _rows(contribution, "place", i)
-    if place is None or link.kind == "fixed":
-        return _Step(
-            link=link,
-            travel=travel,
-            far=travel,
-            along=along,
-            point=point,
-            place=place,
-            twist=twist,
-        )
-    turn = place[3:].copy()
-    if link.kind == "rotary":  # about its own letter it is the zero of the reading
-        turn[link.own] = 0.0
-    far, along = travel + place[link.own_component], _turned(turn, along)
+    far = travel
+    if place is not None and link.kind != "fixed":
+        turn = place[3:].copy()
+        if link.kind == "rotary":  # about its own letter it is the zero of the reading
+            turn[link.own] = 0.0
+        far, along = travel + place[link.own_component], _turned(turn, along)
+        point, place = point + place[:3], None
     return _Step(
-        link=link,
-        travel=travel,
-        far=far,
-        along=along,
-        point=point + place[:3],
-        place=None,
-        twist=twist,
+        link=link, travel=travel, far=far, along=along, point=point, place=place, twist=twist
     )
 
 

@@ -40,6 +40,7 @@ def joined(runs: Mapping[str, Run]) -> Run:
         return parts[0]
     _check_alike(names, parts)
     every = [part.touches for part in parts]
+    # times of all runs on one axis, so that noise and lags of one do not reach the next
     starts = _starts(every)
     setups = [
         replace(s, name=f"{name}/{s.name}", run=name, start=begin)

@@ -80,7 +80,7 @@ def amplitude_unit(drive: str, unit: str, sd: float) -> tuple[str, float]:
 
 
 def driven(touches: Touches, drive: str, tau: float, effect: str, step: float = 1.0) -> Array:
-    """Response to a drive with a time constant at every touch, (N,).
+    """Response to a drive with a time constant at every touch, (N,); raises UnknownEffect.
 
     Args:
         drive: A sensor, followed as its difference from 20 degC, `spindle_rpm` in units of
@@ -88,9 +88,6 @@ def driven(touches: Touches, drive: str, tau: float, effect: str, step: float = 
         tau: Time constant, s; zero follows at once.
         effect: Name of the effect, for the message.
         step: Of an own column, in its unit.
-
-    Raises:
-        UnknownEffect: The drive was not recorded.
     """
     if is_speed(drive) and touches.spindle_rpm is None:
         raise UnknownEffect(f"'{effect}': the spindle speed of these touches is unknown")

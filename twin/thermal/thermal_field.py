@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from matstd.twin.fields import moving_axes, refusal
-from matstd.twin.machine import Chain
+from matstd.twin.machine import LETTERS, Chain
 from matstd.twin.model import Declared, Inner, Kind, Parameter, Term, Where
 from matstd.twin.record import Touches
 from matstd.twin.thermal.drive_columns import (
@@ -26,8 +26,6 @@ from matstd.twin.thermal.drive_columns import (
 from matstd.twin.units import MINUTE, UM, URAD
 
 USAGE = "thermal-field(axis,drive,...)"
-
-LETTERS = "XYZABC"
 
 LAGS = (4.0 * MINUTE, 16.0 * MINUTE, 64.0 * MINUTE, 256.0 * MINUTE)
 """Time constants, s, over the range of `thermal-lag`. A lag between two neighbours is
