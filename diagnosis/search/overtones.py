@@ -6,7 +6,7 @@ import numpy as np
 
 from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, addition, projected
 from matstd.diagnosis.search.selection import WORTH
-from matstd.twin.effects import MOST_OVERTONES, usual_distance
+from matstd.twin.effects import MAX_OVERTONES, usual_distance
 from matstd.twin.model import Effect, Wave, original_of, traits
 
 HIGHEST_FOUND = 4
@@ -44,7 +44,7 @@ def _combs(complement: ResidualSpace, effect: Effect, period: float) -> Iterator
     assert wave is not None
     assert with_sines is not None
     q = complement.touches.reading(wave.symbol.link)[complement.used]
-    most = min(MOST_OVERTONES, int(period / (2.0 * usual_distance(q))))
+    most = min(MAX_OVERTONES, int(period / (2.0 * usual_distance(q))))
     if period < 0.5 * float(np.ptp(q)):
         for order in range(2, most + 1):
             yield with_sines(period, order)

@@ -49,7 +49,7 @@ def effects_over_record(
     others = [pair for pair in effects if pair not in driven]
 
     def disturbance(touches: Touches) -> Contribution:
-        touches = record.seen_by(touches, start)
+        touches = record.at_touches(touches, start)
         total = contribution(others, touches)
         if driven:
             history = _history(touches[:1], record, start)
@@ -64,7 +64,7 @@ def _history(touch: Touches, record: SensorRecord, begin: datetime) -> Touches:
     """A touch repeated at every reading of the record."""
     time = record.since(begin)
     rows = touch[np.zeros(len(time), dtype=np.int64)]
-    return record.seen_by(replace(rows, time=time), begin)
+    return record.at_touches(replace(rows, time=time), begin)
 
 
 def joined_touches(parts: Sequence[Touches]) -> Touches:

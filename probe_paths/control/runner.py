@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.nc.grammar import COMPARISONS, DEEPEST, Flow
+from matstd.nc.grammar import COMPARISONS, MAX_DEPTH, Flow
 from matstd.probe_paths.control.modes import check_cycle, read_datum, set_mode
 from matstd.probe_paths.control.motion import retract_max, straight_line
 from matstd.probe_paths.control.state import State
@@ -151,7 +151,7 @@ class Runner:
         # what has met something in the air ends the program, what has not goes on
         wrong, right = (i + 1, target) if touch.is_air else (target, i + 1)
         self.branches += 1
-        if self.branches > DEEPEST:  # a branch that comes back to its own touch
+        if self.branches > MAX_DEPTH:  # a branch that comes back to its own touch
             raise state.refusal(block, "a loop without end", "a program that comes to M30")
         touch.on_miss.extend(self.run(wrong, missed, is_branch=True))
         self.branches -= 1
