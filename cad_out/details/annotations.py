@@ -61,10 +61,6 @@ class _Sign(NamedTuple):
 def annotations_of(standard: Standard, details: Details) -> dict[str, list[Array]]:
     """What is drawn beside the model, by the names of tolerances, datums and sizes.
 
-    Args:
-        standard: The design.
-        details: Of the workshop.
-
     Returns:
         Polylines (N, 3), mm, all of a sign in one plane across z; the first is the frame (of a
         size its underline), which begins at the lower left corner, the second the leader.

@@ -76,7 +76,6 @@ def dots(text: str, rows: int) -> Array:
     """Middles of the dots of a line of capitals, (N, 2), mm; unknown letters are boxes.
 
     Args:
-        text: The line.
         rows: Of dots in a letter, `SMALL` or `LARGE`.
     """
     found = [

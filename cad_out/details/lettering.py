@@ -20,7 +20,6 @@ class Lettering:
     """A line of text.
 
     Attributes:
-        text: Capitals.
         T_artefact_text: Begin of the line; x along it, y up the letters, z out of the material.
         rows: Of dots in a letter, `SMALL` or `LARGE`.
         of: Feature that it names; empty for the standard's own name.

@@ -27,7 +27,6 @@ class Seat:
     """Countersink on top of a post, in heights above the standard's seat, mm.
 
     Attributes:
-        ball: Name of the ball.
         half_angle: Between the axis and the countersink, rad.
         contact_radius: Of the circle along which the ball touches.
         contact: Height of that circle.

@@ -46,15 +46,10 @@ class Product:
     """One part of the product structure.
 
     Attributes:
-        name: Of the part.
-        about: What it is.
         shape: Its solid, or a shell of one face.
-        faces: Named faces of it.
         material: What it is made of; none of a face by itself.
         colour: Of its nameless faces.
         places: Name and place of every instance, mm; the body and the balls stand where they are.
-        tolerances: Of its named faces.
-        notes: General ones.
         diameter: Of a ball, mm.
         drawn: Signs of the tolerances, datums and sizes, polylines (N, 3) in mm by their names.
     """

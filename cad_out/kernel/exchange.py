@@ -62,9 +62,6 @@ def write_step(path: Path, products: Sequence[Product], name: str, origin: Origi
 
     Args:
         path: The file; written in one go by the kernel, so give a neighbour name.
-        products: Of the assembly.
-        name: Of the whole.
-        origin: For the header.
 
     Raises:
         NotBuildable: The kernel refuses to translate or to write.

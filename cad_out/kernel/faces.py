@@ -95,8 +95,6 @@ class Named:
     """What faces are named after.
 
     Attributes:
-        standard: Whose body it is.
-        details: Of it.
         surfaces: The kernel's surfaces of the patches, by name.
     """
 

@@ -37,7 +37,6 @@ def engraved(solid: Any, lettering: Sequence[Lettering]) -> Any:
     """A solid with its lettering.
 
     Args:
-        solid: One closed shell.
         lettering: On plane faces; what reaches beyond the edge of one is cut as well, but slowly.
     """
     faces = faces_of(solid)

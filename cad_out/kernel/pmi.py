@@ -50,14 +50,7 @@ def add_tolerances(
     tolerances: Sequence[Tolerance],
     drawn: dict[str, list[Array]],
 ) -> None:
-    """Put datums and geometrical tolerances on named faces, and draw them.
-
-    Args:
-        document: With the part.
-        faces: Labels of the faces by their names.
-        tolerances: Of the part.
-        drawn: Their signs.
-    """
+    """Put datums and geometrical tolerances on named faces, and draw them."""
     tool = XCAFDoc_DocumentTool.DimTolTool_s(document.Main())
     left = dict(drawn)
     for tolerance in tolerances:

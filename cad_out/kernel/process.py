@@ -62,11 +62,9 @@ def run_apart(
     """Run ``module.task(folder, *arguments)`` in a new process of this interpreter.
 
     Args:
-        module: Where the task is defined.
         task: A function that takes the folder and the arguments; a `DesignError` that it raises is
             its refusal.
         folder: Through which the two processes speak.
-        arguments: Further arguments.
         timeout: After which the process is stopped, s.
         environment: Variables to be set on top of this process's.
 
@@ -99,9 +97,7 @@ def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float 
     """Run one task of `matstd.cad_out.kernel.worker` in a process of its own.
 
     Args:
-        task: Name of the function.
         folder: Through which the two processes speak.
-        arguments: Further arguments of the function.
         timeout: After which the process is stopped, s.
 
     Raises:

@@ -68,14 +68,10 @@ class Reread:
 
     Attributes:
         solids: All of them, instances counted.
-        is_valid: No fault in any.
-        is_closed: All shells are.
-        shells: Of all solids.
         volume: Of all solids, mm^3.
         least_face: Area of the smallest face, mm^2.
         least_edge: Length of the shortest edge, mm.
         products: How often each product is there, by name.
-        names: Of faces.
         tolerances: Geometrical tolerances with their datums.
         notes: General notes of all parts.
         signs: Of what is drawn, the length of its lines and their centre of mass, mm.
@@ -194,7 +190,6 @@ def farthest_from_faces(
     """Largest distance of a mesh from the curved faces of its solid, by the kernel's projection.
 
     Args:
-        shape: The solid.
         corners: Shape (V, 3), mm.
         triangles: Shape (F, 3).
         numbers: Index of every triangle's face, (F,).
@@ -242,7 +237,6 @@ def triangulate(shape: Any, chord: float) -> tuple[Array, np.ndarray, np.ndarray
     """Triangles of a solid, joined, without needles.
 
     Args:
-        shape: The solid.
         chord: Largest distance from the surfaces to aim at, mm.
 
     Returns:

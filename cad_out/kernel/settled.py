@@ -75,7 +75,6 @@ def with_units_of_density(whole: str, count: int) -> str:
     The kernel writes the exponents 3 of the gram and 2 of the centimetre, whatever it is told.
 
     Args:
-        whole: Text of the file.
         count: Of its densities.
 
     Raises:

@@ -51,7 +51,6 @@ class Solid:
     """A finished body of the kernel.
 
     Attributes:
-        shape: The solid.
         plain: The same without its lettering, which needs a hundred times as many triangles.
         faces: Named faces: FF1 ..., DATUM_A, DATUM_B, DATUM_C, seats, bores and holes.
         plain_faces: The same of the plain body.

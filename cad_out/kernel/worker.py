@@ -45,8 +45,6 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
     Args:
         folder: Holds standard.toml; takes the results.
         chord: Largest distance of the mesh from the exact faces, mm.
-        author: For the header of the STEP file.
-        organisation: The same.
     """
     from matstd.cad_out.kernel.assembly import face_products, products_of, whole_name
     from matstd.cad_out.kernel.exchange import Origin, write_step

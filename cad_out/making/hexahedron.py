@@ -24,7 +24,6 @@ def cube(side: float, modulus: float, poisson: float) -> Array:
     Args:
         side: Mm.
         modulus: Young's, N/mm^2.
-        poisson: Ratio.
     """
     D = _elasticity(modulus, poisson)
     whole = np.zeros((33, 33))

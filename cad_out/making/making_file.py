@@ -25,7 +25,6 @@ class Making:
         cutting: Reach of cutters.
         stiffness: First mode and sag; None where the modulus of the material is not known.
         hints: How every face is milled.
-        material: Of the standard.
     """
 
     cutting: Cutting

@@ -67,8 +67,6 @@ def with_sag(standard: Standard, stiffness: Stiffness, down: str) -> Standard:
     """The standard with the correction that evaluations use.
 
     Args:
-        standard: Whose stiffness it is.
-        stiffness: By finite elements.
         down: Where weight pulls to in machine coordinates.
     """
     made_of = standard.material
@@ -81,8 +79,6 @@ def stiffness_of(standard: Standard, details: Details, side: float = 10.0) -> St
     """By finite elements; None where the modulus of the material is not known.
 
     Args:
-        standard: Plate, pillars, posts and balls.
-        details: With the pads.
         side: Of the cubes, mm; 10 and 6 mm differ by 1 % in the first mode, 2 % in a tall ball.
     """
     from scipy.sparse import coo_array, csc_array, diags_array

@@ -77,7 +77,6 @@ def ball_mesh(sphere: DatumSphere, chord: float) -> Mesh:
     """A ball of nearly equal triangles: an icosahedron whose sides are cut and blown up.
 
     Args:
-        sphere: The ball.
         chord: Largest distance of a triangle from the ball, mm.
     """
     corners, faces = _icosahedron()
@@ -177,7 +176,6 @@ def chord_errors(
     For a patch the distance is ``(z - h) cos(slope)``, right to first order in itself.
 
     Args:
-        standard: With the exact surfaces.
         corners: Shape (V, 3), mm.
         triangles: Shape (F, 3).
         owner: Name of each triangle's feature, (F,).
@@ -250,7 +248,6 @@ def owners(standard: Standard, corners: Array, triangles: np.ndarray) -> np.ndar
     same way.
 
     Args:
-        standard: With the exact surfaces.
         corners: Shape (V, 3), mm.
         triangles: Shape (F, 3).
 

@@ -32,7 +32,6 @@ class Piece:
     """Triangles of one product.
 
     Attributes:
-        name: Of the product.
         mesh: In its own frame, mm.
         colours: Of every triangle, red, green, blue from 0 to 1, (F, 3).
         places: Name and place of every instance, mm.

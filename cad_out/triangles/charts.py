@@ -25,7 +25,6 @@ class Chart:
         place: Parameters of the surface to places in the chart, (N, 2) both.
         point: Places to points, (N, 2) to (N, 3), mm.
         spacing: Of places, at which the chord is kept; 0 if the refinement is to find it.
-        is_flat: Whether it is a plane.
     """
 
     place: Map
@@ -133,8 +132,6 @@ def revolved_chart(frame: Frame, profile: Profile, low: Array, high: Array, chor
     """Chart of a surface of revolution, true in its angles but for a stretch.
 
     Args:
-        frame: Where it stands.
-        profile: What turns.
         low: Smallest u and v of the face, (2,).
         high: Their largest, (2,).
         chord: To be kept, mm.

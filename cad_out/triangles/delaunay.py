@@ -17,7 +17,6 @@ class Sheet:
     """Delaunay triangulation of points in a plane, and the pieces of an outline in it.
 
     Attributes:
-        places: The points, (P, 2).
         ends: Pieces of the outline, (S, 2), into the places.
         wall: Piece that the side of a triangle opposite each of its corners is, or -1, (T, 3).
     """

@@ -43,10 +43,8 @@ class Side:
     """One side of an edge, as the outline of a face has it; the seam of a face has two.
 
     Attributes:
-        edge: Index of the edge.
         at: Parameter of the edge to places in the chart, (T,) to (T, 2).
         t: Parameters whose places are known.
-        places: These places.
     """
 
     edge: int

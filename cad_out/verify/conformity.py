@@ -64,7 +64,6 @@ class Conformity:
     """Measured figures of a built standard, lengths in mm.
 
     Attributes:
-        solids: In the STEP file.
         expected: Solids that should be there: the body, balls and screws.
         products: Parts that the text of the STEP file names, with the number of their instances.
         displaced: Instances of body or balls that do not stand where they were designed.
@@ -89,13 +88,10 @@ class Conformity:
         mesh_volume: By the divergence theorem, mm^3.
         manifold_volume: By manifold3d, mm^3; nan where it refuses the mesh.
         sharp: Length of inner edges that no ball-end cutter makes, bores left out, mm.
-        triangles: In the STL file.
         chord: Asked for, mm.
         chord_error: Largest distance of the mesh from the exact surface by feature.
         body_chord_error: The same of all faces of the body, by the kernel's projection.
         aspect: Longest side of a triangle over the height on it, the largest.
-        step_bytes: Size of the STEP file.
-        stl_bytes: Size of the STL file.
     """
 
     solids: int
@@ -216,9 +212,7 @@ def measure(
     """Read the STEP and STL files anew and compare them with the design.
 
     Args:
-        standard: The design.
         folder: With the STEP file; the kernel's second process answers through it.
-        stl: The STL file.
         owner: Feature of each of its triangles, (F,).
         built: Facts of the building process: volume of every product before it was written,
             mm^3, distance of the body's mesh from its faces, mm.

@@ -30,8 +30,6 @@ def export_standard(
     together, so a refusal or a crash leaves what was there before.
 
     Args:
-        standard: To be built; its limits are the caller's to check.
-        out_dir: Folder for the files.
         chord: Largest distance of the mesh from the exact faces, mm.
         author: Who is responsible for the design, for the header of the STEP file.
         organisation: Whom the author works for.
@@ -70,10 +68,7 @@ def build_and_measure(
     """Build into an empty folder and measure; figures out of their limits are not refused here.
 
     Args:
-        place: Empty folder.
         chord: Largest distance of the mesh from the exact faces, mm.
-        author: For the header of the STEP file.
-        organisation: The same.
 
     Returns:
         The figures, and the mesh in float64 with the feature of every triangle.

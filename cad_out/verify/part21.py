@@ -76,7 +76,6 @@ def read_faces(
     """Named faces of a STEP file with the surface under each.
 
     Args:
-        path: ISO 10303-21 text.
         known: Its entities where they were read already.
 
     Returns:

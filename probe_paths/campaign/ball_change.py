@@ -38,10 +38,8 @@ class BallChange:
     """What a ball tells of the time between two looks at it.
 
     Attributes:
-        ball: Its name.
         before: When it was measured first.
         after: And again.
-        touches: How many are compared.
         centre: By how much its centre has moved, table frame, (3,), mm.
         radius: By how much the effective radius of the probe has grown, mm.
         u: Standard uncertainties of the four, (4,), mm.
@@ -89,7 +87,6 @@ def ball_changes(
         parts: Of all logs; those of other programs are left alone.
         standard: As calibrated.
         u: Standard uncertainty of one touch, mm; a larger scatter counts instead.
-        dialect: Of the control.
 
     Raises:
         BadFile: A ball that the standard does not have.
@@ -161,7 +158,6 @@ def read_heights(part: LogPart, standard: Standard, chain: Chain) -> dict[str, f
     whole length of the probe beside.
 
     Args:
-        part: Of its log.
         standard: As calibrated.
 
     Returns:
@@ -182,7 +178,6 @@ class EffectiveRadius(NamedTuple):
     """What a calibrated ball tells of the probe's effective radius.
 
     Attributes:
-        begin: When it was measured.
         excess: Beyond the radius that the control has calibrated, mm.
         u: Its standard uncertainty, with that of the ball, mm.
     """
@@ -202,9 +197,7 @@ def effective_radii(
 
     Args:
         parts: Of all logs; those of other programs are left alone.
-        chain: The machine.
         u: Standard uncertainty of one touch, mm.
-        dialect: Of the control.
     """
     out = []
     for part in sorted(parts, key=lambda part: part.begin):
@@ -225,7 +218,6 @@ def check_changes(changes: Sequence[BallChange], limit: float) -> None:
     """Refuse measurements between which the probe has changed.
 
     Args:
-        changes: Of one ball.
         limit: That the ball may have moved, or the radius have changed, mm.
 
     Raises:

@@ -28,10 +28,6 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
     that. Its ball has to meet the stated feature first. Turning moves are looked at over all
     positions between.
 
-    Args:
-        program: As read from its text.
-        standard: What stands on the table.
-
     Raises:
         BadFile: Line of the first move that comes too near, and what it comes near to.
     """

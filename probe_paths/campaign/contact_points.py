@@ -48,7 +48,6 @@ def foot_points(
 
     Args:
         standard: As calibrated.
-        feature: Names, (N,).
         ball: Centres, (N, 3), mm.
         moved: Displacements of the features from their calibrated places, (N, 3), mm.
     """

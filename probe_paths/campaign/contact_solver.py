@@ -40,9 +40,6 @@ class VirtualMachine:
         radius_error: Of the true ball beyond the calibrated one, mm.
         length_error: Of the true probe beyond the calibrated one, mm.
         noise: Standard deviation of the trigger along the normal, mm.
-        begin: What its clock says when the campaign begins.
-        clock: Speeds.
-        dialect: Of its control.
         temperature: Of a sensor by name at a time since the campaign began (s), degC.
     """
 
@@ -170,7 +167,6 @@ class ContactSolver:
 
         Args:
             time: Of the trigger of all touches, (N,), s since the start of the campaign.
-            rows: Which of them.
         """
         rows = np.arange(len(self.start)) if rows is None else rows
         chain = self.machine.chain

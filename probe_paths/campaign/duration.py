@@ -26,10 +26,7 @@ def probing_time(
     Touches that this plan refuses are counted as if they took as long as the others.
 
     Args:
-        body: What is touched.
-        probe: In the spindle.
         setup: Where the body stands.
-        requests: Its touches.
         options: How carefully; those of the standard's own plan.
 
     Returns:

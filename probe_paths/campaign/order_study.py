@@ -44,7 +44,6 @@ class Order:
     """One order of the same touches.
 
     Attributes:
-        ordering: Which.
         touches: Number, anchor touches included.
         duration: Of all programs, s.
         drift: Standard deviation of the rate of a drift, its worst direction, mm/h.
@@ -62,7 +61,6 @@ def orders(plan: TouchPlan, model: Model, noise: float) -> tuple[Order, ...]:
     """The plan's own order first, then the same touches in ever quicker ones.
 
     Args:
-        plan: As it is to be probed.
         model: Geometric errors of the machine with their prior.
         noise: Standard deviation of one touch, mm.
     """

@@ -26,7 +26,6 @@ class Campaign:
     """All programs of one set-up or several, run one after the other.
 
     Attributes:
-        runs: What each program did.
         parts: Of their logs, as read back.
         begin: What the clock said at the run's time zero.
     """
@@ -81,9 +80,7 @@ def simulate(
         programs: Files, masks of `.H` files beside them, in the order in which they are run.
         standard: The true one.
         machine: As it really is; the evaluation knows only its nominal chain.
-        rng: For the noise of the trigger.
         probe: In the spindle; None takes the one that each program states.
-        progress: Told what is going on.
         calibrated: What is believed of the standard; None for the truth.
 
     Raises:

@@ -48,14 +48,11 @@ class VirtualRun:
     """What a program brought about.
 
     Attributes:
-        program: As read.
         q: Readings at the trigger, (N, A); nan for touches without contact.
         time: Of the trigger, s since the start of the campaign, (N,).
         feature: What was touched, (N,).
         meeting: What the ball ran into, (N,), values of `Meeting`; a contact is one with a surface.
         reached: How many touches were tried before the program ended.
-        log: Text of every log file by name.
-        outcome: How it ended.
         end: s since the start of the campaign.
     """
 
@@ -98,10 +95,8 @@ def run_programs(
     """Run programs one after the other; a stopped one ends the campaign.
 
     Args:
-        programs: As read from their texts.
         standard: The true one.
         machine: As it really is.
-        rng: For the noise of the trigger.
 
     Raises:
         DesignError: A program made for another standard.
@@ -143,10 +138,8 @@ def run_program(
     """Run one program.
 
     Args:
-        program: As read from its text.
         standard: The true one.
         machine: As it really is.
-        rng: For the noise of the trigger.
         begin: When it is started, s since the start of the campaign.
 
     Raises:

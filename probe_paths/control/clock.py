@@ -75,8 +75,6 @@ def step_times(
     A touch counts until its contact; its retract belongs to the move that follows.
 
     Args:
-        steps: Of the program, in order.
-        clock: Speeds.
         travel: Of each touch until its contact, (N,), mm; None takes the longest path.
 
     Returns:

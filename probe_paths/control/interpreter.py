@@ -94,7 +94,6 @@ def interpret(
     """Execute the text of a program.
 
     Args:
-        data: Content of the program file.
         path: Its name: it must agree with the program's.
         masks: Where FN 16 finds its masks.
         probe: In the spindle; None takes the one that the program's head states.

@@ -50,8 +50,6 @@ class LogPart:
     """What one run of one program logged.
 
     Attributes:
-        path: Of the log file.
-        program: Name of the program.
         heading: Standard, set-up and probe as planned.
         begin: When the program was started; `UNDATED` where its date cannot be read.
         radius: Of the ball as calibrated, mm.
@@ -69,7 +67,6 @@ class LogPart:
         tool: Number of the tool as the control had it; None where the line was lost.
         preset: Number of the preset that the program selected; None where the line was lost.
         temperature: degC by sensor, each (N,); nan where a line could not be read.
-        is_complete: The program ran to its end.
         remarks: What was left out or mended, one line each.
     """
 
@@ -114,8 +111,6 @@ def read_log(path: str | Path, rotary: Sequence[str], text: str | None = None) -
     """Parts of a log file; a program that was run again appends a further part.
 
     Args:
-        path: The log file.
-        rotary: Letters of the machine's rotary axes.
         text: Its text where it is already at hand.
 
     Raises:

@@ -14,7 +14,6 @@ class LogClock:
 
     Attributes:
         start: Time of day of the head, s; that of the first touch where the head has none.
-        remarks: Where the clock was set.
     """
 
     def __init__(self, start: int | None) -> None:

@@ -12,7 +12,6 @@ from matstd.twin.units import DEG
 MAX_PROBING_FEED = 1000.0
 """Above this a cycle 4 is refused, mm/min: the trigger delay and the overtravel grow with it."""
 
-
 SHORTEST_BACK = 1.0
 """Retract after a contact, mm: with less the ball still lies on the surface when it moves off."""
 

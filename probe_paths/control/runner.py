@@ -52,7 +52,6 @@ _SILENT = {
     Kind.PROBE_VECTOR,
 }
 
-
 _DECIMALS = 6
 _FORMAT = re.compile(r"%[\d.]+(?=LF|d)")
 

@@ -28,11 +28,9 @@ class State:
     """Everything that one block can change.
 
     Attributes:
-        path: Program file, for messages.
         frame: Conversion of words to readings.
         q: Readings, (A,); nan where an axis has not been positioned.
         side: Sign of the last motion of every axis, (A,).
-        parameters: Q parameters that have been set.
         feed: Modal feed, mm/min.
         is_tcpm_off: None until the program says.
         is_radius_off: R0 has been read.

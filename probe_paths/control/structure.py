@@ -26,7 +26,6 @@ _NAMES = {
     Kind.PROBE_PATH: "4.3",
 }
 
-
 _DIGITS = 1e-4
 """Of a coordinate in a program, mm."""
 

@@ -32,10 +32,6 @@ class Program:
     """One program file.
 
     Attributes:
-        name: Without its ending.
-        ending: Of its file.
-        text: Whole file.
-        touches: How many it makes.
         duration: By the clock, s.
         read: What the interpreter understood of it.
     """
@@ -63,7 +59,6 @@ class ProgramSet:
     """Programs of one plan.
 
     Attributes:
-        programs: In order.
         masks: That they print through, by file name.
     """
 
@@ -94,8 +89,6 @@ def make_programs(
     """Programs of a plan; they do not depend on when or where they are made.
 
     Args:
-        plan: Of one set-up.
-        dialect: Words of the control.
         feeds: Feeds, and the length of a file.
         clock: For the duration that the head states.
 
@@ -128,11 +121,7 @@ def make_dry_run(
     """One program that goes where a plan's programs go, higher, and touches nothing.
 
     Args:
-        plan: Of one set-up.
         raised: By how much, mm; moves that would end above the retract end there.
-        dialect: Words of the control.
-        feeds: Feeds.
-        clock: For its duration.
     """
     special = Special(DRY_RUN, raised=raised)
     made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), special)
@@ -149,11 +138,8 @@ def make_search(
     """One program that comes down on a standard from above wherever it stands.
 
     Args:
-        plan: Of the search.
         within: How far beside its place the standard may stand, mm and rad.
-        dialect: Words of the control.
         feeds: Feeds; it touches at `SEARCH_FEED`.
-        clock: For its duration.
     """
     feeds = replace(feeds or Feeds(), probing=SEARCH_FEED)
     mm, angle = within
@@ -173,9 +159,6 @@ def make_ball(
 
     Args:
         plan: Of touches on one ball.
-        dialect: Words of the control.
-        feeds: Feeds.
-        clock: For its duration.
     """
     special = Special(BALL, (f"PROBE ON BALL {plan.feature[0]}, BEFORE AND AFTER THE OTHERS",))
     made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), special)
@@ -193,8 +176,6 @@ def make_first(
     Args:
         plan: Of touches on one ball, with the rotary axes at home.
         dialect: Words of the control, in Klartext.
-        feeds: Feeds.
-        clock: For its duration.
 
     Raises:
         NotReachable: The ball is touched at another pose than home, or not from above.

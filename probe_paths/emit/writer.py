@@ -67,7 +67,6 @@ class Special:
 
     Attributes:
         ending: Last letters of its name.
-        remarks: That its head has of it.
         raised: By how much a dry run is raised, which goes where the programs go and touches
             nothing, mm; None for a program that touches.
         is_first: It is written by `first`: one touch in the air and one on a ball.
@@ -83,10 +82,6 @@ class Writer:
     """Writes the text of one plan's programs.
 
     Args:
-        plan: Of one set-up.
-        dialect: Of the control.
-        feeds: Feeds.
-        masks: By file name.
         special: What they are for; None where they measure.
     """
 
@@ -376,10 +371,7 @@ def visit_title(rotary: Sequence[str], count: int, total: int, visit: Visit) -> 
     """Which visit it is, where, and from which side its rotary readings are reached.
 
     Args:
-        rotary: Names of the rotary axes.
         count: Number of the visit in its program, from 1.
-        total: Number of visits of its program.
-        visit: The visit.
     """
     words = [
         f"{a}{v / DEG:+.2f} FROM {'BELOW' if s > 0 else 'ABOVE'}"

@@ -38,7 +38,6 @@ TOOL_LENGTH = 114
 FREE = range(1600, 2000)
 """Parameters that a program may write."""
 
-
 _ENDS_OF_VISITS = range(111, 255)  # up to the last label that the oldest software has
 
 
@@ -93,7 +92,6 @@ class ErrorText(IntEnum):
 
 LENGTH_LIMIT = 1
 """By how much the probe's length may differ from the planned one, mm: the gap that is planned."""
-
 
 CYCLE_NAMES = ("MEASURING IN 3D", "MEASURING IN 3-D")
 DISTANCE_WORDS = ("SET UP", "ABST", "DIST")

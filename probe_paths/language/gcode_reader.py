@@ -69,10 +69,6 @@ _ANYTHING = "a line of the closed list: ( ; G T M # O and a touch"
 def read_gcode(data: bytes, path: str | Path) -> list[Block]:
     """Blocks of a program file, subprograms after the program's end as other languages have them.
 
-    Args:
-        data: Content of the file.
-        path: Its name, for messages.
-
     Raises:
         BadFile: A byte outside ASCII, mixed line ends, a last line cut off or one that is too long,
             another touch than ours, a line that is not in the closed list.

@@ -71,7 +71,6 @@ def interlocks(language: Language, frame: ProgramFrame, is_first: bool = False) 
     """Tests of a program, in their order.
 
     Args:
-        language: Of the control.
         frame: With the probe as planned.
         is_first: Of a commissioning program, which has blocks for few, and one alarm for all.
     """

@@ -73,7 +73,6 @@ class Tilting(NamedTuple):
     Attributes:
         on: Block that begins one, of its spatial angles (degrees) and the reading of the rotary
             axis nearest the foundation.
-        off: Block that ends it.
     """
 
     on: Callable[[Sequence[float], float], str]
@@ -96,7 +95,6 @@ class Says:
         rapid: Word for rapid.
         sync: Wait until the machine stands.
         status: Test of the status of a touch.
-        length: Tests of the length of the called tool.
         unset: Assignment of a status; `{q}` is its parameter.
         printed: Line that goes to the log.
         halt: What ends a program early.
@@ -130,7 +128,6 @@ class Language:
 
     Attributes:
         ending: Of the name of a program file.
-        line_end: Of its lines.
         longest: Characters of a line that is emitted.
         forms: Text of every block by the name of its method, with places in braces.
         stock_forms: Of the blocks of the raw part, which the control draws.
@@ -145,9 +142,7 @@ class Language:
         wait: Block that stops the look-ahead: system data are read where the machine stands.
         unwind: Blocks before rotary axes go home the way that the numbers state.
         tilting: Of planes square to the tool; None where the language has none.
-        label_end: End of a subprogram.
         operator_stop: Waits for the operator.
-        program_stop: Ends the program.
         has_masks: The lines of the log stand in mask files, not in the program.
         subprograms_first: They stand before the program itself.
         tests_turns: The control may take another way or end of a turn than its word states.
@@ -284,7 +279,6 @@ class Language:
         Args:
             dialect: Its spelling, and the second touch of a control without a latch.
             result: First of four consecutive parameters: X, Y, Z and status.
-            touch: Its numbers.
         """
         x, y, z = map(signed, touch.direction)
         back, distance, feed = signed(touch.back), signed(touch.distance), f"{touch.feed:.0f}"

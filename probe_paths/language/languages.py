@@ -25,8 +25,6 @@ def read_blocks(data: bytes, path: str | Path, dialect: Dialect | None = None) -
     """Blocks of a program file in the language of its name.
 
     Args:
-        data: Content of the file.
-        path: Its name.
         dialect: Of the control, where it has words of its own.
 
     Raises:

@@ -167,9 +167,6 @@ def shared_masks(
     """Masks that every program of a campaign uses, by file name.
 
     Args:
-        form: Of the control.
-        decimals: Of coordinates.
-        rotary: Letters of the machine's rotary axes.
         sensors: Temperatures that are logged with every touch.
     """
     clock = form.clock
@@ -225,8 +222,6 @@ def head_mask(
     """Mask of one program's head: what was planned, then the calibration of the probe.
 
     Args:
-        form: Of the control.
-        name: Of the program.
         remarks: Lines of the program's own head (standard, set-up), printed as they are.
         rotary: Letters of the machine's rotary axes: then one touch and the end follow, which is
             the whole log of a commissioning program.

@@ -17,7 +17,6 @@ HEADLESS = "headless.py"
 PROGRAMS = "programs.txt"
 SAID = "headless.txt"
 
-
 BESIDE = Path(__file__).parent / "beside"
 """Files that go to LinuxCNC: templates, and scripts for the Python of the system."""
 
@@ -30,7 +29,6 @@ def machine_files(chain: Chain, probe: Probe, dialect: Dialect, socket: str) -> 
     The preset stands where `ProgramFrame` wants it, the probe in the tool table.
 
     Args:
-        probe: In the spindle.
         dialect: Numbers of tool and preset.
         socket: Where the twin answers.
     """

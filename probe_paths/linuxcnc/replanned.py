@@ -20,8 +20,6 @@ def shortened(
     """The plan that programs of one set-up carry out, or every so many-th touch of it.
 
     Args:
-        programs: As read, in order.
-        standard: For which they were made.
         count: How many touches are kept, spread evenly over all; None for all.
 
     Raises:

@@ -38,7 +38,6 @@ class Session:
     Attributes:
         logs: Text of every log file by name, whole or as far as it came.
         outcome: Empty where every program came to its end; else what stopped it, in one line.
-        said: All that LinuxCNC printed.
     """
 
     logs: Mapping[str, str]
@@ -57,9 +56,6 @@ def run_on_linuxcnc(
     """Run programs one after the other.
 
     Args:
-        programs: For LinuxCNC.
-        files: Of the machine.
-        contact: Decides every touch.
         socket_path: Where the component of the probe asks; its folder is the machine's.
         user: Who runs LinuxCNC; needed where we are root, as LinuxCNC refuses that.
         patience: A program is stopped after so many times its planned duration and a minute.

@@ -25,7 +25,6 @@ class Stroke:
     """One stroke that the twin was asked about.
 
     Attributes:
-        number: Of the touch.
         contact: Readings where the true ball meets the true surface, (A,); nan where it does not.
         direction: Of the motion in readings, (A,).
     """
@@ -65,7 +64,6 @@ class TwinContact:
 
         Args:
             joints: Positions of the control's joints, mm and degrees.
-            direction: Unit vector.
 
         Returns:
             The way; None where nothing is met within the path of the programmed touch.

@@ -31,8 +31,6 @@ def planned_again(
 
     Args:
         programs: Of one set-up, as read.
-        standard: For which they were made.
-        setup: Where the standard stands.
         ball: On the table, by which the probe is watched; programs state it as cylinders.
 
     Raises:

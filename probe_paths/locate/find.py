@@ -51,7 +51,6 @@ class Found:
     """Where a standard stands.
 
     Attributes:
-        setup: With the place.
         shift: Of the standard from its believed place, in its own frame, (3,), mm.
         angles: About x, y and z of it, (3,), rad.
         u: Standard uncertainties of both, (6,), mm and rad.

@@ -63,7 +63,6 @@ def plan_search(
     """Touches from above, at the readings at which programs begin and end.
 
     Args:
-        probe: In the spindle.
         setup: Where the standard is believed to stand.
         spread: How far from there it may stand.
         workshop: What stands beside it.

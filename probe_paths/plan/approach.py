@@ -31,12 +31,10 @@ class Approaches:
     """Ways to N touches of one table pose each.
 
     Attributes:
-        setup: Where the standard stands.
         length: Gauge point to ball centre, mm.
         radius: Of the ball, mm.
         contact: Readings at the expected contact, (N, A).
         normal: Outward unit normals, artefact frame, (N, 3).
-        feature: Names, (N,).
         back: From the contact to the start, mm.
         beyond: From the contact to where the probe gives up, mm.
     """

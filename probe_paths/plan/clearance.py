@@ -27,7 +27,6 @@ class ToolClearance:
 
     Attributes:
         setup: Where the standard is believed to stand.
-        probe: In the spindle.
         workshop: What stands there beside it.
     """
 
@@ -77,7 +76,6 @@ class ToolClearance:
         Args:
             before: Readings at the beginning, (M, A).
             after: Readings at the end, (M, A).
-            with_ball: Whether the ball is looked at.
             with_tool: Whether what is above the ball is.
             spared: Bodies that a move is meant to come near to, (M, B).
             enough: A gap that is larger need not be known better than that, mm.

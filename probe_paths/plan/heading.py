@@ -40,7 +40,6 @@ _BALL_SIZE = re.compile(rf"DATUM R{_NUMBER} S{_NUMBER} F{_NUMBER} U{_NUMBER}")
 _EARLIER = re.compile(r"(STYLUS L.* BODY R.*|NOSE R.* TABLE R.*)")
 _TABLE_WORD, _HASH = "TABLE", 12
 
-
 _FIRST_PARAMETER = 100
 """In which a PLC hands values to programs; there are eight."""
 
@@ -78,7 +77,6 @@ class Heading:
 
     Attributes:
         standard: Name of the standard, as its file has it.
-        setup: Where it is believed to stand.
         probe: In the spindle; in a log its ball and length alone.
         workshop: What stands beside the standard; None in a log.
         serial: Number of the standard, as far as a program can state it; empty where it has none.
@@ -105,7 +103,6 @@ class Heading:
         """What a program has before it: the standard, and the ball if that is touched.
 
         Args:
-            standard: By itself.
             T_table_artefact: Where it stands; None for where it is believed to.
         """
         if self.ball is None:

@@ -97,10 +97,8 @@ def plan_touches(
     """Plan of all touches of one set-up.
 
     Args:
-        probe: In the spindle.
         setup: Where the standard is believed to stand.
         requests: Wanted touches, at any poses, in any order.
-        options: How carefully.
 
     Raises:
         NotReachable: More requests refused than tolerated, a pose without room for the probe above

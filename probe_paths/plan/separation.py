@@ -121,8 +121,6 @@ def gaps(sweeps: Sweeps, hulls: Hulls, enough: float) -> Array:
     """Gap of each sweep from the body of the same row, (M,), mm.
 
     Args:
-        sweeps: Of the tool.
-        hulls: As many bodies.
         enough: A gap that is larger need not be known better than that.
 
     Returns:

@@ -38,7 +38,6 @@ def stroke_gaps(
     the feature, and but the core: faces are the ends of columns that come out of it.
 
     Args:
-        clearance: Tool and bodies.
         start: Readings at the start, (N, A).
         direction: Of the motion in readings, unit vectors, (N, A).
         back: To the expected contact, (N,), mm.

@@ -78,7 +78,6 @@ class Refusal:
 
     Attributes:
         request: Row of the requests; -1 for an anchor touch.
-        feature: That it should touch.
         rotary: Readings of the rotary axes by letter, rad.
         reason: What is against it, as `ProbeReach.reasons` has it.
     """
@@ -98,13 +97,9 @@ class TouchPlan:
     """Touches in the order of execution; rows of one visit stand together.
 
     Attributes:
-        probe: In the spindle.
-        setup: Where it is believed to stand.
-        options: As planned.
         visits: Table poses in order, each with its side of approach and clearance height.
         visit: Index into `visits`, (N,).
         request: Row of the requests, -1 for an anchor touch, (N,).
-        feature: Names, (N,).
         point: Contact points, artefact frame, (N, 3), mm.
         normal: Outward unit normals, (N, 3).
         start: Readings at the start of the touch, (N, A).

@@ -21,7 +21,6 @@ from matstd.twin.record import IntArray, Setup
 _POSES_TRIED = 6
 """Table poses at which a place of a further clamping is looked for, the best inclined first."""
 
-
 _LINKS = 8
 """Touches on balls that a further probe repeats, at every pose that it visits or else at others:
 twice the four numbers of a stylus."""

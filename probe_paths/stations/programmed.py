@@ -13,9 +13,7 @@ class Station:
     """What one probe does in one clamping.
 
     Attributes:
-        plan: Its touches.
         dialect: Of the control, with the probe's tool.
-        programs: That make them.
     """
 
     plan: TouchPlan
