@@ -16,9 +16,9 @@ from matstd.twin.frames import Array
 
 _LETTER, _CELL, _PITCH = 5.0, 10.0, 13.0  # mm: a letter, a frame, from one frame to the next
 _AWAY, _LANDING = 25.0, 6.0  # mm from the plate to the columns; a leader is level so far
-_ARROW, _SLIM = 4.0, 0.25  # mm, and half its width over its length
+_ARROW, _ARROW_SLENDERNESS = 4.0, 0.25  # mm, and half its width over its length
 
-_ASIDE = ((0.0, 8.0, 0.0), (8.0, 0.0, 0.0))
+_LEADER_OFFSET = ((0.0, 8.0, 0.0), (8.0, 0.0, 0.0))
 """From the arrow on a datum's face to the triangle on it, mm, and that on side B."""
 
 _GLYPHS = {
@@ -67,7 +67,7 @@ def annotations_of(standard: Standard, details: Details) -> dict[str, list[Array
     """
     signs = [_tolerance(standard, details, t) for t in tolerances_of(standard, details)]
     for letter, face in DATUMS.items():
-        at = np.add(_place(standard, details, face), _ASIDE[face == "DATUM_B"])
+        at = np.add(_place(standard, details, face), _LEADER_OFFSET[face == "DATUM_B"])
         signs.append(_Sign(f"datum {letter}", at, (letter,), "triangle"))
     for sphere in standard.spheres:
         x, y, z = sphere.centre
@@ -164,5 +164,5 @@ def _head(leader: Array, end: str) -> Array:
     tip, foot = leader[-1], leader[-1] + _ARROW * back
     if end == "triangle":
         tip, foot = foot, leader[-1]
-    wide = (2.0 if end == "triangle" else 1.0) * _SLIM * _ARROW * across
+    wide = (2.0 if end == "triangle" else 1.0) * _ARROW_SLENDERNESS * _ARROW * across
     return np.array([tip, foot + wide, foot - wide, tip])

@@ -1,7 +1,7 @@
 """Letters of dots, as a ball-ended cutter spots them: every dot one face with one edge.
 
-Letters of strokes leave a thousand faces of a tenth of a square millimetre with edges as short,
-where whoever programs the cutting has to pick the few that matter.
+Letters of strokes would leave a thousand faces of a tenth of a square millimetre, among which the
+few relevant faces are hard to select when tool paths are programmed.
 """
 
 import numpy as np

@@ -11,7 +11,7 @@ from matstd.cad_out.details.places import Bore, Side, plan_room
 from matstd.twin.frames import Array, pose
 
 _OF_SIDE = 0.37  # of the plate's thickness, that letters on a side take: two lines have room
-_FREE = 1.5  # mm round a line of text
+_MARGIN = 1.5  # mm round a line of text
 _AWAY = 14.0  # mm from a body that its number may stand
 
 
@@ -160,8 +160,8 @@ class _Plate:
         inside = (places[:, None] + box).reshape(-1, 2)
         base = self.standard.base
         rim = -outline_distance(inside, base.half_size, base.corner_radius)
-        free = (plan_room(self.standard, inside) >= _FREE) & (rim >= 3.0)
+        free = (plan_room(self.standard, inside) >= _MARGIN) & (rim >= 3.0)
         out = free.reshape(len(places), -1).all(axis=1)
         for at, other in self.taken:
-            out &= (np.abs(places - at) >= half + other + _FREE).any(axis=1)
+            out &= (np.abs(places - at) >= half + other + _MARGIN).any(axis=1)
         return np.asarray(out)

@@ -1,10 +1,10 @@
 """Seats of bought balls on their posts.
 
-A ball lies in a countersink of a standard angle and touches it along one circle: the circle, and
-not the glue, fixes its centre in all three directions, and two hard bodies touch there. The glue
-stands outside the circle, in the wedge that opens up to the land of the post, and only holds. A
-sphere of the ball's own radius would touch nobody knows where; a stud would leave the centre to a
-thread and the stiffness to a screw of 5 mm.
+A ball lies in a countersink of a standard angle and touches it along one circle, metal to metal.
+The circle, and not the glue, fixes its centre in all three directions. The glue fills the wedge
+outside the circle and only holds. With a spherical seat of the ball's own radius the place of
+contact would be undefined; with a stud, a thread would fix the centre and a 5 mm screw the
+stiffness.
 """
 
 from dataclasses import dataclass

@@ -91,7 +91,7 @@ def is_closed(shape: Any) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class Named:
+class FaceNaming:
     """What faces are named after.
 
     Attributes:
@@ -115,7 +115,7 @@ def body_faces(standard: Standard, details: Details) -> tuple[str, ...]:
     return (*patches, standard.plane.name, *details.face_names, *holes)
 
 
-def named_faces(wanted: Named, solid: Any) -> dict[str, Any]:
+def named_faces(wanted: FaceNaming, solid: Any) -> dict[str, Any]:
     """Names of the faces that matter, found by the identity or the place of their surface."""
     named: dict[str, Any] = {}
     for face in faces_of(solid):
@@ -138,7 +138,7 @@ def _spline_name(face: Any, surfaces: dict[str, Any]) -> str | None:
     return next((name for name, put_in in surfaces.items() if surface is put_in), None)
 
 
-def _elementary_name(face: Any, wanted: Named) -> str | None:
+def _elementary_name(face: Any, wanted: FaceNaming) -> str | None:
     """Name of a plane, a cylinder or a cone by its place."""
     shape = BRepAdaptor_Surface(face)
     kind = shape.GetType()
@@ -151,7 +151,7 @@ def _elementary_name(face: Any, wanted: Named) -> str | None:
     return None
 
 
-def _plane_name(face: Any, plane: Any, wanted: Named) -> str | None:
+def _plane_name(face: Any, plane: Any, wanted: FaceNaming) -> str | None:
     axis = plane.Axis().Direction()
     normal, place = _coordinates(axis), _coordinates(plane.Location())
     standard = wanted.standard
@@ -175,7 +175,7 @@ def _pad_name(place: Array, details: Details) -> str:
     return min(details.pads, key=lambda pad: np.hypot(place[0] - pad.x, place[1] - pad.y)).name
 
 
-def _hole_name(cylinder: Any, wanted: Named) -> str | None:
+def _hole_name(cylinder: Any, wanted: FaceNaming) -> str | None:
     place = _coordinates(cylinder.Location())
     for bore in wanted.details.bores:
         off = np.cross(place - bore.mouth, bore.direction)
@@ -188,7 +188,7 @@ def _hole_name(cylinder: Any, wanted: Named) -> str | None:
     return None
 
 
-def _seat_name(cone: Any, wanted: Named) -> str | None:
+def _seat_name(cone: Any, wanted: FaceNaming) -> str | None:
     """A countersink, which is wider than any post tapers."""
     tip = _coordinates(cone.Apex())
     for sphere in wanted.standard.spheres:

@@ -1,4 +1,4 @@
-"""The standard as a build123d part, for whoever goes on: fixtures, engraving, drawings."""
+"""The standard as a build123d part, for further design: fixtures, engraving, drawings."""
 
 from __future__ import annotations
 

@@ -216,7 +216,7 @@ def notes_of_label(label: Any) -> tuple[str, ...]:
     return tuple(found)
 
 
-def settle_drawing(model: Any) -> None:
+def set_drawing_context(model: Any) -> None:
     """Give the drawn signs of a translated model their context.
 
     The kernel leaves it empty for an assembly, which makes the file invalid.

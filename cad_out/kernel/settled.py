@@ -16,7 +16,7 @@ _ENTITY = re.compile(r"^#(\d+) = (.*?);$", re.S | re.M)
 _REFERENCE = re.compile(r"#(\d+)")
 
 
-def with_settled_order(whole: str) -> str:
+def with_reproducible_order(whole: str) -> str:
     """A STEP text whose colours follow in the order of the parts.
 
     The kernel writes them in an order that its memory happens to have. Everything from the first
@@ -72,7 +72,7 @@ def without_runout_zones(whole: str) -> str:
 def with_units_of_density(whole: str, count: int) -> str:
     """A STEP text whose densities are in g/cm^3, as their numbers are.
 
-    The kernel writes the exponents 3 of the gram and 2 of the centimetre, whatever it is told.
+    The kernel always writes exponents 3 of the gram and 2 of the centimetre.
 
     Args:
         count: Of its densities.

@@ -62,12 +62,12 @@ def cutting_of(standard: Standard, details: Details) -> Cutting:
     name, points, normals = _surface(standard, details)
     centre = points + (RADIUS + 0.01) * normals
     upright = is_free(standard, centre, np.array([0.0, 0.0, 1.0]))
-    reached = upright | _tilted(standard, centre, ~upright, OVERHANG)
+    reached = upright | _reached_when_tilted(standard, centre, ~upright, OVERHANG)
     left, overhang = ~reached, OVERHANG
     for longer in LONGER:
         if left.any():
             overhang = longer
-            left &= ~_tilted(standard, centre, left, overhang)
+            left &= ~_reached_when_tilted(standard, centre, left, overhang)
     radius = {patch.name: untrimmed_radius(patch) for patch in standard.patches}
     kinds = [n.split()[-1] if " " in n else n[:2] for n in name]
     return Cutting(
@@ -83,7 +83,9 @@ def cutting_of(standard: Standard, details: Details) -> Cutting:
     )
 
 
-def _tilted(standard: Standard, centre: Array, wanted: np.ndarray, overhang: float) -> np.ndarray:
+def _reached_when_tilted(
+    standard: Standard, centre: Array, wanted: np.ndarray, overhang: float
+) -> np.ndarray:
     """Which of the wanted places the finishing cutter reaches, its axis upright or tilted, (N,)."""
     reached = np.zeros(len(centre), dtype=bool)
     for tilt, turn in product((0.0, *TILTS), np.arange(_AZIMUTHS) * 2.0 * np.pi / _AZIMUTHS):

@@ -16,7 +16,7 @@ from matstd.twin.frames import Array
 from matstd.twin.units import UM
 
 ROUGHNESS = (0.2 * UM, 0.4 * UM, 0.8 * UM)
-"""Ra that step-overs are told for, mm."""
+"""Ra for which step-overs are listed, mm."""
 
 _RA = 4.0 / (9.0 * np.sqrt(3.0))  # of the height of a parabolic cusp
 _AZIMUTHS = 8

@@ -103,12 +103,13 @@ def stiffness_of(standard: Standard, details: Details, side: float = 10.0) -> St
     one = standard.material.density * side**3 / 8.0
     np.add.at(mass, freedom.reshape(-1), np.repeat(share * one, 24))
     extra = [
-        _springs(ball, 3 * (len(nodes) + k), places, standard, side) for k, ball in enumerate(balls)
+        _post_springs(ball, 3 * (len(nodes) + k), places, standard, side)
+        for k, ball in enumerate(balls)
     ]
     for k, ball in enumerate(balls):
         tip = 3 * (len(nodes) + k)
         mass[tip : tip + 3] = _tip_mass(ball, standard)
-    held = _screw_freedoms(standard, details, places, side)
+    held = _screw_dofs(standard, details, places, side)
     ends = [e for e, _ in extra]
     rows = np.concatenate([rows, *[np.repeat(e, len(e)) for e in ends], held])
     columns = np.concatenate([columns, *[np.tile(e, len(e)) for e in ends], held])
@@ -176,7 +177,7 @@ def _tip_mass(ball: DatumSphere, standard: Standard) -> float:
     )
 
 
-def _springs(
+def _post_springs(
     ball: DatumSphere, tip: int, places: Array, standard: Standard, side: float
 ) -> tuple[np.ndarray, Array]:
     """Freedoms of a ball and of the plate round its foot, and the stiffness between them.
@@ -204,7 +205,7 @@ def _springs(
     return freedom, apart.T @ np.diag([across, across, along]) @ apart
 
 
-def _screw_freedoms(standard: Standard, details: Details, places: Array, side: float) -> np.ndarray:
+def _screw_dofs(standard: Standard, details: Details, places: Array, side: float) -> np.ndarray:
     """Freedoms of the underside that the screws hold."""
     low = np.flatnonzero(places[:, 2] < 0.5 * side)
     rings = [(pad.x, pad.y, pad.radius) for pad in details.pads]

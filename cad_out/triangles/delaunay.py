@@ -73,7 +73,7 @@ class Sheet:
         return t
 
     @cached_property
-    def seen_wide(self) -> np.ndarray:
+    def encroached(self) -> np.ndarray:
         """Pieces in whose circle the corner of a triangle inside on them stands, (S,)."""
         t, wall = self._whole.simplices[self.inside], self.wall[self.inside]
         row, k = np.nonzero(wall >= 0)
@@ -118,7 +118,7 @@ def circumcircles(corner: Array) -> tuple[Array, Array]:
     return a + np.column_stack([x, y]), np.hypot(x, y)
 
 
-def apart(centre: Array, radius: Array) -> np.ndarray:
+def separate_centres(centre: Array, radius: Array) -> np.ndarray:
     """Of candidates, the first ones first, those that stand in no circle of one taken, (C,)."""
     keep = np.ones(len(centre), dtype=bool)
     if not len(centre):

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial import cKDTree
 
-from matstd.cad_out.triangles.delaunay import Sheet, apart, circumcircles
+from matstd.cad_out.triangles.delaunay import Sheet, circumcircles, separate_centres
 from matstd.twin.frames import Array
 
 _LEAST_SINE = np.sin(np.deg2rad(20.0))  # of a chart's angles: what Ruppert's refinement reaches
@@ -123,7 +123,7 @@ def refined(
         for side in face.sides:
             users[side.edge].add(number)
     for face in faces:
-        _begin(face, edges, points)
+        _seed_points(face, edges, points)
     waiting = set(range(len(faces)))
     for _ in range(_ROUNDS):
         halve: set[tuple[int, int]] = set()
@@ -140,7 +140,7 @@ def refined(
     return _collected(points, faces)
 
 
-def _begin(face: Face, edges: Sequence[Edge], points: "_Points") -> None:
+def _seed_points(face: Face, edges: Sequence[Edge], points: "_Points") -> None:
     """Pieces and an even lattice of points at the spacing of a face, where it has one.
 
     Refinement alone ends at as good angles, after more rounds and with a half more triangles.
@@ -255,8 +255,8 @@ def _improve(
     if sheet.lost.any():
         return outline.pieces(sheet.lost), False
     face.triangles, face.outline = sheet.triangles, outline.ids
-    if (sheet.seen_wide & may).any():
-        return outline.pieces(sheet.seen_wide & may), False
+    if (sheet.encroached & may).any():
+        return outline.pieces(sheet.encroached & may), False
     corner, worst = places[face.triangles], _LEAST_SINE / np.maximum(sheet.sines(), 1e-12)
     side = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).min(axis=1)
     worst[side < 2.0 * _LEAST] = 0.0
@@ -277,7 +277,7 @@ def _improve(
         hit[k] = bool(found) and may[k]
         struck[found] = True
     centre[outside] = corner[order][outside].mean(axis=1)
-    new = centre[~struck][apart(centre[~struck], radius[~struck])]
+    new = centre[~struck][separate_centres(centre[~struck], radius[~struck])]
     face.inner = np.concatenate([face.inner, new])
     return outline.pieces(hit), bool(len(new))
 

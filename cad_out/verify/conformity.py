@@ -46,8 +46,8 @@ AREA_LIMIT = 1e-3
 """Relative: a face that a neighbour's column cuts into, or that is trimmed elsewhere, is found."""
 
 LEAST_FACE, LEAST_EDGE = 1.0, 0.5
-"""Smallest face, mm^2, and shortest edge, mm, of an upright standard: what is smaller is a sliver,
-which whoever programs the cutting or meshes the body stumbles over."""
+"""Smallest face, mm^2, and shortest edge, mm, of an upright standard: smaller ones are slivers,
+which hinder tool-path programming and meshing."""
 
 SHARP_LIMIT = 0.1
 """Length of sharp inner edges on an upright standard, mm."""
@@ -79,8 +79,8 @@ class Conformity:
         is_upright: All pillars and posts stand upright and are blended.
         names: Faces that carry a name in the file.
         missing: Faces that should and do not, or are not parts in the file of single faces.
-        missing_details: What of the workshop's additions found no room, in words.
-        untold: Tolerances, notes and drawn signs that not both readers find as they were meant.
+        missing_details: Workshop details that found no room, in words.
+        untold: Tolerances, notes and drawn signs that a reader does not find as designed.
         face_deviation: Largest distance from the design by face, in both STEP files, without any
             CAD kernel.
         area_error: Of every patch's trimmed face in the mesh against the design, relative.
@@ -217,9 +217,6 @@ def measure(
         built: Facts of the building process: volume of every product before it was written,
             mm^3, distance of the body's mesh from its faces, mm.
         chord: Asked for, mm.
-
-    Returns:
-        All figures, good or bad.
     """
     run_kernel("reread", folder)
     found = json.loads((folder / FACTS).read_text(encoding="utf-8"))

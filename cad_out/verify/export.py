@@ -32,10 +32,7 @@ def export_standard(
     Args:
         chord: Largest distance of the mesh from the exact faces, mm.
         author: Who is responsible for the design, for the header of the STEP file.
-        organisation: Whom the author works for.
-
-    Returns:
-        All measured figures.
+        organisation: The author's employer.
 
     Raises:
         NotBuildable: The kernel refuses or crashes, or a figure misses its limit.

@@ -14,10 +14,10 @@ from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
 from matstd.twin.units import DEG
 
-TOGETHER = timedelta(days=30)
+LONGEST_CAMPAIGN = timedelta(days=30)
 """Between the first and the last log of one evaluation: a standard stays clamped for days."""
 
-COARSE = 0.01
+COARSEST_STEP = 0.01
 """Step of positions that is too coarse for a measurement, mm; the masks print 0.000001."""
 
 FEWEST = 5
@@ -35,13 +35,13 @@ def check_numbers(parts: Sequence[LogPart]) -> None:
         BadFile: File and line, what stood there, what was expected.
     """
     dated = sorted((p for p in parts if p.begin.year != UNDATED.year), key=lambda p: p.begin)
-    if dated and dated[-1].begin - dated[0].begin > TOGETHER:
+    if dated and dated[-1].begin - dated[0].begin > LONGEST_CAMPAIGN:
         raise BadFile(
             dated[0].path,
             "DATE",
             f"{dated[0].begin.date()}, where {dated[-1].path.name} has {dated[-1].begin.date()}",
-            f"logs of one campaign, within {TOGETHER.days} days; evaluate them apart, or put the "
-            f"clock of the control right",
+            f"logs of one campaign, within {LONGEST_CAMPAIGN.days} days; evaluate them apart, or "
+            "correct the clock of the control",
         )
     for part in (p for p in parts if len(p.number) >= FEWEST):
         _check_steps(part)
@@ -56,9 +56,9 @@ def _check_steps(part: LogPart) -> None:
         found = f"the same time at all {len(part.time)} touches"
         expected = "a clock that runs: one that stands hides every drift"
         raise BadFile(part.path, last, found, expected)
-    steps = part.xyz / COARSE
+    steps = part.xyz / COARSEST_STEP
     if np.allclose(steps, np.round(steps), rtol=0.0, atol=1e-4):
-        found = f"positions in steps of {COARSE:g} mm or more at all touches"
+        found = f"positions in steps of {COARSEST_STEP:g} mm or more at all touches"
         raise BadFile(part.path, last, found, "six decimals, as the program prints them")
 
 

@@ -1,12 +1,11 @@
-"""Whether the probe is still what it was: the same touches on one ball, before and after.
+"""Changes of the probe, from the same touches on one ball before and after a campaign.
 
-The same touch is compared with itself, so that what the machine does wrong there drops out:
+Each touch is compared with itself, so that the errors of the machine there cancel:
 
     gap_after - gap_before = n . c + r
 
-with c how far the ball has moved and r by how much the effective radius of the probe has grown,
-four numbers of eight touches, by least squares. Not separated: the ball, the table and the spindle
-may all have moved by c.
+with c the displacement of the ball and r the growth of the probe's effective radius: four unknowns
+from eight touches, by least squares. Displacements of ball, table and spindle are not separated.
 """
 
 from collections.abc import Sequence
@@ -26,20 +25,20 @@ from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.machine import Chain
 from matstd.twin.units import HOUR, UM
 
-EXPANDED = 2.0
-"""Of a change in standard uncertainties, below which it is none."""
+COVERAGE = 2.0
+"""Coverage factor of a significant change."""
 
 _UNKNOWNS = 4
-_ODD = 3.0  # times the stated noise in what the four numbers leave over
+_EXCESS_SCATTER = 3.0  # times the stated noise in what the four numbers leave over
 
 
 @dataclass(frozen=True, eq=False)
 class BallChange:
-    """What a ball tells of the time between two looks at it.
+    """Changes between two measurements of a ball.
 
     Attributes:
-        before: When it was measured first.
-        after: And again.
+        before: Time of the first measurement.
+        after: Time of the second.
         centre: By how much its centre has moved, table frame, (3,), mm.
         radius: By how much the effective radius of the probe has grown, mm.
         u: Standard uncertainties of the four, (4,), mm.
@@ -66,7 +65,7 @@ class BallChange:
     @property
     def is_seen(self) -> bool:
         """Whether anything has changed by more than its expanded uncertainty."""
-        return bool(np.any(np.abs([*self.centre, self.radius]) > EXPANDED * self.u))
+        return bool(np.any(np.abs([*self.centre, self.radius]) > COVERAGE * self.u))
 
     @property
     def hours(self) -> float:
@@ -147,15 +146,15 @@ def _change(
         radius=float(solved[3]),
         u=np.sqrt(2.0 * np.diag(inverse)) * max(u, scatter),
         scatter=scatter,
-        is_odd=scatter > _ODD * u,
+        is_odd=scatter > _EXCESS_SCATTER * u,
     )
 
 
 def read_heights(part: LogPart, standard: Standard, chain: Chain) -> dict[str, float]:
-    """How far the ball of a commissioning touch is beside the surface it met, mm.
+    """Gap between the ball of a commissioning touch and the surface it met, mm.
 
-    One touch from above settles what Z a control returns: by the wrong meaning the ball is the
-    whole length of the probe beside.
+    One touch from above settles which Z a control returns: with the wrong meaning the gap is the
+    whole length of the probe.
 
     Args:
         standard: As calibrated.
@@ -175,10 +174,10 @@ def read_heights(part: LogPart, standard: Standard, chain: Chain) -> dict[str, f
 
 
 class EffectiveRadius(NamedTuple):
-    """What a calibrated ball tells of the probe's effective radius.
+    """Effective radius of the probe on a calibrated ball.
 
     Attributes:
-        excess: Beyond the radius that the control has calibrated, mm.
+        excess: Over the radius that the control has calibrated, mm.
         u: Its standard uncertainty, with that of the ball, mm.
     """
 

@@ -20,17 +20,17 @@ CONTACT_TOLERANCE = 1e-3 * NM
 """The ball touches when its gap is this small, mm."""
 
 _STEPS = 12
-"""Of Newton's method; with errors of ordinary size four were enough."""
+"""Limit for Newton's method; with errors of ordinary size four sufficed."""
 
-_LATE = 10.0  # mm beyond the end of a touch: far more than errors of a machine that runs
+_BEYOND_END = 10.0  # mm beyond the end of a touch: far more than the errors of a working machine
 
 FIRST_MORNING = datetime(2000, 1, 1, 8, 0, 0)
-"""When a simulated campaign begins; any date does, but it must not depend on today."""
+"""Start of a simulated campaign: a fixed date, so that results do not depend on today's."""
 
 
 @dataclass(frozen=True, eq=False)
 class VirtualMachine:
-    """The machine as it really is, for nobody but the simulator to know.
+    """The machine as it really is, known to the simulator only.
 
     Attributes:
         chain: Nominal kinematics.
@@ -85,8 +85,8 @@ class ContactSolver:
         motion = np.einsum("nij,nj->ni", D, self.direction[:, columns])
         self.motion = turn(self.T_artefact_table, motion)  # (N, 3) of the ball per mm of travel
         centre = apply(self.T_artefact_table, tip(chain, self.start, self.length))
-        # errors bring nearer what is met a little late; what is farther off is not looked at
-        latest = self.distance + _LATE
+        # errors may advance a contact a little; surfaces farther off are ignored
+        latest = self.distance + _BEYOND_END
         hit = contact(self.standard, centre, self.motion, self.radius, latest)
         self.meeting = hit.meeting
         self.feature = hit.feature.astype(str)
@@ -188,7 +188,7 @@ class ContactSolver:
         )
 
     def classify(self) -> None:
-        """Tell contacts that the control would not report from the others."""
+        """Mark the touches that the control would not report as a contact."""
         failures = [
             (~(np.abs(self.gap) < 1e3 * CONTACT_TOLERANCE), Meeting.UNRESOLVED),
             (self.travel < 0.0, Meeting.INSIDE),
@@ -197,7 +197,7 @@ class ContactSolver:
         for name in dict.fromkeys(self.feature.tolist()):
             if name in self.standard.features:
                 surface = self.standard.features[name]
-                # what is planned keeps away from the stem; the machine as it is may come nearer
+                # the plan keeps away from the stem, the erroneous machine may come closer
                 if isinstance(surface, DatumSphere):
                     inside = surface.is_bare(self.uv)
                 else:

@@ -1,9 +1,8 @@
-"""What disturbs a simulated campaign: effects of known size, and the record of what drives them.
+"""Disturbances of a simulated campaign: effects of known size, and the record that drives them.
 
-Effects act by their own formulas on the touches of the whole campaign, as a lag has to know what
-was before and a slip of the standard which touches came after. What drives a lag (temperatures,
-spindle speed) is followed over the whole record, between the touches too; whoever analyses the run
-later knows it at the touches only.
+Effects act on the touches of the whole campaign: a lag depends on earlier touches, a slip of the
+standard on later ones. The drivers of a lag (temperatures, spindle speed) are followed over the
+whole record; the analysis of the run knows them at the touches only.
 """
 
 from collections.abc import Callable, Sequence

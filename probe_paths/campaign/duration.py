@@ -1,4 +1,4 @@
-"""How long it takes to probe a body that somebody might have instead of the standard."""
+"""Time to probe a body that might be used instead of the standard."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Logs before they are evaluated: every touch once, and what they say that cannot be right."""
+"""Logs before evaluation: every touch once, and entries that cannot be right."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -17,7 +17,7 @@ from matstd.twin.record import IntArray
 from matstd.twin.units import NM
 
 LARGEST_OFFSET = 0.1
-"""Of a stylus that somebody has centred, mm: ten times what a dial gauge shows."""
+"""Largest offset of a centred stylus, mm: ten times the reading of a dial gauge."""
 
 _PER_TOUCH = ("line", "number", "pose", "feature", "xyz", "time")
 
@@ -136,13 +136,13 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
 
 def _check_design(part: LogPart, standard: Standard) -> None:
     """Refuse a log of another design of that name; a calibrated standard has other numbers."""
-    told = part.heading.calibration
-    if told and standard.known is None:
+    stated = part.heading.calibration
+    if stated and standard.known is None:
         balls = standard.spheres[:-1] if part.heading.ball else standard.spheres
         ours = calibration_hash(replace(standard, spheres=balls))
-        if told != ours:
+        if stated != ours:
             raise BadFile(
-                part.path, "CALIBRATION", told,
+                part.path, "CALIBRATION", stated,
                 f"{ours}, the hash of '{standard.name}': the log is of another design",
             )  # fmt: skip
 
@@ -169,11 +169,10 @@ def without_rows(parts: Sequence[LogPart], good: np.ndarray) -> list[LogPart]:
     ]
 
 
-def sensed(parts: Sequence[LogPart]) -> tuple[dict[str, Array], list[str]]:
+def logged_temperatures(parts: Sequence[LogPart]) -> tuple[dict[str, Array], list[str]]:
     """Temperatures that the control logged, each (N,) degC, and remarks on those left out.
 
-    A reading that is missing lies between its neighbours; what is no temperature of a machine is
-    for the reader of runs to judge.
+    A missing reading is interpolated; implausible temperatures are left to the reader of runs.
     """
     out: dict[str, Array] = {}
     remarks = []

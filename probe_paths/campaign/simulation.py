@@ -54,7 +54,7 @@ def simulate_search(
     """What a search or a commissioning program does on the twin, with the log that it leaves.
 
     Raises:
-        BadFile: A touch that meets nothing, or a tool that comes too near to something, where the
+        BadFile: A touch without contact, or a tool too close to an obstacle, where the
             standard is believed to stand.
         NotReachable: A touch that meets nothing where it stands.
         DesignError: A program made for another standard.
@@ -131,7 +131,7 @@ def _campaign(
     rng: np.random.Generator,
     believed: Standard,
 ) -> Campaign:
-    """All programs on one machine, and what their logs tell."""
+    """All programs on one machine, and the run evaluated from their logs."""
     runs = run_programs(texts, standard, machine, rng)
     runs[-1].check_done()
     parts = [

@@ -1,4 +1,4 @@
-"""How far from its stated place a standard may stand before a touch is lost."""
+"""Largest misplacement of a standard at which no touch is lost."""
 
 from collections.abc import Callable, Sequence
 
@@ -22,8 +22,8 @@ _TOUCHES = 60  # of the plan, evenly: each takes 3 ms, and there are twelve dire
 def setup_tolerance(plan: TouchPlan) -> dict[str, float]:
     """Largest displacement, either way, by which no touch of a plan is lost.
 
-    The standard is displaced on the perfect twin, and every looked-at touch has to meet the
-    feature it was planned for within its path.
+    The standard is displaced on the perfect twin, and every sampled touch has to meet its
+    planned feature within its path.
 
     Returns:
         By X Y Z, mm, and A B C, degrees, about the standard's own axes; zero where the smallest

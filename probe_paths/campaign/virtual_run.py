@@ -2,7 +2,7 @@
 
 The axes go where the text sends them. At every touch the ball, displaced by all errors at the
 actual readings, travels along the probing vector until it touches the B-spline or the sphere; what
-the control then knows are the readings, and they go through the masks into the log.
+the control then knows are the readings, which it prints through the masks into the log.
 """
 
 from collections.abc import Mapping, Sequence
@@ -52,7 +52,7 @@ class VirtualRun:
         time: Of the trigger, s since the start of the campaign, (N,).
         feature: What was touched, (N,).
         meeting: What the ball ran into, (N,), values of `Meeting`; a contact is one with a surface.
-        reached: How many touches were tried before the program ended.
+        reached: Number of touches tried before the program ended.
         end: s since the start of the campaign.
     """
 
@@ -102,7 +102,7 @@ def run_programs(
         DesignError: A program made for another standard.
     """
     solvers = [_solver(program, standard, machine, rng) for program in programs]
-    # what a disturbance has to know of the other programs; who has none asks nothing
+    # a disturbance may depend on the touches of other programs
     planned = [] if machine.disturbance is None else _planned_touches(solvers)
     runs: list[VirtualRun] = []
     begin = 0.0

@@ -110,14 +110,16 @@ def interpret(
     frame = ProgramFrame(chain, _probe(head, probe, path))
     stated = promise(blocks, head, path)
     runner = Runner(blocks, places, frame, path, name, masks, head)
-    state = _begun(path, frame, stated, head.is_tilted)
+    state = _initial_state(path, frame, stated, head.is_tilted)
     steps = runner.run(0, state)
     runner.check_logged()
     _check_promise(stated, state, runner.touches, path)
     language = language_of(path)
     for test in (*interlocks(language, frame, stated.is_first), *turn_tests(language, frame)):
         for off in (-_BEYOND * test.limit, _BEYOND * test.limit):
-            runner.run(0, replace(_begun(path, frame, stated, head.is_tilted), fault=test, off=off))
+            runner.run(
+                0, replace(_initial_state(path, frame, stated, head.is_tilted), fault=test, off=off)
+            )
     for touch in steps:
         if not isinstance(touch, ProbeStep) or touch.is_air:
             continue
@@ -141,7 +143,7 @@ def interpret(
     )
 
 
-def _begun(path: Path, frame: ProgramFrame, stated: Promise, is_tilted: bool) -> State:
+def _initial_state(path: Path, frame: ProgramFrame, stated: Promise, is_tilted: bool) -> State:
     """The control when a program is started: where its axes stand is not known."""
     axes = len(frame.chain.axes)
     return State(

@@ -155,7 +155,7 @@ class Runner:
         touch.on_miss.extend(self.run(wrong, missed, is_branch=True))
         self.branches -= 1
         if touch.is_air and not isinstance(touch.on_miss[-1], Halt):
-            raise state.refusal(block, "a contact in the air that goes on", state.says.halt)
+            raise state.refusal(block, "a contact in the air that goes on", state.terms.halt)
         return right
 
     def _check_skip(self, i: int, block: Block, state: State) -> None:
@@ -171,7 +171,7 @@ class Runner:
             raise state.refusal(
                 block,
                 repr(block.text),
-                f"Q{Q.START:d} GT, a label behind the visit, a retract ({state.says.retract}) "
+                f"Q{Q.START:d} GT, a label behind the visit, a retract ({state.terms.retract}) "
                 "before it and there",
             )
 
@@ -237,7 +237,7 @@ class Runner:
             state.write(block, result + part, Result(touch.index, part))
         # the control has to write what is hoped for
         if not isinstance(left_over, float) or (left_over >= 0.0) is not is_air:
-            unset = state.says.unset.format(q=result + STATUS)
+            unset = state.terms.unset.format(q=result + STATUS)
             raise state.refusal(
                 block,
                 "the status of the touch before",
@@ -271,7 +271,7 @@ class Runner:
         """FN 16 with the values of this moment."""
         state.check_status_was_tested(block)
         if not state.is_synchronous:
-            raise state.refusal(block, "a line printed ahead", f"{state.says.sync} before it")
+            raise state.refusal(block, "a line printed ahead", f"{state.terms.sync} before it")
         self._check_place(block, state)
         lines = self._mask(block, state)
         wanted = {a for line in lines for a in line.arguments if isinstance(a, int)}
@@ -321,7 +321,7 @@ class Runner:
         if flow.returns:
             raise state.refusal(block, "M30 inside a subprogram", "LBL 0 at its end")
         if not state.is_retracted:
-            raise state.refusal(block, "M30", f"a retract ({state.says.retract}) at the end")
+            raise state.refusal(block, "M30", f"a retract ({state.terms.retract}) at the end")
 
     def _check_alarm(self, i: int, state: State, fault: Interlock) -> None:
         """A stop says what is wrong by the label that it stands behind."""
@@ -341,7 +341,7 @@ class Runner:
                 self.path,
                 f"line {block.line}",
                 repr(block.text),
-                f"{language_of(self.path).says.retract_max}, and no other move, after a touch "
+                f"{language_of(self.path).terms.retract_max}, and no other move, after a touch "
                 "without contact",
             )
 
@@ -353,5 +353,5 @@ class Runner:
                     self.path,
                     f"line {touch.line}",
                     f"touch {touch.number} without a log line",
-                    f"{language_of(self.path).says.printed} with its results",
+                    f"{language_of(self.path).terms.printed} with its results",
                 )

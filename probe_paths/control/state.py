@@ -7,7 +7,15 @@ from pathlib import Path
 import numpy as np
 
 from matstd.probe_paths.control.steps import Value
-from matstd.probe_paths.language import FREE, Block, Interlock, Label, Says, language_of, turn_tests
+from matstd.probe_paths.language import (
+    FREE,
+    Block,
+    Interlock,
+    Label,
+    Terms,
+    language_of,
+    turn_tests,
+)
 from matstd.probe_paths.plan import ProgramFrame
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
@@ -97,9 +105,9 @@ class State:
         return other
 
     @property
-    def says(self) -> Says:
+    def terms(self) -> Terms:
         """How the program's language says what a refusal asks for."""
-        return language_of(self.path).says
+        return language_of(self.path).terms
 
     def refusal(self, block: Block, found: str, expected: str) -> BadFile:
         """The one clear line about a block."""
@@ -111,11 +119,11 @@ class State:
             name
             for name, there in (
                 ("M5", self.is_spindle_off or "M5" not in language_of(self.path).reset),
-                (self.says.reset, self.is_tcpm_off),
-                (self.says.plane, self.is_plane_off),
-                (self.says.shift, self.shift_off == set("XYZ")),
-                (self.says.tool, self.tool is not None),
-                (self.says.preset, self.preset is not None),
+                (self.terms.reset, self.is_tcpm_off),
+                (self.terms.plane, self.is_plane_off),
+                (self.terms.shift, self.shift_off == set("XYZ")),
+                (self.terms.tool, self.tool is not None),
+                (self.terms.preset, self.preset is not None),
             )
             if not there
         ]
@@ -160,7 +168,7 @@ class State:
             raise self.refusal(
                 block,
                 f"{block.text!r} after touch {self.untested + 1}",
-                f"{self.says.status} first",
+                f"{self.terms.status} first",
             )
 
     def write(self, block: Block, q: int, value: Value) -> None:

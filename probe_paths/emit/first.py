@@ -61,14 +61,14 @@ class FirstWriter(Writer):
         return row
 
     def _first_remarks(self, row: int, duration: float) -> list[str]:
-        assert self.special is not None
+        assert self.purpose is not None
         k, probe, feature = self.language, self.plan.probe, str(self.plan.feature[row])
         table = f"L{probe.tool_length:+.4f} R{probe.radius:+.4f}"
         remarks = [
             *self.heading.lines,
             f"FEATURE {self.number[feature]} IS {feature}",
             f"TOUCHES 1 TO 1, ABOUT {max(duration / MINUTE, 1.0):.0f} MIN",
-            *self.special.remarks,
+            *self.purpose.remarks,
             f"PRESET {self.dialect.preset}: TABLE CENTRE WITH ROTARY AXES AT ZERO, NO ROT",
             f"TOOL {self.dialect.tool} IS THE PROBE: {table}, SPINDLE MUST NOT TURN",
         ]

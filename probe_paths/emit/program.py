@@ -12,7 +12,7 @@ import numpy as np
 
 from matstd.probe_paths.control import BALL, FIRST, Clock, ReadProgram, interpret, step_times
 from matstd.probe_paths.emit.first import FirstWriter
-from matstd.probe_paths.emit.writer import Feeds, Special, Writer
+from matstd.probe_paths.emit.writer import Feeds, Purpose, Writer
 from matstd.probe_paths.language import LANGUAGES, Dialect, checked_name, head_mask, shared_masks
 from matstd.probe_paths.plan import TouchPlan
 from matstd.twin.errors import DesignError
@@ -123,8 +123,8 @@ def make_dry_run(
     Args:
         raised: By how much, mm; moves that would end above the retract end there.
     """
-    special = Special(DRY_RUN, raised=raised)
-    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), special)
+    purpose = Purpose(DRY_RUN, raised=raised)
+    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), purpose)
     return ProgramSet(made.programs([list(range(len(plan.visits)))]), {})
 
 
@@ -144,8 +144,8 @@ def make_search(
     feeds = replace(feeds or Feeds(), probing=SEARCH_FEED)
     mm, angle = within
     stands = f"SEARCH FROM ABOVE, STANDS WITHIN {mm:.1f} MM AND {angle / DEG:.2f} DEG"
-    special = Special(SEARCH, (stands,))
-    made = _Maker(plan, dialect or Dialect(), feeds, clock or Clock(), special)
+    purpose = Purpose(SEARCH, (stands,))
+    made = _Maker(plan, dialect or Dialect(), feeds, clock or Clock(), purpose)
     return ProgramSet(made.programs([list(range(len(plan.visits)))]), made.printed_masks)
 
 
@@ -160,8 +160,8 @@ def make_ball(
     Args:
         plan: Of touches on one ball.
     """
-    special = Special(BALL, (f"PROBE ON BALL {plan.feature[0]}, BEFORE AND AFTER THE OTHERS",))
-    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), special)
+    purpose = Purpose(BALL, (f"PROBE ON BALL {plan.feature[0]}, BEFORE AND AFTER THE OTHERS",))
+    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), purpose)
     return ProgramSet(made.programs([list(range(len(plan.visits)))]), made.printed_masks)
 
 
@@ -185,8 +185,8 @@ def make_first(
     if not LANGUAGES[dialect.language].has_masks:
         raise DesignError(f"a commissioning program in {dialect.language}: expected klartext")
     remark = f"COMMISSIONING: ONE TOUCH IN AIR, ONE ON BALL {plan.feature[0]}"
-    special = Special(FIRST, (remark,), is_first=True)
-    made = _Maker(plan, dialect, feeds or Feeds(), clock or Clock(), special)
+    purpose = Purpose(FIRST, (remark,), is_first=True)
+    made = _Maker(plan, dialect, feeds or Feeds(), clock or Clock(), purpose)
     return ProgramSet(made.programs([[0]]), made.printed_masks)
 
 
@@ -199,17 +199,17 @@ class _Maker:
         dialect: Dialect,
         feeds: Feeds,
         clock: Clock,
-        special: Special | None = None,
+        purpose: Purpose | None = None,
     ) -> None:
         self.plan, self.dialect, self.clock = plan, dialect, clock
         self.language = LANGUAGES[dialect.language]
         form, rotary = self.language.log, plan.chain.rotary_axes
         self.shared = shared_masks(form, dialect.log_decimals, rotary, dialect.sensors)
         self.masks = dict(self.shared)
-        self.is_first = special is not None and special.is_first
+        self.is_first = purpose is not None and purpose.is_first
         written_by = FirstWriter if self.is_first else Writer
-        self.writer = written_by(plan, dialect, feeds, self.masks, special)
-        self.only = special.ending if special else ""
+        self.writer = written_by(plan, dialect, feeds, self.masks, purpose)
+        self.only = purpose.ending if purpose else ""
 
     @property
     def printed_masks(self) -> dict[str, str]:
@@ -260,7 +260,7 @@ class _Maker:
     def _duration(self, read: ReadProgram) -> float:
         """Duration of a program, s."""
         plan = self.plan
-        # what a search meets nobody knows: as long as it can take
+        # the contacts of a search are unknown: every touch takes its longest path
         travel = np.full(len(read.touches), plan.options.standoff)
         travel = np.full(len(travel), plan.distance) if read.is_search else travel
         return float(step_times(plan.chain, read.steps, self.clock, travel)[-1])

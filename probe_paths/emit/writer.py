@@ -62,7 +62,7 @@ class Feeds:
 
 
 @dataclass(frozen=True)
-class Special:
+class Purpose:
     """What a program beside those that measure is for.
 
     Attributes:
@@ -82,7 +82,7 @@ class Writer:
     """Writes the text of one plan's programs.
 
     Args:
-        special: What they are for; None where they measure.
+        purpose: What they are for; None where they measure.
     """
 
     def __init__(
@@ -91,13 +91,13 @@ class Writer:
         dialect: Dialect,
         feeds: Feeds,
         masks: Mapping[str, str],
-        special: Special | None = None,
+        purpose: Purpose | None = None,
     ) -> None:
         self.plan, self.dialect, self.feeds, self.masks = plan, dialect, feeds, masks
-        self.special = special
-        self.raised = special.raised if special else None
+        self.purpose = purpose
+        self.raised = purpose.raised if purpose else None
         self.language = LANGUAGES[dialect.language]
-        is_first = special is not None and special.is_first
+        is_first = purpose is not None and purpose.is_first
         tilted = dialect.is_tilted and not is_first
         self.tilting = self.language.tilting if tilted and dialect.has_planes else None
         if tilted and self.tilting is None:
@@ -112,7 +112,7 @@ class Writer:
             probe=plan.probe,
             workshop=plan.options.workshop,
             serial=stated_serial(plan.standard.serial),
-            calibration=calibration_hash(self._alone(plan)),
+            calibration=calibration_hash(self._without_workshop_ball(plan)),
             ball=plan.options.ball,
             is_tilted=self.tilting is not None,
             sensors=() if is_first else dialect.sensors,
@@ -122,7 +122,7 @@ class Writer:
         self.retract = self.language.retract(self.top)
 
     @staticmethod
-    def _alone(plan: TouchPlan) -> Standard:
+    def _without_workshop_ball(plan: TouchPlan) -> Standard:
         """The standard without the ball of the workshop, which has no calibration of its own."""
         standard = plan.standard
         if plan.options.ball is None:
@@ -165,7 +165,7 @@ class Writer:
                 if self.raised is None
                 else f"DRY RUN, RAISED BY {self.raised:+.1f} MM, NO TOUCH"
             ),
-            *(k.comment(text) for text in (self.special.remarks if self.special else ())),
+            *(k.comment(text) for text in (self.purpose.remarks if self.purpose else ())),
             k.comment(
                 f"PRESET {self.dialect.preset}: TABLE CENTRE WITH ROTARY AXES AT ZERO, NO ROT"
             ),
@@ -259,23 +259,23 @@ class Writer:
 
     def _turn(self, here: Array, visit: Visit) -> list[str]:
         """Retract, turn past the position, then to it from the stated side."""
-        k, out = self.language, [self.retract, *self._flat()]
+        k, out = self.language, [self.retract, *self._end_plane()]
         if self.rotary:
             out += [k.turn(self._words(place)) for place in waypoints(here, visit.before)]
             out.append(k.line(self._words(visit.rotary), self.feeds.turning))
-            out += self._reached(visit.rotary) if k.tests_turns else []
+            out += self._turn_checks(visit.rotary) if k.tests_turns else []
         out += self._plane(visit)
         sides = zip((Q.SIDE_1, Q.SIDE_2), visit.side, strict=False)
         return [*out, k.assign(Q.POSE, visit.pose + 1), *(k.assign(q, s) for q, s in sides)]
 
-    def _reached(self, rotary: Array) -> list[str]:
+    def _turn_checks(self, rotary: Array) -> list[str]:
         """Test that the rotary axes stand where they were sent."""
         words = self._words(rotary)
         tests = turn_tests(self.language, self.frame)
         planned = (test._replace(planned=words[str(test.datum)]) for test in tests)
         return [self.language.wait, *(block for test in planned for block in self._tested(test))]
 
-    def _flat(self) -> list[str]:
+    def _end_plane(self) -> list[str]:
         """End of a tilted plane, before the table turns."""
         return [self.tilting.off] if self.tilting else []
 
@@ -340,7 +340,7 @@ class Writer:
         k, printed = self.language, self._print(f"{SharedMask.END}.A", name)
         logged = [k.wait, printed] if self.raised is None else []
         end = [k.structure("END"), self.retract, *logged]
-        return [*end, *self._flat(), *self._home(), k.program_stop]
+        return [*end, *self._end_plane(), *self._home(), k.program_stop]
 
     def _subprograms(self, name: str) -> list[str]:
         """Look at the status and log; retract and stop where there was no contact."""

@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from matstd.probe_paths.language.dialect import Label, Q
-from matstd.probe_paths.language.language import Datum, Language, Says
+from matstd.probe_paths.language.language import Datum, Language, Terms
 from matstd.probe_paths.language.masks import LogForm, MaskLine
 
 ENDING = ".ngc"
@@ -45,7 +45,7 @@ SYSTEM: Mapping[Datum, str] = {
 }
 """Offsets are those of the coordinate system in use, #5220 (1 is G54), whatever selected it."""
 
-SAYS = Says(
+TERMS = Terms(
     reset=MODES,
     plane="G61",
     shift="G92.1",
@@ -161,7 +161,7 @@ GCODE = Language(
     sign="#",
     tool_length=LENGTH,
     system=SYSTEM,
-    says=SAYS,
+    terms=TERMS,
     log=LogForm(
         clock=("T%1.6LF", ("SECONDS",)),
         date=(("DATE%1.6LF", ("CALENDAR",)), ("T%1.6LF", ("SECONDS",))),

@@ -80,8 +80,8 @@ class Tilting(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Says:
-    """How a language says what a refusal asks for.
+class Terms:
+    """How a language names what a refusal asks for.
 
     Attributes:
         reset: Block that ends tool-point control, with which a reset begins.
@@ -134,7 +134,7 @@ class Language:
         sign: Letter before the number of a parameter.
         tool_length: Parameter with the length of the called tool, as in the tool table.
         system: How each system datum is addressed.
-        says: How refusals name what they ask for.
+        terms: How refusals name what they ask for.
         log: How the control prints clock and counters.
         printed: Block that appends lines to a log, from the mask file, its lines, and the target.
         lines: Lines of the file from all blocks.
@@ -155,7 +155,7 @@ class Language:
     sign: str
     tool_length: str
     system: Mapping[Datum, str]
-    says: Says
+    terms: Terms
     log: LogForm
     printed: Callable[[str, Sequence[MaskLine], str], str]
     lines: Callable[[Sequence[str]], list[str]]

@@ -15,7 +15,7 @@ SPEED, ACCELERATION = 500.0, 5000.0
 PROBER = "prober.py"
 HEADLESS = "headless.py"
 PROGRAMS = "programs.txt"
-SAID = "headless.txt"
+MESSAGES = "headless.txt"
 
 BESIDE = Path(__file__).parent / "beside"
 """Files that go to LinuxCNC: templates, and scripts for the Python of the system."""

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TextIO
 
 from matstd.probe_paths.emit import Program
-from matstd.probe_paths.linuxcnc.machine_config import BESIDE, HEADLESS, PROBER, PROGRAMS, SAID
+from matstd.probe_paths.linuxcnc.machine_config import BESIDE, HEADLESS, MESSAGES, PROBER, PROGRAMS
 from matstd.probe_paths.linuxcnc.twin_contact import TwinContact
 from matstd.twin.errors import DesignError
 
@@ -65,7 +65,7 @@ def run_on_linuxcnc(
     """
     folder = socket_path.parent
     _write(folder, files, programs, patience)
-    server = _listening(socket_path)
+    server = _listen(socket_path)
     answering = threading.Thread(target=_answer, args=(server, contact), daemon=True)
     answering.start()
     longest = sum(60.0 + patience * p.duration for p in programs) + _SHUTDOWN
@@ -81,9 +81,9 @@ def run_on_linuxcnc(
             user=user or None,
         )
         try:
-            failed = _watched(process, contact, longest)
+            failed = _wait(process, contact, longest)
         finally:
-            _ended(process, folder, user)
+            _stop(process, folder, user)
             server.close()
     text = (folder / "linuxcnc.txt").read_text(encoding="utf-8", errors="replace")
     logs = {p.name: p.read_text(errors="replace") for p in sorted(folder.glob("*_*.TXT"))}
@@ -94,7 +94,7 @@ def installed(user: str) -> str:
     """User who can run LinuxCNC here, empty for ourselves.
 
     Raises:
-        DesignError: It is not installed, it runs already, or we are root and nobody else is named.
+        DesignError: It is not installed, already runs, or we are root and no other user is named.
     """
     missing = [name for name in NEEDED if shutil.which(name) is None]
     if missing:
@@ -144,12 +144,12 @@ def _write(
 
 
 def _environment(folder: Path) -> dict[str, str]:
-    """No screen, and a home in which LinuxCNC may leave what it likes."""
+    """No screen, and a home directory that LinuxCNC may write to."""
     keep = {k: v for k, v in os.environ.items() if k in ("PATH", "LANG", "LC_ALL", "TMPDIR")}
     return keep | {"HOME": str(folder)}
 
 
-def _listening(path: Path) -> socket.socket:
+def _listen(path: Path) -> socket.socket:
     server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     server.bind(str(path))
     path.chmod(0o777)
@@ -181,8 +181,8 @@ def _reply(stream: TextIO, question: dict[str, list[float]], contact: TwinContac
     stream.flush()
 
 
-def _watched(process: subprocess.Popen[bytes], contact: TwinContact, longest: float) -> str:
-    """Wait for the end; why it is not waited for, or nothing."""
+def _wait(process: subprocess.Popen[bytes], contact: TwinContact, longest: float) -> str:
+    """Wait for the end; the reason where waiting is given up, or nothing."""
     end = time.monotonic() + longest
     while process.poll() is None:
         if contact.failure:
@@ -193,8 +193,8 @@ def _watched(process: subprocess.Popen[bytes], contact: TwinContact, longest: fl
     return ""
 
 
-def _ended(process: subprocess.Popen[bytes], folder: Path, user: str) -> None:
-    """LinuxCNC and all that it started are gone, its lock with them."""
+def _stop(process: subprocess.Popen[bytes], folder: Path, user: str) -> None:
+    """End LinuxCNC and all that it started, and remove its lock."""
     if process.poll() is None:
         os.killpg(process.pid, signal.SIGTERM)
         try:
@@ -216,8 +216,8 @@ def _ended(process: subprocess.Popen[bytes], folder: Path, user: str) -> None:
 
 
 def _outcome(folder: Path, programs: Sequence[Program], said: str, logs: Mapping[str, str]) -> str:
-    """Why not all programs are done, as far as anybody knows; empty where they are."""
-    file = folder / SAID
+    """Why not all programs are done, as far as known; empty where they are."""
+    file = folder / MESSAGES
     lines = file.read_text().splitlines() if file.exists() else []
     stopped = [line for line in lines if line.startswith("stopped ")]
     if stopped:

@@ -82,7 +82,7 @@ class TwinContact:
         solver = ContactSolver(
             replace(program, steps=(touch,)),
             self.standard,
-            self._within(row),
+            self._machine_at(row),
             self.noise[row : row + 1],
         )
         now = np.array([time.monotonic() - self.begin])
@@ -148,7 +148,7 @@ class TwinContact:
             )
         return row, float(along[row])
 
-    def _within(self, row: int) -> VirtualMachine:
+    def _machine_at(self, row: int) -> VirtualMachine:
         """The machine at this touch, with what was touched before and will be after."""
         disturbance = self.machine.disturbance
         if disturbance is None:

@@ -10,10 +10,8 @@ from matstd.probe_paths.plan.separation import CORNERS, Hulls
 from matstd.twin.frames import Array, apply, pose, turn
 from matstd.twin.record import IntArray, Labels
 
-_CELL = (
-    4.0  # mm of a face that one prism is the lid of: its corners are 0.2 mm off at a radius of 12
-)
-_FINE = 4  # places a side in a cell where the face is held against its corners
+_CELL = 4.0  # mm: side of a prism's lid; its corners are 0.2 mm off at a radius of 12 mm
+_FINE = 4  # intervals along a side of a cell at which the face is compared with its corners
 _OVER = 0.02  # mm: what a face of 12 mm radius may rise above these places in between
 
 
@@ -34,7 +32,7 @@ class Bodies:
     parts: dict[int, Hulls]
 
     def rows_of(self, feature: str) -> IntArray:
-        """Bodies that somebody means to touch who touches a feature: its own, and its stem."""
+        """Bodies that a touch of a feature may come close to: its own and its stem."""
         own = {feature, f"{feature} stem", *(["BASE"] if feature == "DATUM_A" else [])}
         return np.flatnonzero(np.isin(self.name, list(own)))
 
@@ -84,7 +82,7 @@ def standing_bodies(standard: Standard, T_table_artefact: Array, workshop: Works
 
 
 def _chamfer(patch: FreeformPatch, foot: float) -> Hulls:
-    """What holds the blend round the foot of an upright pillar: it is hollow, so a chamfer."""
+    """Chamfer that contains the concave blend round the foot of an upright pillar."""
     x, y = patch.T_artefact_patch[:2, 3]
     corners = [
         [x + s * (patch.half_size[0] + more), y + t * (patch.half_size[1] + more), foot + up]

@@ -1,8 +1,8 @@
-"""What a program and its log say of themselves: standard, set-up, probe, workshop, features.
+"""Head of a program and of its log: standard, set-up, probe, workshop, features.
 
-The operator needs these lines to mount the standard, and whoever reads the text back needs them to
-know where it was believed to stand and what stands round it. They are comments of the program; the
-first of them are literal lines of its log, which names the workshop by a hash alone.
+The operator needs these lines to mount the standard, the reader of the text to know its believed
+place and the obstacles. They are comments of the program; the first of them are literal lines of
+its log, which identifies the workshop by a hash only.
 """
 
 import hashlib
@@ -82,7 +82,7 @@ class Heading:
         serial: Number of the standard, as far as a program can state it; empty where it has none.
         calibration: Hash of the faces and places of the standard; empty in logs of earlier
             programs.
-        stated: Hash of probe and workshop; likewise.
+        stated: Hash of probe and workshop; empty in logs of earlier programs.
         is_tilted: Coordinates are those of planes that are tilted with the table.
         sensors: That are logged with every touch.
         ball: On the table beside the standard, where that is what is touched.
@@ -217,7 +217,7 @@ def rounded_setup(setup: Setup) -> Setup:
 
 
 def rounded_workshop(workshop: Workshop) -> Workshop:
-    """The workshop as a program can state it, likewise."""
+    """The workshop as a program can state it."""
     ball = workshop.ball
     if ball is not None:
         ball = DatumBall(*(round(getattr(ball, field.name), 6) for field in fields(ball)))

@@ -119,14 +119,14 @@ def short_order(places: Array, first: Array) -> IntArray:
     away = np.abs(places - first).max(axis=-1)
     order = nearest_neighbours(places, first)
     while True:
-        tried = [_turned_round(order, cost, away), _put_elsewhere(order, cost, away)]
+        tried = [_best_two_opt(order, cost, away), _best_or_opt(order, cost, away)]
         gain, better = max(tried, key=lambda one: one[0])
         if gain <= _NO_GAIN:
             return order
         order = better
 
 
-def _turned_round(order: IntArray, cost: Array, away: Array) -> tuple[float, IntArray]:
+def _best_two_opt(order: IntArray, cost: Array, away: Array) -> tuple[float, IntArray]:
     """The part whose other direction saves most: what it saves, and the order with it."""
     n = len(order)
     into = np.concatenate([[away[order]], cost[order[:-1][:, None], order]])  # from before i to j
@@ -138,7 +138,7 @@ def _turned_round(order: IntArray, cost: Array, away: Array) -> tuple[float, Int
     return float(gain[i, j]), np.concatenate([order[:i], order[i : j + 1][::-1], order[j + 1 :]])
 
 
-def _put_elsewhere(order: IntArray, cost: Array, away: Array) -> tuple[float, IntArray]:
+def _best_or_opt(order: IntArray, cost: Array, away: Array) -> tuple[float, IntArray]:
     """The part of up to three places that saves most elsewhere, in either direction.
 
     Gap k is before the place k of the order, the last one behind all of them.

@@ -1,4 +1,4 @@
-"""Makes a plan: works out every touch, refuses what cannot be made, puts the rest in order."""
+"""Makes a plan: computes every touch, refuses impossible ones, puts the rest in order."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -63,7 +63,7 @@ class _Task:
             shape=self.probe.shape,
             length=self.probe.length,
             steepest=o.steepest,
-            room=-np.inf,  # exact gaps are looked at below, with the whole way
+            room=-np.inf,  # exact gaps are computed later, with the whole approach
             standoff=o.standoff,
             search=o.search,
             workshop=o.workshop,
@@ -201,8 +201,8 @@ def _examined(task: _Task, wanted: Requests) -> _Touches:
 def _cleared(task: _Task, wanted: Requests, height: Array) -> _Touches:
     """Touches in readings, some of them by another approach than along the normal.
 
-    Those that can be reached, and have room where the ball meets the surface, are tried from other
-    sides before they are refused; the reason that stays is that of the approach along the normal.
+    Reachable touches with room at the contact are tried from other sides before they are refused;
+    the reported reason is that of the approach along the normal.
     """
     touches = _examined(task, wanted)
     if not task.options.is_swept:
@@ -288,7 +288,7 @@ def _anchors(task: _Task, stops: list[Visit]) -> dict[int, tuple[_Touches, Refus
     examined = _examined(task, joined(lots))
     ends = np.cumsum([len(lot) for lot in lots])
     lot = np.repeat(np.arange(len(lots)), [len(one) for one in lots])
-    # marching costs a hundred times as much as a look: only what would be chosen is marched
+    # a sweep costs a hundred times a static check: only candidates of choice are swept
     is_swept = np.zeros(len(lot), dtype=bool)
     while True:
         good = np.flatnonzero(examined.reason == "")

@@ -1,9 +1,9 @@
-"""Several probes and several clampings of one standard: who makes which touch.
+"""Assignment of touches to several probes and clampings of one standard.
 
-Everything is wanted of the first probe in the first clamping, for which the standard was designed.
-What a probe cannot touch is left to the next one, which repeats some touches on balls, as nobody
-knows to a micrometre how its ball stands against that of the first. A further clamping is given the
-same places on the standard, at table poses of the first at which they can be touched there.
+The first probe in the first clamping, for which the standard was designed, makes every touch that
+it can. The next probe makes the others, and repeats some touches on balls because the offset of its
+stylus from the first is not known to a micrometre. A further clamping gets the same places on the
+standard, at table poses of the first at which they can be touched there.
 """
 
 from collections.abc import Sequence
@@ -55,7 +55,11 @@ def plan_campaign(
     out: list[tuple[int, TouchPlan]] = []
     for number, clamping in enumerate(clampings):
         here = replace(options, workshop=clamping.workshop)
-        wanted = requests if number == 0 else _reposed(standard, chain, probes, clamping, requests)
+        wanted = (
+            requests
+            if number == 0
+            else _in_other_clamping(standard, chain, probes, clamping, requests)
+        )
         tolerated = options.tolerated if number == 0 else len(wanted)
         out += _plans(standard, chain, probes, clamping.setup, wanted, here, tolerated)
     return out
@@ -78,13 +82,17 @@ def _plans(
         if not len(left):
             break
         here = replace(options, tolerated=most)
-        rows = np.concatenate([left, _links(standard, wanted, left)]) if number else left
+        rows = (
+            np.concatenate([left, _repeated_ball_touches(standard, wanted, left)])
+            if number
+            else left
+        )
         try:
             plan = plan_touches(standard, chain, probe, setup, wanted[rows], here)
         except NotReachable:
             if not out:  # the first is the one that everything was designed for
                 raise
-            continue  # what is against the touches is what was against the first
+            continue  # the reasons of the first probe stand
         refused = [r for r in plan.refused if 0 <= r.request < len(left)]
         anchors = tuple(r for r in plan.refused if r.request < 0)
         plan = replace(plan, request=_numbered(plan.request, rows), refused=anchors)
@@ -103,7 +111,7 @@ def _plans(
     return [(number, replace(first, refused=(*lost, *first.refused))), *out[1:]]
 
 
-def _links(standard: Standard, wanted: Requests, left: IntArray) -> IntArray:
+def _repeated_ball_touches(standard: Standard, wanted: Requests, left: IntArray) -> IntArray:
     """Touches on balls that others make: at the poses of those that are left, or elsewhere."""
     is_ball = np.isin(wanted.feature, [sphere.name for sphere in standard.spheres])
     is_ball[left] = False
@@ -119,7 +127,7 @@ def _numbered(request: IntArray, rows: IntArray) -> IntArray:
     return np.where(request >= 0, rows[np.maximum(request, 0)], request)
 
 
-def _reposed(
+def _in_other_clamping(
     standard: Standard,
     chain: Chain,
     probes: Sequence[Probe],

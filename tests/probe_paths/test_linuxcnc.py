@@ -24,7 +24,7 @@ from matstd.probe_paths.linuxcnc import session as session_module
 from matstd.probe_paths.linuxcnc.latch import latch_error, latch_u
 from matstd.probe_paths.linuxcnc.machine_config import machine_files
 from matstd.probe_paths.linuxcnc.replanned import shortened
-from matstd.probe_paths.linuxcnc.session import _answer, _listening, installed, run_on_linuxcnc
+from matstd.probe_paths.linuxcnc.session import _answer, _listen, installed, run_on_linuxcnc
 from matstd.probe_paths.linuxcnc.twin_contact import TwinContact
 from matstd.twin.effects.backlash import Backlash
 from matstd.twin.errors import DesignError
@@ -212,7 +212,7 @@ def test_a_late_probe_is_said(twins, small, chain, crooked):
 
 def test_the_twin_answers_over_a_socket(twins, small, chain, crooked, tmp_path):
     contact = TwinContact(twins, small, crooked, np.random.default_rng(0))
-    server = _listening(tmp_path / "probe")
+    server = _listen(tmp_path / "probe")
     answering = threading.Thread(target=_answer, args=(server, contact), daemon=True)
     answering.start()
     touch = twins[0].touches[0]

@@ -142,7 +142,7 @@ def test_a_search_on_flat_places_alone_is_refused(golden, chain):
     bare = replace(
         small, patches=(), spheres=small.spheres[:1], base=Base((130.0, 130.0), 10.0, 20.0)
     )
-    with pytest.raises(NotReachable, match="comes down to flat places: it would determine 0 of 60"):
+    with pytest.raises(NotReachable, match="meets flat places: it would determine 0 of 60"):
         plan_search(bare, chain, Probe(), golden.setup(), Spread(3.0, 1.0 * DEG))
 
 

@@ -23,7 +23,7 @@ from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.language.dialect import Dialect
 from matstd.probe_paths.plan.planner import plan_touches
 from matstd.probe_paths.plan.touch_plan import PlanOptions
-from matstd.probe_paths.stations.planned import _reposed, plan_campaign
+from matstd.probe_paths.stations.planned import _in_other_clamping, plan_campaign
 from matstd.probe_paths.stations.programmed import all_programs, make_stations, with_tool
 from matstd.twin.effects.setup_error import setup_errors
 from matstd.twin.errors import BadFile, DesignError, NotReachable
@@ -203,7 +203,7 @@ def test_what_no_probe_reaches_is_refused_by_the_first_one(small, wanted):
 def test_a_clamping_without_a_touch_is_refused(small, wanted):
     far = Clamping(Setup("c", pose(np.eye(3), np.array([2000.0, 0.0, 0.0]))), Workshop())
     with pytest.raises(NotReachable, match=r"set-up c: none of \d+ touches"):
-        _reposed(small, golden.machine(), [WIDE], far, wanted)
+        _in_other_clamping(small, golden.machine(), [WIDE], far, wanted)
 
 
 def test_a_standard_is_planned_again_in_the_set_up_of_the_log(texts, small):
