@@ -118,7 +118,7 @@ def _place(standard: Standard, details: Details, face: str) -> Array:
 
 
 def _drawn(sign: _Sign, edge: Array, side: float) -> list[Array]:
-    """A sign whose frame ends at a place, on the side of it that looks away from the plate."""
+    """A sign whose frame ends at a place, on the far side from the plate."""
     cells = [_written(cell) for cell in sign.cells]
     widths = [max(_CELL, wide + _LETTER) for _, wide in cells]
     x = edge[0] - (sum(widths) if side < 0.0 else 0.0)
@@ -141,7 +141,7 @@ def _drawn(sign: _Sign, edge: Array, side: float) -> list[Array]:
 
 
 def _written(cell: str) -> tuple[list[Array], float]:
-    """Strokes (N, 2) of a sign or of a line of letters from the origin on, and how long it is."""
+    """Strokes (N, 2) of a sign or a line of letters that begins at the origin, and its length."""
     glyphs = [cell] if cell in _GLYPHS else list(cell)
     drawn = [
         np.array([[float(at[0]) + k * _NEXT, float(at[1])] for at in stroke.split()])
@@ -157,7 +157,7 @@ def _rectangle(left: float, right: float, low: float, high: float) -> Array:
 
 
 def _head(leader: Array, end: str) -> Array:
-    """Arrow of a leader, or the triangle of a datum, which stands on its base."""
+    """Arrow of a leader, or the triangle of a datum standing on its base."""
     back = leader[-2] - leader[-1]
     back = back / np.linalg.norm(back)
     across = np.array([-back[1], back[0]])

@@ -87,7 +87,7 @@ def dots(text: str, rows: int) -> Array:
 
 
 def _glyph(letter: str, rows: int) -> list[tuple[int, int]]:
-    """Row, from below, and column of every dot."""
+    """Row, counted from below, and column of every dot."""
     small, large = _GLYPHS.get(letter, _UNKNOWN)
     lines = [int(c, 8) for c in small] if rows == SMALL else list(bytes.fromhex(large))
     last = _COLUMNS[rows] - 1

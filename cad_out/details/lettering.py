@@ -87,7 +87,7 @@ def _on_sides(
 
 
 def _on_side(side: Side, text: str, at: float, z: float, thick: float, of: str) -> Lettering | None:
-    """Text in the middle of a side or `at` beside it, at a height, as large as there is room."""
+    """Text in the middle of a side or `at` beside it, in the largest letters that fit."""
     out = np.array([*side.normal, 0.0])
     along = np.cross([0.0, 0.0, 1.0], out)
     middle = side.offset * out + at * np.abs(along) + [0.0, 0.0, z]
@@ -124,7 +124,7 @@ def _largest(text: str, room: Sequence[float]) -> int | None:
 
 
 def _around(text: str, R: Array, middle: Array, rows: int, of: str) -> Lettering:
-    """A line of text round its middle."""
+    """A line of text centred at a point."""
     return Lettering(text, pose(R, middle - R[:, :2] @ (0.5 * size(text, rows))), rows, of)
 
 

@@ -29,8 +29,6 @@ class Seat:
     Attributes:
         half_angle: Between the axis and the countersink, rad.
         contact_radius: Of the circle along which the ball touches.
-        contact: Height of that circle.
-        top: Height of the land.
         top_radius: Of the post there.
         rim_radius: Of the countersink there.
         bottom: Height of the countersink's tip.

@@ -118,6 +118,7 @@ def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Prod
             drawn=drawn,
         )
         found.append(made)
+    # body and balls are built in place, only screws are moved
     for kind in details.screws:
         made = Product(
             name=kind.name,

@@ -1,4 +1,4 @@
-"""Questions to the kernel about a shape, and the names of its faces."""
+"""Parts and measures of the kernel's shapes, and the names of their faces."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -22,34 +22,37 @@ from matstd.twin.frames import Array
 _SAME = 1e-7  # mm: a face lies where it was put
 
 
+def _properties(integral: Any, shape: Any) -> GProp_GProps:
+    """Mass and centre of mass of a shape by one of the kernel's integrals."""
+    properties = GProp_GProps()
+    integral(shape, properties)
+    return properties
+
+
 def volume(shape: Any) -> float:
     """Volume of a shape, mm^3."""
-    properties = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, properties)
-    return float(properties.Mass())
+    return float(_properties(BRepGProp.VolumeProperties_s, shape).Mass())
+
+
+def parts_of(shape: Any, kind: TopAbs_ShapeEnum, cast: Any) -> list[Any]:
+    """Parts of one kind in the kernel's order; an edge appears once for each of its faces."""
+    found = []
+    explorer = TopExp_Explorer(shape, kind)
+    while explorer.More():
+        found.append(cast(explorer.Current()))
+        explorer.Next()
+    return found
 
 
 def faces_of(shape: Any) -> list[Any]:
     """Faces of a shape in the kernel's order."""
-    found = []
-    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_FACE)
-    while explorer.More():
-        found.append(TopoDS.Face(explorer.Current()))
-        explorer.Next()
-    return found
+    return parts_of(shape, TopAbs_ShapeEnum.TopAbs_FACE, TopoDS.Face)
 
 
 def edges_of(shape: Any) -> list[Any]:
     """Edges of a shape, each once."""
-    found, seen = [], set()
-    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_EDGE)
-    while explorer.More():
-        edge = TopoDS.Edge(explorer.Current())
-        if edge not in seen and not BRep_Tool.Degenerated_s(edge):
-            seen.add(edge)
-            found.append(edge)
-        explorer.Next()
-    return found
+    edges = dict.fromkeys(parts_of(shape, TopAbs_ShapeEnum.TopAbs_EDGE, TopoDS.Edge))
+    return [edge for edge in edges if not BRep_Tool.Degenerated_s(edge)]
 
 
 def ends_and_middle(edge: Any) -> Array:
@@ -61,22 +64,12 @@ def ends_and_middle(edge: Any) -> Array:
 
 def solids_of(shape: Any) -> list[Any]:
     """Solids of a shape."""
-    found = []
-    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_SOLID)
-    while explorer.More():
-        found.append(TopoDS.Solid(explorer.Current()))
-        explorer.Next()
-    return found
+    return parts_of(shape, TopAbs_ShapeEnum.TopAbs_SOLID, TopoDS.Solid)
 
 
 def shells_of(shape: Any) -> list[Any]:
     """Shells of a shape: the outer one of every solid, and one around every closed pocket."""
-    found = []
-    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_SHELL)
-    while explorer.More():
-        found.append(TopoDS.Shell(explorer.Current()))
-        explorer.Next()
-    return found
+    return parts_of(shape, TopAbs_ShapeEnum.TopAbs_SHELL, TopoDS.Shell)
 
 
 def is_valid(shape: Any) -> bool:
@@ -200,16 +193,12 @@ def _seat_name(cone: Any, wanted: FaceNaming) -> str | None:
 
 def centre(face: Any) -> Array:
     """Centroid of a face, (3,), mm."""
-    properties = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(face, properties)
-    return _coordinates(properties.CentreOfMass())
+    return _coordinates(_properties(BRepGProp.SurfaceProperties_s, face).CentreOfMass())
 
 
 def area(face: Any) -> float:
     """Area of a face, mm^2."""
-    properties = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(face, properties)
-    return float(properties.Mass())
+    return float(_properties(BRepGProp.SurfaceProperties_s, face).Mass())
 
 
 def _coordinates(p: Any) -> Array:
@@ -218,6 +207,4 @@ def _coordinates(p: Any) -> Array:
 
 def length(edge: Any) -> float:
     """Length of an edge, mm."""
-    properties = GProp_GProps()
-    BRepGProp.LinearProperties_s(edge, properties)
-    return float(properties.Mass())
+    return float(_properties(BRepGProp.LinearProperties_s, edge).Mass())

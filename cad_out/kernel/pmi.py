@@ -52,6 +52,7 @@ def add_tolerances(
 ) -> None:
     """Put datums and geometrical tolerances on named faces, and draw them."""
     tool = XCAFDoc_DocumentTool.DimTolTool_s(document.Main())
+    # a datum is drawn once, although every tolerance refers to an object of its own
     left = dict(drawn)
     for tolerance in tolerances:
         label = tool.AddGeomTolerance()
@@ -75,7 +76,7 @@ def add_tolerances(
 
 
 def _draw(about: Any, name: str, left: dict[str, list[Array]]) -> None:
-    """Give an object its sign, once."""
+    """Give an object its sign, at the first call only."""
     if name not in left:
         return
     strokes, builder, sign = left.pop(name), BRep_Builder(), TopoDS_Compound()
@@ -108,7 +109,7 @@ def _datum(letter: str, position: int) -> Any:
 
 
 def _refer(tool: Any, tolerance: Any, face: Any, about: Any) -> None:
-    """A datum of a tolerance, as the kernel has them: one object for every reference."""
+    """Add a datum to a tolerance; the kernel has one object for every reference."""
     label = tool.AddDatum()
     on = Sequence_TDF_Label()
     on.Append(face)
@@ -154,6 +155,7 @@ def read_tolerances(document: Any) -> list[Tolerance]:
         for w, k in _KINDS.items()
     }
     labels, found = Sequence_TDF_Label(), list[Tolerance]()
+    # sequences of the kernel count from 1
     tool.GetGeomToleranceLabels(labels)
     for i in range(1, labels.Length() + 1):
         label = labels.Value(i)

@@ -64,9 +64,7 @@ def run_apart(
     Args:
         task: A function that takes the folder and the arguments; a `DesignError` that it raises is
             its refusal.
-        folder: Through which the two processes speak.
         timeout: After which the process is stopped, s.
-        environment: Variables to be set on top of this process's.
 
     Returns:
         How it ended; nothing is raised.
@@ -76,6 +74,7 @@ def run_apart(
         module=module, task=task, arguments=(str(folder), *arguments), refusal=str(refusal)
     )
     try:
+        # without stdin a task that asks for input fails instead of waiting
         done = subprocess.run(
             [sys.executable, "-c", call],
             env={**os.environ, **(environment or {})},
@@ -97,7 +96,6 @@ def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float 
     """Run one task of `matstd.cad_out.kernel.worker` in a process of its own.
 
     Args:
-        folder: Through which the two processes speak.
         timeout: After which the process is stopped, s.
 
     Raises:

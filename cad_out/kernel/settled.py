@@ -52,7 +52,7 @@ def with_reproducible_order(whole: str) -> str:
 
 
 def _own_words(body: str, first: int) -> tuple[str, list[int]]:
-    """An entity by its kind and by what it refers to that stays where it is."""
+    """Sort key of an entity: its kind, and its references to entities that keep their numbers."""
     kept = [int(r) for r in _REFERENCE.findall(body) if int(r) < first]
     return re.sub(r"\s+", "", body).split("(")[0], kept
 
@@ -73,9 +73,6 @@ def with_units_of_density(whole: str, count: int) -> str:
     """A STEP text whose densities are in g/cm^3, as their numbers are.
 
     The kernel always writes exponents 3 of the gram and 2 of the centimetre.
-
-    Args:
-        count: Of its densities.
 
     Raises:
         NotBuildable: The densities are not written as they were when this was found.

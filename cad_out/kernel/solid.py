@@ -122,7 +122,7 @@ def _knot_arrays(knots: Array) -> tuple[Any, Any]:
 
 
 def _column(patch: FreeformPatch, surface: Any, base: Base) -> Any:
-    """Prism of the face, trimmed by the pad's box and cut off in mid-base if it gets there."""
+    """Prism of the face, trimmed by the pad's box and cut off in mid-base."""
     face = BRepBuilderAPI_MakeFace(surface, _FACE_TOLERANCE).Face()
     span = float(patch.heights.max() - patch.heights.min())
     back = -(patch.depth + span + 10.0) * patch.direction
@@ -143,7 +143,7 @@ def _column(patch: FreeformPatch, surface: Any, base: Base) -> Any:
 
 
 def _post(sphere: DatumSphere, seat: Seat) -> Any:
-    """Cone up to the land round the seat, and on downwards into the base by the same taper."""
+    """Cone up to the land round the seat, continued into the base with the same taper."""
     taper = (sphere.foot_radius - sphere.stem_radius) / (sphere.centre[2] - sphere.foot)
     low = sphere.foot - _ROOT
     profile = [
@@ -196,7 +196,7 @@ def _hole(hole: MountingHole, base: Base) -> list[Any]:
 
 
 def _flat(side: Side, base: Base) -> Any:
-    """What is taken off a round side for a plane."""
+    """Material that is removed from a round side for a flat."""
     far = 2.0 * max(base.half_size)
     low, high = np.array([-far, -far, -1.0]), np.array([far, far, base.thickness])
     axis = 0 if side.normal[0] else 1
@@ -208,7 +208,7 @@ def _flat(side: Side, base: Base) -> Any:
 
 
 def _relief(pads: tuple[Pad, ...], base: Base) -> Any:
-    """What is taken off the underside so that it stands on its pads alone."""
+    """Material that is removed from the underside between the pads."""
     a, b = (half + 1.0 for half in base.half_size)
     slab = box([-a, -b, -1.0], [a, b, RELIEF])
     standing = []

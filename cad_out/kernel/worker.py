@@ -67,7 +67,7 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
 
 
 def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list[Piece]:
-    """Triangles of every product, the screws as coarse as a picture needs."""
+    """Triangles of every product; a coarse chord suffices for the screws."""
     from matstd.cad_out.kernel.assembly import colour_of
     from matstd.cad_out.kernel.reader import tessellate
 

@@ -86,7 +86,7 @@ def cutting_of(standard: Standard, details: Details) -> Cutting:
 def _reached_when_tilted(
     standard: Standard, centre: Array, wanted: np.ndarray, overhang: float
 ) -> np.ndarray:
-    """Which of the wanted places the finishing cutter reaches, its axis upright or tilted, (N,)."""
+    """Mask of the wanted places that the finishing cutter reaches, upright or tilted, (N,)."""
     reached = np.zeros(len(centre), dtype=bool)
     for tilt, turn in product((0.0, *TILTS), np.arange(_AZIMUTHS) * 2.0 * np.pi / _AZIMUTHS):
         left = np.flatnonzero(wanted & ~reached)
@@ -132,6 +132,7 @@ def _surface(standard: Standard, details: Details) -> tuple[np.ndarray, Array, A
     plate = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
     on_top = np.column_stack([plate, np.full(len(plate), top)])
     others = [body for name, body in standard.bodies.items() if name != "BASE"]
+    # 0.1 mm above and below decide whether a place is bare and on the plate
     above, below = on_top + 0.1 * up, on_top - 0.1 * up
     bare = np.min([body.distance(above) for body in others], axis=0) > BLEND
     inside = standard.base.body.distance(below) < 0.0
@@ -177,6 +178,7 @@ def is_free(
         turn = np.arange(count) * 2.0 * np.pi / count
         ring = np.outer(np.cos(turn), side) + np.outer(np.sin(turn), other)
         offsets = np.concatenate([[h * axis, *(h * axis + radius * ring)] for h in heights])
+        # the next piece is tested only where the pieces below it are free
         left = np.flatnonzero(free)
         if not len(left):
             break

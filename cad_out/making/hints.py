@@ -81,7 +81,7 @@ def _hint(standard: Standard, patch: FreeformPatch) -> FaceHint:
 def _tilts(
     standard: Standard, centre: Array, normal: Array
 ) -> tuple[tuple[float, ...], tuple[float, float] | None, tuple[float, float] | None]:
-    """Tilts at which all is reached, the best axis, and its contact angles."""
+    """Tilts at which the whole face is reached, the best axis, and its contact angles."""
     good: list[float] = []
     best: tuple[float, float] | None = None
     contact: tuple[float, float] | None = None

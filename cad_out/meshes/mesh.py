@@ -52,7 +52,6 @@ def welded(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> Mesh:
     Args:
         corners: Shape (V, 3), mm, float64: rounding them would part corners at the ties.
         triangles: Shape (F, 3).
-        owner: Shape (F,).
 
     Returns:
         One mesh, closed if the faces were.
@@ -206,23 +205,10 @@ def inner_folds(corners: Array, triangles: np.ndarray, least: float) -> tuple[Ar
     Returns:
         Middles (E, 3) and lengths (E,) of these edges, mm.
     """
-    a, b, c = (corners[triangles[:, k]] for k in range(3))
-    normal = np.cross(b - a, c - a)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
-    ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    apex = np.concatenate([triangles[:, 2], triangles[:, 0], triangles[:, 1]])
-    face = np.tile(np.arange(len(triangles)), 3)
-    ends = np.sort(ends, axis=1)
-    order = np.lexsort(ends.T)
-    first, second = order[:-1], order[1:]
-    same = (ends[first] == ends[second]).all(axis=1)
-    first, second = first[same], second[same]
-    one, other = normal[face[first]], normal[face[second]]
-    begin, end = corners[ends[first, 0]], corners[ends[first, 1]]
-    inwards = np.einsum("ni,ni->n", corners[apex[second]] - begin, one) > 0.0
-    folded = inwards & (np.einsum("ni,ni->n", one, other) < np.cos(least))
-    length = np.linalg.norm(end - begin, axis=1)
-    return 0.5 * (begin + end)[folded], length[folded]
+    mesh = _trimesh(corners, triangles)
+    folded = ~mesh.face_adjacency_convex & (mesh.face_adjacency_angles > least)
+    begin, end = np.swapaxes(corners[mesh.face_adjacency_edges[folded]], 0, 1)
+    return 0.5 * (begin + end), np.linalg.norm(end - begin, axis=1)
 
 
 def aspects(corners: Array, triangles: np.ndarray) -> Array:

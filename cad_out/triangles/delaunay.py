@@ -34,7 +34,7 @@ class Sheet:
         self.wall = np.where(walls[order][at] == sides, order[at], -1)
 
     def _codes(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """One number for every pair, whatever its order."""
+        """One number for every unordered pair."""
         low = np.minimum(one, other).astype(np.int64)
         return low * (len(self.places) + len(_FAR)) + np.maximum(one, other)
 

@@ -134,6 +134,7 @@ def refined(
             again |= {number} if grew else set()
         for which in _halved(halve, edges, points):
             again |= users[which]
+        # only faces that grew, or whose edges were halved, are triangulated again
         waiting = again
         if not waiting:
             break
@@ -166,7 +167,7 @@ def _seed_points(face: Face, edges: Sequence[Edge], points: "_Points") -> None:
 
 
 def _halved(pieces: set[tuple[int, int]], edges: Sequence[Edge], points: "_Points") -> set[int]:
-    """Halve pieces of edges; which edges they are of."""
+    """Halve pieces of edges; the numbers of these edges."""
     which = {edge for edge, _ in pieces}
     for edge in sorted(which):
         points.halve(edges[edge], sorted(piece for e, piece in pieces if e == edge))
@@ -210,7 +211,7 @@ class _Points:
 
 
 def _outline(face: Face, edges: Sequence[Edge]) -> _Outline:
-    """The outline's points, each once where it is the same place as well, and its pieces."""
+    """The outline's points, without duplicates at the same place, and its pieces."""
     places = [side.refreshed(edges[side.edge].t) for side in face.sides]
     ids = [edges[side.edge].ids for side in face.sides]
     counts = [len(i) for i in ids]
@@ -296,7 +297,6 @@ def _sags(face: Face, corner: Array, xyz: Array) -> Array:
 
 
 def _collected(points: _Points, faces: Sequence[Face]) -> tuple[Array, np.ndarray, np.ndarray]:
-    """One mesh of all faces."""
     corners, triangles, owner = [points.xyz], [], []
     count = len(points.xyz)
     for number, face in enumerate(faces):

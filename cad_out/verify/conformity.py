@@ -228,6 +228,7 @@ def measure(
     named = set(faces) & set(found["names"])
     screws = {kind.name: kind for kind in details.screws}
     made = built["volumes"]
+    # screws stay with the table and count neither in volume nor in mass
     bought = sum(len(kind.holes) * made[name] for name, kind in screws.items())
     volume = found["volume"] - bought
     balls = {sphere.name: made[sphere.name] for sphere in standard.spheres}
@@ -271,7 +272,7 @@ def measure(
 
 
 def _is_upright(standard: Standard) -> bool:
-    """Whether all pillars and posts are blended; those that lean are not."""
+    """Whether all pillars and posts are blended, which leaning ones are not."""
     everything = {*(p.name for p in standard.patches), *(s.name for s in standard.spheres)}
     return bool(standard.blended) and standard.blended >= everything
 
@@ -303,7 +304,7 @@ def face_names(standard: Standard, details: Details) -> tuple[str, ...]:
 def _displaced(
     standard: Standard, instances: dict[str, Instance], screws: tuple[Screw, ...]
 ) -> tuple[str, ...]:
-    """Instances that are not there, or not where the design has them."""
+    """Instances that are missing or displaced from their designed place."""
     wanted = dict.fromkeys(("BODY", *(s.name for s in standard.spheres)), (0.0, 0.0, 0.0))
     for kind in screws:
         wanted |= {f"SCREW_{name}": (x, y, z) for name, x, y, z in kind.holes}

@@ -64,7 +64,7 @@ def read_entities(path: Path) -> dict[int, str]:
 
 
 def _in_one_line(value: str) -> str:
-    """An entity without its breaks; blanks within a text are kept."""
+    """An entity without line breaks; blanks within a text are kept."""
     if "\n" not in value:
         return value
     return _BREAK.sub(lambda match: (match[1] or "").replace("\n", ""), value)

@@ -50,7 +50,7 @@ def check_numbers(parts: Sequence[LogPart]) -> None:
 
 
 def _check_steps(part: LogPart) -> None:
-    """A clock that runs, and positions with decimals."""
+    """Refuse a clock that stands still and positions that are rounded."""
     last = f"line {part.line[-1]}"
     if np.ptp(part.time) == 0.0:
         found = f"the same time at all {len(part.time)} touches"
@@ -63,7 +63,7 @@ def _check_steps(part: LogPart) -> None:
 
 
 def _check_common(key: str, parts: Sequence[LogPart]) -> None:
-    """One preset for all logs, and one tool for all of one probe."""
+    """Refuse different presets in one campaign, or different tools of one probe."""
     for part in parts[1:]:
         first, own = getattr(parts[0], key), getattr(part, key)
         is_same_probe = part.heading.probe == parts[0].heading.probe
@@ -104,7 +104,7 @@ def check_as_programmed(
 def _check_touch(
     part: LogPart, i: int, touch: ProbeStep, program: ReadProgram, chain: Chain
 ) -> None:
-    """One touch of a log: counters, sides, and where the rotary axes stood."""
+    """Compare counters, sides and rotary positions of one touch with the program."""
     where, number = f"line {part.line[i]}", int(part.number[i])
     rows = [
         ("pose", int(part.pose[i]), touch.pose),

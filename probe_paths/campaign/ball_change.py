@@ -83,8 +83,6 @@ def ball_changes(
     """Changes from each measurement of a ball to the next one of the same program.
 
     Args:
-        parts: Of all logs; those of other programs are left alone.
-        standard: As calibrated.
         u: Standard uncertainty of one touch, mm; a larger scatter counts instead.
 
     Raises:
@@ -135,6 +133,7 @@ def _change(
             "touches all round it",
         )
     left = grown - A @ solved
+    # a difference of two touches has twice the variance of one
     scatter = float(np.sqrt(left @ left / (len(rows) - _UNKNOWNS) / 2.0))
     inverse = np.linalg.inv(A.T @ A)
     return BallChange(
@@ -155,9 +154,6 @@ def read_heights(part: LogPart, standard: Standard, chain: Chain) -> dict[str, f
 
     One touch from above settles which Z a control returns: with the wrong meaning the gap is the
     whole length of the probe.
-
-    Args:
-        standard: As calibrated.
 
     Returns:
         By each meaning that Z can have, as `Dialect.result_height` names them.
@@ -195,7 +191,6 @@ def effective_radii(
     effective one of the probe. What the machine does wrong over the ball stays in it.
 
     Args:
-        parts: Of all logs; those of other programs are left alone.
         u: Standard uncertainty of one touch, mm.
     """
     out = []

@@ -84,7 +84,7 @@ def _moves(program: ReadProgram) -> tuple[IntArray, Array, Array]:
 
 
 def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
-    """Every touch, to its contact, beyond and up again; raises BadFile."""
+    """Check every touch, its over-travel and its retract; raises BadFile."""
     touches, chain = program.touches, clearance.chain
     line = np.array([touch.line for touch in touches], dtype=np.int64)
     start = np.array([touch.q for touch in touches]).reshape(-1, len(chain.axes))
@@ -100,6 +100,7 @@ def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
     way = turn(T_artefact_table, np.einsum("nij,nj->ni", along, direction[:, columns]))
     centre = apply(T_artefact_table, tip(chain, start, clearance.probe.length))
     met = contact(clearance.standard, centre, way, clearance.probe.radius, distance)
+    # the touches of a search may meet any feature
     if program.is_search:
         words = np.array(
             [f"{what} {name}".rstrip() for what, name in zip(met.meeting, met.feature, strict=True)]

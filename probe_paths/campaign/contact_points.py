@@ -47,7 +47,6 @@ def foot_points(
     nan where a ball is so far off that its surface has no foot point for it.
 
     Args:
-        standard: As calibrated.
         ball: Centres, (N, 3), mm.
         moved: Displacements of the features from their calibrated places, (N, 3), mm.
     """
@@ -72,7 +71,6 @@ def at_true_contacts(run: Run, standard: Standard) -> Run:
 
     Args:
         run: With foot points of the believed balls.
-        standard: As calibrated.
 
     Returns:
         The run anew, with the old foot point where a moved ball has none.
@@ -121,7 +119,7 @@ def _displaced_feature(run: Run, residual: Array) -> list[str]:
 
 
 def _stylus_lines(run: Run) -> list[str]:
-    """How every stylus but the first stands beside its calibration, by the same model."""
+    """Remarks on the offset of every further stylus from its calibration, by the same model."""
     t = run.touches
     styli = further_styli(t)
     free = (*(e for e in setup_errors(t) if e not in styli), *styli)

@@ -78,7 +78,7 @@ class ContactSolver:
         self.moved = self.standard.moved(machine.chain, self.start, stands, self.feature)
 
     def _nominal_contact(self) -> None:
-        """First contact of every ball with the standard where it stands, on a perfect machine."""
+        """First contact of every ball with the standard at its true place, on a perfect machine."""
         chain = self.machine.chain
         columns = [chain.axis_index(a) for a in chain.linear_axes]
         D = linear_directions(chain, self.start)
@@ -139,7 +139,7 @@ class ContactSolver:
                 break
 
     def _meet_sides(self, time: Array) -> None:
-        """Edges and sides that a search meets: marched again with the ball where errors take it."""
+        """Edges and sides that a search meets: marched again with the displaced ball."""
         rows = np.flatnonzero(self.is_contact & (self.meeting != Meeting.SURFACE))
         if not len(rows):
             return
@@ -151,7 +151,7 @@ class ContactSolver:
         self.travel[rows] = np.where(np.isfinite(hit.travel), hit.travel, self.travel[rows])
 
     def _true_balls(self, rows: IntArray, time: Array) -> tuple[Array, Array]:
-        """True ball centres (M, 3) seen from the features as they sag, and radii (M,)."""
+        """True ball centres (M, 3) relative to the sagging features, and radii (M,)."""
         chain = self.machine.chain
         touches = self.touches(time, rows)
         added = Contribution.zeros(len(rows), len(chain.links))

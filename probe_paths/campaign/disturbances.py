@@ -29,21 +29,19 @@ _PER_TOUCH = (
 def effects_over_record(
     effects: Sequence[tuple[Effect, Array]],
     record: SensorRecord | None = None,
-    begin: datetime | None = None,
 ) -> Disturbance:
     """Disturbance by effects of known size.
 
     Args:
         effects: Each with its parameters (P,), base units.
         record: Temperatures and spindle speeds by the clock; None where nothing is recorded.
-        begin: What the clock says when the campaign begins; None for the first reading.
 
     Raises:
         UnknownEffect: When it is used: an effect follows a sensor that the record lacks.
     """
     if record is None:
         return lambda touches: contribution(effects, touches)
-    start = begin or record.begin
+    start = record.begin
     driven = [pair for pair in effects if traits(pair[0]).needs_history]
     others = [pair for pair in effects if pair not in driven]
 

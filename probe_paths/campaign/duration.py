@@ -25,10 +25,6 @@ def probing_time(
 
     Touches that this plan refuses are counted as if they took as long as the others.
 
-    Args:
-        setup: Where the body stands.
-        options: How carefully; those of the standard's own plan.
-
     Returns:
         In s; nan where no plan at all can be made.
     """

@@ -63,7 +63,6 @@ def evaluate(
     Args:
         parts: Of one or several logs; those that measure nothing (`LogPart.is_measuring`) are left
             aside.
-        standard: As calibrated.
         u: Standard uncertainty of one touch, mm; that of the calibrated surface comes to it.
 
     Raises:
@@ -126,7 +125,7 @@ def _touches_and_gaps(
     dialect: Dialect,
     is_fitted: bool,
 ) -> tuple[Touches, Array]:
-    """Touches on the standard where it is believed to stand or fitted, and their gaps (N,), mm."""
+    """Touches on the standard at its believed or fitted place, and their gaps (N,), mm."""
     count = [len(part.number) for part in parts]
     radius = np.repeat([part.radius for part in parts], count)
     length = np.repeat([part.tool_length - part.radius for part in parts], count)
@@ -136,6 +135,7 @@ def _touches_and_gaps(
     setups, setup = _setups(parts)
     ball_table = tip(chain, q, length)
     stands = np.stack([s.T_table_artefact for s in setups])[setup]
+    # sag at the believed set-up: the fit hardly turns the direction of weight
     moved = standard.moved(chain, q, stands, feature)
     for i, believed in enumerate(setups if is_fitted else ()):
         rows = np.flatnonzero(setup == i)
@@ -190,7 +190,7 @@ def ball_centres(part: LogPart, chain: Chain, dialect: Dialect | None = None) ->
 
 
 def _readings(part: LogPart, chain: Chain, dialect: Dialect) -> Array:
-    """Axis readings (N, A) of a log's touches, from what cycle 4 returned."""
+    """Axis readings (N, A) of a log's touches from the results of cycle 4."""
     frame = ProgramFrame(chain, Probe(part.radius, part.tool_length - part.radius))
     q = np.zeros((len(part.number), len(chain.axes)))
     for letter, degrees in part.rotary.items():
@@ -208,7 +208,7 @@ def _readings(part: LogPart, chain: Chain, dialect: Dialect) -> Array:
 
 
 def _setups(parts: Sequence[LogPart]) -> tuple[list[Setup], IntArray]:
-    """Set-ups by name, and the one of every touch."""
+    """Set-ups, and the index of that of every touch."""
     setups: dict[str, Setup] = {}
     index: list[int] = []
     for part in parts:
@@ -304,6 +304,7 @@ def _touches(
     family = np.repeat(
         [families.index(_probe_prefix(p)) for p in parts], [len(p.number) for p in parts]
     )
+    # poses of different probes get different labels
     visited = np.column_stack([setup, family, number])
     pose_label = np.unique(visited, axis=0, return_inverse=True)[1]
     return Touches(

@@ -32,7 +32,7 @@ def distinct_parts(parts: Sequence[LogPart]) -> list[LogPart]:
     """
     found: list[LogPart] = []
     for part in sorted(_dated(parts), key=lambda part: (part.begin, -len(part.number))):
-        twin = next((p for p in found if _is_same_run(p, part)), None)
+        twin = next((p for p in found if (p.program, p.begin) == (part.program, part.begin)), None)
         if twin is None:
             found.append(part)
             continue
@@ -48,7 +48,7 @@ def distinct_parts(parts: Sequence[LogPart]) -> list[LogPart]:
 
 
 def _dated(parts: Sequence[LogPart]) -> list[LogPart]:
-    """Parts without a date on the day of the earliest of the others."""
+    """Parts with missing dates set to the earliest day of the others."""
     days = [part.begin for part in parts if part.begin.year != UNDATED.year]
     if not days:
         return list(parts)
@@ -66,12 +66,7 @@ def _dated(parts: Sequence[LogPart]) -> list[LogPart]:
     ]
 
 
-def _is_same_run(one: LogPart, other: LogPart) -> bool:
-    return one.program == other.program and one.begin == other.begin
-
-
 def _rows(part: LogPart, rows: IntArray) -> LogPart:
-    """Some touches of a part."""
     return replace(
         part,
         rotary={a: v[rows] for a, v in part.rotary.items()},
@@ -82,7 +77,7 @@ def _rows(part: LogPart, rows: IntArray) -> LogPart:
 
 
 def _check_alike(one: LogPart, other: LogPart) -> None:
-    """Touches that both have are the same ones."""
+    """Refuse different numbers for the same touch."""
     numbers, i, k = np.intersect1d(one.number, other.number, return_indices=True)
     differ = np.any(np.abs(one.xyz[i] - other.xyz[k]) > NM, axis=1)
     if np.any(differ):
@@ -135,7 +130,7 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
 
 
 def _check_design(part: LogPart, standard: Standard) -> None:
-    """Refuse a log of another design of that name; a calibrated standard has other numbers."""
+    """Refuse a log of another design; a calibrated standard has other numbers by right."""
     stated = part.heading.calibration
     if stated and standard.known is None:
         balls = standard.spheres[:-1] if part.heading.ball else standard.spheres
@@ -148,7 +143,7 @@ def _check_design(part: LogPart, standard: Standard) -> None:
 
 
 def _overlaps(parts: Sequence[LogPart]) -> list[str]:
-    """Programs that ran at the same time by the clock: it was set in between."""
+    """Remarks on programs that overlap in time: the clock was set in between."""
     remarks = []
     for one, other in pairwise(part for part in parts if len(part.number)):
         end = one.begin + timedelta(seconds=float(one.time[-1]))

@@ -92,7 +92,7 @@ def _evaluated_order(ordering: Ordering, plan: TouchPlan, model: Model, noise: f
 
 
 def _sd_beside(C: Array, W: Array) -> Array:
-    """Standard deviations of C's parameters when W's are unknown too, all of prior one, (Q,)."""
+    """Standard deviations of C's parameters with W's unknown too, all with unit priors, (Q,)."""
     known = np.eye(W.shape[1]) + W.T @ W
     left = np.eye(C.shape[1]) + C.T @ C - C.T @ W @ np.linalg.solve(known, W.T @ C)
     sd: Array = np.sqrt(np.diag(np.linalg.solve(left, np.eye(len(left)))))
@@ -100,7 +100,7 @@ def _sd_beside(C: Array, W: Array) -> Array:
 
 
 def _timed(plan: TouchPlan) -> tuple[Touches, float]:
-    """Touches with times and sides of approach as the programs' text has them; duration, s."""
+    """Touches with times and sides of approach from the programs' text, and the duration, s."""
     # all in one program: an order shall not be judged by where its files begin
     programs = make_programs(plan, feeds=Feeds(touches_per_file=len(plan)))
     read = programs.programs[0].read
@@ -136,7 +136,7 @@ def _rows(plan: TouchPlan, rows: IntArray) -> TouchPlan:
 
 
 def _shortest(plan: TouchPlan) -> TouchPlan:
-    """Visits in a short order from home and back, every pose straight from the one before."""
+    """Visits in a short order from home and back, every pose approached from the one before."""
     way = _short_way(np.array([v.rotary for v in plan.visits]), home_readings(plan.chain))
     here, last = home_readings(plan.chain), np.zeros(len(plan.chain.rotary_axes))
     visits = []
@@ -151,7 +151,7 @@ def _shortest(plan: TouchPlan) -> TouchPlan:
 
 
 def _short_way(poses: Array, home: Array) -> list[int]:
-    """Order of poses (V, R) with little turning, by nearest neighbours and reversals of parts."""
+    """Short order of poses (V, R), by nearest neighbours and 2-opt."""
     places = np.concatenate([home[None], poses])
     cost = np.abs(places[:, None] - places).max(axis=-1, initial=0.0)  # the slowest decides
     tour = [0, *(1 + nearest_neighbours(poses, home)).tolist()]

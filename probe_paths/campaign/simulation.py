@@ -78,7 +78,6 @@ def simulate(
 
     Args:
         programs: Files, masks of `.H` files beside them, in the order in which they are run.
-        standard: The true one.
         machine: As it really is; the evaluation knows only its nominal chain.
         probe: In the spindle; None takes the one that each program states.
         calibrated: What is believed of the standard; None for the truth.

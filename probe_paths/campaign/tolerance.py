@@ -61,7 +61,7 @@ def setup_tolerance(plan: TouchPlan) -> dict[str, float]:
 
 
 def _largest(steps: Sequence[float], is_good: Callable[[float], bool]) -> float:
-    """Largest step up to which all are good either way; halving what is left."""
+    """Largest step that is good in both directions, by bisection."""
     low, high = 0, len(steps)
     while low < high:
         middle = (low + high + 1) // 2

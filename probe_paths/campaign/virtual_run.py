@@ -94,10 +94,6 @@ def run_programs(
 ) -> list[VirtualRun]:
     """Run programs one after the other; a stopped one ends the campaign.
 
-    Args:
-        standard: The true one.
-        machine: As it really is.
-
     Raises:
         DesignError: A program made for another standard.
     """
@@ -118,7 +114,7 @@ def run_programs(
 
 
 def _planned_touches(solvers: Sequence[ContactSolver]) -> list[Touches]:
-    """Touches of every program as a perfect machine would make them."""
+    """Touches of every program on a perfect machine."""
     planned: list[Touches] = []
     begin = 0.0
     for solver in solvers:
@@ -126,26 +122,6 @@ def _planned_touches(solvers: Sequence[ContactSolver]) -> list[Touches]:
         planned.append(solver.touches(times[_rows(solver.program)]))
         begin = float(times[-1]) + CHANGEOVER
     return planned
-
-
-def run_program(
-    program: ReadProgram,
-    standard: Standard,
-    machine: VirtualMachine,
-    rng: np.random.Generator,
-    begin: float = 0.0,
-) -> VirtualRun:
-    """Run one program.
-
-    Args:
-        standard: The true one.
-        machine: As it really is.
-        begin: When it is started, s since the start of the campaign.
-
-    Raises:
-        DesignError: A program made for another standard.
-    """
-    return _run(_solver(program, standard, machine, rng), begin)
 
 
 def _solver(
@@ -167,7 +143,7 @@ def _rows(program: ReadProgram) -> list[int]:
 
 
 def _run(contacts: ContactSolver, begin: float) -> VirtualRun:
-    """Touch, and print what the program prints."""
+    """Solve the contacts, then execute the printing of the program."""
     program = contacts.program
     rows = _rows(program)
     contacts.solve((begin + _step_times(contacts))[rows])

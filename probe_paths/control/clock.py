@@ -96,6 +96,7 @@ def step_times(
             length = step.distance if travel is None else travel[step.index]
             change[i] = length * step.direction
             feed[i], is_motion[i], extra[i] = step.feed, True, clock.probing
+            # the second stroke: back at the feed, forward at the slow feed
             if step.slow_feed:
                 extra[i] += step.step_back * (1.0 / step.feed + 1.0 / step.slow_feed)
             back = min(step.back, length) / clock.rapid + clock.block

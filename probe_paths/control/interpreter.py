@@ -47,7 +47,6 @@ def read_program(
     Args:
         path: The program; masks (`.A`) of an `.H` file stand in the same folder.
         probe: In the spindle; None takes the one that the program's head states.
-        dialect: Of the control, where it has words of its own.
 
     Raises:
         BadFile: Whatever the control, or a cautious operator, would not run.
@@ -97,7 +96,6 @@ def interpret(
         path: Its name: it must agree with the program's.
         masks: Where FN 16 finds its masks.
         probe: In the spindle; None takes the one that the program's head states.
-        dialect: Of the control, where it has words of its own.
 
     Raises:
         BadFile: Whatever the control, or a cautious operator, would not run.
@@ -115,6 +113,7 @@ def interpret(
     runner.check_logged()
     _check_promise(stated, state, runner.touches, path)
     language = language_of(path)
+    # the program must stop in every run in which one tested value is off its limit
     for test in (*interlocks(language, frame, stated.is_first), *turn_tests(language, frame)):
         for off in (-_BEYOND * test.limit, _BEYOND * test.limit):
             runner.run(
@@ -144,7 +143,7 @@ def interpret(
 
 
 def _initial_state(path: Path, frame: ProgramFrame, stated: Promise, is_tilted: bool) -> State:
-    """The control when a program is started: where its axes stand is not known."""
+    """State of the control at the start of a program, with unknown axis positions."""
     axes = len(frame.chain.axes)
     return State(
         path,
@@ -158,7 +157,7 @@ def _initial_state(path: Path, frame: ProgramFrame, stated: Promise, is_tilted: 
 
 
 def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], path: Path) -> None:
-    """The program does what its head says; raises BadFile."""
+    """Refuse a program that differs from the statements of its head."""
     for what, said, done in (
         ("tool", stated.tool, state.tool),
         ("preset", stated.preset, state.preset),

@@ -65,7 +65,7 @@ def read_datum(block: Block, state: State) -> None:
 
 
 def _place(datum: Datum, places: Mapping[Datum, str], state: State) -> float:
-    """Number of the tool, or where an axis stands: by its reading or from the preset."""
+    """Number of the tool, or position of an axis: its reading, or relative to the preset."""
     if datum not in places:
         return float(state.tool or 0)
     letter, frame = places[datum], state.frame
@@ -113,7 +113,7 @@ def _plane_off(block: Block, state: State) -> None:
 
 
 def _plane(block: Block, state: State) -> None:
-    """A tilted plane: square to the tool, where the head says so, above everything."""
+    """A tilted plane: announced in the head, square to the tool, activated at the retract."""
     rotary = state.q[state.frame.rotary]
     if not state.is_tilted:
         raise state.refusal(block, repr(block.text), "a head that says FRAME SPATIAL")
@@ -163,7 +163,7 @@ def _assign(block: Block, state: State) -> None:
 
 
 def _subtract(block: Block, state: State) -> None:
-    """FN 2: a parameter less a number, or less another parameter."""
+    """FN 2: a parameter minus a number or another parameter."""
     value, is_number = state.value(block, int(block.word("from"))), block.words["other"] is None
     other = block.number("value") if is_number else state.value(block, int(block.word("other")))
     if not isinstance(value, float) or not isinstance(other, float):

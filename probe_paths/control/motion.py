@@ -136,7 +136,7 @@ def _retract(state: State, block: Block, target: Array, letters: list[str]) -> N
 def _check_height(
     state: State, block: Block, target: Array, letters: list[str], is_rapid: bool
 ) -> None:
-    """Rules for X, Y, Z blocks: high up anything, below the clearance height slowly along Z."""
+    """Rules for X, Y, Z blocks: free above the clearance height, fed and along Z below it."""
     column = state.frame.chain.axis_index("Z")
     before, after = state.q[column], target[column]
     if not np.isfinite(before):
@@ -150,6 +150,7 @@ def _check_height(
         state.is_retracted, state.clearance = False, after
         return
     assert state.clearance is not None
+    # straight up leads away from everything and may be rapid
     is_up = letters == ["Z"] and after >= before
     if is_rapid and not is_up and min(before, after) < state.clearance - SAME:
         raise state.refusal(
@@ -167,7 +168,7 @@ def _check_height(
 
 
 def _arrive(state: State, block: Block, target: Array) -> None:
-    """The machine stands at the target."""
+    """Move the state to the target."""
     if state.way_back is not None:
         if not np.allclose(target, state.way_back, rtol=0.0, atol=SAME, equal_nan=True):
             raise state.refusal(

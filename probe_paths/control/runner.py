@@ -111,7 +111,7 @@ class Runner:
             i = self._next(i, block, state, flow, steps)
 
     def _next(self, i: int, block: Block, state: State, flow: Flow, steps: list[Step]) -> int:
-        """Execute one block; the index of the following one."""
+        """Execute one block; returns the index of the following one."""
         if block.kind is Kind.CALL:
             return flow.call(i, block.line, block.word("label"))
         if block.kind is Kind.LABEL and block.word("label") == "0":
@@ -131,7 +131,7 @@ class Runner:
         return i + 1
 
     def _jump(self, i: int, block: Block, state: State) -> int:
-        """FN 11, 12: a number decides at once; a touch's status is taken as good, and as missed."""
+        """FN 11, 12: a number decides at once; for the status of a touch both branches are run."""
         than, q, label = block.word("than"), int(block.word("q")), block.word("label")
         value, is_less = state.value(block, q), than == "LT"
         if q == Q.START or Label.is_behind(int(label)):
@@ -176,7 +176,7 @@ class Runner:
             )
 
     def _execute(self, i: int, block: Block, state: State) -> Step | None:
-        """Every block that changes the state or does something."""
+        """Execute a block that changes the state or makes a step."""
         if block.kind is Kind.LINE:
             return straight_line(state, block)
         if block.kind is Kind.RETRACT_MAX:
@@ -192,7 +192,7 @@ class Runner:
         return None
 
     def _probing(self, i: int, state: State) -> ProbeStep:
-        """Cycle 4, whose other three blocks stand before this one."""
+        """Execute cycle 4, whose other three blocks precede this one."""
         block, vector = self.blocks[i], self.blocks[i - 1]
         result = int(self.blocks[i - 2].word("q"))
         state.check_status_was_tested(block)
@@ -254,7 +254,7 @@ class Runner:
         return block.kind is Kind.JUMP and block.word("label") == str(int(label))
 
     def _check_sides(self, block: Block, state: State, touch: ProbeStep) -> None:
-        """The sides that the log will state are those that the axes really came from."""
+        """Refuse stated sides that differ from those that the axes came from."""
         if any(other.number == touch.number for other in self.touches):
             raise state.refusal(block, f"touch number {touch.number} again", "a number of its own")
         names = state.frame.chain.rotary_axes
@@ -268,7 +268,7 @@ class Runner:
                 )
 
     def _print(self, block: Block, state: State) -> Print:
-        """FN 16 with the values of this moment."""
+        """FN 16 with the present values."""
         state.check_status_was_tested(block)
         if not state.is_synchronous:
             raise state.refusal(block, "a line printed ahead", f"{state.terms.sync} before it")
@@ -282,7 +282,7 @@ class Runner:
         return Print(block.line, lines, block.word("target").split("\\")[-1], values)
 
     def _check_place(self, block: Block, state: State) -> None:
-        """One log of the program's name, in the folder of its masks."""
+        """Refuse a log of another name than the program's or in another folder than the masks."""
         target, mask = block.word("target"), block.word("mask")
         folder = target.rpartition("\\")[0]
         self.folder = self.folder or folder
@@ -307,7 +307,7 @@ class Runner:
     def _readable(
         self, lines: tuple[MaskLine, ...], block: Block, state: State
     ) -> tuple[MaskLine, ...]:
-        """Lines that the reader of logs will know: a head, a touch, a missed one or an end."""
+        """Refuse lines that the reader of logs does not know."""
         if _shape(lines) not in self.readable:
             raise state.refusal(
                 block,
@@ -324,7 +324,7 @@ class Runner:
             raise state.refusal(block, "M30", f"a retract ({state.terms.retract}) at the end")
 
     def _check_alarm(self, i: int, state: State, fault: Interlock) -> None:
-        """A stop says what is wrong by the label that it stands behind."""
+        """Refuse a stop behind another label than that of its alarm."""
         label = next(b for b in reversed(self.blocks[:i]) if b.kind is Kind.LABEL)
         if label.word("label") != str(int(fault.label)):
             raise state.refusal(
@@ -334,7 +334,7 @@ class Runner:
             )
 
     def _check_halt(self, block: Block, steps: list[Step], is_branch: bool) -> None:
-        """Only a touch without contact may end a program early, and only after a retract."""
+        """Refuse an early end other than after a touch without contact and a retract."""
         up = [step for step in steps if isinstance(step, Move)]
         if not is_branch or len(up) != 1 or up[0].checked:
             raise BadFile(

@@ -47,8 +47,6 @@ class State:
         is_tilted: The head says that coordinates are those of tilted planes.
         plane: Of the plane that is active; None where none is.
         shift_off: Axes whose datum shift was set to zero.
-        preset: Active row.
-        tool: Called tool.
         is_retracted: Z stands where M91 or M140 put it.
         clearance: Reading of Z that the first move down from the retract went to.
         untested: Touch whose status was not looked at yet.

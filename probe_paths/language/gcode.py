@@ -57,7 +57,6 @@ TERMS = Terms(
     rapid="G0",
     sync=WAIT,
     status="O.. IF on the status of the touch",
-    length=f"O.. IF .. LT and GT on {LENGTH}",
     unset="#{q} = -1",
     printed="(LOG,..)",
     halt="M0 and (ABORT,..)",
@@ -123,7 +122,7 @@ _FORMAT = re.compile(r"%[\d.]+LF")
 
 
 def _printed(mask: str, lines: Sequence[MaskLine], target: str) -> str:
-    """Append lines to a log that is closed again: it is whole whenever the control dies."""
+    """Append lines to a log and close it, so that it is complete if the control fails."""
     out = [f"(LOGAPPEND,{target})"]
     for one in lines:
         out += [_CLOCKS[a] for a in one.arguments if isinstance(a, str)]

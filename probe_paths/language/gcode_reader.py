@@ -119,7 +119,7 @@ class _Reader:
                 yield from self._single(text)
 
     def _take(self, expected: str) -> str:
-        """The next line, which must be there."""
+        """The next line; refuses the end of the file."""
         if self.i == len(self.lines):
             raise BadFile(self.path, f"line {self.i}", "the end of the file after it", expected)
         self.i += 1
@@ -131,7 +131,7 @@ class _Reader:
             raise BadFile(self.path, f"line {self.i}", repr(found), expected)
 
     def _touch_body(self) -> None:
-        """The touch, word for word: whatever differs is another measurement."""
+        """Read the subprogram of a touch, which must agree word for word."""
         for expected in g.TOUCH_BODY.split(g.LINE_END):
             self._must(expected)
         self.has_touch = True

@@ -95,7 +95,6 @@ TERMS = Terms(
     rapid="FMAX",
     sync="FN 20: WAIT FOR SYNC",
     status="FN 12 on the status of the touch",
-    length=f"FN 12 and FN 11 on Q{TOOL_LENGTH}",
     unset="FN 0: Q{q} = -1",
     printed="FN 16",
     halt="STOP and FN 14",

@@ -112,7 +112,6 @@ class Terms:
     rapid: str
     sync: str
     status: str
-    length: str
     unset: str
     printed: str
     halt: str
@@ -134,7 +133,6 @@ class Language:
         sign: Letter before the number of a parameter.
         tool_length: Parameter with the length of the called tool, as in the tool table.
         system: How each system datum is addressed.
-        terms: How refusals name what they ask for.
         log: How the control prints clock and counters.
         printed: Block that appends lines to a log, from the mask file, its lines, and the target.
         lines: Lines of the file from all blocks.

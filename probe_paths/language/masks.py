@@ -112,6 +112,7 @@ def parse_mask(text: str, path: str | Path) -> tuple[MaskLine, ...]:
     lines = []
     for number, raw in enumerate(text.splitlines(), start=1):
         where = f"line {number}"
+        # keywords stand without quotes: M_CLOSE;
         if (word := raw.strip().removesuffix(";")) in KEYWORDS and raw.strip() != word:
             lines.append(MaskLine(word, ()))
             continue
@@ -157,10 +158,6 @@ def _mask(lines: Sequence[Fields]) -> str:
     return LINE_END.join(out) + LINE_END
 
 
-def _q(parameter: int) -> str:
-    return f"Q{int(parameter)}"
-
-
 def shared_masks(
     form: LogForm, decimals: int, rotary: Sequence[str], sensors: Sequence[Sensor] = ()
 ) -> dict[str, str]:
@@ -186,7 +183,6 @@ def _keyword(word: str) -> list[Fields]:
 def _point_lines(
     form: LogForm, decimals: int, rotary: Sequence[str], sensors: Sequence[Sensor] = ()
 ) -> list[Fields]:
-    """Lines of one touch."""
     number = _number(form, decimals)
     side = "%5.1LF" if form.is_wide else form.counter
     sides = [Q.SIDE_1, Q.SIDE_2][: len(rotary)]
@@ -209,7 +205,7 @@ def _number(form: LogForm, decimals: int) -> str:
 
 
 def _fields(named: Sequence[tuple[str, int]], form: str) -> tuple[str, list[str]]:
-    return " ".join(name + form for name, _ in named), [_q(q) for _, q in named]
+    return " ".join(name + form for name, _ in named), [f"Q{int(q)}" for _, q in named]
 
 
 def head_mask(

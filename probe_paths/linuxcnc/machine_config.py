@@ -30,7 +30,6 @@ def machine_files(chain: Chain, probe: Probe, dialect: Dialect, socket: str) -> 
 
     Args:
         dialect: Numbers of tool and preset.
-        socket: Where the twin answers.
     """
     frame = ProgramFrame(chain, probe)
     letters = sorted(frame.letters, key="XYZABC".index)
@@ -56,12 +55,11 @@ def machine_files(chain: Chain, probe: Probe, dialect: Dialect, socket: str) -> 
 
 
 def _text(name: str) -> str:
-    """A template of a file of the machine."""
     return (BESIDE / name).read_text(encoding="utf-8")
 
 
 def _axis(chain: Chain, letter: str, joint: int) -> str:
-    """Tables of one axis; a rotary one is not wrapped, so that readings are what they are."""
+    """Tables of one axis; a rotary axis is not wrapped, so that its readings are unchanged."""
     is_linear = letter in "XYZ"
     low, high = (v if is_linear else v / DEG for v in chain.link(letter).range)
     return _text("axis.ini").format(
@@ -77,7 +75,7 @@ def _axis(chain: Chain, letter: str, joint: int) -> str:
 
 
 def _positions(joints: int) -> str:
-    """Every joint is where it is commanded to be, at once."""
+    """Position feedback of every joint, equal to its command."""
     return "\n".join(
         net(
             f"position-{i}",

@@ -52,11 +52,8 @@ def rehearse(
 
     Args:
         files: Programs of a design, for any control.
-        standard: The true one.
         machine: As it really is; its dialect is that of LinuxCNC.
-        out: Folder for programs, logs and what LinuxCNC said.
         count: Touches that are made; None for all.
-        user: Who runs LinuxCNC, as `installed` gives it.
         announce: Called with the programs before they run.
 
     Raises:

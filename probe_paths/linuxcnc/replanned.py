@@ -66,6 +66,7 @@ def _plan(
     point, normal = foot_points(standard, feature, ball)
     top = chain.link("Z").range[1]
     z = chain.axis_index("Z")
+    # programs retract to their highest Z
     heights = [float(step.q[z]) for step in program.steps if isinstance(step, Move)]
     retracted = max(height for height in heights if np.isfinite(height))
     options = PlanOptions(

@@ -27,6 +27,9 @@ LOCK = Path("/tmp/linuxcnc.lock")
 
 _TROUBLE = re.compile(r"error|failed|exited|abort|killed", re.IGNORECASE)
 
+_PATIENCE = 3.0
+"""Multiple of its planned duration, beside a minute, after which a program is stopped."""
+
 _SHUTDOWN = 30.0
 """How long LinuxCNC may take to end, s; it took 3 s."""
 
@@ -51,25 +54,24 @@ def run_on_linuxcnc(
     contact: TwinContact,
     socket_path: Path,
     user: str = "",
-    patience: float = 3.0,
 ) -> Session:
     """Run programs one after the other.
 
     Args:
         socket_path: Where the component of the probe asks; its folder is the machine's.
         user: Who runs LinuxCNC; needed where we are root, as LinuxCNC refuses that.
-        patience: A program is stopped after so many times its planned duration and a minute.
 
     Raises:
         DesignError: LinuxCNC is not installed, runs already, or there is no user for it.
     """
     folder = socket_path.parent
-    _write(folder, files, programs, patience)
+    _write(folder, files, programs)
     server = _listen(socket_path)
     answering = threading.Thread(target=_answer, args=(server, contact), daemon=True)
     answering.start()
-    longest = sum(60.0 + patience * p.duration for p in programs) + _SHUTDOWN
+    longest = sum(map(_longest, programs)) + _SHUTDOWN
     with (folder / "linuxcnc.txt").open("w") as said:
+        # a session of its own, so that everything LinuxCNC starts can be ended with it
         process = subprocess.Popen(
             ["linuxcnc", "-r", "machine.ini"],
             cwd=folder,
@@ -127,11 +129,14 @@ def machine_folder(user: str) -> Path:
     return folder
 
 
-def _write(
-    folder: Path, files: Mapping[str, str], programs: Sequence[Program], patience: float
-) -> None:
-    """All files that LinuxCNC reads; it only appends logs and saves its variables."""
-    queue = [f"{p.file} {60.0 + patience * p.duration:.0f}\n" for p in programs]
+def _longest(program: Program) -> float:
+    """Time after which a program is stopped, s."""
+    return 60.0 + _PATIENCE * program.duration
+
+
+def _write(folder: Path, files: Mapping[str, str], programs: Sequence[Program]) -> None:
+    """Write all files that LinuxCNC reads."""
+    queue = [f"{p.file} {_longest(p):.0f}\n" for p in programs]
     written = {p.file: p.text for p in programs} | dict(files) | {PROGRAMS: "".join(queue)}
     for name, text in written.items():
         (folder / name).write_text(text)
@@ -158,7 +163,7 @@ def _listen(path: Path) -> socket.socket:
 
 
 def _answer(server: socket.socket, contact: TwinContact) -> None:
-    """Answer the one component that asks, until it goes."""
+    """Answer the component of the probe until it disconnects."""
     try:
         link, _ = server.accept()
     except OSError:  # LinuxCNC ended before it asked

@@ -149,7 +149,7 @@ class TwinContact:
         return row, float(along[row])
 
     def _machine_at(self, row: int) -> VirtualMachine:
-        """The machine at this touch, with what was touched before and will be after."""
+        """The machine at this touch, between the touches already made and those planned."""
         disturbance = self.machine.disturbance
         if disturbance is None:
             return self.machine
@@ -160,7 +160,7 @@ class TwinContact:
 
 
 def _planned(program: ReadProgram, standard: Standard, machine: VirtualMachine) -> list[Touches]:
-    """Touches of a program one by one, as a perfect machine would make them."""
+    """Touches of a program on a perfect machine, one by one."""
     solver = ContactSolver(program, standard, machine, np.zeros(len(program.touches)))
     times = step_times(machine.chain, program.steps, machine.clock, solver.travel)
     rows = [i for i, step in enumerate(program.steps) if isinstance(step, ProbeStep)]

@@ -37,6 +37,7 @@ def planned_again(
         NotReachable: More touches cannot be made there than may be dropped.
     """
     old = shortened(programs, standard, chain)
+    # a ball at the beginning of a visit is an anchor, which the new plan adds itself
     first = np.concatenate([[True], np.diff(old.visit) > 0])
     balls = [sphere.name for sphere in standard.spheres]
     rows = np.flatnonzero(~(first & np.isin(old.feature, balls)))

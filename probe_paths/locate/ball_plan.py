@@ -31,7 +31,6 @@ def plan_ball(plan: TouchPlan, is_beside: bool = False) -> TouchPlan:
     them: rotary axes at home, then the poses of the plan.
 
     Args:
-        plan: Of the programs that the ball is measured before and after.
         is_beside: The ball is that of the workshop, on the table beside the standard.
 
     Raises:
@@ -82,6 +81,7 @@ def _without_deep_collisions(
         workshop=options.workshop,
     )
     for tilt, rotary in product(_TILTS, poses if balls else []):
+        # one static check for the rings of all balls
         rings = [_ring(plan, ball, rotary, tilt) for ball in balls]
         every = joined(rings)
         good = np.asarray(reach.is_reachable(every))

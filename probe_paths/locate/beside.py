@@ -81,6 +81,7 @@ def companions(
         made = replace(made, no_ball=str(error))
     if is_further:
         return replace(made, no_search="the first probe of this set-up has found it")
+    # the widest spread comes first, a narrower one where it allows no search
     for chosen in SPREADS if spread is None else (spread,):
         try:
             search = plan_search(

@@ -78,13 +78,10 @@ def find_standard(
     """Place of a standard from balls that came down on it.
 
     Args:
-        standard: As calibrated.
-        believed: Where it was believed to stand.
         ball_table: Centres of the balls at their contacts, table frame, (N, 3), mm; they came along
             -z of the believed standard.
         radius: Of the ball, mm.
         rng: For the places of the first round.
-        spread: How far from the believed place is looked.
 
     Raises:
         NotEnoughData: Fewer than nine touches, no place that fits, or two that fit alike.
@@ -102,9 +99,11 @@ def find_standard(
     def on_surfaces(theta: Array) -> Array:
         return _lifted_exactly(standard, ball, theta, radius)
 
+    # fewer places for a smaller spread
     share = (spread.distance / Spread.distance) * (spread.angle / Spread.angle)
     count = max(int(min(share, 1.0) * _TRIED), _FEWEST_TRIED)
     tried = rng.uniform(-limit, limit, (count, 6))
+    # the believed place is always among them
     tried[0] = 0.0
     best = _converged(_best(tried, on_relief, _KEPT), on_relief, _STEP, _ROUNDS)
     few = _distinct(best, on_relief, ball)[:_EXACT]
@@ -171,7 +170,7 @@ def lifted(relief: Relief, ball: Array, theta: Array) -> Array:
 
 
 def _lifted_exactly(standard: Standard, ball: Array, theta: Array, radius: float) -> Array:
-    """On the surfaces: first contact of balls that come down the same ways."""
+    """The same on the exact surfaces, by first contacts."""
     above = 80.0  # mm; farther than any place of the few is from where it shall be
     back = inverse(_pose(theta))
     up = back[:, None, :3, 2]
@@ -183,7 +182,7 @@ def _lifted_exactly(standard: Standard, ball: Array, theta: Array, radius: float
 
 
 def _cost(lifted: Array) -> Array:
-    """Robust: a touch counts quadratically up to `_ROBUST` and linearly beyond."""
+    """Huber's cost: quadratic up to `_ROBUST`, linear beyond."""
     size = np.abs(lifted)
     cost = np.where(size < _ROBUST, 0.5 * size**2, _ROBUST * (size - 0.5 * _ROBUST))
     total: Array = cost.sum(axis=1)
@@ -191,7 +190,7 @@ def _cost(lifted: Array) -> Array:
 
 
 def _best(tried: Array, lift: Lift, count: int) -> Array:
-    """The places that fit best, each at its best height."""
+    """The best-fitting places, each at its best height."""
     lifted = lift(tried)
     middle = np.median(lifted, axis=1, keepdims=True)
     tried = tried - middle * np.eye(6)[2]
@@ -227,7 +226,7 @@ def _restarted(theta: Array, lift: Lift, rng: np.random.Generator) -> Array:
 
 
 def _gauss_newton_step(theta: Array, lift: Lift, step: Array) -> Array:
-    """One step of Gauss and Newton with damping each, taken where it makes the fit better."""
+    """One damped Gauss-Newton step of every place, taken where it improves the fit."""
     moved = theta[:, None] + np.concatenate([np.diag(step), -np.diag(step)])
     both = lift(np.concatenate([theta[:, None], moved], axis=1).reshape(-1, 6))
     both = both.reshape(len(theta), 13, -1)
@@ -251,7 +250,7 @@ def _gauss_newton_step(theta: Array, lift: Lift, step: Array) -> Array:
 
 
 def _distinct(theta: Array, lift: Lift, ball: Array) -> Array:
-    """Places that differ by more than `_SAME` at some touch, the best first."""
+    """Places that differ by more than `_SAME` at one touch or more, the best first."""
     ranked = theta[np.argsort(_cost(lift(theta)))]
     kept: list[Array] = []
     for one in ranked:
@@ -262,7 +261,7 @@ def _distinct(theta: Array, lift: Lift, ball: Array) -> Array:
 
 
 def _uncertainty(theta: Array, lift: Lift) -> Array:
-    """Standard uncertainties by the scatter of the touches and their slopes, (6,)."""
+    """Standard uncertainties from the scatter and the Jacobian of the touches, (6,)."""
     moved = theta + np.concatenate([np.diag(_FINE), -np.diag(_FINE)])
     both = lift(moved)
     J = (both[:6] - both[6:]).T / (2.0 * _FINE)

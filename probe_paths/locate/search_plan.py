@@ -62,9 +62,6 @@ def plan_search(
     """Touches from above, at the readings at which programs begin and end.
 
     Args:
-        setup: Where the standard is believed to stand.
-        spread: How far from there it may stand.
-        workshop: What stands beside it.
         retract: Below the upper end of Z's travel, mm.
 
     Raises:
@@ -102,7 +99,7 @@ def plan_search(
 def _places(
     relief: Relief, standard: Standard, probe: Probe, spread: Spread
 ) -> tuple[Array, Array, Array]:
-    """Places (N, 2) that are always good, and the highest and lowest that may be under each, mm."""
+    """Places (N, 2) that are safe within the spread, and the surface heights under each, mm."""
     sin, base = np.sin(spread.angle), standard.base.thickness
     # where the standard leans, what is high moves sideways from what is low
     beside = _MARGIN + (float(relief.top.max()) - base) * sin
@@ -152,14 +149,14 @@ def _refuse_undetermined_place(relief: Relief, place: Array, spread: Spread) -> 
 
 
 def _most(values: Array, half: float) -> Array:
-    """Largest within a square of half sides, mm."""
+    """Largest value within a square of the given half side, mm."""
     size = 2 * int(np.ceil(half / PITCH)) + 1
     largest: Array = ndimage.maximum_filter(values, size=size, mode="nearest")
     return largest
 
 
 def _far_apart(place: Array, count: int) -> list[int]:
-    """Rows of places (N, 2), each as far as can be from those before it."""
+    """Rows of places (N, 2), each as far as possible from those before it."""
     rows = [int(np.argmax(np.linalg.norm(place - place.mean(axis=0), axis=1)))]
     far = np.full(len(place), np.inf)
     while len(rows) < min(count, len(place)):
@@ -177,9 +174,10 @@ def _plan(
     start: Array,
     height: float,
 ) -> TouchPlan:
-    """The touches as a plan; which feature they name means nothing."""
+    """The touches as a plan; their features are placeholders."""
     n, z, home = len(start), chain.axis_index("Z"), home_readings(chain)
     lows = np.array([chain.link(name).range[0] for name in chain.rotary_axes])
+    # home is approached from within the travel
     side = np.where(lows < home, 1.0, -1.0)
     before = home - side * options.overshoot
     contact = start.copy()
@@ -231,6 +229,7 @@ def _refuse_out_of_travel_or_collision(plan: TouchPlan, path: float) -> None:
         probe=plan.probe,
         workshop=plan.options.workshop,
     )
+    # the standard is spared, as the touches are to meet it
     ours = np.isin(room.bodies.name, [solid.name for solid in plan.options.workshop.solids[1:]])
     spared = np.broadcast_to(~ours, (len(end), len(ours)))
     gap, nearest = room.swept_gap(plan.start, end, spared=spared)

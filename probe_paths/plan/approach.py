@@ -71,7 +71,7 @@ class Approaches:
                 yield self._along(np.cos(lean) * normal + np.sin(lean) * beside, normal)
 
     def _along(self, away: Array, normal: Array) -> tuple[Array, Array, Mask]:
-        """One way each, along directions in the table frame."""
+        """Ways along given directions in the table frame."""
         chain = self.chain
         columns = [chain.axis_index(a) for a in chain.linear_axes]
         per_axis = np.linalg.inv(linear_directions(chain, self.contact))

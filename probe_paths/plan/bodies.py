@@ -21,7 +21,6 @@ class Bodies:
 
     Attributes:
         hulls: One of every owner that holds all of it, table frame.
-        name: Of the owners, (B,).
         on: Axis that carries each, empty for the table, (B,).
         parts: What an owner really consists of, by its row; it is its hull where none is listed.
     """
@@ -68,6 +67,7 @@ def standing_bodies(standard: Standard, T_table_artefact: Array, workshop: Works
             prisms = _joined([prisms, _chamfer(patch, base.thickness)])
         parts[len(lots)] = _moved(prisms, T_table_artefact)
         lots.append((patch.name, "", _plate(box, patch.T_artefact_patch)))
+    # hulls of owners are tested first, their parts only where a hull is near
     lots = [(name, on, _moved(hull, T_table_artefact)) for name, on, hull in lots]
     T_table_face = table_face(T_table_artefact)
     for solid in workshop.solids:
@@ -94,7 +94,7 @@ def _chamfer(patch: FreeformPatch, foot: float) -> Hulls:
 
 
 def _hull(corners: Array, discs: list[float], ball: float = 0.0) -> Hulls:
-    """One upright body; corners that it does not have are repeated."""
+    """One upright body; its last corner is repeated up to `CORNERS`."""
     some = np.minimum(np.arange(CORNERS), len(corners) - 1)
     return Hulls(
         corner=corners[some][None],
@@ -131,7 +131,7 @@ def _prisms(patch: FreeformPatch) -> Hulls:
 
 
 def _cell(i: int, j: int, uv: Array, height: Array, floor: float) -> Hulls:
-    """The prism under one cell of a face, whose corners are raised until it holds the face."""
+    """The prism under one cell of a face, raised until it contains the face."""
     mine = np.s_[i : i + _FINE + 1, j : j + _FINE + 1]
     lid, share = height[mine], np.linspace(0.0, 1.0, _FINE + 1)
     s, t = share[:, None], share[None]

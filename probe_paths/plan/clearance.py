@@ -23,12 +23,7 @@ _BLOCK = 200  # moves that are looked at together, against every body and with e
 
 @dataclass(frozen=True, eq=False)
 class ToolClearance:
-    """How near ball, stylus, body and spindle come to anything solid.
-
-    Attributes:
-        setup: Where the standard is believed to stand.
-        workshop: What stands there beside it.
-    """
+    """How near ball, stylus, body and spindle come to anything solid."""
 
     chain: Chain
     standard: Standard
@@ -43,7 +38,7 @@ class ToolClearance:
 
     @cached_property
     def _tool(self) -> Array:
-        """Begin, end, radius and ball of every piece of the tool, (P, 4), mm; the ball first."""
+        """Start, end, radius and ball of every piece of the tool, (P, 4), mm; the ball first."""
         ball = self.probe.radius
         ends = [end for end, _ in self.probe.shape.cylinders]
         radii = [radius for _, radius in self.probe.shape.cylinders]
@@ -88,6 +83,7 @@ class ToolClearance:
         best = np.full((len(before), len(bodies.name)), np.inf)
         frames = [still_frames(bodies.on.tolist(), self.chain, q) for q in (before, after)]
         T_table_tool = table_to_tool(self.chain, before)
+        # bodies on one axis stand still in its frame
         for on in frames[0]:
             T = frames[0][on]
             begin, end = (

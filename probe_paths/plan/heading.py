@@ -84,7 +84,6 @@ class Heading:
             programs.
         stated: Hash of probe and workshop; empty in logs of earlier programs.
         is_tilted: Coordinates are those of planes that are tilted with the table.
-        sensors: That are logged with every touch.
         ball: On the table beside the standard, where that is what is touched.
     """
 
@@ -153,7 +152,7 @@ class Heading:
 
     @property
     def _workshop_lines(self) -> list[str]:
-        """The probe above its ball, and what it is kept clear of."""
+        """The probe above its ball, and the obstacles."""
         if self.workshop is None:
             return []
         return [
@@ -280,7 +279,7 @@ def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> tuple[H
 def _stated_lines(
     lines: Sequence[tuple[int, str]], path: str | Path
 ) -> tuple[dict[str, str], tuple[Sensor, ...], int]:
-    """What lines after the first four state, by their first word; sensors; where others begin."""
+    """Statements of the lines after the first four by first word; sensors; lines read."""
     stated: dict[str, str] = {}
     sensors: list[Sensor] = []
     count = 4
@@ -307,6 +306,7 @@ def _with_workshop(
         end, radius = _numbers(_STACK, lines[count], path, "STACK TO.. R..").tolist()
         stack.append((end, radius))
         count += 1
+    # ends the loops below at a head that breaks off
     lines.append((lines[-1][0], "the end of the head"))
     nose = _numbers(_NOSE, lines[count], path, "NOSE R..")
     probe = Probe(head.probe.radius, head.probe.length, tuple(stack), float(nose[0]))

@@ -74,7 +74,7 @@ def visits(chain: Chain, rotary: Array, overshoot: float, shortest_visit: int) -
 def _visit(
     chain: Chain, pose: int, rotary: Array, side: Array, overshoot: float, rows: IntArray
 ) -> Visit:
-    """A visit from the wanted sides, or from the other one where the travel ends."""
+    """A visit from the wanted sides, or from the opposite one where the travel ends."""
     side = side.copy()
     for i, name in enumerate(chain.rotary_axes):
         low, high = chain.link(name).range
@@ -127,7 +127,7 @@ def short_order(places: Array, first: Array) -> IntArray:
 
 
 def _best_two_opt(order: IntArray, cost: Array, away: Array) -> tuple[float, IntArray]:
-    """The part whose other direction saves most: what it saves, and the order with it."""
+    """The best reversal of a part (2-opt): its saving, and the new order."""
     n = len(order)
     into = np.concatenate([[away[order]], cost[order[:-1][:, None], order]])  # from before i to j
     on = np.concatenate([cost[order[:, None], order[1:]], np.zeros((n, 1))], axis=1)

@@ -49,6 +49,7 @@ def stroke_gaps(
     own = np.zeros((len(start), len(bodies.name)), dtype=bool)
     for name in dict.fromkeys(feature.tolist()):
         own[np.ix_(np.flatnonzero(feature == name), bodies.rows_of(name))] = True
+    # beyond the contact the core is spared, as columns come out of it
     core = np.broadcast_to(bodies.name == "CORE", own.shape)
     contact = start + back[:, None] * direction
     end = start + distance[:, None] * direction

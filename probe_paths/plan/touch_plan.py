@@ -101,7 +101,6 @@ class TouchPlan:
         visit: Index into `visits`, (N,).
         request: Row of the requests, -1 for an anchor touch, (N,).
         point: Contact points, artefact frame, (N, 3), mm.
-        normal: Outward unit normals, (N, 3).
         start: Readings at the start of the touch, (N, A).
         contact: Readings at the expected contact, (N, A).
         direction: Unit vector of the probing motion in X, Y, Z readings, (N, 3).

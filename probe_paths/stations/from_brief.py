@@ -47,7 +47,7 @@ def dialects_of(brief: Brief) -> list[Dialect]:
 
 
 def _is_tilted(brief: Brief, words: Dialect) -> bool:
-    """Whether programs use planes, which control and machine must be made for."""
+    """Whether programs use planes; refuses a control or machine without them."""
     if not brief.programs.planes:
         return False
     chain = brief.chain

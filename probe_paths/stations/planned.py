@@ -112,7 +112,7 @@ def _plans(
 
 
 def _repeated_ball_touches(standard: Standard, wanted: Requests, left: IntArray) -> IntArray:
-    """Touches on balls that others make: at the poses of those that are left, or elsewhere."""
+    """Touches on balls to repeat: at the poses of the remaining touches, or elsewhere."""
     is_ball = np.isin(wanted.feature, [sphere.name for sphere in standard.spheres])
     is_ball[left] = False
     pose = wanted.pose
@@ -123,7 +123,7 @@ def _repeated_ball_touches(standard: Standard, wanted: Requests, left: IntArray)
 
 
 def _numbered(request: IntArray, rows: IntArray) -> IntArray:
-    """Rows of all requests for rows of those that were left; -1 stays."""
+    """Rows among all requests from rows among the remaining ones; -1 stays."""
     return np.where(request >= 0, rows[np.maximum(request, 0)], request)
 
 
@@ -149,6 +149,7 @@ def _in_other_clamping(
             chain, clamping.setup, probe.shape, probe.length, workshop=clamping.workshop
         )
         lean, best = _by_lean(reach, requests, poses)
+        # attempt -1 is the pose of the first clamping
         for attempt in range(-1, min(_POSES_TRIED, len(poses))):
             rows = np.flatnonzero(~found)
             if attempt >= 0:
@@ -166,6 +167,6 @@ def _in_other_clamping(
 
 
 def _by_lean(reach: ProbeReach, requests: Requests, poses: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Angle between normal and tool at every pose (N, K), and the poses from least to most."""
+    """Angle between normal and tool at every pose (N, K), and the poses in increasing order."""
     _, lean = reach.everywhere(requests.point, requests.normal, poses)
     return lean, np.argsort(lean, axis=1, kind="stable")

@@ -39,7 +39,6 @@ def make_stations(
     Args:
         plans: As of `plan_campaign`, with the number of the probe.
         words: Of the control, for every probe.
-        feeds: Feeds, and the length of a file.
     """
     return tuple(
         Station(plan, words[probe], make_programs(plan, words[probe], feeds))

@@ -13,7 +13,7 @@ from matstd.cli import main
 from matstd.probe_paths.campaign.ball_change import ball_changes, check_changes
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.emit.program import make_ball
@@ -43,7 +43,7 @@ def logged(program, small, chain):
     def log(hours=0.0, **machine):
         virtual = VirtualMachine(chain, **machine)
         virtual = replace(virtual, begin=virtual.begin + timedelta(hours=hours))
-        run = run_program(program, small, virtual, np.random.default_rng(0))
+        run = run_programs([program], small, virtual, np.random.default_rng(0))[0]
         run.check_done()
         return "".join(run.log.values())
 
@@ -143,7 +143,7 @@ def test_no_ball_no_program(plan):
 def test_evaluate_tells_the_change_and_refuses_beyond_the_limit(
     logged, programs, read, small, chain, golden, tmp_path, capsys
 ):
-    run = run_program(read[0], small, VirtualMachine(chain), np.random.default_rng(0))
+    run = run_programs(read[:1], small, VirtualMachine(chain), np.random.default_rng(0))[0]
     folder = tmp_path
     for name, text in run.log.items():
         (folder / name).write_text(text, encoding="ascii")

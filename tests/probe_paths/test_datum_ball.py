@@ -13,7 +13,7 @@ from matstd.artefact.reach.workshop import Workshop
 from matstd.probe_paths.campaign.ball_change import ball_changes, effective_radii
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.control.steps import Move
@@ -54,7 +54,7 @@ def logged(program, small, chain):
     def log(hours=0.0, **machine):
         virtual = VirtualMachine(chain, **machine)
         virtual = replace(virtual, begin=virtual.begin + timedelta(hours=hours))
-        run = run_program(program, small, virtual, np.random.default_rng(0))
+        run = run_programs([program], small, virtual, np.random.default_rng(0))[0]
         run.check_done()
         (part,) = read_log("A.TXT", chain.rotary_axes, "".join(run.log.values()))
         return part

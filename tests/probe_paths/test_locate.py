@@ -16,7 +16,7 @@ from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.evaluation import ball_centres
 from matstd.probe_paths.campaign.simulation import simulate_search
-from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control.interpreter import interpret, read_program
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.emit.program import make_programs, make_search
@@ -60,9 +60,8 @@ def test_at_the_ends_of_the_spread_every_touch_meets_something_and_nothing_else_
     theta, program, small, chain, golden
 ):
     beside = placed(theta)
-    run = run_program(
-        program, small, VirtualMachine(chain, setup_error=beside), np.random.default_rng(0)
-    )
+    machine = VirtualMachine(chain, setup_error=beside)
+    (run,) = run_programs([program], small, machine, np.random.default_rng(0))
     run.check_done()
     stands = Setup("a", golden.setup().T_table_artefact @ beside)
     room = ToolClearance(chain, small, stands, Probe(), program.heading.workshop)
