@@ -180,11 +180,7 @@ def read_tolerances(document: Any) -> list[Tolerance]:
 
 
 def read_signs(document: Any) -> dict[str, tuple[float, float, float, float]]:
-    """Drawn signs of a document that was read: of each the length of its lines and their middle.
-
-    Returns:
-        Length and x, y, z of the centre of mass of the lines, mm, by the sign's name.
-    """
+    """Length and centre of mass (x, y, z) of every drawn sign of a document, mm, by name."""
     tool = XCAFDoc_DocumentTool.DimTolTool_s(document.Main())
     found = {}
     for listed, attribute in (

@@ -59,15 +59,12 @@ def run_apart(
     timeout: float = 150.0,
     environment: dict[str, str] | None = None,
 ) -> Ending:
-    """Run ``module.task(folder, *arguments)`` in a new process of this interpreter.
+    """Run ``module.task(folder, *arguments)`` in a new process; raises nothing, returns its ending.
 
     Args:
         task: A function that takes the folder and the arguments; a `DesignError` that it raises is
             its refusal.
         timeout: After which the process is stopped, s.
-
-    Returns:
-        How it ended; nothing is raised.
     """
     refusal = folder / REFUSAL
     call = _CALL.format(

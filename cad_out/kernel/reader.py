@@ -93,7 +93,7 @@ class Reread:
 
 
 def read_step(path: Path) -> Reread:
-    """Read a STEP file with a fresh reader and look at what is in it."""
+    """Read a STEP file with a fresh reader and measure its contents."""
     # without this setting the names of faces are not read
     settings({"read.stepcaf.subshapes.name": 1})
     reader = STEPCAFControl_Reader()
@@ -189,16 +189,14 @@ def tessellate(shape: Any, chord: float) -> tuple[Array, np.ndarray, np.ndarray]
 def farthest_from_faces(
     shape: Any, corners: Array, triangles: np.ndarray, numbers: np.ndarray
 ) -> float:
-    """Largest distance of a mesh from the curved faces of its solid, by the kernel's projection.
+    """Largest distance of a mesh from curved faces of its solid, mm, by the kernel's projection.
+
+    It is measured at the middles of the sides of at most a hundred triangles of every face.
 
     Args:
         corners: Shape (V, 3), mm.
         triangles: Shape (F, 3).
         numbers: Index of every triangle's face, (F,).
-
-    Returns:
-        The largest of all middles of sides, mm; of every face at most a hundred
-        triangles are looked at.
     """
     worst = 0.0
     for number, face in enumerate(faces_of(shape)):

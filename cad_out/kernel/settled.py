@@ -19,9 +19,9 @@ _REFERENCE = re.compile(r"#(\d+)")
 def with_reproducible_order(whole: str) -> str:
     """A STEP text whose colours follow in the order of the parts.
 
-    The kernel writes them in an order that its memory happens to have. Everything from the first
-    of them on is numbered anew: what nothing refers to is sorted by what it says, what it refers
-    to follows it.
+    The kernel writes them in an order that depends on its memory. Everything from the first
+    of them on is renumbered: roots are sorted by their content, and the entities that they refer to
+    follow.
     """
     at = whole.find(_FIRST)
     if at < 0:

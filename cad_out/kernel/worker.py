@@ -87,7 +87,7 @@ def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list
 
 
 def reread(folder: str) -> None:
-    """Read the STEP file of a folder anew and write down what the kernel finds in it."""
+    """Re-read the STEP file of a folder and write what the kernel finds in it."""
     from matstd.cad_out.kernel.reader import read_step
 
     facts = asdict(read_step(Path(folder) / STEP))
@@ -97,7 +97,7 @@ def reread(folder: str) -> None:
 def _mesh(standard: Standard, solid: Solid, chord: float) -> tuple[Mesh, float]:
     """Mesh of body and balls with the chord error kept, and the body's distance from it, mm.
 
-    Both are measured at other places than the triangulation looks at.
+    Both are measured at other places than those that the triangulation checks.
     """
     from matstd.cad_out.kernel.reader import face_numbers, farthest_from_faces, triangulate
 

@@ -1,4 +1,8 @@
-"""Whether cutters reach every surface of a body, holder and all."""
+"""Reach of cutters with their holders to every surface of a body.
+
+Surfaces are sampled by points. The tool is a stack of cylinders, sampled by rings of points; it is
+free where none of them lies in milled material.
+"""
 
 from dataclasses import dataclass
 from itertools import product
@@ -12,7 +16,7 @@ from matstd.twin.frames import Array
 from matstd.twin.units import DEG
 
 RADIUS, OVERHANG = FINISHING, 60.0
-"""Of the finishing ball-end mill, and how far it stands out of its holder: 10 D, mm."""
+"""Of the finishing ball-end mill, and its overhang from the holder: 10 D, mm."""
 
 LONGER = (80.0, 100.0, 120.0)
 """Overhangs that are tried where the usual one is too short, mm."""
@@ -35,7 +39,7 @@ class Cutting:
     """What cutters make of a body.
 
     Attributes:
-        points: Surface points looked at, by kind.
+        points: Number of surface points tested, by kind.
         upright: Share of them that the finishing cutter reaches from above.
         tilted: Share that it reaches with its axis tilted by 45 degrees at most.
         out_of_reach: Features with a point that it does not reach at all.

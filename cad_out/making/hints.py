@@ -20,7 +20,7 @@ ROUGHNESS = (0.2 * UM, 0.4 * UM, 0.8 * UM)
 
 _RA = 4.0 / (9.0 * np.sqrt(3.0))  # of the height of a parabolic cusp
 _AZIMUTHS = 8
-_PITCH = 10.0  # mm, of the places that are looked at
+_PITCH = 10.0  # mm between the places that are tested
 
 
 @dataclass(frozen=True, slots=True)

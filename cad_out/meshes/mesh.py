@@ -47,14 +47,11 @@ class Mesh:
 
 
 def welded(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> Mesh:
-    """Join the corners of neighbouring faces and drop what collapses.
+    """Join the corners of neighbouring faces and drop triangles that collapse.
 
     Args:
         corners: Shape (V, 3), mm, float64: rounding them would part corners at the ties.
         triangles: Shape (F, 3).
-
-    Returns:
-        One mesh, closed if the faces were.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -195,15 +192,12 @@ def chord_errors(
 
 
 def inner_folds(corners: Array, triangles: np.ndarray, least: float) -> tuple[Array, Array]:
-    """Edges at which a closed mesh is folded inwards by more than an angle.
+    """Middles (E, 3) and lengths (E,) of edges at which a mesh is folded inwards by an angle, mm.
 
     Args:
         corners: Shape (V, 3), mm.
         triangles: Shape (F, 3).
         least: Angle between the normals of two triangles, rad.
-
-    Returns:
-        Middles (E, 3) and lengths (E,) of these edges, mm.
     """
     mesh = _trimesh(corners, triangles)
     folded = ~mesh.face_adjacency_convex & (mesh.face_adjacency_angles > least)
@@ -228,7 +222,7 @@ def face_areas(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> dict
 
 
 def owners(standard: Standard, corners: Array, triangles: np.ndarray) -> np.ndarray:
-    """Feature of every triangle of a mesh that has lost its faces, as one from an STL file.
+    """Feature of every triangle of a mesh without faces, as from an STL file, (F,); empty for none.
 
     A triangle belongs to a patch or a sphere if its middle lies on the surface and it looks the
     same way.
@@ -236,9 +230,6 @@ def owners(standard: Standard, corners: Array, triangles: np.ndarray) -> np.ndar
     Args:
         corners: Shape (V, 3), mm.
         triangles: Shape (F, 3).
-
-    Returns:
-        Names, (F,); empty for the rest of the body.
     """
     a, b, c = (corners[triangles[:, k]] for k in range(3))
     middle, across = (a + b + c) / 3.0, np.cross(b - a, c - a)

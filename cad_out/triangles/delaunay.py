@@ -1,4 +1,9 @@
-"""Delaunay triangles in an outline in a plane."""
+"""Delaunay triangles in an outline in a plane.
+
+The points are triangulated together with four far corners, without regard to the outline. Where the
+outline is made of sides of triangles it separates them into rooms; a room is inside if an odd
+number of crossings leads to it from outside.
+"""
 
 from functools import cached_property
 
@@ -10,7 +15,7 @@ from scipy.spatial import Delaunay, cKDTree
 from matstd.twin.frames import Array
 
 _FAR = 3.0 * np.array([[-1.0, -1.1], [1.2, -1.0], [1.0, 1.3], [-1.1, 1.0]])
-"""Corners far outside, so that all that is outside hangs together."""
+"""Corners far outside, so that the outside is connected."""
 
 
 class Sheet:
@@ -47,7 +52,7 @@ class Sheet:
 
     @cached_property
     def inside(self) -> np.ndarray:
-        """Which triangles one reaches across the outline an odd number of times, (T,)."""
+        """Mask of triangles inside the outline, by the parity of crossings, (T,)."""
         count = len(self.wall)
         a = np.repeat(np.arange(count), 3)
         b, is_wall = self._whole.neighbors.ravel(), self.wall.ravel() >= 0
@@ -74,7 +79,7 @@ class Sheet:
 
     @cached_property
     def encroached(self) -> np.ndarray:
-        """Pieces in whose circle the corner of a triangle inside on them stands, (S,)."""
+        """Pieces whose diametral circle contains the apex of an inner triangle on them, (S,)."""
         t, wall = self._whole.simplices[self.inside], self.wall[self.inside]
         row, k = np.nonzero(wall >= 0)
         apex = self.places[t[row, k]]
@@ -119,7 +124,7 @@ def circumcircles(corner: Array) -> tuple[Array, Array]:
 
 
 def separate_centres(centre: Array, radius: Array) -> np.ndarray:
-    """Of candidates, the first ones first, those that stand in no circle of one taken, (C,)."""
+    """Mask of candidates, in their order, outside the circles of those already taken, (C,)."""
     keep = np.ones(len(centre), dtype=bool)
     if not len(centre):
         return keep

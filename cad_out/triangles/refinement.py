@@ -20,7 +20,7 @@ _LEAST = 0.02  # mm, nothing is refined for its angles below twice this
 _SHORTEST = 1e-4  # mm, of pieces that are halved until they are sides of triangles
 _ONE_PLACE = 1e-3  # mm: ends of two sides that are one corner and lie so near are one place
 _ROUNDS = 60  # 15 to 25 are usual
-_ENOUGH = 0.8  # of the chord: points between those that are looked at here lie a little farther
+_ENOUGH = 0.8  # of the chord: distances between the tested points are a little larger
 
 
 @dataclass(eq=False)
@@ -242,11 +242,7 @@ def _outline(face: Face, edges: Sequence[Edge]) -> _Outline:
 def _improve(
     face: Face, edges: Sequence[Edge], points: _Points, chord: float
 ) -> tuple[set[tuple[int, int]], bool]:
-    """Triangulate a face, and find pieces to halve or put new points inside.
-
-    Returns:
-        Pieces (edge, index) that should be halved; whether the face got points inside.
-    """
+    """Triangulate a face; returns pieces (edge, index) to halve, and whether points were added."""
     outline = _outline(face, edges)
     ends = outline.ends
     places = np.concatenate([outline.places, face.inner])

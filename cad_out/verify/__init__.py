@@ -1,4 +1,4 @@
-"""What was built, measured anew from the files against the design.
+"""Built files, re-read and measured against the design.
 
 In: a standard and the folder of its files. Out: a `Conformity` with every figure and its limit;
 `export_standard` moves the files to their names only if all are met.

@@ -1,4 +1,4 @@
-"""What was built, measured: the files are read anew and compared with the design."""
+"""Conformity of the built files: they are re-read and compared with the design."""
 
 import json
 from collections import Counter
@@ -209,7 +209,7 @@ def measure(
     built: dict[str, Any],
     chord: float,
 ) -> Conformity:
-    """Read the STEP and STL files anew and compare them with the design.
+    """Re-read the STEP and STL files and compare them with the design.
 
     Args:
         folder: With the STEP file; the kernel's second process answers through it.

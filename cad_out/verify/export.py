@@ -62,13 +62,10 @@ def build_and_measure(
     author: str = NOT_STATED,
     organisation: str = NOT_STATED,
 ) -> tuple[Conformity, Mesh]:
-    """Build into an empty folder and measure; figures out of their limits are not refused here.
+    """Figures of a standard built into an empty folder, not yet refused, and its float64 mesh.
 
     Args:
         chord: Largest distance of the mesh from the exact faces, mm.
-
-    Returns:
-        The figures, and the mesh in float64 with the feature of every triangle.
     """
     write_standard(place / STANDARD, standard)
     run_kernel("build", place, chord, author, organisation)

@@ -73,13 +73,10 @@ def _in_one_line(value: str) -> str:
 def read_faces(
     path: Path, known: dict[int, str] | None = None
 ) -> dict[str, SplineFace | SphereFace | None]:
-    """Named faces of a STEP file with the surface under each.
+    """Named spline and sphere faces of a STEP file; None for a face on any other surface.
 
     Args:
         known: Its entities where they were read already.
-
-    Returns:
-        Spline and sphere faces by name; None for a named face on any other surface.
 
     Raises:
         BadFile: No data section, a face that refers to nothing, or two faces of one name.

@@ -1,7 +1,7 @@
-"""Logs beside what they should be: a clock that runs, decimals, what the program itself says.
+"""Consistency of logs: a running clock, enough decimals, agreement with the program.
 
-A log is text that passes through many hands. What it says of sides, tool and preset is taken as
-true by everything behind it, and is known from the program that wrote it.
+A log is text that passes through many hands. The evaluation relies on its sides, tool and preset,
+and the program that wrote it states them too.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,7 @@ from matstd.twin.machine import Chain
 from matstd.twin.units import DEG
 
 LONGEST_CAMPAIGN = timedelta(days=30)
-"""Between the first and the last log of one evaluation: a standard stays clamped for days."""
+"""Longest time between the logs of one evaluation: a standard stays clamped for days."""
 
 COARSEST_STEP = 0.01
 """Step of positions that is too coarse for a measurement, mm; the masks print 0.000001."""
@@ -24,12 +24,11 @@ FEWEST = 5
 """Touches from which a clock or a step is judged."""
 
 SAME_ANGLE = 0.05
-"""Degrees by which a rotary axis may stand beside where the program sent it: the programs' own
-limit."""
+"""Largest deviation of a rotary axis from its programmed position, degrees; as in the programs."""
 
 
 def check_numbers(parts: Sequence[LogPart]) -> None:
-    """Refuse logs whose clock stood, whose positions are rounded, and logs of other times.
+    """Refuse logs with a stopped clock or rounded positions, and logs of different campaigns.
 
     Raises:
         BadFile: File and line, what stood there, what was expected.
@@ -75,11 +74,11 @@ def _check_common(key: str, parts: Sequence[LogPart]) -> None:
 def check_as_programmed(
     parts: Sequence[LogPart], programs: Mapping[str, ReadProgram], chain: Chain
 ) -> None:
-    """Refuse logs that say something else than the programs that wrote them.
+    """Refuse logs that contradict the programs that wrote them.
 
     Args:
         parts: Of the logs.
-        programs: By name; a log of another program is not looked at.
+        programs: By name; logs of other programs are ignored.
 
     Raises:
         BadFile: File and line, what stood there, what the program has.

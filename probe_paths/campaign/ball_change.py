@@ -150,13 +150,10 @@ def _change(
 
 
 def read_heights(part: LogPart, standard: Standard, chain: Chain) -> dict[str, float]:
-    """Gap between the ball of a commissioning touch and the surface it met, mm.
+    """Gap of a commissioning touch by each meaning of Z (`Dialect.result_height`), mm.
 
     One touch from above settles which Z a control returns: with the wrong meaning the gap is the
     whole length of the probe.
-
-    Returns:
-        By each meaning that Z can have, as `Dialect.result_height` names them.
     """
     ball = list(standard.features.values())[int(part.feature[0]) - 1]
     beside = {}
@@ -222,5 +219,5 @@ def check_changes(changes: Sequence[BallChange], limit: float) -> None:
             raise DesignError(
                 f"ball {change.ball} between {change.before} and {change.after}: it has moved or "
                 f"the probe has changed by {change.size / UM:.1f} µm, expected {limit / UM:g} µm "
-                "at most: measure anew, or state a larger limit"
+                "at most: measure again, or state a larger limit"
             )

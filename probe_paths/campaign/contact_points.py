@@ -63,7 +63,7 @@ def foot_points(
 
 
 def at_true_contacts(run: Run, standard: Standard) -> Run:
-    """A run whose points and normals are those where the balls met the standard.
+    """A run with the points and normals at which the balls met the standard, where they exist.
 
     ``p = foot point of (x + d)``, x the believed ball centre and d its displacement relative to the
     standard by the fitted model. The deviations ``n . (x - p) - radius`` remain those
@@ -71,9 +71,6 @@ def at_true_contacts(run: Run, standard: Standard) -> Run:
 
     Args:
         run: With foot points of the believed balls.
-
-    Returns:
-        The run anew, with the old foot point where a moved ball has none.
     """
     weight, t = np.ones(len(run)), run.touches
     moved = standard.moved(t.chain, t.q, t.T_table_artefact, t.feature)

@@ -1,4 +1,4 @@
-"""Where true balls meet true surfaces: all touches of a program at once, by Newton's method."""
+"""Contacts of true balls with true surfaces, all touches of a program at once: Newton's method."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -163,7 +163,7 @@ class ContactSolver:
         return apply(self.T_artefact_table, actual) - self.moved[rows], radius
 
     def touches(self, time: Array, rows: IntArray | None = None) -> Touches:
-        """The record that effects look at, of all touches or some.
+        """The record on which effects act, of all touches or some.
 
         Args:
             time: Of the trigger of all touches, (N,), s since the start of the campaign.

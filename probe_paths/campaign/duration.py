@@ -21,12 +21,9 @@ def probing_time(
     requests: Requests,
     options: PlanOptions | None = None,
 ) -> float:
-    """Time on the machine by the programs that a plan of the same care would have.
+    """Time on the machine of a plan of the same care, s; nan where no plan can be made.
 
     Touches that this plan refuses are counted as if they took as long as the others.
-
-    Returns:
-        In s; nan where no plan at all can be made.
     """
     options = replace(options or PlanOptions(), tolerated=len(requests), is_swept=False)
     try:

@@ -123,7 +123,7 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
         if offset > LARGEST_OFFSET:
             remarks.append(
                 f"{part.path}: {part.program}: the ball is calibrated {offset:.3f} mm off the "
-                "spindle axis: centre the stylus, or calibrate the probe anew"
+                "spindle axis: centre the stylus, or recalibrate the probe"
             )
         kept.append(_rows(part, np.flatnonzero(good)))
     return kept, remarks + _overlaps(kept)

@@ -103,7 +103,7 @@ def visits(
 
     Args:
         programs: Files; one that is read already is taken for checked.
-        machines: As they really are at every visit: with another noise, the standard clamped anew.
+        machines: As they really are at every visit: with other noise, the standard clamped again.
 
     Other arguments and errors as of `simulate`.
     """

@@ -53,11 +53,11 @@ def setup_tolerance(plan: TouchPlan) -> dict[str, float]:
         vector = size * np.eye(3)[i % 3]
         return pose(t=vector) if i < 3 else pose(fixed_xyz(vector * DEG))
 
-    steps = (STEPS_MM,) * 3 + (STEPS_DEG,) * 3
-    return {
-        letter: _largest(steps[i], lambda size, i=i: is_met(moved(i, size)))  # type: ignore[misc]
-        for i, letter in enumerate("XYZABC")
-    }
+    def largest(i: int) -> float:
+        steps = STEPS_MM if i < 3 else STEPS_DEG
+        return _largest(steps, lambda size: is_met(moved(i, size)))
+
+    return {letter: largest(i) for i, letter in enumerate("XYZABC")}
 
 
 def _largest(steps: Sequence[float], is_good: Callable[[float], bool]) -> float:

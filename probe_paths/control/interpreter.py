@@ -1,8 +1,8 @@
 """Reads an emitted program and its masks, and executes the text: moves, touches, printed lines.
 
-Only the text is believed. What the plan meant is not known here, so a slip between plan and text
-shows. A touch is assumed to find its surface; what the program does when it does not is read too
-and stands with the touch.
+Only the text counts: the plan is not known here, so a discrepancy between plan and text shows. A
+touch is assumed to find its surface; the branch of the program for a miss is executed too and
+stored with the touch.
 """
 
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
 
 _BEYOND = 1.05
-"""Of its limit, what is off where it is tried whether a program stops."""
+"""Multiple of its limit by which a value is off when the program has to stop."""
 
 
 def read_program(
@@ -65,7 +65,7 @@ def read_program(
 def stated_probe(
     path: str | Path, radius: float | None, length: float | None, dialect: Dialect | None = None
 ) -> Probe | None:
-    """The probe that a user states, mm; what is left open comes from the program's head."""
+    """The probe that a user states, mm; unstated values come from the program's head."""
     if radius is None and length is None:
         return None
     head, _ = heading(read_blocks(_content(Path(path)), path, dialect), Path(path))

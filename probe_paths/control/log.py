@@ -1,8 +1,8 @@
 """Reads the log that our programs write, on a control or in the simulator.
 
-A log is half an hour of a machine's time. A line that cannot be read, is cut off or comes from
-elsewhere costs the touch that it belongs to and no other, with a remark. Only set-up, probe and
-calibration in the head of a part must be there: without them no touch has a meaning.
+A log costs half an hour of machine time. A line that is unreadable, truncated or foreign therefore
+loses only the touch that it belongs to, with a remark. Only set-up, probe and calibration in the
+head of a part are indispensable, as no touch can be evaluated without them.
 """
 
 import re
@@ -107,7 +107,7 @@ def read_log(path: str | Path, rotary: Sequence[str], text: str | None = None) -
     """Parts of a log file; a program that was run again appends a further part.
 
     Args:
-        text: Its text where it is already at hand.
+        text: Its text, if already read.
 
     Raises:
         BadFile: No part of the log has a head that can be read, or it is a log of another kind.
@@ -142,7 +142,7 @@ def _lines(path: Path, text: str | None) -> list[Line]:
             data = path.read_bytes()
         except OSError as error:
             raise BadFile(path, "file", error.strerror or "nothing", "a log") from None
-        # an editor may have saved it in its own encoding; what is no ASCII spoils its line alone
+        # an editor may have changed the encoding; a non-ASCII character corrupts its line only
         encoding = "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
         text = data.decode(encoding, errors="replace")
     lines = [_COMMA.sub(".", line) for line in re.split(r"\r\n|\n|\r", text)]

@@ -26,7 +26,7 @@ class LogClock:
         """Seconds since the begin at a time of day, s, that stands at a line; never falling.
 
         A clock that goes back by an hour (summer time ends) or on by one (it begins) has been set;
-        the time between the touches is then what is left of the hour.
+        the time between the touches is then the remainder of the hour.
         """
         if self._last is None or self.start is None:
             self.start = self._last = now

@@ -147,7 +147,7 @@ class Runner:
         touch = self.touches[value.touch]
         state.untested = None
         missed = state.copied()
-        # what has met something in the air ends the program, what has not goes on
+        # a contact in the air ends the program, no contact continues it
         wrong, right = (i + 1, target) if touch.is_air else (target, i + 1)
         self.branches += 1
         if self.branches > DEEPEST:  # a branch that comes back to its own touch
@@ -155,7 +155,7 @@ class Runner:
         touch.on_miss.extend(self.run(wrong, missed, is_branch=True))
         self.branches -= 1
         if touch.is_air and not isinstance(touch.on_miss[-1], Halt):
-            raise state.refusal(block, "a contact in the air that goes on", state.terms.halt)
+            raise state.refusal(block, "a contact in the air that does not stop", state.terms.halt)
         return right
 
     def _check_skip(self, i: int, block: Block, state: State) -> None:
@@ -235,7 +235,7 @@ class Runner:
         left_over = state.parameters.get(result + STATUS)
         for part in range(4):
             state.write(block, result + part, Result(touch.index, part))
-        # the control has to write what is hoped for
+        # before a touch its status must be set to the opposite of the expected one
         if not isinstance(left_over, float) or (left_over >= 0.0) is not is_air:
             unset = state.terms.unset.format(q=result + STATUS)
             raise state.refusal(

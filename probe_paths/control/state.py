@@ -1,4 +1,4 @@
-"""The control while it runs one of our programs: positions, modes, parameters, and what forbids."""
+"""State of the control during one of our programs: positions, modes, parameters, and refusals."""
 
 import copy
 from dataclasses import dataclass, field
@@ -49,11 +49,11 @@ class State:
         shift_off: Axes whose datum shift was set to zero.
         is_retracted: Z stands where M91 or M140 put it.
         clearance: Reading of Z that the first move down from the retract went to.
-        untested: Touch whose status was not looked at yet.
+        untested: Touch whose status has not been tested.
         way_back: Readings that the next move must return to after a touch.
         is_synchronous: FN 20 was read since the last motion.
         is_spindle_off: M5 has been read.
-        fault: What is not as planned while it is tried whether the program stops.
+        fault: Planted deviation at which the program has to stop.
         stale: Counters that belong to the touch or the visit before.
         off: By how much, mm or degrees.
         is_search: Touches may be long where they come from above.
@@ -112,7 +112,7 @@ class State:
         return BadFile(self.path, f"line {block.line}", found, expected)
 
     def check_ready(self, block: Block, what: str) -> None:
-        """Preset, tool and a reset frame are there before a coordinate is believed."""
+        """Refuse a coordinate before preset, tool and a reset frame."""
         missing = [
             name
             for name, there in (
@@ -129,7 +129,7 @@ class State:
             raise self.refusal(block, what, f"{missing[0]} before it")
 
     def check_is_as_planned(self, block: Block) -> None:
-        """No probe goes down where something is not as planned and could have been tested."""
+        """Refuse a move down while a fault has not been tested."""
         if self.fault is not None:
             raise self.refusal(
                 block,
@@ -138,7 +138,7 @@ class State:
             )
 
     def check_turn_was_tested(self, block: Block) -> None:
-        """Rotary axes stand where they were sent, where a control may understand a turn otherwise.
+        """Refuse a touch before a test of the rotary axes, where a control may turn otherwise.
 
         A test takes the planned reading off the one that was read, and has both limits.
         """
@@ -161,7 +161,7 @@ class State:
             self.turn_tested.add((letter, is_less))
 
     def check_status_was_tested(self, block: Block) -> None:
-        """Nothing may happen between a touch and the look at its status."""
+        """Refuse a block between a touch and the test of its status."""
         if self.untested is not None:
             raise self.refusal(
                 block,
@@ -178,7 +178,7 @@ class State:
         self.reached.pop(q, None)
 
     def value(self, block: Block, q: int) -> Value:
-        """A Q parameter that has been set in this run; nothing left over from others counts."""
+        """A Q parameter that this run has set; values left by other programs do not count."""
         if q not in self.parameters:
             raise self.refusal(block, f"Q{q} without a value", "a parameter set by this program")
         return self.parameters[q]

@@ -137,7 +137,7 @@ def heading(blocks: Sequence[Block], path: Path) -> tuple[Heading, Mapping[int, 
     head, _ = parse_heading(remarks[starts[0] :], path)
     if head.workshop is None:
         found = "no comments ';STACK ...' and ';BODY ...'"
-        raise BadFile(path, "head", found, "what must be kept clear: emit the program anew")
+        raise BadFile(path, "head", found, "what must be kept clear: emit the program again")
     features: dict[int, str] = {}
     for line, text in remarks:
         match = _FEATURE.fullmatch(text)

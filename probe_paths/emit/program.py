@@ -135,8 +135,7 @@ def make_search(
     mm, angle = within
     stands = f"SEARCH FROM ABOVE, STANDS WITHIN {mm:.1f} MM AND {angle / DEG:.2f} DEG"
     purpose = Purpose(SEARCH, (stands,))
-    made = _Maker(plan, dialect or Dialect(), feeds, purpose)
-    return ProgramSet(made.programs([list(range(len(plan.visits)))]), made.printed_masks)
+    return _one_program(plan, purpose, dialect, feeds)
 
 
 def make_ball(
@@ -146,8 +145,7 @@ def make_ball(
 ) -> ProgramSet:
     """One program that measures a ball of the standard, before the others and after them."""
     purpose = Purpose(BALL, (f"PROBE ON BALL {plan.feature[0]}, BEFORE AND AFTER THE OTHERS",))
-    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), purpose)
-    return ProgramSet(made.programs([list(range(len(plan.visits)))]), made.printed_masks)
+    return _one_program(plan, purpose, dialect, feeds)
 
 
 def make_first(
@@ -171,6 +169,14 @@ def make_first(
     purpose = Purpose(FIRST, (remark,), is_first=True)
     made = _Maker(plan, dialect, feeds or Feeds(), purpose)
     return ProgramSet(made.programs([[0]]), made.printed_masks)
+
+
+def _one_program(
+    plan: TouchPlan, purpose: Purpose, dialect: Dialect | None, feeds: Feeds | None
+) -> ProgramSet:
+    """All visits of a plan in one program."""
+    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), purpose)
+    return ProgramSet(made.programs([list(range(len(plan.visits)))]), made.printed_masks)
 
 
 class _Maker:

@@ -1,7 +1,7 @@
 """What a control without a hardware latch adds to every touch.
 
-LinuxCNC looks at the probe once in every period of its servo thread and keeps the position that it
-then has: between the contact and that moment the axes go on.
+LinuxCNC samples the probe once in every period of its servo thread and stores the position at that
+moment: the axes move on between the contact and the sample.
 """
 
 import numpy as np

@@ -14,7 +14,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 from matstd.probe_paths.emit import Program
 from matstd.probe_paths.linuxcnc.machine_config import BESIDE, HEADLESS, MESSAGES, PROBER, PROGRAMS
@@ -173,10 +173,10 @@ def _answer(server: socket.socket, contact: TwinContact) -> None:
             _reply(stream, json.loads(line), contact)
 
 
-def _reply(stream: TextIO, question: dict[str, list[float]], contact: TwinContact) -> None:
+def _reply(stream: TextIO, question: dict[str, Any], contact: TwinContact) -> None:
     answer = None
     if "late" in question:
-        contact.arrived_late(float(question["late"]))  # type: ignore[arg-type]
+        contact.arrived_late(float(question["late"]))
     else:
         try:
             answer = contact.travel(question["joints"], question["direction"])

@@ -60,13 +60,10 @@ class TwinContact:
         self.planned = [t for program in programs for t in _planned(program, standard, machine)]
 
     def travel(self, joints: Sequence[float], direction: Sequence[float]) -> float | None:
-        """Way from joint positions to the contact along a direction of X, Y, Z, mm.
+        """Way from joint positions to the contact along a direction, mm; None for no contact.
 
         Args:
             joints: Positions of the control's joints, mm and degrees.
-
-        Returns:
-            The way; None where nothing is met within the path of the programmed touch.
 
         Raises:
             DesignError: No programmed touch goes along this line.

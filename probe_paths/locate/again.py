@@ -27,7 +27,7 @@ def planned_again(
     """Plan of the touches that programs make, for another place of the standard.
 
     Poses, places on the standard, probe and workshop are those of the programs; anchor touches,
-    heights, ways and order are found anew.
+    heights, ways and order are planned again.
 
     Args:
         programs: Of one set-up, as read.

@@ -1,4 +1,7 @@
-"""A standard seen from above: how far down a ball comes at every place."""
+"""A standard seen from above: heights on a grid, and the height at which a ball stops.
+
+The height map dilated by the lower half of a ball gives the centres of balls that come down on it.
+"""
 
 from dataclasses import dataclass
 

@@ -35,7 +35,7 @@ class Approaches:
         contact: Readings at the expected contact, (N, A).
         normal: Outward unit normals, artefact frame, (N, 3).
         back: From the contact to the start, mm.
-        beyond: From the contact to where the probe gives up, mm.
+        beyond: From the contact to the end of the longest travel, mm.
     """
 
     chain: Chain

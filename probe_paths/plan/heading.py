@@ -231,10 +231,7 @@ def _rounded(solid: Solid) -> Solid:
 
 
 def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> tuple[Heading, int]:
-    """Heading from its lines, each with its line number in the file; further ones may follow.
-
-    Returns:
-        The heading, and how many lines it has.
+    """Heading from its lines, each with its line number, and how many lines it has.
 
     Raises:
         BadFile: A line missing or spelt otherwise, a workshop that is not the one of its hash.
@@ -324,7 +321,7 @@ def _with_workshop(
             path,
             f"line {first}",
             f"a probe and bodies of hash {whole.workshop_hash}",
-            f"WORKSHOP {head.stated or '<hash>'}, as stated: emit the program anew",
+            f"WORKSHOP {head.stated or '<hash>'}, as stated: emit the program again",
         )
     return whole, count
 

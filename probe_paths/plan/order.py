@@ -1,4 +1,8 @@
-"""Order of poses and touches: mixed, from both sides, and short ways within a pose."""
+"""Order of poses and touches: mixed, from both sides, and short ways within a pose.
+
+The order of the golden ratio's fractional parts spreads axis positions evenly over time.
+Touches within a pose follow a short way by 2-opt and Or-opt.
+"""
 
 from dataclasses import dataclass
 

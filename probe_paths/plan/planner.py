@@ -1,4 +1,8 @@
-"""Makes a plan: computes every touch, refuses impossible ones, puts the rest in order."""
+"""Makes a plan: computes every touch, refuses impossible ones, puts the rest in order.
+
+Touches are computed in readings, checked for reach, and swept with the whole tool. One that the
+sweep refuses is tried from inclined directions.
+"""
 
 from dataclasses import dataclass, replace
 from functools import cached_property

@@ -34,19 +34,16 @@ def plan_campaign(
     requests: Requests,
     options: PlanOptions,
 ) -> list[tuple[int, TouchPlan]]:
-    """Plans of all probes in all clampings, in the order in which they are run.
+    """Plans of all probes (numbered from 0) in all clampings, in the order of execution.
 
     Refusals stand with the first probe of a clamping, where no probe makes the touch; places that a
     further clamping does not reach are not counted as refused.
 
     Args:
-        probes: The one that the standard was designed for, then those that make what is left.
+        probes: The one that the standard was designed for, then those for the remaining touches.
         clampings: The one that it was designed for, then others.
         requests: Wanted touches, at table poses of the first clamping.
         options: How carefully; its workshop is that of each clamping.
-
-    Returns:
-        Of every plan the number of its probe, from 0, and the plan.
 
     Raises:
         NotReachable: More requests of the first clamping refused by all probes than tolerated; a

@@ -113,7 +113,7 @@ def test_a_change_beyond_the_limit_is_refused_and_dirt_is_told(part, small, chai
     later = part.begin + timedelta(hours=1)
     shifted = replace(part, xyz=part.xyz + np.array([0.02, 0.0, 0.0]), begin=later)
     changes = ball_changes([part, shifted], small, chain, 1.0 * UM)
-    with pytest.raises(DesignError, match=r"by 20\.0 µm, expected 10 µm at most: measure anew"):
+    with pytest.raises(DesignError, match=r"by 20\.0 µm, expected 10 µm at most: measure again"):
         check_changes(changes, 10.0 * UM)
     check_changes(changes, 30.0 * UM)
     one = part.xyz.copy()
