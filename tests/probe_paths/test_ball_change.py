@@ -67,9 +67,7 @@ def test_it_goes_all_round_one_ball_in_one_visit_and_hits_nothing(
     check_moves(program, small, chain)
 
 
-def test_a_ball_that_moved_and_a_radius_that_grew_are_told_apart(
-    logged, part, small, golden, chain
-):
+def test_a_ball_that_moved_and_a_radius_that_grew_are_separated(logged, part, small, golden, chain):
     moved = np.array([5.0, -3.0, 8.0]) * UM
     text = logged(2.0, setup_error=pose(np.eye(3), moved), radius_error=2.0 * UM)
     (after,) = read_log("MS_A_CAL.TXT", chain.rotary_axes, text)
@@ -109,7 +107,7 @@ def _normals(part, small, chain):
     return way / np.linalg.norm(way, axis=1, keepdims=True)
 
 
-def test_a_change_beyond_the_limit_is_refused_and_dirt_is_told(part, small, chain):
+def test_a_change_beyond_the_limit_is_refused_and_dirt_is_reported(part, small, chain):
     later = part.begin + timedelta(hours=1)
     shifted = replace(part, xyz=part.xyz + np.array([0.02, 0.0, 0.0]), begin=later)
     changes = ball_changes([part, shifted], small, chain, 1.0 * UM)
@@ -161,6 +159,6 @@ def test_evaluate_tells_the_change_and_refuses_beyond_the_limit(
         assert main(["evaluate", *logs, *words, "--probe-limit-um", wrong, "-o", str(out)]) == 2
         assert "--probe-limit-um" in capsys.readouterr().err
     assert main(["evaluate", *logs, *words, "--probe-limit-um", "40", "-o", str(out)]) == 0
-    told = capsys.readouterr().out
-    assert "ball SPH1, 08:00 to 11:00 (3.00 h, 8 touches)" in told
-    assert f"{len(read[0].touches)} touches" in told
+    output = capsys.readouterr().out
+    assert "ball SPH1, 08:00 to 11:00 (3.00 h, 8 touches)" in output
+    assert f"{len(read[0].touches)} touches" in output

@@ -74,7 +74,7 @@ def test_the_program_touches_the_ball_and_nothing_else(program, small, chain):
         assert away == pytest.approx(BALL.radius + 3.0, abs=2e-4)
 
 
-def test_the_radius_is_told_against_the_ball_s_own(logged, chain):
+def test_the_radius_is_compared_with_that_of_the_ball(logged, chain):
     (exact,) = effective_radii([logged()], chain, 0.2 * UM)
     assert abs(exact.excess) < 3.0 * NM
     assert 0.25 * UM < exact.u < 0.6 * UM

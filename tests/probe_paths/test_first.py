@@ -149,8 +149,8 @@ def test_simulate_and_evaluate_take_it(made, small, tmp_path, capsys):
     assert calibrated != text
     Path(log).write_text(calibrated, encoding="ascii")
     assert main(["evaluate", log, *words, *out]) == 0
-    told = capsys.readouterr().out
-    assert "no run file" in told
-    assert "Z of the control refers to gauge (--z gauge)" in told
-    assert "radius of the ball 3.2500 mm as calibrated, 3.0000 mm as planned" in told
+    output = capsys.readouterr().out
+    assert "no run file" in output
+    assert "Z of the control refers to gauge (--z gauge)" in output
+    assert "radius of the ball 3.2500 mm as calibrated, 3.0000 mm as planned" in output
     assert not (tmp_path / "run.csv").exists()

@@ -175,9 +175,9 @@ def test_programs_are_planned_again_where_the_standard_stands(
     out = tmp_path / "again"
     words = ["--within-mm", "6", "--within-deg", "1.5"]
     assert main(["replan", str(log), "--design", str(design), *words, "-o", str(out)]) == 0
-    told = capsys.readouterr().out
+    output = capsys.readouterr().out
     number = r"([+-]\d+\.\d+) ± "
-    shift = [float(re.search(rf"- {a} {number}", told)[1]) for a in "xyz"]
+    shift = [float(re.search(rf"- {a} {number}", output)[1]) for a in "xyz"]
     assert np.abs(np.array(shift) - [5.0, -4.0, 3.0]).max() < 0.05
     programs = sorted((out / "programs").glob("*.H"))
     read = [read_program(path, chain) for path in programs]

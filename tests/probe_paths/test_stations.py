@@ -150,7 +150,7 @@ def test_logs_of_all_stations_are_one_run(texts, small, tmp_path):
     assert again.touches.length == pytest.approx(touches.length, abs=1e-6)
 
 
-def test_a_stylus_calibrated_wrongly_is_told_apart_by_itself(texts, small):
+def test_a_stylus_calibrated_wrongly_is_identified(texts, small):
     """The second probe is 20 um longer and 3 um larger than its calibration says, on the twin."""
     good = VirtualMachine(golden.machine(), noise=2e-4)
     wrong = replace(good, length_error=0.020, radius_error=0.003)
@@ -164,8 +164,10 @@ def test_a_stylus_calibrated_wrongly_is_told_apart_by_itself(texts, small):
     truth = np.array([0.0, 0.0, -0.020, 0.003])
     assert np.all(np.abs(found - truth) < 4.0 * u + 1e-4)
     assert u[2] < 0.004
-    (told,) = [remark for remark in run.remarks if remark.startswith("stylus of length 200.000 mm")]
-    z = re.search(r"z ([+-][\d.]+) ± ([\d.]+) µm beside its calibration", told)
+    (output,) = [
+        remark for remark in run.remarks if remark.startswith("stylus of length 200.000 mm")
+    ]
+    z = re.search(r"z ([+-][\d.]+) ± ([\d.]+) µm beside its calibration", output)
     assert abs(float(z[1]) + 20.0) < 4.0 * float(z[2])
 
 
