@@ -47,8 +47,8 @@ class Seat:
 def seat_of(sphere: DatumSphere) -> Seat:
     """The steepest countersink that leaves room for glue on the post of a ball.
 
-    The post ends where cone and countersink meet in a narrow land, below the ball's surface: the
-    whole of it stays within the cone that runs up to the ball's centre.
+    The post ends where cone and countersink meet in a narrow land, below the ball's surface,
+    and stays within the cone that runs up to the ball's centre.
 
     Raises:
         NotBuildable: The post is too thin for any countersink.

@@ -85,8 +85,8 @@ def whole_name(standard: Standard) -> str:
 def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Product, ...]]:
     """The body and all products, the body first.
 
-    Every ball is a part of its own, since it will have a calibration of its own; screws of one
-    size are one part that is there several times.
+    Every ball is a part of its own, since it has a calibration of its own; screws of one size are
+    instances of one part.
     """
     solid = build_solid(standard, details)
     here, drawn = (0.0, 0.0, 0.0), annotations_of(standard, details)

@@ -14,7 +14,7 @@ def as_part(standard: Standard) -> tuple[build123d.Solid, dict[str, build123d.Fa
     """The standard's body, labelled with its name, and its named faces as objects of build123d.
 
     The solid is the body that `export_standard` writes. It is built in this process, where a crash
-    of the CAD kernel is a crash of the caller's.
+    of the CAD kernel ends the caller.
 
     Raises:
         NotBuildable: The kernel's result is not one valid solid.

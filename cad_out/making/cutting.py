@@ -58,10 +58,10 @@ class Cutting:
 
 
 def cutting_of(standard: Standard, details: Details) -> Cutting:
-    """Every surface by samples: faces, walls, posts, feet, plate; bores are drilled.
+    """Reach of cutters to samples of faces, walls, posts, feet and plate; bores are drilled.
 
-    A ball-end mill touches with its ball; shank, holder and nose are held against all that is
-    milled: the balls are glued in afterwards.
+    A ball-end mill cuts with its ball; shank, holder and nose are checked against all milled
+    material, without the balls, which are glued in later.
     """
     name, points, normals = _surface(standard, details)
     centre = points + (RADIUS + 0.01) * normals

@@ -192,7 +192,7 @@ class _Points:
         """Put a point into pieces of an edge, in the middle or near it.
 
         The first and the last piece are cut at a power of two from the edge's end: two edges that
-        meet at an acute angle there get pieces of one length and stop asking each other for more.
+        meet at an acute angle there get pieces of one length and cease to halve each other.
         """
         low, high = self.xyz[edge.ids[:-1]], self.xyz[edge.ids[1:]]
         length = np.linalg.norm(high - low, axis=1)

@@ -1,4 +1,4 @@
-"""From a standard to its STEP and STL files, measured before they get their names."""
+"""Export of a standard to STEP and STL files, which are measured before they get their names."""
 
 import json
 import shutil
@@ -26,8 +26,8 @@ def export_standard(
 ) -> Conformity:
     """Build the standard, write STEP, STL, 3MF and glTF, and prove them against the design.
 
-    All files are built and measured in a folder of their own beside the goal and moved there
-    together, so a refusal or a crash leaves what was there before.
+    All files are built and measured in a temporary folder and moved together to their place, so
+    that a refusal or a crash leaves the former files.
 
     Args:
         chord: Largest distance of the mesh from the exact faces, mm.

@@ -185,7 +185,7 @@ def effective_radii(
     """Effective radii of the probe by the ball of the workshop, in the order of time.
 
     A sphere is fitted to the ball centres of each log: its radius is that of the ball and the
-    effective one of the probe. What the machine does wrong over the ball stays in it.
+    effective one of the probe. The machine errors over the ball remain in it.
 
     Args:
         u: Standard uncertainty of one touch, mm.

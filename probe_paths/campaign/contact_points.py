@@ -67,7 +67,7 @@ def at_true_contacts(run: Run, standard: Standard) -> Run:
 
     ``p = foot point of (x + d)``, x the believed ball centre and d its displacement relative to the
     standard by the fitted model. The deviations ``n . (x - p) - radius`` remain those
-    of the believed balls: only the point and the normal that they refer to are better.
+    of the believed balls, referred to better points and normals.
 
     Args:
         run: With foot points of the believed balls.

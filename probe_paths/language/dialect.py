@@ -44,11 +44,9 @@ _ENDS_OF_VISITS = range(111, 255)  # up to the last label that the oldest softwa
 class Label(IntEnum):
     """Subprograms of our programs; from `OTHER_PROBE` on alarms, which docs/alarms.md explains.
 
-    `NOT_AS_PLANNED` is the alarm of all tests of a commissioning program, and `AIR` where that goes
-    on after a touch in the air met nothing.
-
-    Labels in the program itself stand behind the visits: a program that is started at a later one
-    goes there past the touches.
+    `NOT_AS_PLANNED` is the alarm of all tests of a commissioning program, `AIR` its continuation
+    after a touch in the air without contact. Labels within the program follow the visits: a program
+    that starts at a later visit jumps there.
     """
 
     LOG = 90

@@ -122,8 +122,8 @@ class Terms:
 class Language:
     """Spelling of every block.
 
-    Coordinates carry a sign and four decimals always, which is the resolution of the controls, so
-    that what is planned, printed and read back is the same number.
+    Coordinates always carry a sign and four decimals, the resolution of the controls, so that the
+    planned, printed and re-read numbers agree.
 
     Attributes:
         ending: Of the name of a program file.

@@ -116,8 +116,8 @@ def rotary_path(start: Array, stops: list[Visit], end: Array) -> Array:
 def short_order(places: Array, first: Array) -> IntArray:
     """Order of places (N, 2) that goes from `first` (2,) a short way, as rapid moves take time.
 
-    The axis that has farthest to go decides how long a move takes. From nearest neighbours, parts
-    are turned round (2-opt) and parts of up to three are put elsewhere (Or-opt) while that helps.
+    The axis with the longest way decides the time of a move. From nearest neighbours, parts are
+    reversed (2-opt) and parts of up to three moved (Or-opt) while that shortens the way.
     """
     cost = np.abs(places[:, None] - places).max(axis=-1)
     away = np.abs(places - first).max(axis=-1)

@@ -25,11 +25,11 @@ GRID = 1e-4 * DEG
 
 @dataclass(frozen=True)
 class PlanOptions:
-    """How carefully and how thoroughly, base units.
+    """Margins and thoroughness of a plan, base units.
 
-    Angle and gap are wider than those that touches are chosen with (`ProbeReach`: 75 degrees and
-    2 mm), so that what was chosen is not refused by the digits of a program; everything else that
-    both must agree on is taken from there.
+    Angle and gap are wider than in the choice of touches (`ProbeReach`: 75 degrees and 2 mm), so
+    that no chosen touch is refused because of rounding in a program; all other shared values are
+    taken from there.
 
     Attributes:
         standoff: Gap between ball and surface at the start of a touch.

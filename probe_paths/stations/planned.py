@@ -133,8 +133,8 @@ def _in_other_clamping(
 ) -> Requests:
     """The same places in another clamping, each at a table pose at which it can be touched there.
 
-    That is its own pose, or else of all poses that occur the one at which the probe is inclined
-    least to the surface. Places that no probe touches at any of them are left out.
+    That is its own pose, or else the one of all occurring poses at which the probe is inclined
+    least. Places that no probe reaches at any pose are left out.
 
     Raises:
         NotReachable: Nothing is left.
