@@ -2,7 +2,9 @@
 
 import asyncio
 import contextlib
+import gc
 import socket
+import sys
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from matstd.compensation.field.inverse import correction
 from matstd.compensation.field.machine_errors import MachineErrors
 from matstd.compensation.field.state import State
 from matstd.compensation.service.history import MOST, History
+from matstd.compensation.service.latency import prompt
 from matstd.compensation.service.opcua_server import NAMESPACE, serve
 from matstd.compensation.service.output import Output, OutputLimits, Quality
 from matstd.compensation.service.service import Service
@@ -200,3 +203,12 @@ def test_no_request_over_opc_ua_is_lost_or_repeated(service, bench_chain, poses)
     np.testing.assert_allclose(answers, expected, atol=1e-12)
     assert quality == "held"
     assert u == [0.0, 0.0, 0.0]  # errors that are known without uncertainty
+
+
+def test_a_prompt_process_switches_threads_every_half_millisecond() -> None:
+    before = sys.getswitchinterval()
+    with prompt():
+        assert sys.getswitchinterval() == pytest.approx(0.5e-3)
+        assert gc.get_freeze_count() > 0
+    assert sys.getswitchinterval() == before
+    assert gc.get_freeze_count() == 0
