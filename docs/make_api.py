@@ -41,6 +41,8 @@ same with arguments and errors of every name.
 
     import matstd
 
+    matstd.Project.read("project.toml").design("out")  # standard, CAD, programs, report
+
     found = matstd.diagnose(["monday.csv", "friday.csv"], auto=True)   # a run, a path, or several
     print(found)                                  # the verdict; in a notebook also its table
     found.save("diagnosis")                       # model.toml, diagnosis.json, report.html

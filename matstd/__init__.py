@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from matstd.api.diagnosing import Diagnosis, diagnose
     from matstd.api.drifting import DriftLaws, DriftPrediction, learn_drift, predict_drift
     from matstd.api.effects import register_effects
+    from matstd.api.evaluating import Evaluation, evaluate
     from matstd.api.machines import (
         machine_file,
         machine_names,
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
         sensitivities,
         volumetric,
     )
-    from matstd.api.probing import Evaluation, Simulation, evaluate, simulate, virtual_machine
+    from matstd.api.probing import Simulation, simulate, virtual_machine
     from matstd.api.replanning import Replanned, replan
     from matstd.api.runs import read_run
     from matstd.api.standards import (
@@ -66,7 +67,8 @@ _PLACES = {
         "sensitivities",
         "volumetric",
     ),
-    "api.probing": ("Evaluation", "Simulation", "evaluate", "simulate", "virtual_machine"),
+    "api.evaluating": ("Evaluation", "evaluate"),
+    "api.probing": ("Simulation", "simulate", "virtual_machine"),
     "api.replanning": ("Replanned", "replan"),
     "api.runs": ("read_run",),
     "api.standards": (

@@ -28,8 +28,10 @@ def one_blas_thread() -> Iterator[None]:
     """One thread for every product of matrices within.
 
     Where threads of our own share the processors, and where matrices are small: several threads a
-    product then only wait for one another, the more so on a busy machine.
+    product then only wait for one another. On two busy cores the relaxed problem of a placement
+    took 7.1 s of processor with two threads and 1.3 s with one.
     """
+    import scipy.linalg  # noqa: F401  # its own BLAS is limited only once it is loaded
     from threadpoolctl import threadpool_limits
 
     with threadpool_limits(1, user_api="blas"):

@@ -1,15 +1,13 @@
 """The errors of a machine as a model knows them, taken back: tables, programs, a live service."""
 
 import shutil
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import numpy as np
-
 from matstd.api.diagnosing import Diagnosis
 from matstd.api.effects import register_effects
+from matstd.api.known_errors import drives_stated, machine_errors, with_added, with_unknowns
 from matstd.compensation import field
 from matstd.compensation.field import Datum, MachineErrors, Share, State, datum_of, sample_workspace
 from matstd.compensation.part_programs import Frame, Program, read_loads, read_part_program
@@ -36,7 +34,7 @@ from matstd.compensation.tables import (
     write_tables,
 )
 from matstd.diagnosis.drift import DriftLaw
-from matstd.diagnosis.files import SavedModel, model_of, read_model
+from matstd.diagnosis.files import SavedModel
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.remarks import Remark, ShortBeam
 from matstd.report.compensation import draw_program, draw_shares_along, write_compensation_page
@@ -44,11 +42,8 @@ from matstd.report.style import save
 from matstd.twin.compute import Progress, silent
 from matstd.twin.display import Displayed
 from matstd.twin.elastic import short_beams
-from matstd.twin.errors import BadArgument, DesignError, UnknownEffect
+from matstd.twin.errors import BadArgument, DesignError
 from matstd.twin.files import (
-    parse_toml,
-    read_errors,
-    read_machine,
     read_poses,
     read_text,
     refuse_to_overwrite,
@@ -56,7 +51,6 @@ from matstd.twin.files import (
     write_whole,
 )
 from matstd.twin.frames import Array
-from matstd.twin.library import parse_effect, parse_sized_effect
 from matstd.twin.machine import Chain
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG
@@ -308,11 +302,11 @@ def compensate(
     register_effects()
     name = str(model) if isinstance(model, str | Path) else "the model"
     state = state or State()
-    with _drives_stated(name):
-        known, remarks, content = _machine_errors(model, errors, state)
+    with drives_stated(name):
+        known, remarks, content = machine_errors(model, errors, state)
     for text in add:
-        known = _with_added(known, text)
-    with _drives_stated(name):
+        known = with_added(known, text)
+    with drives_stated(name):
         known = with_unknowns(known)
     known = known.switched(dict(switch or {}))
     if not any(theta.any() for theta in known.theta):
@@ -332,62 +326,6 @@ def compensate(
     for path in active:
         Header.of(read_text(path), path).refuse_active(out.header(), path)
     return out
-
-
-def _machine_errors(
-    model: Diagnosis | Fit | SavedModel | str | Path, errors: str | Path | None, state: State
-) -> tuple[MachineErrors, tuple[Remark, ...], bytes]:
-    """Errors of a machine, remarks on their model, and the content that tables have a hash of."""
-    if errors is not None and not isinstance(model, str | Path):
-        raise BadArgument("errors", errors, "none: the model has errors of its own")
-    if isinstance(model, Diagnosis):
-        return MachineErrors.of_model(model.model, state), (), model.model_text.encode()
-    if isinstance(model, Fit):
-        model = model_of(model)
-    if isinstance(model, SavedModel):
-        known = model.estimates.mean.tobytes() + model.estimates.root.tobytes()
-        return MachineErrors.of_model(model, state), model.left_out, known
-    content = Path(model).read_bytes if errors is None else None
-    if parse_toml(read_text(model), model).get("format") != "machine/1":
-        if content is None:
-            raise BadArgument("errors", errors, f"none: {model} has errors of its own")
-        saved = read_model(model)
-        return MachineErrors.of_model(saved, state), saved.left_out, content()
-    if errors is None:
-        raise DesignError(f"{model}: a machine without errors; expected --errors ERRORS.toml")
-    chain = read_machine(model)
-    found = MachineErrors.of_errors(chain, read_errors(errors, chain), state)
-    return found, (), Path(model).read_bytes() + Path(errors).read_bytes()
-
-
-@contextmanager
-def _drives_stated(model: str) -> Iterator[None]:
-    """Say which options state what a model follows, where something of it is not stated."""
-    try:
-        yield
-    except UnknownEffect as error:
-        expected = "expected --temperature, --rpm or --value for all that the model follows"
-        raise DesignError(f"{model}: {error}; {expected}") from error
-
-
-def _with_added(errors: MachineErrors, text: str) -> MachineErrors:
-    """With an effect that is added: of the size that is stated, or a saved law as it was saved."""
-    if "=" not in text:
-        effect = parse_effect(text, errors.chain)
-        if isinstance(effect, DriftLaw):
-            return errors.with_known([(effect, np.ones(1))])
-    added = parse_sized_effect(text, errors.chain)
-    return errors.with_known([(added.effect, added.theta)])
-
-
-def with_unknowns(errors: MachineErrors) -> MachineErrors:
-    """Saved laws with what is not known of them; raises UnknownEffect where a drive is missing."""
-    for number, effect in enumerate(errors.effects):
-        if isinstance(effect, DriftLaw):
-            effect.replay(errors.touches(np.zeros((1, len(errors.chain.axes))), 0.0))
-            theta, root = effect.whole.known
-            errors = errors.widened(number, effect.whole, theta[1:], root[1:, 1:])
-    return errors
 
 
 def _controls(argument: str, names: Iterable[str]) -> list[str]:

@@ -215,7 +215,7 @@ def _record(
     step: float,
 ) -> tuple[DriftRecord, IntArray, IntArray]:
     """All hours, and the rows to learn from and to hold out."""
-    paths = [*logs, *held_out]
+    paths = [str(path) for path in (*logs, *held_out)]
     records = [read_log(path, step) for path in paths]
     check_alike(records, paths)
     record = joined(records, own_zeros)
@@ -227,7 +227,7 @@ def _record(
         count = int(np.searchsorted(since, until))
     if count < LEAST or len(record) - count < 2:
         raise DesignError(
-            f"{count} rows to learn from and {len(record) - count} held out: "
+            f"{count} rows to fit and {len(record) - count} held out: "
             f"expected {LEAST} and 2 at least (steps of {record.step / MINUTE:g} min)"
         )
     train = np.arange(count)

@@ -266,7 +266,14 @@ def uncertainty(
     task = read_task(task) if isinstance(task, str | Path) else task or Task()
     found, visits = budgets(seen, piece, KnownPlaces(), task, models)
     sizes = tuple(zip(names, map(len, seen), strict=True))
-    return TaskBudget(task, piece, found, visits, sizes, tuple(remarks))
+    return TaskBudget(
+        task=task,
+        standard=piece,
+        found=found,
+        visits=visits,
+        runs=sizes,
+        remarks=tuple(remarks),
+    )
 
 
 def _check_visits(names: list[str], runs: list[Run]) -> None:

@@ -179,6 +179,6 @@ def test_a_reversal_is_seen_between_line_ends(bench, tmp_path, capsys):
     assert main([*command, "-o", str(tmp_path / "better.ngc")]) == 0
     said = capsys.readouterr().out
     assert "(line 3)" in said
-    assert "but where a reversal or a load changes the correction at once" in said
+    assert "except where a reversal or a load changes the correction abruptly" in said
     inside = json.loads((tmp_path / "better.json").read_text())["between_line_ends"]["worst_um"]
     assert inside == pytest.approx(8.0 * 0.75 * np.sqrt(0.5), rel=0.02)

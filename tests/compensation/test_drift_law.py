@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from bench import LENGTH
 
-from matstd.api.compensating import with_unknowns
+from matstd.api.known_errors import with_unknowns
 from matstd.cli import main
 from matstd.compensation.field.machine_errors import MachineErrors, deviation
 from matstd.compensation.field.state import State

@@ -120,7 +120,7 @@ def test_what_was_scanned_is_told() -> None:
     assert scan.low == pytest.approx(1.0, rel=0.01)
     sentence = scanned_sentence(found.detectable)
     assert "periods of 1.00 to 50.0 mm" in sentence
-    assert "this run says nothing" in sentence
+    assert "nothing is known outside these ranges" in sentence
 
 
 @pytest.mark.slow

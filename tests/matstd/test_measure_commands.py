@@ -166,8 +166,7 @@ def test_a_full_disk_is_one_line(folder, tmp_path, capsys, monkeypatch) -> None:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("matstd.report.style.sheet.save", full)
-    monkeypatch.setattr("matstd.report.plots.residual_pictures.save", full)
-    monkeypatch.setattr("matstd.report.plots.spatial_pictures.save", full)
+    monkeypatch.setattr("matstd.report.layout.html.save", full)
     words = ["compare", str(folder / "run.csv"), "-o", str(tmp_path / "o")]
     assert main(words) == BAD
     told = capsys.readouterr().err

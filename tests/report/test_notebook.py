@@ -11,6 +11,7 @@ import pytest
 
 from matstd.diagnosis.answer.comparison import compare
 from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.report.pages import drawing
 from matstd.report.words import comparison_sentence, verdict_sentence
 from matstd.sensitivity.first_order.workspace import Workspace
 from matstd.sensitivity.population.sampling import Population
@@ -82,6 +83,7 @@ def test_a_notebook_shows_text_table_and_picture(name, request):
 
 
 def test_a_run_shows_its_text_alone(run):
+    assert drawing(run) is None
     assert run._repr_html_() == f"<p>{run!r}</p>"
 
 

@@ -87,13 +87,13 @@ def test_the_page_holds_every_map_once_and_the_regions_in_words(study, tmp_path)
     for name, _ in maps:
         save(figure(2.0, 1.0), tmp_path / name)
     remarks = write_study_page(study, tmp_path, maps, "project.toml")
-    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    page = (tmp_path / "report.html").read_text(encoding="utf-8").replace("\u00a0", " ")
     drawn = len(maps) + (0 if remarks else 2)  # without OpenGL a remark stands for two pictures
     assert page.count("<figure>") == drawn
     assert page.count("data:image/png;base64,") == drawn
     assert sampling_words(study.volumetric) in page
     assert "corners: X, Y and Z in their outer sixths" in page
-    assert "of the variance together" in page
+    assert "% of the variance" in page
     assert "project.toml" in page
     alternatives = re.findall(r'alt="([^"]*)"', page)
     assert len(set(alternatives)) == drawn
@@ -128,4 +128,4 @@ def test_a_machine_without_a_volume_is_told_so(tmp_path):
     )
     remarks: list[str] = []
     assert draw_study_volumes(small, tmp_path, remarks) == []
-    assert remarks == ["No maps in three dimensions: they need three linear axes with room."]
+    assert remarks == ["No maps in three dimensions: they need three linear axes that can move."]

@@ -120,7 +120,7 @@ def test_diamonds_stand_at_the_total_effects(found, chain, workspace):
 def test_a_machine_without_errors_is_named(chain, workspace):
     ranges = Ranges({name: (0.0, 0.0) for name in DEFAULT_RANGES})
     nothing = regions(Population(chain, ranges), workspace)
-    assert "no error moves the tool point" in dominant_words(nothing[0], [])
+    assert "no error displaces the tool point" in dominant_words(nothing[0], [])
     assert "No error" in draw_regions(chain, nothing).texts[0].get_text()
 
 

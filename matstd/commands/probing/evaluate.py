@@ -58,7 +58,7 @@ def run(args: argparse.Namespace) -> int:
     """Write the run file and say what the logs hold."""
     import numpy as np
 
-    from matstd.api.probing import evaluate
+    from matstd.api.evaluating import evaluate
     from matstd.console import say, say_assumed, say_each
     from matstd.twin.files import refuse_to_overwrite
     from matstd.twin.units import UM

@@ -1,0 +1,155 @@
+"""Logs of a control made measurements."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from matstd.api.machines import chain_of
+from matstd.api.probing import save_run, stated_body
+from matstd.api.standards import standard_of
+from matstd.artefact.body import Standard
+from matstd.diagnosis.remarks import body_sizes
+from matstd.probe_paths.campaign import (
+    ball_changes,
+    check_as_programmed,
+    check_changes,
+    effective_radii,
+    read_heights,
+)
+from matstd.probe_paths.campaign import evaluate as evaluate_parts
+from matstd.probe_paths.control import LogPart, read_log, read_program
+from matstd.probe_paths.language import Dialect
+from matstd.report.words import ball_lines, remark_sentence
+from matstd.twin.display import Displayed
+from matstd.twin.errors import BadArgument, DesignError, NotEnoughData
+from matstd.twin.files import read_sensors
+from matstd.twin.machine import Chain
+from matstd.twin.record import Run, with_body
+from matstd.twin.units import UM
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Evaluation(Displayed):
+    """Logs of a control made measurements; `evaluate` returns it.
+
+    Attributes:
+        measured: The measurements; None where the logs have touches on a ball alone.
+        chain: The machine.
+        probe_remarks: What the logs say of the probe.
+        remarks: What else the user should know.
+
+    Example:
+        >>> found = evaluate(["logs/MS_A_1.TXT"], "standard.toml", "machine.toml")
+        >>> found.save("evaluated.csv", "machine.toml")
+    """
+
+    measured: Run | None
+    chain: Chain
+    probe_remarks: tuple[str, ...]
+    remarks: tuple[str, ...] = ()
+
+    @property
+    def run(self) -> Run:
+        """The measurements; raises NotEnoughData where the logs have none."""
+        if self.measured is None:
+            raise NotEnoughData("the logs hold no measurements, expected those of a program")
+        return self.measured
+
+    def save(self, path: str | Path, machine: str | Path) -> None:
+        """Write the run file, which names the machine file, whole or not at all."""
+        save_run(path, self.run, machine)
+
+
+def evaluate(
+    logs: Sequence[str | Path],
+    standard: Standard | str | Path,
+    machine: Chain | str | Path,
+    *,
+    u: float = 1.0 * UM,
+    z: Literal["gauge", "tip"] = "gauge",
+    probe_limit: float = 10.0 * UM,
+    programs: str | Path | None = None,
+    sensors: str | Path | None = None,
+    body_temperature: float | None = None,
+    body_u: float | None = None,
+) -> Evaluation:
+    """Measurements from the logs that probing programs left on a control.
+
+    Args:
+        logs: Of all probes and set-ups, in any order.
+        standard: As calibrated; beside its file may stand a folder `programs`.
+        machine: The machine.
+        u: Standard uncertainty of one touch, mm.
+        z: What Z the control returns from cycle 4: of the spindle gauge point, or of the pole of
+            the ball.
+        probe_limit: What the ball of the workshop may have moved between two of its logs, mm.
+        programs: Folder of the programs that the logs are compared with.
+        sensors: File with temperatures by the clock of the control.
+        body_temperature: Of the standard while it was probed, degC.
+        body_u: Its standard uncertainty, K.
+
+    Raises:
+        BadFile: A log that cannot be read, or that another program wrote.
+        DesignError: The probe has changed between two logs.
+
+    Example:
+        >>> found = evaluate(["logs/MS_A_1.TXT"], "standard.toml", "machine.toml")
+        >>> len(found.run)
+        33
+    """
+    if not 1e-3 <= u / UM <= 1000.0:
+        raise BadArgument("u_um", f"{u / UM:g}", "an uncertainty from 0.001 to 1000 µm")
+    if not 0.0 < probe_limit < float("inf"):
+        raise BadArgument("probe_limit_um", f"{probe_limit / UM:g}", "more than 0 µm")
+    chain, piece = chain_of(machine), standard_of(standard)
+    parts = [part for path in logs for part in read_log(path, chain.rotary_axes)]
+    if programs is not None or not isinstance(standard, Standard):
+        _check_programs(programs, standard, parts, chain)
+    dialect = Dialect(result_height=z)
+    changes = ball_changes(parts, piece, chain, u, dialect)
+    first = [part for part in parts if part.is_first]
+    heights = [read_heights(part, piece, chain) for part in first]
+    known = [(part.radius, part.heading.probe.radius) for part in first]
+    radii = effective_radii(parts, chain, u, dialect)
+    of_probe = tuple(ball_lines(changes, probe_limit, heights, radii, known))
+    if not any(part.is_measuring for part in parts) and of_probe:
+        return Evaluation(None, chain, of_probe)
+    check_changes(changes, probe_limit)
+    run = evaluate_parts(parts, piece, chain, u, dialect)
+    twice: list[str] = []
+    if sensors is not None:
+        record = read_sensors(sensors)
+        twice = [name for name in run.touches.temperature if name in record.temperature]
+        run = record.joined(run, min(part.begin for part in parts))
+    run = with_body(run, stated_body(piece, body_temperature, body_u))
+    if not changes and any(part.is_ball for part in parts):
+        once = "the ball was measured once: whether the probe has changed is not known"
+        of_probe = (*of_probe, once)
+    remarks = (
+        *(remark_sentence(size) for size in body_sizes(run.touches)),
+        *run.remarks,
+        *(f"T_{name}_degC: that of {sensors} counts, not the log's" for name in twice),
+        *(
+            f"{part.path}: {part.program} stopped after {len(part.number)} touches"
+            for part in parts
+            if not part.is_complete
+        ),
+    )
+    return Evaluation(run, chain, of_probe, remarks)
+
+
+def _check_programs(
+    folder: str | Path | None,
+    standard: Standard | str | Path,
+    parts: Sequence[LogPart],
+    chain: Chain,
+) -> None:
+    """Compare the logs with the programs that wrote them, where these are at hand."""
+    place = Path(str(standard)).parent / "programs" if folder is None else Path(folder)
+    names = {part.program for part in parts if part.is_measuring}
+    files = [f for f in place.glob("*") if f.stem in names and f.suffix in (".H", ".ngc")]
+    if folder is not None and not files:
+        raise DesignError(f"--programs {place}: found none of {', '.join(sorted(names))}")
+    programs = {file.stem: read_program(file, chain) for file in files}
+    check_as_programmed(parts, programs, chain)

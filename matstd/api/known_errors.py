@@ -1,0 +1,78 @@
+"""The errors of a machine as a diagnosis, a model or an error file knows them."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+
+from matstd.api.diagnosing import Diagnosis
+from matstd.compensation.field import MachineErrors, State
+from matstd.diagnosis.drift import DriftLaw
+from matstd.diagnosis.files import SavedModel, model_of, read_model
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.remarks import Remark
+from matstd.twin.errors import BadArgument, DesignError, UnknownEffect
+from matstd.twin.files import (
+    parse_toml,
+    read_errors,
+    read_machine,
+    read_text,
+)
+from matstd.twin.library import parse_effect, parse_sized_effect
+
+
+def machine_errors(
+    model: Diagnosis | Fit | SavedModel | str | Path, errors: str | Path | None, state: State
+) -> tuple[MachineErrors, tuple[Remark, ...], bytes]:
+    """Errors of a machine, remarks on their model, and the content that tables have a hash of."""
+    if errors is not None and not isinstance(model, str | Path):
+        raise BadArgument("errors", errors, "none: the model has errors of its own")
+    if isinstance(model, Diagnosis):
+        return MachineErrors.of_model(model.model, state), (), model.model_text.encode()
+    if isinstance(model, Fit):
+        model = model_of(model)
+    if isinstance(model, SavedModel):
+        known = model.estimates.mean.tobytes() + model.estimates.root.tobytes()
+        return MachineErrors.of_model(model, state), model.left_out, known
+    content = Path(model).read_bytes if errors is None else None
+    if parse_toml(read_text(model), model).get("format") != "machine/1":
+        if content is None:
+            raise BadArgument("errors", errors, f"none: {model} has errors of its own")
+        saved = read_model(model)
+        return MachineErrors.of_model(saved, state), saved.left_out, content()
+    if errors is None:
+        raise DesignError(f"{model}: a machine without errors; expected --errors ERRORS.toml")
+    chain = read_machine(model)
+    found = MachineErrors.of_errors(chain, read_errors(errors, chain), state)
+    return found, (), Path(model).read_bytes() + Path(errors).read_bytes()
+
+
+@contextmanager
+def drives_stated(model: str) -> Iterator[None]:
+    """Say which options state what a model follows, where something of it is not stated."""
+    try:
+        yield
+    except UnknownEffect as error:
+        expected = "expected --temperature, --rpm or --value for all that the model follows"
+        raise DesignError(f"{model}: {error}; {expected}") from error
+
+
+def with_added(errors: MachineErrors, text: str) -> MachineErrors:
+    """With an effect that is added: of the size that is stated, or a saved law as it was saved."""
+    if "=" not in text:
+        effect = parse_effect(text, errors.chain)
+        if isinstance(effect, DriftLaw):
+            return errors.with_known([(effect, np.ones(1))])
+    added = parse_sized_effect(text, errors.chain)
+    return errors.with_known([(added.effect, added.theta)])
+
+
+def with_unknowns(errors: MachineErrors) -> MachineErrors:
+    """Saved laws with what is not known of them; raises UnknownEffect where a drive is missing."""
+    for number, effect in enumerate(errors.effects):
+        if isinstance(effect, DriftLaw):
+            effect.replay(errors.touches(np.zeros((1, len(errors.chain.axes))), 0.0))
+            theta, root = effect.whole.known
+            errors = errors.widened(number, effect.whole, theta[1:], root[1:, 1:])
+    return errors
