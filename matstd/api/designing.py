@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.twin.compute import Progress, silent
+from matstd.twin.compute import Progress, one_blas_thread, silent
 
 if TYPE_CHECKING:
     from matstd.artefact.brief import Brief
@@ -88,6 +88,7 @@ class Project:
         dialects_of(brief)  # an unknown control is refused before any work
         return cls(brief)
 
+    @one_blas_thread()
     def design(
         self,
         out: str | Path,
@@ -138,6 +139,7 @@ class Project:
             write_sheets(folder / SHEET, made.stations, feeds_of(brief), printed_by, raised)
         return replace(made, remarks=tuple(remarks), folder=Path(out))
 
+    @one_blas_thread()
     def sensitivity(
         self,
         out: str | Path,

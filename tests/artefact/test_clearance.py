@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
-from matstd.twin.errors import ShapeMismatch
+from matstd.artefact.reach.workshop import Solid
+from matstd.twin.errors import DesignError, ShapeMismatch
 from matstd.twin.frames import unit
 
 PROBE = ProbeShape(3.0, ((50.0, 1.5), (80.0, 10.0), (160.0, 31.0)))
@@ -112,3 +113,13 @@ def test_covers_hold_every_point_of_the_cylinders_surface(cover):
         apart = np.linalg.norm(points[:, None] - centres, axis=2) - radii
         assert apart.min(axis=1).max() < 1e-9
         low = end
+
+
+@pytest.mark.parametrize(
+    ("half_size", "low", "high"),
+    [((0.0, 5.0), 0.0, 1.0), ((5.0, -1.0), 0.0, 1.0), ((5.0, 5.0), 1.0, 1.0)],
+)
+def test_a_solid_without_volume_is_refused(half_size, low, high):
+    assert Solid("CLAMP", (5.0, 5.0), low=0.0, high=1.0).plate.half_size == (5.0, 5.0)
+    with pytest.raises(DesignError, match=r"CLAMP: .* expected positive sides"):
+        Solid("CLAMP", half_size, low=low, high=high)

@@ -30,6 +30,7 @@ from matstd.artefact.place import identifying
 from matstd.artefact.reach.probe_clearance import ProbeShape
 from matstd.artefact.reach.touchable import ProbeReach, Requests, joined
 from matstd.artefact.worth.attribution import error_shares
+from matstd.artefact.worth.potential import residual_after
 from matstd.artefact.worth.touch_choice import TouchOptions, chosen_touches_on, repaired_touches
 from matstd.artefact.worth.touch_criterion import random_touches
 from matstd.twin.errors import NotBuildable, NotReachable
@@ -389,3 +390,10 @@ def test_what_is_left_of_a_choice_is_filled_up_and_exchanged_under_the_shares_of
     assert known.value == pytest.approx(min(value, searched.value), rel=1e-9)
     with pytest.raises(NotReachable, match="29 touches can be made on the standard, 30 are"):
         repaired_touches(criterion, tried[:29], like, options)
+
+
+def test_what_a_model_imitates_does_not_depend_on_the_units_of_its_parameters():
+    """Columns along X and Y, the second in a unit a billion times smaller: Z alone is left."""
+    W = np.array([[1.0, 0.0], [0.0, 1e-9], [0.0, 0.0]])
+    left = residual_after(np.array([[3.0], [4.0], [5.0]]), W)
+    np.testing.assert_allclose(left, [[0.0], [0.0], [5.0]], atol=1e-12)

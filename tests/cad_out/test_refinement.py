@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from matstd.cad_out.meshes.mesh import aspects
-from matstd.cad_out.triangles.delaunay import Sheet, cross
+from matstd.cad_out.triangles.charts import bisected
+from matstd.cad_out.triangles.delaunay import Sheet, circumcircles, cross
 
 CHORD = 0.02
 R, DEEP, WIDE = 6.0, 8.0, 5.0  # mm: bore, countersink's depth and radius
@@ -104,3 +105,24 @@ def test_rational_splines_are_followed():
     assert mesh.is_watertight
     assert mesh.volume == pytest.approx(40.0 * 30.0 * 10.0 - np.pi * R**2 * 10.0, rel=2e-4)
     assert farthest_from_faces(shape, corners, triangles, numbers) < CHORD
+
+
+def test_the_circle_through_a_triangle_of_6_8_10():
+    right = np.array([[0.0, 0.0], [6.0, 0.0], [0.0, 8.0]])
+    centre, radius = circumcircles(np.stack([right, right + np.array([1.0, 2.0]), right[::-1]]))
+    np.testing.assert_allclose(centre, [[3.0, 4.0], [4.0, 6.0], [3.0, 4.0]])
+    np.testing.assert_allclose(radius, 5.0)
+
+
+def test_a_curve_is_halved_where_it_leaves_its_secant_too_far():
+    # a straight line does not; a quarter of a circle of 10 mm does by 2.93 mm, an eighth by 0.76
+    ends = np.array([0.0, 1.0])
+    line = bisected(lambda t: np.outer(t, [30.0, 40.0, 0.0]), ends, 0.1)
+    np.testing.assert_array_equal(line, ends)
+
+    def quarter(t):
+        angle = 0.5 * np.pi * t
+        return 10.0 * np.column_stack([np.cos(angle), np.sin(angle), 0.0 * t])
+
+    np.testing.assert_array_equal(bisected(quarter, ends, 1.0 / 0.75), [0.0, 0.5, 1.0])
+    np.testing.assert_array_equal(bisected(quarter, ends, 3.0 / 0.75), ends)

@@ -2,7 +2,9 @@
 
 import asyncio
 import contextlib
+import gc
 import socket
+import sys
 
 import numpy as np
 import pytest
@@ -11,7 +13,8 @@ from bench import LENGTH
 from matstd.compensation.field.inverse import correction
 from matstd.compensation.field.machine_errors import MachineErrors
 from matstd.compensation.field.state import State
-from matstd.compensation.service.history import MOST, History
+from matstd.compensation.service.history import MAX_MOMENTS, History
+from matstd.compensation.service.latency import prompt
 from matstd.compensation.service.opcua_server import NAMESPACE, serve
 from matstd.compensation.service.output import Output, OutputLimits, Quality
 from matstd.compensation.service.service import Service
@@ -138,10 +141,10 @@ def test_a_history_goes_forward_with_its_sensors():
         history.then(State(temperature={"a": 21.0}))
     with pytest.raises(DesignError, match="sensors none, expected a"):
         history.then(State(time=1.0))
-    for k in range(1, MOST + 10):
+    for k in range(1, MAX_MOMENTS + 10):
         history = history.then(State(time=float(k), temperature={"a": 20.0}))
-    assert len(history) <= MOST
-    assert history.now.time == MOST + 9
+    assert len(history) <= MAX_MOMENTS
+    assert history.now.time == MAX_MOMENTS + 9
     assert history.states[0].time == 0.0
 
 
@@ -200,3 +203,12 @@ def test_no_request_over_opc_ua_is_lost_or_repeated(service, bench_chain, poses)
     np.testing.assert_allclose(answers, expected, atol=1e-12)
     assert quality == "held"
     assert u == [0.0, 0.0, 0.0]  # errors that are known without uncertainty
+
+
+def test_a_prompt_process_switches_threads_every_half_millisecond() -> None:
+    before = sys.getswitchinterval()
+    with prompt():
+        assert sys.getswitchinterval() == pytest.approx(0.5e-3)
+        assert gc.get_freeze_count() > 0
+    assert sys.getswitchinterval() == before
+    assert gc.get_freeze_count() == 0

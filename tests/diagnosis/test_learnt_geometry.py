@@ -9,6 +9,7 @@ from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.geometry.functionals import Quantity
 from matstd.diagnosis.geometry.learnt import Rung, geometry_rows, learnt_geometry
+from matstd.diagnosis.geometry.rows import Estimate, GeometryRow
 from matstd.report.geometry.geometry_words import correction_line, noted_lines
 from matstd.twin.errors import BadValue
 from matstd.twin.frames import apply, inverse
@@ -198,3 +199,32 @@ def test_only_a_linear_axis_expects_a_length() -> None:
         make_chain("table", "[w C' f t]", {"C": Axis((-1.0, 1.0), expected=0.01)})
     with pytest.raises(BadValue, match="a length in mm above 0"):
         make_chain("column", "[w f Z t]", {"Z": Axis((-1.0, 1.0), expected=0.0)})
+
+
+@pytest.mark.parametrize(
+    ("value", "u", "usual", "is_determined", "is_far"),
+    [
+        (0.051, 0.002, 0.010, True, True),  # five usual sizes are 0.050
+        (-0.051, 0.002, 0.010, True, True),
+        (0.049, 0.002, 0.010, True, False),
+        (0.051, 0.011, 0.010, True, False),  # five of its own uncertainties are 0.055
+        (0.051, 0.002, 0.010, False, False),
+        (0.051, 0.002, None, True, False),
+    ],
+)
+def test_far_is_beyond_five_usual_sizes_and_uncertainties(
+    value, u, usual, is_determined, is_far
+) -> None:
+    row = GeometryRow(
+        quantity=Quantity.SCALE,
+        symbol="EX0C",
+        axes=("C",),
+        unit="mm",
+        estimate=Estimate(value, u),
+        lever=2.0,
+        expected=1.0,
+        is_determined=is_determined,
+        usual=usual,
+    )
+    assert row.is_far is is_far
+    assert row.at_ends == Estimate(2.0 * abs(value), 2.0 * u)

@@ -10,7 +10,7 @@ from matstd.information.criteria.design_criterion import DesignCriterion
 from matstd.information.criteria.measures import Determinant, MeanVariance
 from matstd.information.selection.bound import slope
 from matstd.information.selection.certificate import certificate, rounded
-from matstd.information.selection.relaxation import relaxed
+from matstd.information.selection.relaxation import _worth_looking_at, relaxed
 from matstd.information.selection.shares import largest_sum
 from matstd.information.selection.touch_selection import Selection, exchange, fill
 from matstd.twin.errors import DesignError
@@ -111,3 +111,13 @@ def test_a_start_of_another_size_is_refused():
     criterion, W = case(1, 10, 3, False)
     with pytest.raises(DesignError, match="4 of 10 touches to start from, 5 wanted"):
         relaxed(criterion, W, 5, np.arange(10) < 4)
+
+
+def test_every_cell_keeps_its_best_candidates():
+    """One touch: the two largest gains, and of two cells the best 4 + 2 * 1 // 2 = 5 each."""
+    gain = np.array([9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 0.1, 0.3, 0.2])
+    cell = np.array([0, 0, 0, 0, 0, 0, 1, 1, 1])
+    nothing = np.array([], dtype=np.int64)
+    assert _worth_looking_at(gain, nothing, 1, 0 * cell).tolist() == [0, 1]
+    assert _worth_looking_at(gain, np.array([8]), 1, 0 * cell).tolist() == [0, 1, 8]
+    assert _worth_looking_at(gain, nothing, 1, cell).tolist() == [0, 1, 2, 3, 4, 6, 7, 8]

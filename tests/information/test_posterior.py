@@ -59,12 +59,27 @@ def test_posterior_is_that_of_the_textbook():
         prior_sd_of_tip(G, sd), [np.sqrt(np.trace(g @ np.diag(sd**2) @ g.T)) for g in G]
     )
     values, vectors = posterior.spectrum
-    W = posterior.W
-    np.testing.assert_allclose(np.linalg.svd(W)[1], values, rtol=1e-9)
-    np.testing.assert_allclose(W @ vectors[:, 0], values[0] * (W @ vectors[:, 0]) / values[0])
+    _, singular, directions = np.linalg.svd(A / u[:, None] * sd)
+    np.testing.assert_allclose(values, singular, rtol=1e-9)
+    np.testing.assert_allclose(np.abs(directions @ vectors), np.eye(5), atol=1e-9)
     shrunk = 1.0 - np.diag(expected @ np.diag(sd**-2))
     assert posterior.degrees_of_freedom == pytest.approx(shrunk.sum(), rel=1e-10)
-    assert posterior.log_det == pytest.approx(np.linalg.slogdet(posterior.information)[1])
+    gained = 2.0 * np.log(sd).sum() - np.linalg.slogdet(expected)[1]
+    assert posterior.log_det == pytest.approx(gained)
+
+
+def test_one_touch_of_two_parameters_by_hand():
+    # W = (1 * 1 / 0.5, 2 * 2 / 0.5) = (2, 8), 1 + W^T W = (5, 16; 16, 65), determinant 69
+    sd = np.array([1.0, 2.0])
+    posterior = Posterior(whitened(np.array([[1.0, 2.0]]), sd, 0.5), sd, ("a", "b"))
+    np.testing.assert_allclose(posterior.W, [[2.0, 8.0]])
+    np.testing.assert_allclose(posterior.covariance, np.array([[65.0, -32.0], [-32.0, 20.0]]) / 69)
+    assert posterior.log_det == pytest.approx(np.log(69.0))
+    assert posterior.degrees_of_freedom == pytest.approx(68.0 / 69.0)
+    values, vectors = posterior.spectrum
+    np.testing.assert_allclose(values, [np.sqrt(68.0), 0.0], atol=1e-12)
+    np.testing.assert_allclose(np.abs(vectors[:, 0]), np.array([2.0, 8.0]) / np.sqrt(68.0))
+    assert posterior.alone == ("b",)  # 20/69 of 4 is below a tenth, 65/69 of 1 is not
 
 
 def test_predicted_uncertainty_is_that_of_simulated_estimates(chain, scatter, workspace):

@@ -1,6 +1,7 @@
 """Pictures and pages of a diagnosis: what they are made of by hand, and what stands in them."""
 
 import re
+from dataclasses import replace
 from html import unescape
 from types import SimpleNamespace
 
@@ -194,7 +195,14 @@ def test_an_effect_is_drawn_over_what_drives_it(fitted, kind, arguments, tuning,
         residual=base.residual,
         of_effect=lambda name: slice(0, len(theta)),
     )
-    assert shown_partial(partial(fit, effect))[1] == variable
+    found = partial(fit, effect)
+    assert shown_partial(found)[1] == variable
+    # without a variable it is drawn over what it explains, in the same unit
+    bare = replace(found, driver=found.driver._replace(column=""), x=found.explained)
+    drawn, nothing, _ = shown_partial(bare)
+    assert nothing == ""
+    np.testing.assert_allclose(drawn.x, found.explained / UM)
+    np.testing.assert_allclose(drawn.explained, drawn.x)
 
 
 # pictures

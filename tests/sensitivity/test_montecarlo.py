@@ -45,7 +45,7 @@ def only(chain, **ranges):
 
 def test_statistics_are_those_of_plain_numpy(chain, poses):
     population = Population(chain, distributions=Distributions(periods=(1, 2)))
-    found = volumetric(population, poses, LENGTH, 1500, np.random.default_rng(11))
+    found = volumetric(population, poses, LENGTH, 1500, np.random.default_rng(11), tolerance=0.2)
     size = brute_force(population, poses, 1500, 11)
     scale = rms(population, poses, LENGTH)
     np.testing.assert_allclose(found.mean, size.mean(axis=1), rtol=SINGLE)
@@ -56,6 +56,10 @@ def test_statistics_are_those_of_plain_numpy(chain, poses):
     worst = size >= np.sort(size, axis=0)[-3]  # 5 % of 60 poses
     np.testing.assert_allclose(found.recurrence, worst.mean(axis=1), rtol=0, atol=1e-12)
     assert found.recurrence.mean() == pytest.approx(0.05, abs=1e-12)
+    above = size > 0.2
+    assert 0.1 < above.mean() < 0.9
+    np.testing.assert_allclose(found.exceedance, above.mean(axis=1), atol=1.0 / 1500)
+    np.testing.assert_allclose(found.exceedance_u, above.std(axis=1) / np.sqrt(1500), rtol=0.05)
 
 
 def test_blocks_change_nothing(chain, poses, monkeypatch):

@@ -1,6 +1,7 @@
 """A whole study: the same for a seed, its files hold its numbers, its pictures show something."""
 
 import csv
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from matstd.report.maps.study_maps import draw_maps
 from matstd.report.words.sensitivity_words import sampling_words
 from matstd.sensitivity.first_order.workspace import Workspace
 from matstd.sensitivity.population.sampling import Population
-from matstd.sensitivity.study.machine_study import run_study, section_pairs
+from matstd.sensitivity.study.machine_study import Study, run_study, section_pairs
 from matstd.sensitivity.study.study_file import write_study
 from matstd.twin.machine.chain import Axis, make_chain
 from matstd.twin.units import DEG, UM
@@ -104,3 +105,18 @@ def test_a_machine_with_two_readings_is_studied_too(tmp_path):
     study = run_study(Population(lathe), area, 40, 50, np.random.default_rng(1))
     maps = draw_maps(study, tmp_path)
     assert all((tmp_path / name).stat().st_size > 5000 for name, _ in maps)
+
+
+@pytest.mark.parametrize(
+    ("closed", "sampled", "expected"),
+    [
+        ([1.0, 2.0, 0.0], [1.1, 1.6, 0.0], (-0.05, -0.2)),  # +10 % and -20 %; the third stands
+        ([0.0, 0.0], [0.0, 0.0], (0.0, 0.0)),
+    ],
+)
+def test_the_tail_by_hand(closed, sampled, expected):
+    study = SimpleNamespace(
+        closed=SimpleNamespace(p95=np.array(closed)),
+        volumetric=SimpleNamespace(p95=np.array(sampled)),
+    )
+    assert Study.tail.fget(study) == pytest.approx(expected)
