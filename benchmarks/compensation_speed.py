@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.compensation.field import MachineErrors, State, correction, datum_of, workspace
+from matstd.compensation.field import MachineErrors, State, correction, datum_of, sample_workspace
 from matstd.compensation.part_programs import Frame, read_part_program
 from matstd.compensation.programs import compensated
 from matstd.compensation.service import PointCorrection
@@ -59,7 +59,7 @@ def main() -> None:
     begun = time.process_time()
     point = PointCorrection(errors, 160.0, datum)
     made = time.process_time() - begun
-    q = workspace(errors.chain, {}, SINGLE)
+    q = sample_workspace(errors.chain, {}, SINGLE)
     exact = correction(errors, errors.touches(q, 160.0), datum.deviation(errors))
     columns = [errors.chain.axis_index(name) for name in point.linear_axes]
     times, found = [], []

@@ -9,7 +9,7 @@ measure next), and model and result files. It needs no standard and no CAD.
     result.verdict, [step.effect for step in result.steps], result.fit.test_rms
 
 `regression` solves with a prior and knows what noise does, `fit` estimates a model's parameters
-with it, `geometry` tells what they mean to a machine's user. `evidence` projects effects that are
+with it, `geometry` states what they mean to a machine's user. `evidence` projects effects that are
 not in the model on what the fit leaves, and says how much a set of them explains; `faults` tries
 what users get wrong in a description. `residual` tests what is left for structure, and finds
 regions where a model fails. `search` finds sets of effects, `choice` takes the one that predicts

@@ -7,10 +7,10 @@ import tempfile
 from importlib.resources import files
 from pathlib import Path
 
-from matstd.compensation.field import MachineErrors, State, datum_of, workspace
+from matstd.compensation.field import MachineErrors, State, datum_of, sample_workspace
 from matstd.compensation.part_programs import Frame, read_part_program
 from matstd.compensation.programs import compensated
-from matstd.compensation.tables import FORMATS, header_of, play_tables, write_tables
+from matstd.compensation.tables import FORMATS, header_of, verify_tables, write_tables
 from matstd.twin.files import read_errors, read_machine
 
 MACHINES = Path(str(files("matstd").joinpath("machines")))
@@ -25,7 +25,10 @@ def known_errors():
 def main():
     errors = known_errors()
     datum = datum_of(errors.chain, {"X": -150.0, "Y": -100.0, "Z": -250.0}, 150.0)
-    head, poses = header_of(errors.chain, "chen1995", datum, State()), workspace(errors.chain, {})
+    head, poses = (
+        header_of(errors.chain, "chen1995", datum, State()),
+        sample_workspace(errors.chain, {}),
+    )
     found = {}
     with tempfile.TemporaryDirectory() as folder:
         plate = Path(folder) / "plate.ngc"
@@ -35,7 +38,7 @@ def main():
         for name in ("iso230", "sinumerik"):
             place = Path(folder) / name
             write_tables(FORMATS[name], place, errors, datum, head, poses)
-            found[name] = play_tables(FORMATS[name], place, errors, datum, head, poses).result
+            found[name] = verify_tables(FORMATS[name], place, errors, datum, head, poses).result
     return found
 
 

@@ -7,11 +7,10 @@ Out: programs for an iTNC 530 or another control, and from the logs that they le
     text -> read_program -> ReadProgram -> simulate (the exact twin) -> logs
     logs, from the twin or from a control -> read_log -> evaluate -> Run
 
-Plan and simulation meet in nothing but the text: what the writer meant is unknown to the reader,
-so a slip between the two shows. `linuxcnc` has what runs beside that control, `locate` finds a
-standard that stands beside its place and plans again for where it is. Another word of a control
-goes into `language`, another rule for what a program may do into `control`, another shape of
-program into `emit`.
+Plan and simulation share nothing but the text: the reader does not know the intention of the
+writer, so a discrepancy between the two shows. `linuxcnc` runs programs on that control, `locate`
+finds a misplaced standard and plans again for its place. A new word of a control goes into
+`language`, a new rule for what a program may do into `control`, a new kind of program into `emit`.
 """
 
 PARTS = ("plan", "language", "control", "emit", "stations", "campaign", "linuxcnc", "locate")

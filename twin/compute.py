@@ -5,11 +5,11 @@ from contextlib import contextmanager
 from typing import Any
 
 Progress = Callable[[str, int, int], None]
-"""Told what is being done, how much of it is done and how much there is."""
+"""Receives the name of the work, the amount done and the total."""
 
 
 def blocks(count: int, size: int) -> Iterator[slice]:
-    """Slices that cover 0 .. count in order, each of at most `size`; they bound the memory.
+    """Slices that cover 0 .. count in order, each of at most `size`, to bound the memory.
 
     Example:
         >>> list(blocks(5, 2))
@@ -20,16 +20,16 @@ def blocks(count: int, size: int) -> Iterator[slice]:
 
 
 def silent(what: str, done: int, total: int) -> None:
-    """Progress that nobody is told."""
+    """Progress that is not reported."""
 
 
 @contextmanager
 def one_blas_thread() -> Iterator[None]:
     """One thread for every product of matrices within.
 
-    Where threads of our own share the processors, and where matrices are small: several threads a
-    product then only wait for one another. On two busy cores the relaxed problem of a placement
-    took 7.1 s of processor with two threads and 1.3 s with one.
+    For use where our own threads share the processors or matrices are small: several BLAS threads
+    would then only wait for one another. On two busy cores the relaxed problem of a placement took
+    7.1 s of processor time with two threads and 1.3 s with one.
     """
     import scipy.linalg  # noqa: F401  # its own BLAS is limited only once it is loaded
     from threadpoolctl import threadpool_limits
@@ -41,12 +41,11 @@ def one_blas_thread() -> Iterator[None]:
 def compiled_loop(function: Callable[..., None], **options: Any) -> Callable[..., None] | None:
     """A loop compiled by numba (the extra `fast`), or None without numba.
 
-    What is compiled is kept beside the file, or in the user's cache, for the next process: a second
-    or two of every loop.
+    The compiled code is cached beside the file or in the user's cache; this saves the next process
+    a second or two per loop.
 
     Args:
         function: Of a module, loops over arrays.
-        options: Of `numba.njit`.
     """
     try:
         from numba import njit

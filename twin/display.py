@@ -1,9 +1,8 @@
-"""How results show themselves: a short text, in a notebook a table and a picture, a CSV table.
+"""Display of results: a short text, in a notebook a table and a picture, a CSV table.
 
-`text` and `html` are registers by type. They begin with what every record can show of itself: its
-name and the sizes of its fields. `report`, which lies above every result, registers sentences,
-tables and pictures when it is imported; `before_showing` names what shall happen before the first
-result is shown, such as that import.
+`text` and `html` dispatch by type; by default they show the name of a record and the sizes of its
+fields. `report` registers sentences, tables and pictures when it is imported; `before_showing`
+postpones such an import until the first result is shown.
 """
 
 from abc import ABC, abstractmethod
@@ -20,8 +19,8 @@ import numpy as np
 from matstd.twin.errors import MissingLibrary
 from matstd.twin.text import csv_text
 
-MOST_LETTERS = 40
-"""Letters of a value of a field that are shown; of a longer one its size or type."""
+MAX_VALUE_CHARACTERS = 40
+"""Longest value of a field that is shown in full, in characters."""
 
 _BEFORE: list[Callable[[], object]] = []
 
@@ -55,7 +54,7 @@ def _brief(value: object) -> str:
     if isinstance(value, Sized) and not isinstance(value, str):
         return f"<{len(value)} of {type(value).__name__}>"
     shown = value.name if isinstance(value, Path) else repr(value)
-    return shown if len(shown) <= MOST_LETTERS else f"<{type(value).__name__}>"
+    return shown if len(shown) <= MAX_VALUE_CHARACTERS else f"<{type(value).__name__}>"
 
 
 @singledispatch
@@ -90,11 +89,7 @@ class Tabular(Displayed, ABC):
         """Columns by name, all of one length."""
 
     def to_csv(self, path: str | Path | None = None) -> str:
-        """The table as CSV with a line of names; written to a file, whole or not at all, if named.
-
-        Returns:
-            The text.
-        """
+        """The table as CSV with a line of names; also written to a file, if one is named."""
         table = self.columns()
         rows = zip(*table.values(), strict=True)
         written = csv_text(table, ([self.cell(value) for value in row] for row in rows))

@@ -36,8 +36,6 @@ class BadValue(DesignError, ValueError):
 
     Args:
         key: What it is the value of.
-        found: What was given.
-        expected: What should stand there.
     """
 
     def __init__(self, key: str, found: object, expected: str) -> None:
@@ -50,8 +48,6 @@ class BadArgument(DesignError, ValueError):
 
     Args:
         name: Of the argument; the option of the same name has hyphens.
-        found: What was given.
-        expected: What should stand there.
     """
 
     def __init__(self, name: str, found: object, expected: str) -> None:
@@ -151,7 +147,7 @@ class BadFile(DesignError, ValueError):
         Args:
             error: With the facts found and expected: BadValue, UnknownAxis, UnknownSymbol.
             within: Key of the table that the value stood in.
-            key: Of the value; empty for the key that the error tells.
+            key: Of the value; empty for the key in the error.
         """
         where = ".".join(part for part in (within, key or str(error.facts["key"])) if part)
         return cls(path, where, error.facts["found"], str(error.facts["expected"]))

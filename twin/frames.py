@@ -7,13 +7,10 @@ Array = NDArray[np.float64]
 
 
 def skew(v: Array) -> Array:
-    """Matrix of the cross product, ``skew(v) @ x == cross(v, x)``.
+    """Matrix of the cross product, ``skew(v) @ x == cross(v, x)``, (..., 3, 3), skew-symmetric.
 
     Args:
         v: Vectors, shape (..., 3).
-
-    Returns:
-        Shape (..., 3, 3), skew-symmetric.
     """
     S = np.zeros((*np.shape(v), 3))
     S[..., 0, 1], S[..., 0, 2] = -v[..., 2], v[..., 1]
@@ -23,15 +20,12 @@ def skew(v: Array) -> Array:
 
 
 def rotation(vector: Array) -> Array:
-    """Rotation matrix of a rotation vector (Rodrigues), exact for any angle.
+    """Rotation matrix of a rotation vector (Rodrigues), exact for any angle, (..., 3, 3).
 
     ``R = 1 + sin(a)/a S + (1 - cos(a))/a^2 S^2`` with ``S = skew(vector)`` and ``a = |vector|``.
 
     Args:
         vector: Axis times angle, shape (..., 3), rad.
-
-    Returns:
-        Shape (..., 3, 3).
     """
     S = skew(np.asarray(vector, dtype=float))
     angle = np.linalg.norm(vector, axis=-1)[..., None, None]
@@ -56,7 +50,7 @@ def pose(R: Array | None = None, t: Array | None = None) -> Array:
 
 
 def turned_about(point: Array, R: Array, shift: Array | None = None) -> Array:
-    """Pose of a rotation about a point followed by a shift.
+    """Pose of a rotation about a point followed by a shift, (..., 4, 4).
 
     ``x -> point + R (x - point) + shift``.
 
@@ -64,9 +58,6 @@ def turned_about(point: Array, R: Array, shift: Array | None = None) -> Array:
         point: Fixed point of the rotation, shape (..., 3), mm.
         R: Rotations, shape (..., 3, 3).
         shift: Translation afterwards, shape (..., 3), mm.
-
-    Returns:
-        Shape (..., 4, 4).
     """
     t = point - np.einsum("...ij,...j->...i", R, np.broadcast_to(point, (*R.shape[:-2], 3)))
     return pose(R, t if shift is None else t + shift)
@@ -95,13 +86,10 @@ def unit(vectors: Array) -> Array:
 
 
 def fixed_xyz(angles: Array) -> Array:
-    """Rotations about the fixed x, then y, then z axis: ``R = Rz Ry Rx``.
+    """Rotations about the fixed x, then y, then z axis: ``R = Rz Ry Rx``, (..., 3, 3).
 
     Args:
         angles: Shape (..., 3), rad.
-
-    Returns:
-        Shape (..., 3, 3).
     """
     a = np.asarray(angles, dtype=float)
     axes = np.eye(3)

@@ -1,7 +1,7 @@
 """Points that fill a cube evenly, for readings over the travels of a machine.
 
-Not the quasi-Monte Carlo module of scipy: its import takes two seconds, longer than most commands
-that need a few hundred poses, and its sequences are even at powers of two alone.
+The quasi-Monte Carlo module of scipy is not used: its import takes two seconds, longer than most
+commands that need a few hundred poses, and its sequences are even only at powers of two.
 """
 
 import numpy as np
@@ -16,8 +16,6 @@ def even_points(count: int, dimensions: int, start: int = 0) -> Array:
     ``g^(d+1) = g + 1`` in d dimensions.
 
     Args:
-        count: How many.
-        dimensions: d.
         start: Points of the sequence that are left out.
 
     Reference:

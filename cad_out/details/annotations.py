@@ -16,9 +16,9 @@ from matstd.twin.frames import Array
 
 _LETTER, _CELL, _PITCH = 5.0, 10.0, 13.0  # mm: a letter, a frame, from one frame to the next
 _AWAY, _LANDING = 25.0, 6.0  # mm from the plate to the columns; a leader is level so far
-_ARROW, _SLIM = 4.0, 0.25  # mm, and half its width over its length
+_ARROW, _ARROW_SLENDERNESS = 4.0, 0.25  # mm, and half its width over its length
 
-_ASIDE = ((0.0, 8.0, 0.0), (8.0, 0.0, 0.0))
+_LEADER_OFFSET = ((0.0, 8.0, 0.0), (8.0, 0.0, 0.0))
 """From the arrow on a datum's face to the triangle on it, mm, and that on side B."""
 
 _GLYPHS = {
@@ -61,17 +61,13 @@ class _Sign(NamedTuple):
 def annotations_of(standard: Standard, details: Details) -> dict[str, list[Array]]:
     """What is drawn beside the model, by the names of tolerances, datums and sizes.
 
-    Args:
-        standard: The design.
-        details: Of the workshop.
-
     Returns:
         Polylines (N, 3), mm, all of a sign in one plane across z; the first is the frame (of a
         size its underline), which begins at the lower left corner, the second the leader.
     """
     signs = [_tolerance(standard, details, t) for t in tolerances_of(standard, details)]
     for letter, face in DATUMS.items():
-        at = np.add(_place(standard, details, face), _ASIDE[face == "DATUM_B"])
+        at = np.add(_place(standard, details, face), _LEADER_OFFSET[face == "DATUM_B"])
         signs.append(_Sign(f"datum {letter}", at, (letter,), "triangle"))
     for sphere in standard.spheres:
         x, y, z = sphere.centre
@@ -122,7 +118,7 @@ def _place(standard: Standard, details: Details, face: str) -> Array:
 
 
 def _drawn(sign: _Sign, edge: Array, side: float) -> list[Array]:
-    """A sign whose frame ends at a place, on the side of it that looks away from the plate."""
+    """A sign whose frame ends at a place, on the far side from the plate."""
     cells = [_written(cell) for cell in sign.cells]
     widths = [max(_CELL, wide + _LETTER) for _, wide in cells]
     x = edge[0] - (sum(widths) if side < 0.0 else 0.0)
@@ -145,7 +141,7 @@ def _drawn(sign: _Sign, edge: Array, side: float) -> list[Array]:
 
 
 def _written(cell: str) -> tuple[list[Array], float]:
-    """Strokes (N, 2) of a sign or of a line of letters from the origin on, and how long it is."""
+    """Strokes (N, 2) of a sign or a line of letters that begins at the origin, and its length."""
     glyphs = [cell] if cell in _GLYPHS else list(cell)
     drawn = [
         np.array([[float(at[0]) + k * _NEXT, float(at[1])] for at in stroke.split()])
@@ -161,12 +157,12 @@ def _rectangle(left: float, right: float, low: float, high: float) -> Array:
 
 
 def _head(leader: Array, end: str) -> Array:
-    """Arrow of a leader, or the triangle of a datum, which stands on its base."""
+    """Arrow of a leader, or the triangle of a datum standing on its base."""
     back = leader[-2] - leader[-1]
     back = back / np.linalg.norm(back)
     across = np.array([-back[1], back[0]])
     tip, foot = leader[-1], leader[-1] + _ARROW * back
     if end == "triangle":
         tip, foot = foot, leader[-1]
-    wide = (2.0 if end == "triangle" else 1.0) * _SLIM * _ARROW * across
+    wide = (2.0 if end == "triangle" else 1.0) * _ARROW_SLENDERNESS * _ARROW * across
     return np.array([tip, foot + wide, foot - wide, tip])

@@ -29,8 +29,6 @@ class Details:
         screws: By size.
         sides: Of the plate by name: DATUM_B, DATUM_C, NAME, THERMO.
         bores: Lifting holes and thermometer pocket.
-        lettering: What is engraved.
-        missing: What found no room, in words.
     """
 
     seats: dict[str, Seat]

@@ -1,7 +1,7 @@
 """Letters of dots, as a ball-ended cutter spots them: every dot one face with one edge.
 
-Letters of strokes leave a thousand faces of a tenth of a square millimetre with edges as short,
-where whoever programs the cutting has to pick the few that matter.
+Letters of strokes would leave a thousand faces of a tenth of a square millimetre, among which the
+few relevant faces are hard to select when tool paths are programmed.
 """
 
 import numpy as np
@@ -76,7 +76,6 @@ def dots(text: str, rows: int) -> Array:
     """Middles of the dots of a line of capitals, (N, 2), mm; unknown letters are boxes.
 
     Args:
-        text: The line.
         rows: Of dots in a letter, `SMALL` or `LARGE`.
     """
     found = [
@@ -88,7 +87,7 @@ def dots(text: str, rows: int) -> Array:
 
 
 def _glyph(letter: str, rows: int) -> list[tuple[int, int]]:
-    """Row, from below, and column of every dot."""
+    """Row, counted from below, and column of every dot."""
     small, large = _GLYPHS.get(letter, _UNKNOWN)
     lines = [int(c, 8) for c in small] if rows == SMALL else list(bytes.fromhex(large))
     last = _COLUMNS[rows] - 1

@@ -11,7 +11,7 @@ from matstd.cad_out.details.places import Bore, Side, plan_room
 from matstd.twin.frames import Array, pose
 
 _OF_SIDE = 0.37  # of the plate's thickness, that letters on a side take: two lines have room
-_FREE = 1.5  # mm round a line of text
+_MARGIN = 1.5  # mm round a line of text
 _AWAY = 14.0  # mm from a body that its number may stand
 
 
@@ -20,7 +20,6 @@ class Lettering:
     """A line of text.
 
     Attributes:
-        text: Capitals.
         T_artefact_text: Begin of the line; x along it, y up the letters, z out of the material.
         rows: Of dots in a letter, `SMALL` or `LARGE`.
         of: Feature that it names; empty for the standard's own name.
@@ -88,7 +87,7 @@ def _on_sides(
 
 
 def _on_side(side: Side, text: str, at: float, z: float, thick: float, of: str) -> Lettering | None:
-    """Text in the middle of a side or `at` beside it, at a height, as large as there is room."""
+    """Text in the middle of a side or `at` beside it, in the largest letters that fit."""
     out = np.array([*side.normal, 0.0])
     along = np.cross([0.0, 0.0, 1.0], out)
     middle = side.offset * out + at * np.abs(along) + [0.0, 0.0, z]
@@ -125,7 +124,7 @@ def _largest(text: str, room: Sequence[float]) -> int | None:
 
 
 def _around(text: str, R: Array, middle: Array, rows: int, of: str) -> Lettering:
-    """A line of text round its middle."""
+    """A line of text centred at a point."""
     return Lettering(text, pose(R, middle - R[:, :2] @ (0.5 * size(text, rows))), rows, of)
 
 
@@ -161,8 +160,8 @@ class _Plate:
         inside = (places[:, None] + box).reshape(-1, 2)
         base = self.standard.base
         rim = -outline_distance(inside, base.half_size, base.corner_radius)
-        free = (plan_room(self.standard, inside) >= _FREE) & (rim >= 3.0)
+        free = (plan_room(self.standard, inside) >= _MARGIN) & (rim >= 3.0)
         out = free.reshape(len(places), -1).all(axis=1)
         for at, other in self.taken:
-            out &= (np.abs(places - at) >= half + other + _FREE).any(axis=1)
+            out &= (np.abs(places - at) >= half + other + _MARGIN).any(axis=1)
         return np.asarray(out)

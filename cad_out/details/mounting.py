@@ -79,8 +79,8 @@ class Pad:
 def pads_of(standard: Standard, sides: Iterable[Side]) -> tuple[Pad, ...]:
     """Three pads round three screws, so that tightening them bends nothing; else none.
 
-    A standard with another number of holes stands on its whole underside. Pads near the outline are
-    narrower: between flank and outline is relief, or a strip of no width would be left.
+    With another number of holes the standard stands on its whole underside. Pads near the outline
+    are narrower, so that the relief between flank and outline keeps a width.
     """
     if len(standard.holes) != 3:
         return ()

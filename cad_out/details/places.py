@@ -139,6 +139,7 @@ def lifting_holes(standard: Standard, mass: float) -> tuple[Bore, ...]:
         return ()
     middle = 0.5 * (xy[:, None] + xy)
     apart = np.linalg.norm(xy[:, None] - xy, axis=-1)
+    # among pairs that are equally central the widest is taken
     off = np.linalg.norm(middle - centre_of_mass(standard), axis=-1) - 1e-3 * apart
     off[apart < _LIFT_APART] = np.inf
     i, j = np.unravel_index(np.argmin(off), off.shape)
@@ -177,7 +178,8 @@ def thermometer_pocket(standard: Standard, side: Side, others: tuple[Bore, ...])
     upright += [(bore.mouth[0], bore.mouth[1], bore.radius) for bore in others]
     for depth in _POCKET_DEPTHS:
         for x in (s * t for t in tried for s in (1.0, -1.0)):
-            room = [_past(x, side.offset - depth, side.offset, h[0], h[1]) - h[2] for h in upright]
+            low = side.offset - depth
+            room = [np.hypot(u - x, v - np.clip(v, low, side.offset)) - r for u, v, r in upright]
             if min(room, default=np.inf) >= _POCKET_RADIUS + _WALL:
                 mouth = (float(x), side.offset, 0.5 * standard.base.thickness)
                 return Bore(
@@ -188,8 +190,3 @@ def thermometer_pocket(standard: Standard, side: Side, others: tuple[Bore, ...])
                     depth=depth,
                 )
     return None
-
-
-def _past(x: float, low: float, high: float, px: float, py: float) -> float:
-    """Distance of a place from the upright segment x, low ... high of the plan."""
-    return float(np.hypot(px - x, py - np.clip(py, low, high)))

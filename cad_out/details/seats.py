@@ -1,10 +1,10 @@
 """Seats of bought balls on their posts.
 
-A ball lies in a countersink of a standard angle and touches it along one circle: the circle, and
-not the glue, fixes its centre in all three directions, and two hard bodies touch there. The glue
-stands outside the circle, in the wedge that opens up to the land of the post, and only holds. A
-sphere of the ball's own radius would touch nobody knows where; a stud would leave the centre to a
-thread and the stiffness to a screw of 5 mm.
+A ball lies in a countersink of a standard angle and touches it along one circle, metal to metal.
+The circle, and not the glue, fixes its centre in all three directions. The glue fills the wedge
+outside the circle and only holds. With a spherical seat of the ball's own radius the place of
+contact would be undefined; with a stud, a thread would fix the centre and a 5 mm screw the
+stiffness.
 """
 
 from dataclasses import dataclass
@@ -27,11 +27,8 @@ class Seat:
     """Countersink on top of a post, in heights above the standard's seat, mm.
 
     Attributes:
-        ball: Name of the ball.
         half_angle: Between the axis and the countersink, rad.
         contact_radius: Of the circle along which the ball touches.
-        contact: Height of that circle.
-        top: Height of the land.
         top_radius: Of the post there.
         rim_radius: Of the countersink there.
         bottom: Height of the countersink's tip.
@@ -50,8 +47,8 @@ class Seat:
 def seat_of(sphere: DatumSphere) -> Seat:
     """The steepest countersink that leaves room for glue on the post of a ball.
 
-    The post ends where cone and countersink meet in a narrow land, below the ball's surface: the
-    whole of it stays within the cone that runs up to the ball's centre.
+    The post ends where cone and countersink meet in a narrow land, below the ball's surface,
+    and stays within the cone that runs up to the ball's centre.
 
     Raises:
         NotBuildable: The post is too thin for any countersink.

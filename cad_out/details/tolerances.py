@@ -24,7 +24,6 @@ touch to touch by less than a probe repeats."""
 BALL_SIZE = 0.0025
 """Either way of the nominal diameter of a bought ball, mm; its lot is sorted far finer."""
 
-
 CALIBRATED = {"diameter": BALL_SIZE, "position": 0.5 * POSITION, "profile": 0.5 * PROFILE}
 """Largest deviations of balls and faces, which are calibrated, from what is drawn, mm."""
 

@@ -46,15 +46,10 @@ class Product:
     """One part of the product structure.
 
     Attributes:
-        name: Of the part.
-        about: What it is.
         shape: Its solid, or a shell of one face.
-        faces: Named faces of it.
         material: What it is made of; none of a face by itself.
         colour: Of its nameless faces.
         places: Name and place of every instance, mm; the body and the balls stand where they are.
-        tolerances: Of its named faces.
-        notes: General ones.
         diameter: Of a ball, mm.
         drawn: Signs of the tolerances, datums and sizes, polylines (N, 3) in mm by their names.
     """
@@ -90,8 +85,8 @@ def whole_name(standard: Standard) -> str:
 def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Product, ...]]:
     """The body and all products, the body first.
 
-    Every ball is a part of its own, since it will have a calibration of its own; screws of one
-    size are one part that is there several times.
+    Every ball is a part of its own, since it has a calibration of its own; screws of one size are
+    instances of one part.
     """
     solid = build_solid(standard, details)
     here, drawn = (0.0, 0.0, 0.0), annotations_of(standard, details)
@@ -123,6 +118,7 @@ def products_of(standard: Standard, details: Details) -> tuple[Solid, tuple[Prod
             drawn=drawn,
         )
         found.append(made)
+    # body and balls are built in place, only screws are moved
     for kind in details.screws:
         made = Product(
             name=kind.name,

@@ -17,10 +17,10 @@ from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTo
 from OCP.XSControl import XSControl_WorkSession
 
 from matstd.cad_out.kernel.assembly import Product, colour_of
-from matstd.cad_out.kernel.pmi import add_diameter, add_notes, add_tolerances, settle_drawing
+from matstd.cad_out.kernel.pmi import add_diameter, add_notes, add_tolerances, set_drawing_context
 from matstd.cad_out.kernel.settled import (
     with_descriptions,
-    with_settled_order,
+    with_reproducible_order,
     with_units_of_density,
     without_runout_zones,
 )
@@ -49,7 +49,7 @@ class Origin:
     Attributes:
         design: SHA-256 of the design file, `standard.toml`.
         author: Who is responsible for it.
-        organisation: Whom the author works for.
+        organisation: The author's employer.
     """
 
     design: str
@@ -62,9 +62,6 @@ def write_step(path: Path, products: Sequence[Product], name: str, origin: Origi
 
     Args:
         path: The file; written in one go by the kernel, so give a neighbour name.
-        products: Of the assembly.
-        name: Of the whole.
-        origin: For the header.
 
     Raises:
         NotBuildable: The kernel refuses to translate or to write.
@@ -84,7 +81,7 @@ def write_step(path: Path, products: Sequence[Product], name: str, origin: Origi
     writer.SetMetadataMode(True)
     if not writer.Transfer(document):
         raise NotBuildable(f"'{name}': the CAD kernel cannot translate it to STEP")
-    settle_drawing(writer.ChangeWriter().Model())
+    set_drawing_context(writer.ChangeWriter().Model())
     _write_header(writer.ChangeWriter().Model(), name, origin)
     if writer.Write(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
         raise NotBuildable(f"{path}: the CAD kernel cannot write the STEP file")
@@ -92,7 +89,7 @@ def write_step(path: Path, products: Sequence[Product], name: str, origin: Origi
     whole = with_descriptions(whole, products)
     materials = {p.material for p in products} - {None}  # the kernel writes each once
     whole = with_units_of_density(without_runout_zones(whole), len(materials))
-    path.write_text(with_settled_order(whole), encoding="utf-8")
+    path.write_text(with_reproducible_order(whole), encoding="utf-8")
 
 
 def _fill(document: Any, products: Sequence[Product], name: str) -> None:

@@ -1,4 +1,4 @@
-"""Questions to the kernel about a shape, and the names of its faces."""
+"""Parts and measures of the kernel's shapes, and the names of their faces."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -22,34 +22,37 @@ from matstd.twin.frames import Array
 _SAME = 1e-7  # mm: a face lies where it was put
 
 
+def _properties(integral: Any, shape: Any) -> GProp_GProps:
+    """Mass and centre of mass of a shape by one of the kernel's integrals."""
+    properties = GProp_GProps()
+    integral(shape, properties)
+    return properties
+
+
 def volume(shape: Any) -> float:
     """Volume of a shape, mm^3."""
-    properties = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, properties)
-    return float(properties.Mass())
+    return float(_properties(BRepGProp.VolumeProperties_s, shape).Mass())
+
+
+def parts_of(shape: Any, kind: TopAbs_ShapeEnum, cast: Any) -> list[Any]:
+    """Parts of one kind in the kernel's order; an edge appears once for each of its faces."""
+    found = []
+    explorer = TopExp_Explorer(shape, kind)
+    while explorer.More():
+        found.append(cast(explorer.Current()))
+        explorer.Next()
+    return found
 
 
 def faces_of(shape: Any) -> list[Any]:
     """Faces of a shape in the kernel's order."""
-    found = []
-    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_FACE)
-    while explorer.More():
-        found.append(TopoDS.Face(explorer.Current()))
-        explorer.Next()
-    return found
+    return parts_of(shape, TopAbs_ShapeEnum.TopAbs_FACE, TopoDS.Face)
 
 
 def edges_of(shape: Any) -> list[Any]:
     """Edges of a shape, each once."""
-    found, seen = [], set()
-    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_EDGE)
-    while explorer.More():
-        edge = TopoDS.Edge(explorer.Current())
-        if edge not in seen and not BRep_Tool.Degenerated_s(edge):
-            seen.add(edge)
-            found.append(edge)
-        explorer.Next()
-    return found
+    edges = dict.fromkeys(parts_of(shape, TopAbs_ShapeEnum.TopAbs_EDGE, TopoDS.Edge))
+    return [edge for edge in edges if not BRep_Tool.Degenerated_s(edge)]
 
 
 def ends_and_middle(edge: Any) -> Array:
@@ -61,22 +64,12 @@ def ends_and_middle(edge: Any) -> Array:
 
 def solids_of(shape: Any) -> list[Any]:
     """Solids of a shape."""
-    found = []
-    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_SOLID)
-    while explorer.More():
-        found.append(TopoDS.Solid(explorer.Current()))
-        explorer.Next()
-    return found
+    return parts_of(shape, TopAbs_ShapeEnum.TopAbs_SOLID, TopoDS.Solid)
 
 
 def shells_of(shape: Any) -> list[Any]:
     """Shells of a shape: the outer one of every solid, and one around every closed pocket."""
-    found = []
-    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_SHELL)
-    while explorer.More():
-        found.append(TopoDS.Shell(explorer.Current()))
-        explorer.Next()
-    return found
+    return parts_of(shape, TopAbs_ShapeEnum.TopAbs_SHELL, TopoDS.Shell)
 
 
 def is_valid(shape: Any) -> bool:
@@ -91,12 +84,10 @@ def is_closed(shape: Any) -> bool:
 
 
 @dataclass(frozen=True, eq=False)
-class Named:
+class FaceNaming:
     """What faces are named after.
 
     Attributes:
-        standard: Whose body it is.
-        details: Of it.
         surfaces: The kernel's surfaces of the patches, by name.
     """
 
@@ -117,7 +108,7 @@ def body_faces(standard: Standard, details: Details) -> tuple[str, ...]:
     return (*patches, standard.plane.name, *details.face_names, *holes)
 
 
-def named_faces(wanted: Named, solid: Any) -> dict[str, Any]:
+def named_faces(wanted: FaceNaming, solid: Any) -> dict[str, Any]:
     """Names of the faces that matter, found by the identity or the place of their surface."""
     named: dict[str, Any] = {}
     for face in faces_of(solid):
@@ -140,7 +131,7 @@ def _spline_name(face: Any, surfaces: dict[str, Any]) -> str | None:
     return next((name for name, put_in in surfaces.items() if surface is put_in), None)
 
 
-def _elementary_name(face: Any, wanted: Named) -> str | None:
+def _elementary_name(face: Any, wanted: FaceNaming) -> str | None:
     """Name of a plane, a cylinder or a cone by its place."""
     shape = BRepAdaptor_Surface(face)
     kind = shape.GetType()
@@ -153,7 +144,7 @@ def _elementary_name(face: Any, wanted: Named) -> str | None:
     return None
 
 
-def _plane_name(face: Any, plane: Any, wanted: Named) -> str | None:
+def _plane_name(face: Any, plane: Any, wanted: FaceNaming) -> str | None:
     axis = plane.Axis().Direction()
     normal, place = _coordinates(axis), _coordinates(plane.Location())
     standard = wanted.standard
@@ -177,7 +168,7 @@ def _pad_name(place: Array, details: Details) -> str:
     return min(details.pads, key=lambda pad: np.hypot(place[0] - pad.x, place[1] - pad.y)).name
 
 
-def _hole_name(cylinder: Any, wanted: Named) -> str | None:
+def _hole_name(cylinder: Any, wanted: FaceNaming) -> str | None:
     place = _coordinates(cylinder.Location())
     for bore in wanted.details.bores:
         off = np.cross(place - bore.mouth, bore.direction)
@@ -190,7 +181,7 @@ def _hole_name(cylinder: Any, wanted: Named) -> str | None:
     return None
 
 
-def _seat_name(cone: Any, wanted: Named) -> str | None:
+def _seat_name(cone: Any, wanted: FaceNaming) -> str | None:
     """A countersink, which is wider than any post tapers."""
     tip = _coordinates(cone.Apex())
     for sphere in wanted.standard.spheres:
@@ -202,16 +193,12 @@ def _seat_name(cone: Any, wanted: Named) -> str | None:
 
 def centre(face: Any) -> Array:
     """Centroid of a face, (3,), mm."""
-    properties = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(face, properties)
-    return _coordinates(properties.CentreOfMass())
+    return _coordinates(_properties(BRepGProp.SurfaceProperties_s, face).CentreOfMass())
 
 
 def area(face: Any) -> float:
     """Area of a face, mm^2."""
-    properties = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(face, properties)
-    return float(properties.Mass())
+    return float(_properties(BRepGProp.SurfaceProperties_s, face).Mass())
 
 
 def _coordinates(p: Any) -> Array:
@@ -220,6 +207,4 @@ def _coordinates(p: Any) -> Array:
 
 def length(edge: Any) -> float:
     """Length of an edge, mm."""
-    properties = GProp_GProps()
-    BRepGProp.LinearProperties_s(edge, properties)
-    return float(properties.Mass())
+    return float(_properties(BRepGProp.LinearProperties_s, edge).Mass())

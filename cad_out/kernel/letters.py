@@ -37,7 +37,6 @@ def engraved(solid: Any, lettering: Sequence[Lettering]) -> Any:
     """A solid with its lettering.
 
     Args:
-        solid: One closed shell.
         lettering: On plane faces; what reaches beyond the edge of one is cut as well, but slowly.
     """
     faces = faces_of(solid)
@@ -60,7 +59,6 @@ def engraved(solid: Any, lettering: Sequence[Lettering]) -> Any:
 
 
 def _carries(face: Any, line: Lettering, middles: Array) -> bool:
-    """Whether all dots of a line lie in a plane face."""
     if _kind(face) != GeomAbs_SurfaceType.GeomAbs_Plane:
         return False
     T, plane = line.T_artefact_text, BRepAdaptor_Surface(face).Plane().Position()
@@ -87,7 +85,7 @@ def _ball(line: Lettering, middle: Array) -> Any:
 
 
 def _dot(line: Lettering, middle: Array, orientation: Any) -> tuple[Any, Any]:
-    """The rim as a hole of a face of some orientation, and the face below it."""
+    """Rim of a dot as a hole in a face of the given orientation, and the cap below it."""
     out = line.T_artefact_text[:3, 2]
     frame = gp_Ax2(point(middle + (CUTTER - DEPTH) * out), gp_Dir(*map(float, out)))
     rim_at = float(np.arcsin((DEPTH - CUTTER) / CUTTER))
@@ -104,7 +102,7 @@ def _kind(face: Any) -> Any:
 
 
 def _with_holes(face: Any, wires: Sequence[Any]) -> Any:
-    """The face with holes more, of the same orientation."""
+    """The face with additional holes, of the same orientation."""
     forward = TopoDS.Face(face.Oriented(TopAbs_Orientation.TopAbs_FORWARD))
     maker = BRepBuilderAPI_MakeFace(forward)
     for wire in wires:

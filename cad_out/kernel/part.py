@@ -1,4 +1,4 @@
-"""The standard as a build123d part, for whoever goes on: fixtures, engraving, drawings."""
+"""The standard as a build123d part, for further design: fixtures, engraving, drawings."""
 
 from __future__ import annotations
 
@@ -11,14 +11,10 @@ if TYPE_CHECKING:
 
 
 def as_part(standard: Standard) -> tuple[build123d.Solid, dict[str, build123d.Face]]:
-    """The standard's body and its named faces as objects of build123d.
+    """The standard's body, labelled with its name, and its named faces as objects of build123d.
 
     The solid is the body that `export_standard` writes. It is built in this process, where a crash
-    of the CAD kernel is a crash of the caller's.
-
-    Returns:
-        The solid, labelled with the standard's name, and its faces by name: FF1 ..., DATUM_A,
-        seats, bores and holes.
+    of the CAD kernel ends the caller.
 
     Raises:
         NotBuildable: The kernel's result is not one valid solid.

@@ -50,15 +50,9 @@ def add_tolerances(
     tolerances: Sequence[Tolerance],
     drawn: dict[str, list[Array]],
 ) -> None:
-    """Put datums and geometrical tolerances on named faces, and draw them.
-
-    Args:
-        document: With the part.
-        faces: Labels of the faces by their names.
-        tolerances: Of the part.
-        drawn: Their signs.
-    """
+    """Put datums and geometrical tolerances on named faces, and draw them."""
     tool = XCAFDoc_DocumentTool.DimTolTool_s(document.Main())
+    # a datum is drawn once, although every tolerance refers to an object of its own
     left = dict(drawn)
     for tolerance in tolerances:
         label = tool.AddGeomTolerance()
@@ -82,7 +76,7 @@ def add_tolerances(
 
 
 def _draw(about: Any, name: str, left: dict[str, list[Array]]) -> None:
-    """Give an object its sign, once."""
+    """Give an object its sign, at the first call only."""
     if name not in left:
         return
     strokes, builder, sign = left.pop(name), BRep_Builder(), TopoDS_Compound()
@@ -115,7 +109,7 @@ def _datum(letter: str, position: int) -> Any:
 
 
 def _refer(tool: Any, tolerance: Any, face: Any, about: Any) -> None:
-    """A datum of a tolerance, as the kernel has them: one object for every reference."""
+    """Add a datum to a tolerance; the kernel has one object for every reference."""
     label = tool.AddDatum()
     on = Sequence_TDF_Label()
     on.Append(face)
@@ -161,6 +155,7 @@ def read_tolerances(document: Any) -> list[Tolerance]:
         for w, k in _KINDS.items()
     }
     labels, found = Sequence_TDF_Label(), list[Tolerance]()
+    # sequences of the kernel count from 1
     tool.GetGeomToleranceLabels(labels)
     for i in range(1, labels.Length() + 1):
         label = labels.Value(i)
@@ -185,11 +180,7 @@ def read_tolerances(document: Any) -> list[Tolerance]:
 
 
 def read_signs(document: Any) -> dict[str, tuple[float, float, float, float]]:
-    """Drawn signs of a document that was read: of each the length of its lines and their middle.
-
-    Returns:
-        Length and x, y, z of the centre of mass of the lines, mm, by the sign's name.
-    """
+    """Length and centre of mass (x, y, z) of every drawn sign of a document, mm, by name."""
     tool = XCAFDoc_DocumentTool.DimTolTool_s(document.Main())
     found = {}
     for listed, attribute in (
@@ -223,7 +214,7 @@ def notes_of_label(label: Any) -> tuple[str, ...]:
     return tuple(found)
 
 
-def settle_drawing(model: Any) -> None:
+def set_drawing_context(model: Any) -> None:
     """Give the drawn signs of a translated model their context.
 
     The kernel leaves it empty for an assembly, which makes the file invalid.

@@ -44,7 +44,7 @@ def box(low: Sequence[float], high: Sequence[float]) -> Any:
     return BRepPrimAPI_MakeBox(gp_Pnt(*map(float, low)), gp_Pnt(*map(float, high))).Shape()
 
 
-def drilled(bore: Bore) -> Any:
+def bore_solid(bore: Bore) -> Any:
     """What a blind hole takes away, with a millimetre before its mouth."""
     begin = np.array(bore.mouth) - np.array(bore.direction)
     axis = gp_Ax2(point(begin), gp_Dir(*bore.direction))
@@ -74,8 +74,8 @@ def plate(base: Base) -> Any:
     return BRepPrimAPI_MakePrism(outline, gp_Vec(0.0, 0.0, base.thickness)).Shape()
 
 
-def turned(x: float, y: float, profile: Sequence[tuple[float, ...]]) -> Any:
-    """A turned solid about the upright line at x, y.
+def revolved(x: float, y: float, profile: Sequence[tuple[float, ...]]) -> Any:
+    """A solid of revolution about the upright line at x, y.
 
     Args:
         x: Of the axis, mm.

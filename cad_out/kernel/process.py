@@ -12,6 +12,9 @@ from matstd.twin.errors import DesignError, NotBuildable
 REFUSAL = "refusal.txt"
 """File in the shared folder that holds the reason of a refusal."""
 
+HANG = 3600.0
+"""Seconds after which the kernel counts as hung: forty times what it needs, for a busy machine."""
+
 _CALL = """\
 import pathlib, {module}, matstd.twin.errors
 try:
@@ -59,25 +62,19 @@ def run_apart(
     timeout: float = 150.0,
     environment: dict[str, str] | None = None,
 ) -> Ending:
-    """Run ``module.task(folder, *arguments)`` in a new process of this interpreter.
+    """Run ``module.task(folder, *arguments)`` in a new process; raises nothing, returns its ending.
 
     Args:
-        module: Where the task is defined.
         task: A function that takes the folder and the arguments; a `DesignError` that it raises is
             its refusal.
-        folder: Through which the two processes speak.
-        arguments: Further arguments.
         timeout: After which the process is stopped, s.
-        environment: Variables to be set on top of this process's.
-
-    Returns:
-        How it ended; nothing is raised.
     """
     refusal = folder / REFUSAL
     call = _CALL.format(
         module=module, task=task, arguments=(str(folder), *arguments), refusal=str(refusal)
     )
     try:
+        # without stdin a task that asks for input fails instead of waiting
         done = subprocess.run(
             [sys.executable, "-c", call],
             env={**os.environ, **(environment or {})},
@@ -95,13 +92,10 @@ def run_apart(
     return Ending(done.returncode, reason, lines[-1] if lines else "")
 
 
-def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float = 400.0) -> None:
+def run_kernel(task: str, folder: Path, *arguments: float | str, timeout: float = HANG) -> None:
     """Run one task of `matstd.cad_out.kernel.worker` in a process of its own.
 
     Args:
-        task: Name of the function.
-        folder: Through which the two processes speak.
-        arguments: Further arguments of the function.
         timeout: After which the process is stopped, s.
 
     Raises:

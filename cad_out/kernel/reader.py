@@ -1,4 +1,4 @@
-"""STEP files read anew by the kernel, and its triangulation."""
+"""STEP files re-read by the kernel, and the triangulation of its solids."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +18,7 @@ from OCP.ShapeAnalysis import ShapeAnalysis_Surface
 from OCP.STEPCAFControl import STEPCAFControl_Reader
 from OCP.TDF import TDF_Label
 from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
-from OCP.TopExp import TopExp, TopExp_Explorer
+from OCP.TopExp import TopExp
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
@@ -32,6 +32,7 @@ from matstd.cad_out.kernel.faces import (
     is_closed,
     is_valid,
     length,
+    parts_of,
     shells_of,
     solids_of,
     volume,
@@ -64,18 +65,14 @@ _ANGLE = 0.3  # rad between neighbouring triangles; the chord decides on all but
 
 @dataclass(frozen=True, slots=True)
 class Reread:
-    """What the kernel finds in a STEP file that it has read anew.
+    """What the kernel finds in a STEP file that it has re-read.
 
     Attributes:
         solids: All of them, instances counted.
-        is_valid: No fault in any.
-        is_closed: All shells are.
-        shells: Of all solids.
         volume: Of all solids, mm^3.
         least_face: Area of the smallest face, mm^2.
         least_edge: Length of the shortest edge, mm.
         products: How often each product is there, by name.
-        names: Of faces.
         tolerances: Geometrical tolerances with their datums.
         notes: General notes of all parts.
         signs: Of what is drawn, the length of its lines and their centre of mass, mm.
@@ -96,7 +93,8 @@ class Reread:
 
 
 def read_step(path: Path) -> Reread:
-    """Read a STEP file with a fresh reader and look at what is in it."""
+    """Read a STEP file with a fresh reader and measure its contents."""
+    # without this setting the names of faces are not read
     settings({"read.stepcaf.subshapes.name": 1})
     reader = STEPCAFControl_Reader()
     reader.SetNameMode(True)
@@ -191,17 +189,14 @@ def tessellate(shape: Any, chord: float) -> tuple[Array, np.ndarray, np.ndarray]
 def farthest_from_faces(
     shape: Any, corners: Array, triangles: np.ndarray, numbers: np.ndarray
 ) -> float:
-    """Largest distance of a mesh from the curved faces of its solid, by the kernel's projection.
+    """Largest distance of a mesh from curved faces of its solid, mm, by the kernel's projection.
+
+    It is measured at the middles of the sides of at most a hundred triangles of every face.
 
     Args:
-        shape: The solid.
         corners: Shape (V, 3), mm.
         triangles: Shape (F, 3).
         numbers: Index of every triangle's face, (F,).
-
-    Returns:
-        The largest of all middles of sides, mm; of every face at most a hundred
-        triangles are looked at.
     """
     worst = 0.0
     for number, face in enumerate(faces_of(shape)):
@@ -242,7 +237,6 @@ def triangulate(shape: Any, chord: float) -> tuple[Array, np.ndarray, np.ndarray
     """Triangles of a solid, joined, without needles.
 
     Args:
-        shape: The solid.
         chord: Largest distance from the surfaces to aim at, mm.
 
     Returns:
@@ -275,14 +269,8 @@ def triangulate(shape: Any, chord: float) -> tuple[Array, np.ndarray, np.ndarray
 
 def _sides_of(face: Any) -> list[Any]:
     """Edges of a face, its seam twice, without those that are only a point."""
-    found = []
-    explorer = TopExp_Explorer(face, TopAbs_ShapeEnum.TopAbs_EDGE)
-    while explorer.More():
-        edge = TopoDS.Edge(explorer.Current())
-        if not BRep_Tool.Degenerated_s(edge):
-            found.append(edge)
-        explorer.Next()
-    return found
+    edges = parts_of(face, TopAbs_ShapeEnum.TopAbs_EDGE, TopoDS.Edge)
+    return [edge for edge in edges if not BRep_Tool.Degenerated_s(edge)]
 
 
 def _edge(edge: Any, vertices: Any, chord: float) -> Edge:
@@ -322,7 +310,6 @@ def _xyz(p: Any) -> Array:
 
 
 def _chart(surface: Any, chord: float) -> Chart:
-    """Chart of a face's surface."""
     kinds, kind = GeomAbs_SurfaceType, surface.GetType()
     if kind == kinds.GeomAbs_Plane:
         return plane_chart(_frame(surface.Plane().Position()))
@@ -375,7 +362,7 @@ def _in_space(surface: Any) -> Map:
 
 
 def _knots(spline: Any, axis: str) -> Array:
-    """Knots of a spline, each as often as it counts."""
+    """Knots of a spline, repeated by their multiplicities."""
     number = range(1, getattr(spline, f"Nb{axis}Knots")() + 1)
     knot, times = getattr(spline, f"{axis}Knot"), getattr(spline, f"{axis}Multiplicity")
     return np.repeat([knot(i) for i in number], [times(i) for i in number])

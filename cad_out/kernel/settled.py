@@ -16,12 +16,12 @@ _ENTITY = re.compile(r"^#(\d+) = (.*?);$", re.S | re.M)
 _REFERENCE = re.compile(r"#(\d+)")
 
 
-def with_settled_order(whole: str) -> str:
+def with_reproducible_order(whole: str) -> str:
     """A STEP text whose colours follow in the order of the parts.
 
-    The kernel writes them in an order that its memory happens to have. Everything from the first
-    of them on is numbered anew: what nothing refers to is sorted by what it says, what it refers
-    to follows it.
+    The kernel writes them in an order that depends on its memory. Everything from the first
+    of them on is renumbered: roots are sorted by their content, and the entities that they refer to
+    follow.
     """
     at = whole.find(_FIRST)
     if at < 0:
@@ -52,7 +52,7 @@ def with_settled_order(whole: str) -> str:
 
 
 def _own_words(body: str, first: int) -> tuple[str, list[int]]:
-    """An entity by its kind and by what it refers to that stays where it is."""
+    """Sort key of an entity: its kind, and its references to entities that keep their numbers."""
     kept = [int(r) for r in _REFERENCE.findall(body) if int(r) < first]
     return re.sub(r"\s+", "", body).split("(")[0], kept
 
@@ -72,11 +72,7 @@ def without_runout_zones(whole: str) -> str:
 def with_units_of_density(whole: str, count: int) -> str:
     """A STEP text whose densities are in g/cm^3, as their numbers are.
 
-    The kernel writes the exponents 3 of the gram and 2 of the centimetre, whatever it is told.
-
-    Args:
-        whole: Text of the file.
-        count: Of its densities.
+    The kernel always writes exponents 3 of the gram and 2 of the centimetre.
 
     Raises:
         NotBuildable: The densities are not written as they were when this was found.

@@ -18,7 +18,7 @@ from OCP.ShapeUpgrade import ShapeUpgrade_UnifySameDomain
 from matstd.artefact.body import BLEND, Base, DatumSphere, FreeformPatch, MountingHole, Standard
 from matstd.cad_out.details import RELIEF, Details, Pad, Seat, Side, relief_profile
 from matstd.cad_out.kernel.faces import (
-    Named,
+    FaceNaming,
     edges_of,
     ends_and_middle,
     is_valid,
@@ -30,13 +30,13 @@ from matstd.cad_out.kernel.faces import (
 from matstd.cad_out.kernel.letters import engraved
 from matstd.cad_out.kernel.primitives import (
     boolean,
+    bore_solid,
     box,
     cone,
     direction,
-    drilled,
     plate,
     point,
-    turned,
+    revolved,
 )
 from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array, apply
@@ -51,9 +51,8 @@ class Solid:
     """A finished body of the kernel.
 
     Attributes:
-        shape: The solid.
         plain: The same without its lettering, which needs a hundred times as many triangles.
-        faces: Named faces: FF1 ..., DATUM_A, DATUM_B, DATUM_C, seats, bores and holes.
+        faces: FaceNaming faces: FF1 ..., DATUM_A, DATUM_B, DATUM_C, seats, bores and holes.
         plain_faces: The same of the plain body.
     """
 
@@ -68,9 +67,6 @@ def build_solid(standard: Standard, details: Details) -> Solid:
 
     Every column is the prism of its spline face (6 mm larger than the pad) cut out by the pad's
     own box, so its walls are planes and its lid is the spline itself, not an approximation.
-
-    Returns:
-        The solid with its named faces.
 
     Raises:
         NotBuildable: The kernel's result is not one valid solid, or has lost a face.
@@ -87,13 +83,13 @@ def build_solid(standard: Standard, details: Details) -> Solid:
     body = _blended(_only_solid(merged.Shape(), standard.name), standard)
     tools = [tool for hole in standard.holes for tool in _hole(hole, standard.base)]
     tools += [_flat(side, standard.base) for side in details.sides.values() if side.flat]
-    tools += [drilled(bore) for bore in details.bores]
+    tools += [bore_solid(bore) for bore in details.bores]
     tools += [_relief(details.pads, standard.base)] if details.pads else []
     if tools:
         body = boolean(BRepAlgoAPI_Cut(), [body], tools, "drilling the holes")
     plain = _finished(body, standard.name)
     solid = _finished(engraved(plain, details.lettering), standard.name)
-    wanted = Named(standard, details, surfaces)
+    wanted = FaceNaming(standard, details, surfaces)
     return Solid(solid, plain, named_faces(wanted, solid), named_faces(wanted, plain))
 
 
@@ -126,7 +122,7 @@ def _knot_arrays(knots: Array) -> tuple[Any, Any]:
 
 
 def _column(patch: FreeformPatch, surface: Any, base: Base) -> Any:
-    """Prism of the face, trimmed by the pad's box and cut off in mid-base if it gets there."""
+    """Prism of the face, trimmed by the pad's box and cut off in mid-base."""
     face = BRepBuilderAPI_MakeFace(surface, _FACE_TOLERANCE).Face()
     span = float(patch.heights.max() - patch.heights.min())
     back = -(patch.depth + span + 10.0) * patch.direction
@@ -147,7 +143,7 @@ def _column(patch: FreeformPatch, surface: Any, base: Base) -> Any:
 
 
 def _post(sphere: DatumSphere, seat: Seat) -> Any:
-    """Cone up to the land round the seat, and on downwards into the base by the same taper."""
+    """Cone up to the land round the seat, continued into the base with the same taper."""
     taper = (sphere.foot_radius - sphere.stem_radius) / (sphere.centre[2] - sphere.foot)
     low = sphere.foot - _ROOT
     profile = [
@@ -157,7 +153,7 @@ def _post(sphere: DatumSphere, seat: Seat) -> Any:
         (seat.rim_radius, seat.top),
         (0.0, seat.bottom),
     ]
-    return turned(float(sphere.centre[0]), float(sphere.centre[1]), profile)
+    return revolved(float(sphere.centre[0]), float(sphere.centre[1]), profile)
 
 
 def _blended(body: Any, standard: Standard) -> Any:
@@ -200,7 +196,7 @@ def _hole(hole: MountingHole, base: Base) -> list[Any]:
 
 
 def _flat(side: Side, base: Base) -> Any:
-    """What is taken off a round side for a plane."""
+    """Material that is removed from a round side for a flat."""
     far = 2.0 * max(base.half_size)
     low, high = np.array([-far, -far, -1.0]), np.array([far, far, base.thickness])
     axis = 0 if side.normal[0] else 1
@@ -212,7 +208,7 @@ def _flat(side: Side, base: Base) -> Any:
 
 
 def _relief(pads: tuple[Pad, ...], base: Base) -> Any:
-    """What is taken off the underside so that it stands on its pads alone."""
+    """Material that is removed from the underside between the pads."""
     a, b = (half + 1.0 for half in base.half_size)
     slab = box([-a, -b, -1.0], [a, b, RELIEF])
     standing = []
@@ -223,7 +219,7 @@ def _relief(pads: tuple[Pad, ...], base: Base) -> Any:
         half = 0.5 * float(np.arccos(-below / radius))
         middle = wide - radius * np.sin(half), below + radius * np.cos(half)
         standing.append(
-            turned(
+            revolved(
                 pad.x,
                 pad.y,
                 [
@@ -255,8 +251,8 @@ def _only_solid(shape: Any, name: str) -> Any:
 def without_pockets(solid: Any) -> Any:
     """The solid with its closed pockets filled; one without any comes back as it is.
 
-    Columns that lean together above the plate can enclose a small wedge of air, which no tool
-    reaches and nobody could probe or clean.
+    Columns that lean together above the plate can enclose a small wedge of air, which cannot be
+    cut, probed or cleaned.
     """
     if len(shells_of(solid)) == 1:
         return solid

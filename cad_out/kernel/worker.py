@@ -45,8 +45,6 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
     Args:
         folder: Holds standard.toml; takes the results.
         chord: Largest distance of the mesh from the exact faces, mm.
-        author: For the header of the STEP file.
-        organisation: The same.
     """
     from matstd.cad_out.kernel.assembly import face_products, products_of, whole_name
     from matstd.cad_out.kernel.exchange import Origin, write_step
@@ -69,7 +67,7 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
 
 
 def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list[Piece]:
-    """Triangles of every product, the screws as coarse as a picture needs."""
+    """Triangles of every product; a coarse chord suffices for the screws."""
     from matstd.cad_out.kernel.assembly import colour_of
     from matstd.cad_out.kernel.reader import tessellate
 
@@ -89,7 +87,7 @@ def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list
 
 
 def reread(folder: str) -> None:
-    """Read the STEP file of a folder anew and write down what the kernel finds in it."""
+    """Re-read the STEP file of a folder and write what the kernel finds in it."""
     from matstd.cad_out.kernel.reader import read_step
 
     facts = asdict(read_step(Path(folder) / STEP))
@@ -99,7 +97,7 @@ def reread(folder: str) -> None:
 def _mesh(standard: Standard, solid: Solid, chord: float) -> tuple[Mesh, float]:
     """Mesh of body and balls with the chord error kept, and the body's distance from it, mm.
 
-    Both are measured at other places than the triangulation looks at.
+    Both are measured at other places than those that the triangulation checks.
     """
     from matstd.cad_out.kernel.reader import face_numbers, farthest_from_faces, triangulate
 

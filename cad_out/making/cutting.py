@@ -1,4 +1,8 @@
-"""Whether cutters reach every surface of a body, holder and all."""
+"""Reach of cutters with their holders to every surface of a body.
+
+Surfaces are sampled by points. The tool is a stack of cylinders, sampled by rings of points; it is
+free where none of them lies in milled material.
+"""
 
 from dataclasses import dataclass
 from itertools import product
@@ -12,7 +16,7 @@ from matstd.twin.frames import Array
 from matstd.twin.units import DEG
 
 RADIUS, OVERHANG = FINISHING, 60.0
-"""Of the finishing ball-end mill, and how far it stands out of its holder: 10 D, mm."""
+"""Of the finishing ball-end mill, and its overhang from the holder: 10 D, mm."""
 
 LONGER = (80.0, 100.0, 120.0)
 """Overhangs that are tried where the usual one is too short, mm."""
@@ -35,7 +39,7 @@ class Cutting:
     """What cutters make of a body.
 
     Attributes:
-        points: Surface points looked at, by kind.
+        points: Number of surface points tested, by kind.
         upright: Share of them that the finishing cutter reaches from above.
         tilted: Share that it reaches with its axis tilted by 45 degrees at most.
         out_of_reach: Features with a point that it does not reach at all.
@@ -54,20 +58,20 @@ class Cutting:
 
 
 def cutting_of(standard: Standard, details: Details) -> Cutting:
-    """Every surface by samples: faces, walls, posts, feet, plate; bores are drilled.
+    """Reach of cutters to samples of faces, walls, posts, feet and plate; bores are drilled.
 
-    A ball-end mill touches with its ball; shank, holder and nose are held against all that is
-    milled: the balls are glued in afterwards.
+    A ball-end mill cuts with its ball; shank, holder and nose are checked against all milled
+    material, without the balls, which are glued in later.
     """
     name, points, normals = _surface(standard, details)
     centre = points + (RADIUS + 0.01) * normals
     upright = is_free(standard, centre, np.array([0.0, 0.0, 1.0]))
-    reached = upright | _tilted(standard, centre, ~upright, OVERHANG)
+    reached = upright | _reached_when_tilted(standard, centre, ~upright, OVERHANG)
     left, overhang = ~reached, OVERHANG
     for longer in LONGER:
         if left.any():
             overhang = longer
-            left &= ~_tilted(standard, centre, left, overhang)
+            left &= ~_reached_when_tilted(standard, centre, left, overhang)
     radius = {patch.name: untrimmed_radius(patch) for patch in standard.patches}
     kinds = [n.split()[-1] if " " in n else n[:2] for n in name]
     return Cutting(
@@ -83,8 +87,10 @@ def cutting_of(standard: Standard, details: Details) -> Cutting:
     )
 
 
-def _tilted(standard: Standard, centre: Array, wanted: np.ndarray, overhang: float) -> np.ndarray:
-    """Which of the wanted places the finishing cutter reaches, its axis upright or tilted, (N,)."""
+def _reached_when_tilted(
+    standard: Standard, centre: Array, wanted: np.ndarray, overhang: float
+) -> np.ndarray:
+    """Mask of the wanted places that the finishing cutter reaches, upright or tilted, (N,)."""
     reached = np.zeros(len(centre), dtype=bool)
     for tilt, turn in product((0.0, *TILTS), np.arange(_AZIMUTHS) * 2.0 * np.pi / _AZIMUTHS):
         left = np.flatnonzero(wanted & ~reached)
@@ -130,6 +136,7 @@ def _surface(standard: Standard, details: Details) -> tuple[np.ndarray, Array, A
     plate = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
     on_top = np.column_stack([plate, np.full(len(plate), top)])
     others = [body for name, body in standard.bodies.items() if name != "BASE"]
+    # 0.1 mm above and below decide whether a place is bare and on the plate
     above, below = on_top + 0.1 * up, on_top - 0.1 * up
     bare = np.min([body.distance(above) for body in others], axis=0) > BLEND
     inside = standard.base.body.distance(below) < 0.0
@@ -175,6 +182,7 @@ def is_free(
         turn = np.arange(count) * 2.0 * np.pi / count
         ring = np.outer(np.cos(turn), side) + np.outer(np.sin(turn), other)
         offsets = np.concatenate([[h * axis, *(h * axis + radius * ring)] for h in heights])
+        # the next piece is tested only where the pieces below it are free
         left = np.flatnonzero(free)
         if not len(left):
             break

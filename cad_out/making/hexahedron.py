@@ -24,7 +24,6 @@ def cube(side: float, modulus: float, poisson: float) -> Array:
     Args:
         side: Mm.
         modulus: Young's, N/mm^2.
-        poisson: Ratio.
     """
     D = _elasticity(modulus, poisson)
     whole = np.zeros((33, 33))
@@ -38,7 +37,7 @@ def cube(side: float, modulus: float, poisson: float) -> Array:
 
 
 def _elasticity(modulus: float, poisson: float) -> Array:
-    """Stress of strain, engineering shear, (6, 6)."""
+    """Elasticity matrix, stress from strain with engineering shear, (6, 6)."""
     lame = modulus * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson))
     shear = 0.5 * modulus / (1.0 + poisson)
     D = np.zeros((6, 6))
@@ -49,7 +48,7 @@ def _elasticity(modulus: float, poisson: float) -> Array:
 
 
 def _strains(point: Array, side: float) -> Array:
-    """Strain of the 24 displacements and of the 9 of the inner modes at a point, (6, 33)."""
+    """Strain from the 24 displacements and the 9 incompatible modes at a point, (6, 33)."""
     terms = 1.0 + CORNERS * point
     slopes = np.empty((11, 3))
     for axis in range(3):

@@ -16,11 +16,11 @@ from matstd.twin.frames import Array
 from matstd.twin.units import UM
 
 ROUGHNESS = (0.2 * UM, 0.4 * UM, 0.8 * UM)
-"""Ra that step-overs are told for, mm."""
+"""Ra for which step-overs are listed, mm."""
 
 _RA = 4.0 / (9.0 * np.sqrt(3.0))  # of the height of a parabolic cusp
 _AZIMUTHS = 8
-_PITCH = 10.0  # mm, of the places that are looked at
+_PITCH = 10.0  # mm between the places that are tested
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ def _hint(standard: Standard, patch: FreeformPatch) -> FaceHint:
 def _tilts(
     standard: Standard, centre: Array, normal: Array
 ) -> tuple[tuple[float, ...], tuple[float, float] | None, tuple[float, float] | None]:
-    """Tilts at which all is reached, the best axis, and its contact angles."""
+    """Tilts at which the whole face is reached, the best axis, and its contact angles."""
     good: list[float] = []
     best: tuple[float, float] | None = None
     contact: tuple[float, float] | None = None

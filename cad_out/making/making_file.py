@@ -25,7 +25,6 @@ class Making:
         cutting: Reach of cutters.
         stiffness: First mode and sag; None where the modulus of the material is not known.
         hints: How every face is milled.
-        material: Of the standard.
     """
 
     cutting: Cutting
@@ -67,7 +66,7 @@ def write_making(path: Path, making: Making) -> None:
 
 
 def _stiffness_table(stiffness: Stiffness | None, material: Material) -> dict[str, Any]:
-    """What rests on the modulus; null where it is not known."""
+    """Figures that depend on the modulus; null where it is not known."""
     if stiffness is None:
         keys = ("modulus_MPa", "first_mode_Hz", "ball_N_um", "element_mm", "sag_um", "sag_worst")
         return {"material": material.name, **dict.fromkeys(keys)}
@@ -86,7 +85,7 @@ def _stiffness_table(stiffness: Stiffness | None, material: Material) -> dict[st
 
 
 def _hint_table(hint: FaceHint) -> dict[str, Any]:
-    """Of one face, for the finishing cutter; angles in degrees, null where no axis will do."""
+    """Figures of one face for the finishing cutter; angles in degrees, null where no axis suits."""
     return {
         "least_convex_radius_mm": hint.convex if hint.convex < 1e6 else None,
         "slope_deg": [_degrees(angle) for angle in hint.slope],

@@ -67,8 +67,6 @@ def with_sag(standard: Standard, stiffness: Stiffness, down: str) -> Standard:
     """The standard with the correction that evaluations use.
 
     Args:
-        standard: Whose stiffness it is.
-        stiffness: By finite elements.
         down: Where weight pulls to in machine coordinates.
     """
     made_of = standard.material
@@ -81,8 +79,6 @@ def stiffness_of(standard: Standard, details: Details, side: float = 10.0) -> St
     """By finite elements; None where the modulus of the material is not known.
 
     Args:
-        standard: Plate, pillars, posts and balls.
-        details: With the pads.
         side: Of the cubes, mm; 10 and 6 mm differ by 1 % in the first mode, 2 % in a tall ball.
     """
     from scipy.sparse import coo_array, csc_array, diags_array
@@ -107,12 +103,13 @@ def stiffness_of(standard: Standard, details: Details, side: float = 10.0) -> St
     one = standard.material.density * side**3 / 8.0
     np.add.at(mass, freedom.reshape(-1), np.repeat(share * one, 24))
     extra = [
-        _springs(ball, 3 * (len(nodes) + k), places, standard, side) for k, ball in enumerate(balls)
+        _post_springs(ball, 3 * (len(nodes) + k), places, standard, side)
+        for k, ball in enumerate(balls)
     ]
     for k, ball in enumerate(balls):
         tip = 3 * (len(nodes) + k)
         mass[tip : tip + 3] = _tip_mass(ball, standard)
-    held = _screw_freedoms(standard, details, places, side)
+    held = _screw_dofs(standard, details, places, side)
     ends = [e for e, _ in extra]
     rows = np.concatenate([rows, *[np.repeat(e, len(e)) for e in ends], held])
     columns = np.concatenate([columns, *[np.tile(e, len(e)) for e in ends], held])
@@ -122,7 +119,7 @@ def stiffness_of(standard: Standard, details: Details, side: float = 10.0) -> St
     K = csc_array(coo_array((values, (rows, columns)), shape=(size, size)))
     factor = splu(K, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
     solve = LinearOperator((size, size), matvec=factor.solve)
-    start = np.ones(size)
+    start = np.ones(size)  # the random start of eigsh would change the last digits
     lowest = eigsh(K, k=1, M=diags_array(mass).tocsc(), sigma=0.0, OPinv=solve, v0=start)[0]
     shape = factor.solve(mass[:, None] * np.tile(np.eye(3), (size // 3, 1)) * GRAVITY)
     moved = shape.reshape(-1, 3, 3)  # node, displacement, direction of gravity
@@ -137,7 +134,7 @@ def stiffness_of(standard: Standard, details: Details, side: float = 10.0) -> St
 def _at_balls(
     solve: Callable[[Array], Array], size: int, balls: tuple[DatumSphere, ...]
 ) -> dict[str, float]:
-    """Force per deflection of every ball, whose freedoms are the last of all, N/mm."""
+    """Force per deflection of every ball, N/mm; the last degrees of freedom are theirs."""
     if not balls:
         return {}
     unit = np.zeros((size, 3 * len(balls)))
@@ -154,7 +151,7 @@ def _origin(standard: Standard) -> Array:
 
 
 def _cells(standard: Standard, side: float) -> tuple[Array, Array]:
-    """Cubes that hold some of plate and pillars, (E, 3), and how much, (E,)."""
+    """Cubes filled by plate and pillars, (E, 3), and their filled share, (E,)."""
     low = _origin(standard)
     tops = [float(p.point(p.grid(4.0))[:, 2].max()) for p in standard.patches]
     high = np.array([*standard.base.half_size, max([standard.base.thickness, *tops])])
@@ -168,29 +165,24 @@ def _cells(standard: Standard, side: float) -> tuple[Array, Array]:
     return cells[share > _FILLED], share[share > _FILLED]
 
 
-def _post_mass(ball: DatumSphere, standard: Standard) -> float:
-    a, b, length = ball.foot_radius, ball.stem_radius, ball.centre[2] - ball.foot - ball.radius
-    return float(standard.material.density * np.pi * length * (a * a + a * b + b * b) / 3.0)
-
-
 def _tip_mass(ball: DatumSphere, standard: Standard) -> float:
-    """Of a ball, and of its post what swings with it, kg."""
-    return float(
-        BALL.density * 4.0 / 3.0 * np.pi * ball.radius**3 + _TO_TIP * _post_mass(ball, standard)
-    )
+    """Mass of a ball and of the part of its post that swings with it, kg."""
+    a, b, length = ball.foot_radius, ball.stem_radius, ball.centre[2] - ball.foot - ball.radius
+    post = float(standard.material.density * np.pi * length * (a * a + a * b + b * b) / 3.0)
+    return float(BALL.density * 4.0 / 3.0 * np.pi * ball.radius**3 + _TO_TIP * post)
 
 
-def _springs(
+def _post_springs(
     ball: DatumSphere, tip: int, places: Array, standard: Standard, side: float
 ) -> tuple[np.ndarray, Array]:
-    """Freedoms of a ball and of the plate round its foot, and the stiffness between them.
+    """Degrees of freedom of a ball and of the plate round its foot, and their stiffness.
 
     The foot moves and turns as the nodes of the plate's upper face under it do, by least squares.
     """
     foot, top = np.array([*ball.centre[:2], ball.foot]), standard.base.thickness
     on_top = np.flatnonzero(np.abs(places[:, 2] - top) < 0.51 * side)
     off = np.linalg.norm(places[on_top] - foot, axis=1)
-    # all of the foot, or the ball would seem the softer the finer the mesh is: half at 6 mm
+    # all of the foot: with fewer nodes a finer mesh makes the ball softer, half as stiff at 6 mm
     near = on_top[off <= max(ball.foot_radius, np.partition(off, 8)[8])]
     arm = places[near] - foot
     rigid = np.zeros((3 * len(near), 6))
@@ -208,8 +200,8 @@ def _springs(
     return freedom, apart.T @ np.diag([across, across, along]) @ apart
 
 
-def _screw_freedoms(standard: Standard, details: Details, places: Array, side: float) -> np.ndarray:
-    """Freedoms of the underside that the screws hold."""
+def _screw_dofs(standard: Standard, details: Details, places: Array, side: float) -> np.ndarray:
+    """Degrees of freedom of the underside that the screws hold."""
     low = np.flatnonzero(places[:, 2] < 0.5 * side)
     rings = [(pad.x, pad.y, pad.radius) for pad in details.pads]
     rings = rings or [(hole.x, hole.y, hole.bore_radius) for hole in standard.holes]
@@ -223,7 +215,7 @@ def _screw_freedoms(standard: Standard, details: Details, places: Array, side: f
 
 
 def _at_features(standard: Standard, places: Array, moved: Array) -> dict[str, Array]:
-    """Of what all nodes do under weight along x, y, z what balls and middles of faces do, mm."""
+    """Displacements of balls and middles of faces under weight along x, y, z, mm."""
     out = {}
     for patch in standard.patches:
         middle = patch.point(np.zeros((1, 2)))[0]

@@ -47,15 +47,11 @@ class Mesh:
 
 
 def welded(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> Mesh:
-    """Join the corners of neighbouring faces and drop what collapses.
+    """Join the corners of neighbouring faces and drop triangles that collapse.
 
     Args:
         corners: Shape (V, 3), mm, float64: rounding them would part corners at the ties.
         triangles: Shape (F, 3).
-        owner: Shape (F,).
-
-    Returns:
-        One mesh, closed if the faces were.
     """
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -77,7 +73,6 @@ def ball_mesh(sphere: DatumSphere, chord: float) -> Mesh:
     """A ball of nearly equal triangles: an icosahedron whose sides are cut and blown up.
 
     Args:
-        sphere: The ball.
         chord: Largest distance of a triangle from the ball, mm.
     """
     corners, faces = _icosahedron()
@@ -177,7 +172,6 @@ def chord_errors(
     For a patch the distance is ``(z - h) cos(slope)``, right to first order in itself.
 
     Args:
-        standard: With the exact surfaces.
         corners: Shape (V, 3), mm.
         triangles: Shape (F, 3).
         owner: Name of each triangle's feature, (F,).
@@ -198,33 +192,17 @@ def chord_errors(
 
 
 def inner_folds(corners: Array, triangles: np.ndarray, least: float) -> tuple[Array, Array]:
-    """Edges at which a closed mesh is folded inwards by more than an angle.
+    """Middles (E, 3) and lengths (E,) of edges at which a mesh is folded inwards by an angle, mm.
 
     Args:
         corners: Shape (V, 3), mm.
         triangles: Shape (F, 3).
         least: Angle between the normals of two triangles, rad.
-
-    Returns:
-        Middles (E, 3) and lengths (E,) of these edges, mm.
     """
-    a, b, c = (corners[triangles[:, k]] for k in range(3))
-    normal = np.cross(b - a, c - a)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
-    ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    apex = np.concatenate([triangles[:, 2], triangles[:, 0], triangles[:, 1]])
-    face = np.tile(np.arange(len(triangles)), 3)
-    ends = np.sort(ends, axis=1)
-    order = np.lexsort(ends.T)
-    first, second = order[:-1], order[1:]
-    same = (ends[first] == ends[second]).all(axis=1)
-    first, second = first[same], second[same]
-    one, other = normal[face[first]], normal[face[second]]
-    begin, end = corners[ends[first, 0]], corners[ends[first, 1]]
-    inwards = np.einsum("ni,ni->n", corners[apex[second]] - begin, one) > 0.0
-    folded = inwards & (np.einsum("ni,ni->n", one, other) < np.cos(least))
-    length = np.linalg.norm(end - begin, axis=1)
-    return 0.5 * (begin + end)[folded], length[folded]
+    mesh = _trimesh(corners, triangles)
+    folded = ~mesh.face_adjacency_convex & (mesh.face_adjacency_angles > least)
+    begin, end = np.swapaxes(corners[mesh.face_adjacency_edges[folded]], 0, 1)
+    return 0.5 * (begin + end), np.linalg.norm(end - begin, axis=1)
 
 
 def aspects(corners: Array, triangles: np.ndarray) -> Array:
@@ -244,18 +222,14 @@ def face_areas(corners: Array, triangles: np.ndarray, owner: np.ndarray) -> dict
 
 
 def owners(standard: Standard, corners: Array, triangles: np.ndarray) -> np.ndarray:
-    """Feature of every triangle of a mesh that has lost its faces, as one from an STL file.
+    """Feature of every triangle of a mesh without faces, as from an STL file, (F,); empty for none.
 
     A triangle belongs to a patch or a sphere if its middle lies on the surface and it looks the
     same way.
 
     Args:
-        standard: With the exact surfaces.
         corners: Shape (V, 3), mm.
         triangles: Shape (F, 3).
-
-    Returns:
-        Names, (F,); empty for the rest of the body.
     """
     a, b, c = (corners[triangles[:, k]] for k in range(3))
     middle, across = (a + b + c) / 3.0, np.cross(b - a, c - a)

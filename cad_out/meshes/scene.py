@@ -32,7 +32,6 @@ class Piece:
     """Triangles of one product.
 
     Attributes:
-        name: Of the product.
         mesh: In its own frame, mm.
         colours: Of every triangle, red, green, blue from 0 to 1, (F, 3).
         places: Name and place of every instance, mm.
@@ -69,6 +68,7 @@ def write_3mf(path: Path, title: str, pieces: Sequence[Piece]) -> None:
             ("_rels/.rels", _RELATIONS),
             ("3D/3dmodel.model", model),
         ):
+            # a fixed time stamp gives the same bytes every time
             entry = zipfile.ZipInfo(name, _LONG_AGO)
             entry.compress_type = zipfile.ZIP_DEFLATED
             archive.writestr(entry, text)

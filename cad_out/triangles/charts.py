@@ -25,7 +25,6 @@ class Chart:
         place: Parameters of the surface to places in the chart, (N, 2) both.
         point: Places to points, (N, 2) to (N, 3), mm.
         spacing: Of places, at which the chord is kept; 0 if the refinement is to find it.
-        is_flat: Whether it is a plane.
     """
 
     place: Map
@@ -133,10 +132,7 @@ def revolved_chart(frame: Frame, profile: Profile, low: Array, high: Array, chor
     """Chart of a surface of revolution, true in its angles but for a stretch.
 
     Args:
-        frame: Where it stands.
-        profile: What turns.
         low: Smallest u and v of the face, (2,).
-        high: Their largest, (2,).
         chord: To be kept, mm.
     """
 
@@ -166,7 +162,7 @@ def revolved_chart(frame: Frame, profile: Profile, low: Array, high: Array, chor
 def _unrolled(
     profile: Profile, middle: float, side: float, in_space: Callable[[Array, Array], Array]
 ) -> Chart:
-    """A cone with its tip, unrolled into a plane with the tip at its origin."""
+    """A cone unrolled into a plane, with the tip at the origin."""
 
     def place(uv: Array) -> Array:
         away, angle = side * (uv[:, 1] - profile.tip), profile.turn * (uv[:, 0] - middle)
@@ -185,8 +181,6 @@ def scaled_chart(in_space: Map, low: Array, high: Array) -> Chart:
 
     Args:
         in_space: Parameters to points, (N, 2) to (N, 3), mm.
-        low: Smallest parameters of the face, (2,).
-        high: Their largest, (2,).
     """
     middle, step = 0.5 * (low + high), 1e-3 * (high - low)
     ends = [middle + sign * step * axis for axis in np.eye(2) for sign in (-1.0, 1.0)]

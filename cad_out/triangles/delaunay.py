@@ -1,4 +1,9 @@
-"""Delaunay triangles in an outline in a plane."""
+"""Delaunay triangles in an outline in a plane.
+
+The points are triangulated together with four far corners, without regard to the outline. Where the
+outline is made of sides of triangles it separates them into rooms; a room is inside if an odd
+number of crossings leads to it from outside.
+"""
 
 from functools import cached_property
 
@@ -10,14 +15,13 @@ from scipy.spatial import Delaunay, cKDTree
 from matstd.twin.frames import Array
 
 _FAR = 3.0 * np.array([[-1.0, -1.1], [1.2, -1.0], [1.0, 1.3], [-1.1, 1.0]])
-"""Corners far outside, so that all that is outside hangs together."""
+"""Corners far outside, so that the outside is connected."""
 
 
 class Sheet:
     """Delaunay triangulation of points in a plane, and the pieces of an outline in it.
 
     Attributes:
-        places: The points, (P, 2).
         ends: Pieces of the outline, (S, 2), into the places.
         wall: Piece that the side of a triangle opposite each of its corners is, or -1, (T, 3).
     """
@@ -35,7 +39,7 @@ class Sheet:
         self.wall = np.where(walls[order][at] == sides, order[at], -1)
 
     def _codes(self, one: np.ndarray, other: np.ndarray) -> np.ndarray:
-        """One number for every pair, whatever its order."""
+        """One number for every unordered pair."""
         low = np.minimum(one, other).astype(np.int64)
         return low * (len(self.places) + len(_FAR)) + np.maximum(one, other)
 
@@ -48,7 +52,7 @@ class Sheet:
 
     @cached_property
     def inside(self) -> np.ndarray:
-        """Which triangles one reaches across the outline an odd number of times, (T,)."""
+        """Mask of triangles inside the outline, by the parity of crossings, (T,)."""
         count = len(self.wall)
         a = np.repeat(np.arange(count), 3)
         b, is_wall = self._whole.neighbors.ravel(), self.wall.ravel() >= 0
@@ -74,8 +78,8 @@ class Sheet:
         return t
 
     @cached_property
-    def seen_wide(self) -> np.ndarray:
-        """Pieces in whose circle the corner of a triangle inside on them stands, (S,)."""
+    def encroached(self) -> np.ndarray:
+        """Pieces whose diametral circle contains the apex of an inner triangle on them, (S,)."""
         t, wall = self._whole.simplices[self.inside], self.wall[self.inside]
         row, k = np.nonzero(wall >= 0)
         apex = self.places[t[row, k]]
@@ -119,8 +123,8 @@ def circumcircles(corner: Array) -> tuple[Array, Array]:
     return a + np.column_stack([x, y]), np.hypot(x, y)
 
 
-def apart(centre: Array, radius: Array) -> np.ndarray:
-    """Of candidates, the first ones first, those that stand in no circle of one taken, (C,)."""
+def separate_centres(centre: Array, radius: Array) -> np.ndarray:
+    """Mask of candidates, in their order, outside the circles of those already taken, (C,)."""
     keep = np.ones(len(centre), dtype=bool)
     if not len(centre):
         return keep

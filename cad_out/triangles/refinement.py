@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial import cKDTree
 
-from matstd.cad_out.triangles.delaunay import Sheet, apart, circumcircles
+from matstd.cad_out.triangles.delaunay import Sheet, circumcircles, separate_centres
 from matstd.twin.frames import Array
 
 _LEAST_SINE = np.sin(np.deg2rad(20.0))  # of a chart's angles: what Ruppert's refinement reaches
@@ -20,7 +20,7 @@ _LEAST = 0.02  # mm, nothing is refined for its angles below twice this
 _SHORTEST = 1e-4  # mm, of pieces that are halved until they are sides of triangles
 _ONE_PLACE = 1e-3  # mm: ends of two sides that are one corner and lie so near are one place
 _ROUNDS = 60  # 15 to 25 are usual
-_ENOUGH = 0.8  # of the chord: points between those that are looked at here lie a little farther
+_ENOUGH = 0.8  # of the chord: distances between the tested points are a little larger
 
 
 @dataclass(eq=False)
@@ -43,10 +43,8 @@ class Side:
     """One side of an edge, as the outline of a face has it; the seam of a face has two.
 
     Attributes:
-        edge: Index of the edge.
         at: Parameter of the edge to places in the chart, (T,) to (T, 2).
         t: Parameters whose places are known.
-        places: These places.
     """
 
     edge: int
@@ -125,7 +123,7 @@ def refined(
         for side in face.sides:
             users[side.edge].add(number)
     for face in faces:
-        _begin(face, edges, points)
+        _seed_points(face, edges, points)
     waiting = set(range(len(faces)))
     for _ in range(_ROUNDS):
         halve: set[tuple[int, int]] = set()
@@ -136,13 +134,14 @@ def refined(
             again |= {number} if grew else set()
         for which in _halved(halve, edges, points):
             again |= users[which]
+        # only faces that grew, or whose edges were halved, are triangulated again
         waiting = again
         if not waiting:
             break
     return _collected(points, faces)
 
 
-def _begin(face: Face, edges: Sequence[Edge], points: "_Points") -> None:
+def _seed_points(face: Face, edges: Sequence[Edge], points: "_Points") -> None:
     """Pieces and an even lattice of points at the spacing of a face, where it has one.
 
     Refinement alone ends at as good angles, after more rounds and with a half more triangles.
@@ -168,7 +167,7 @@ def _begin(face: Face, edges: Sequence[Edge], points: "_Points") -> None:
 
 
 def _halved(pieces: set[tuple[int, int]], edges: Sequence[Edge], points: "_Points") -> set[int]:
-    """Halve pieces of edges; which edges they are of."""
+    """Halve pieces of edges; the numbers of these edges."""
     which = {edge for edge, _ in pieces}
     for edge in sorted(which):
         points.halve(edges[edge], sorted(piece for e, piece in pieces if e == edge))
@@ -193,7 +192,7 @@ class _Points:
         """Put a point into pieces of an edge, in the middle or near it.
 
         The first and the last piece are cut at a power of two from the edge's end: two edges that
-        meet at an acute angle there get pieces of one length and stop asking each other for more.
+        meet at an acute angle there get pieces of one length and cease to halve each other.
         """
         low, high = self.xyz[edge.ids[:-1]], self.xyz[edge.ids[1:]]
         length = np.linalg.norm(high - low, axis=1)
@@ -212,7 +211,7 @@ class _Points:
 
 
 def _outline(face: Face, edges: Sequence[Edge]) -> _Outline:
-    """The outline's points, each once where it is the same place as well, and its pieces."""
+    """The outline's points, without duplicates at the same place, and its pieces."""
     places = [side.refreshed(edges[side.edge].t) for side in face.sides]
     ids = [edges[side.edge].ids for side in face.sides]
     counts = [len(i) for i in ids]
@@ -243,11 +242,7 @@ def _outline(face: Face, edges: Sequence[Edge]) -> _Outline:
 def _improve(
     face: Face, edges: Sequence[Edge], points: _Points, chord: float
 ) -> tuple[set[tuple[int, int]], bool]:
-    """Triangulate a face, and find pieces to halve or put new points inside.
-
-    Returns:
-        Pieces (edge, index) that should be halved; whether the face got points inside.
-    """
+    """Triangulate a face; returns pieces (edge, index) to halve, and whether points were added."""
     outline = _outline(face, edges)
     ends = outline.ends
     places = np.concatenate([outline.places, face.inner])
@@ -257,8 +252,8 @@ def _improve(
     if sheet.lost.any():
         return outline.pieces(sheet.lost), False
     face.triangles, face.outline = sheet.triangles, outline.ids
-    if (sheet.seen_wide & may).any():
-        return outline.pieces(sheet.seen_wide & may), False
+    if (sheet.encroached & may).any():
+        return outline.pieces(sheet.encroached & may), False
     corner, worst = places[face.triangles], _LEAST_SINE / np.maximum(sheet.sines(), 1e-12)
     side = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).min(axis=1)
     worst[side < 2.0 * _LEAST] = 0.0
@@ -279,7 +274,7 @@ def _improve(
         hit[k] = bool(found) and may[k]
         struck[found] = True
     centre[outside] = corner[order][outside].mean(axis=1)
-    new = centre[~struck][apart(centre[~struck], radius[~struck])]
+    new = centre[~struck][separate_centres(centre[~struck], radius[~struck])]
     face.inner = np.concatenate([face.inner, new])
     return outline.pieces(hit), bool(len(new))
 
@@ -298,7 +293,6 @@ def _sags(face: Face, corner: Array, xyz: Array) -> Array:
 
 
 def _collected(points: _Points, faces: Sequence[Face]) -> tuple[Array, np.ndarray, np.ndarray]:
-    """One mesh of all faces."""
     corners, triangles, owner = [points.xyz], [], []
     count = len(points.xyz)
     for number, face in enumerate(faces):

@@ -1,10 +1,10 @@
-"""What was built, measured anew from the files against the design.
+"""Built files, re-read and measured against the design.
 
 In: a standard and the folder of its files. Out: a `Conformity` with every figure and its limit;
 `export_standard` moves the files to their names only if all are met.
 """
 
-from matstd.cad_out.verify.conformity import Conformity, measure
+from matstd.cad_out.verify.conformity import Conformity
 from matstd.cad_out.verify.export import export_standard
 
-__all__ = ["Conformity", "export_standard", "measure"]
+__all__ = ["Conformity", "export_standard"]

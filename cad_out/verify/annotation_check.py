@@ -29,7 +29,7 @@ def missing_annotations(
 def _undrawn(
     drawn: dict[str, list[Array]], entities: dict[int, str], of_kernel: dict[str, list[float]]
 ) -> list[str]:
-    """Signs that the text's reader or the kernel's does not find line by line as designed."""
+    """Signs that the reader of the text or of the kernel does not find as designed."""
     of_text, lost = read_signs(entities), []
     for name, strokes in drawn.items():
         step = np.concatenate([np.diff(line, axis=0) for line in strokes])

@@ -1,4 +1,4 @@
-"""What was built, measured: the files are read anew and compared with the design."""
+"""Conformity of the built files: they are re-read and compared with the design."""
 
 import json
 from collections import Counter
@@ -46,8 +46,8 @@ AREA_LIMIT = 1e-3
 """Relative: a face that a neighbour's column cuts into, or that is trimmed elsewhere, is found."""
 
 LEAST_FACE, LEAST_EDGE = 1.0, 0.5
-"""Smallest face, mm^2, and shortest edge, mm, of an upright standard: what is smaller is a sliver,
-which whoever programs the cutting or meshes the body stumbles over."""
+"""Smallest face, mm^2, and shortest edge, mm, of an upright standard: smaller ones are slivers,
+which hinder tool-path programming and meshing."""
 
 SHARP_LIMIT = 0.1
 """Length of sharp inner edges on an upright standard, mm."""
@@ -64,7 +64,6 @@ class Conformity:
     """Measured figures of a built standard, lengths in mm.
 
     Attributes:
-        solids: In the STEP file.
         expected: Solids that should be there: the body, balls and screws.
         products: Parts that the text of the STEP file names, with the number of their instances.
         displaced: Instances of body or balls that do not stand where they were designed.
@@ -80,8 +79,8 @@ class Conformity:
         is_upright: All pillars and posts stand upright and are blended.
         names: Faces that carry a name in the file.
         missing: Faces that should and do not, or are not parts in the file of single faces.
-        missing_details: What of the workshop's additions found no room, in words.
-        untold: Tolerances, notes and drawn signs that not both readers find as they were meant.
+        missing_details: Workshop details that found no room, in words.
+        untold: Tolerances, notes and drawn signs that a reader does not find as designed.
         face_deviation: Largest distance from the design by face, in both STEP files, without any
             CAD kernel.
         area_error: Of every patch's trimmed face in the mesh against the design, relative.
@@ -89,13 +88,10 @@ class Conformity:
         mesh_volume: By the divergence theorem, mm^3.
         manifold_volume: By manifold3d, mm^3; nan where it refuses the mesh.
         sharp: Length of inner edges that no ball-end cutter makes, bores left out, mm.
-        triangles: In the STL file.
         chord: Asked for, mm.
         chord_error: Largest distance of the mesh from the exact surface by feature.
         body_chord_error: The same of all faces of the body, by the kernel's projection.
         aspect: Longest side of a triangle over the height on it, the largest.
-        step_bytes: Size of the STEP file.
-        stl_bytes: Size of the STL file.
     """
 
     solids: int
@@ -213,19 +209,14 @@ def measure(
     built: dict[str, Any],
     chord: float,
 ) -> Conformity:
-    """Read the STEP and STL files anew and compare them with the design.
+    """Re-read the STEP and STL files and compare them with the design.
 
     Args:
-        standard: The design.
         folder: With the STEP file; the kernel's second process answers through it.
-        stl: The STL file.
         owner: Feature of each of its triangles, (F,).
         built: Facts of the building process: volume of every product before it was written,
             mm^3, distance of the body's mesh from its faces, mm.
         chord: Asked for, mm.
-
-    Returns:
-        All figures, good or bad.
     """
     run_kernel("reread", folder)
     found = json.loads((folder / FACTS).read_text(encoding="utf-8"))
@@ -237,6 +228,7 @@ def measure(
     named = set(faces) & set(found["names"])
     screws = {kind.name: kind for kind in details.screws}
     made = built["volumes"]
+    # screws stay with the table and count neither in volume nor in mass
     bought = sum(len(kind.holes) * made[name] for name, kind in screws.items())
     volume = found["volume"] - bought
     balls = {sphere.name: made[sphere.name] for sphere in standard.spheres}
@@ -280,7 +272,7 @@ def measure(
 
 
 def _is_upright(standard: Standard) -> bool:
-    """Whether all pillars and posts are blended; those that lean are not."""
+    """Whether all pillars and posts are blended, which leaning ones are not."""
     everything = {*(p.name for p in standard.patches), *(s.name for s in standard.spheres)}
     return bool(standard.blended) and standard.blended >= everything
 
@@ -312,7 +304,7 @@ def face_names(standard: Standard, details: Details) -> tuple[str, ...]:
 def _displaced(
     standard: Standard, instances: dict[str, Instance], screws: tuple[Screw, ...]
 ) -> tuple[str, ...]:
-    """Instances that are not there, or not where the design has them."""
+    """Instances that are missing or displaced from their designed place."""
     wanted = dict.fromkeys(("BODY", *(s.name for s in standard.spheres)), (0.0, 0.0, 0.0))
     for kind in screws:
         wanted |= {f"SCREW_{name}": (x, y, z) for name, x, y, z in kind.holes}

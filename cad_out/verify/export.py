@@ -1,4 +1,4 @@
-"""From a standard to its STEP and STL files, measured before they get their names."""
+"""Export of a standard to STEP and STL files, which are measured before they get their names."""
 
 import json
 import shutil
@@ -26,18 +26,13 @@ def export_standard(
 ) -> Conformity:
     """Build the standard, write STEP, STL, 3MF and glTF, and prove them against the design.
 
-    All files are built and measured in a folder of their own beside the goal and moved there
-    together, so a refusal or a crash leaves what was there before.
+    All files are built and measured in a temporary folder and moved together to their place, so
+    that a refusal or a crash leaves the former files.
 
     Args:
-        standard: To be built; its limits are the caller's to check.
-        out_dir: Folder for the files.
         chord: Largest distance of the mesh from the exact faces, mm.
         author: Who is responsible for the design, for the header of the STEP file.
-        organisation: Whom the author works for.
-
-    Returns:
-        All measured figures.
+        organisation: The author's employer.
 
     Raises:
         NotBuildable: The kernel refuses or crashes, or a figure misses its limit.
@@ -67,16 +62,10 @@ def build_and_measure(
     author: str = NOT_STATED,
     organisation: str = NOT_STATED,
 ) -> tuple[Conformity, Mesh]:
-    """Build into an empty folder and measure; figures out of their limits are not refused here.
+    """Figures of a standard built into an empty folder, not yet refused, and its float64 mesh.
 
     Args:
-        place: Empty folder.
         chord: Largest distance of the mesh from the exact faces, mm.
-        author: For the header of the STEP file.
-        organisation: The same.
-
-    Returns:
-        The figures, and the mesh in float64 with the feature of every triangle.
     """
     write_standard(place / STANDARD, standard)
     run_kernel("build", place, chord, author, organisation)

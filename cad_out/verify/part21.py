@@ -64,7 +64,7 @@ def read_entities(path: Path) -> dict[int, str]:
 
 
 def _in_one_line(value: str) -> str:
-    """An entity without its breaks; blanks within a text are kept."""
+    """An entity without line breaks; blanks within a text are kept."""
     if "\n" not in value:
         return value
     return _BREAK.sub(lambda match: (match[1] or "").replace("\n", ""), value)
@@ -73,14 +73,10 @@ def _in_one_line(value: str) -> str:
 def read_faces(
     path: Path, known: dict[int, str] | None = None
 ) -> dict[str, SplineFace | SphereFace | None]:
-    """Named faces of a STEP file with the surface under each.
+    """Named spline and sphere faces of a STEP file; None for a face on any other surface.
 
     Args:
-        path: ISO 10303-21 text.
         known: Its entities where they were read already.
-
-    Returns:
-        Spline and sphere faces by name; None for a named face on any other surface.
 
     Raises:
         BadFile: No data section, a face that refers to nothing, or two faces of one name.

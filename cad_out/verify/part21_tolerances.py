@@ -75,6 +75,7 @@ def read_signs(entities: dict[int, str]) -> dict[str, list[Array]]:
         if not entity.startswith("DRAUGHTING_MODEL_ITEM_ASSOCIATION("):
             continue
         said, drawing, callout = (int(r) for r in _REFERENCE.findall(entity))
+        # a sign without its statement or its drawing does not count
         if said not in entities or drawing not in drawings:
             continue
         name = entities[callout].split("'")[1]

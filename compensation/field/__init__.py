@@ -2,39 +2,45 @@
 
 In: a `SavedModel` and the `State` in which the machine works. Out: `MachineErrors`, the readings
 that correct them (`correction`), and the `Result` of any compensation over a workspace. Whatever
-corrects, a program, a table, a service, ends in one thing: readings that are added (`Corrects`).
+corrects, a program, a table, a service, ends in one thing: readings that are added
+(`CorrectionFunction`).
 """
 
-from matstd.compensation.field.inverse import Datum, correction, datum_of, played, shifted
-from matstd.compensation.field.machine_errors import Corrects, MachineErrors, actual_tip, deviation
+from matstd.compensation.field.inverse import Datum, correction, datum_of, deviation_after, shifted
+from matstd.compensation.field.machine_errors import (
+    CorrectionFunction,
+    MachineErrors,
+    actual_tip,
+    deviation,
+)
 from matstd.compensation.field.over_workspace import (
-    Left,
     Result,
+    UncorrectedError,
     aligned,
     relative_columns,
     result_of,
-    workspace,
+    sample_workspace,
 )
 from matstd.compensation.field.shares import Share, contributions
 from matstd.compensation.field.state import State
 
 __all__ = [
-    "Corrects",
+    "CorrectionFunction",
     "Datum",
-    "Left",
     "MachineErrors",
     "Result",
     "Share",
     "State",
+    "UncorrectedError",
     "actual_tip",
     "aligned",
     "contributions",
     "correction",
     "datum_of",
     "deviation",
-    "played",
+    "deviation_after",
     "relative_columns",
     "result_of",
+    "sample_workspace",
     "shifted",
-    "workspace",
 ]

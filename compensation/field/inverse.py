@@ -16,11 +16,11 @@ from matstd.twin.machine import Chain, linear_directions, tip
 from matstd.twin.record import Touches
 from matstd.twin.units import NM
 
-MOST = 6
-"""Steps of the inverse: each leaves some 1e-4 of what was there, so two or three do."""
+MAX_STEPS = 6
+"""Most steps of the inverse. Each reduces the error to some 1e-4, so two or three are enough."""
 
-CLOSE = 2.0 * NM
-"""Of a step, mm: the next one would be some thousandth of it."""
+SETTLED_STEP = 2.0 * NM
+"""Last step of the inverse, mm; the next one would be about a thousandth of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ def correction(
     aim: Array | None = None,
     start: Array | None = None,
 ) -> Array:
-    """What is added to the readings of the linear axes so that the tool point is right.
+    """Readings to be added to the linear axes so that the tool point is right.
 
     Solves ``tip_actual(q + correction) = tip_nominal(q) + aim`` by steps with the directions of the
     linear axes. Rotary readings are kept, so an angle of the tool stays as wrong as it is. With
@@ -54,7 +54,6 @@ def correction(
 
     Args:
         disturbance: The errors, or tables of them.
-        touches: Poses as they are commanded.
         aim: Deviation that is wanted, (3,) or (N, 3), mm: that of the datum.
 
         start: What is added already, (N, A), such as corrections of rotary axes.
@@ -71,11 +70,11 @@ def correction(
     across = np.linalg.pinv(linear_directions(chain, touches.q))  # (N, M, 3)
     out = np.zeros_like(touches.q) if start is None else start.copy()
     rows = np.arange(len(out))
-    for _ in range(MOST):
+    for _ in range(MAX_STEPS):
         left = actual_tip(disturbance, shifted(touches[rows], out[rows])) - wanted[rows]
         step = np.einsum("nmi,ni->nm", across[rows], left)
         out[np.ix_(rows, columns)] -= step
-        rows = rows[np.abs(step).max(axis=1, initial=0.0) > CLOSE]
+        rows = rows[np.abs(step).max(axis=1, initial=0.0) > SETTLED_STEP]
         if not len(rows):
             return out
     raise NotReachable(f"the correction does not close on machine {chain.name}: errors too large")
@@ -86,12 +85,10 @@ def shifted(touches: Touches, added: Array) -> Touches:
     return replace(touches, q=touches.q + added)
 
 
-def played(errors: Disturbance, touches: Touches, added: Array) -> Array:
-    """Where the tool point really is, less where the commanded readings put it, (N, 3), mm.
+def deviation_after(errors: Disturbance, touches: Touches, added: Array) -> Array:
+    """Actual tool point less where the commanded readings put it, (N, 3), mm.
 
     Args:
-        errors: The true errors.
-        touches: Poses as they are commanded.
         added: Readings that the compensation adds, (N, A).
     """
     chain = errors.chain
@@ -100,6 +97,6 @@ def played(errors: Disturbance, touches: Touches, added: Array) -> Array:
 
 
 def datum_of(chain: Chain, stated: dict[str, float], length: float) -> Datum:
-    """Datum at stated readings; an axis of which nothing is said stands at zero, or next to it."""
+    """Datum at stated readings; an axis without one stands at zero, or next to it."""
     q = [stated.get(a, float(np.clip(0.0, *chain.link(a).range))) for a in chain.axes]
     return Datum(np.array(q), length)

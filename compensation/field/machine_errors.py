@@ -61,9 +61,9 @@ class MachineErrors:
         theta: Parameters of each effect, base units.
         root: Of the covariance of all parameters, effect after effect, (P, K), of a machine whose
             tools are set against the probe that measured it.
-        tool_root: What the covariance has beside that, (P, T), where nobody knows how a tool stands
-            in the spindle against that probe: from it a run cannot tell the lines of rotary axes.
-        state: In which the machine is compensated.
+        tool_root: What the covariance has beside that, (P, T), where it is unknown how a tool
+            stands in the spindle against that probe: a run cannot distinguish that from the lines
+            of rotary axes.
         left_out: Names of effects of the model that are not the machine's.
     """
 
@@ -121,7 +121,6 @@ class MachineErrors:
         """The same with further errors that are known by themselves.
 
         Args:
-            errors: Effects with their parameters.
             root: Of the covariance of those, (P', K'); None without uncertainty.
         """
         count = sum(len(e.parameters) for e, _ in errors)
@@ -138,8 +137,6 @@ class MachineErrors:
         """The same where one effect has further parameters behind those it has.
 
         Args:
-            number: Of the effect.
-            effect: With them.
             theta: Their values, (p,).
             root: Of their covariance, (p, K'), independent of all others.
         """
@@ -191,7 +188,6 @@ class MachineErrors:
         """What every parameter adds to one part of a contribution per unit, (N, L, 6, P).
 
         Args:
-            part: Twist or place.
             links: Those that count; nothing of the others is in it.
         """
         out = np.zeros((len(touches), len(self.chain.links), 6, len(self.root)))
@@ -211,7 +207,7 @@ class MachineErrors:
 
     @cached_property
     def groups(self) -> dict[str, tuple[int, ...]]:
-        """Numbers of effects by what they are told as: the symbol of ISO 230-1, or the effect."""
+        """Numbers of effects by symbol of ISO 230-1, or by effect."""
         out: dict[str, tuple[int, ...]] = {}
         for i, effect in enumerate(self.effects):
             out[group_of(effect)] = (*out.get(group_of(effect), ()), i)
@@ -268,7 +264,7 @@ class MachineErrors:
 
 
 def group_of(effect: Effect) -> str:
-    """What an effect is told as: its symbol where it is a plain error of ISO 230-1."""
+    """The name an effect is reported under: its symbol for a plain error of ISO 230-1."""
     symbol = traits(effect).symbol
     return symbol.name if symbol is not None and effect.kind in _PLAIN else effect.name
 
@@ -307,12 +303,12 @@ def _moves_axis(chain: Chain, where: Where) -> bool:
 
 
 def _is_of_machine(effect: Effect, at: Touches) -> bool:
-    """Whether an effect moves an axis; the errors of a spindle that turns are of no pose."""
+    """Whether an effect moves an axis; errors of a rotating spindle depend on no pose."""
     symbol = traits(effect).symbol
     if symbol is not None and effect.kind in _PLAIN and not at.chain.link(symbol.link).programmed:
         return False
     return any(_moves_axis(at.chain, term.where) for term in effect.terms(at))
 
 
-Corrects = Callable[[Touches], Array]
+CorrectionFunction = Callable[[Touches], Array]
 """Readings that are added to the commanded ones, (N, A): what every compensation ends in."""

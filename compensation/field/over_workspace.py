@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.compensation.field.inverse import Datum, played
-from matstd.compensation.field.machine_errors import Corrects, MachineErrors, deviation
+from matstd.compensation.field.inverse import Datum, deviation_after
+from matstd.compensation.field.machine_errors import CorrectionFunction, MachineErrors, deviation
 from matstd.twin.frames import Array, skew
 from matstd.twin.machine import Chain
 from matstd.twin.numbers import rms, rms_length
@@ -14,14 +14,15 @@ from matstd.twin.record import Touches
 from matstd.twin.sampling import even_points
 
 POSES = 256
-"""Over which figures are taken: their rms is then known to some 4 %."""
+"""Poses of the figures: their rms is then known to some 4 %."""
 
 
-def workspace(chain: Chain, limits: Mapping[str, tuple[float, float]], n: int = POSES) -> Array:
-    """Readings evenly spread over the travels, without chance: a sequence of low discrepancy.
+def sample_workspace(
+    chain: Chain, limits: Mapping[str, tuple[float, float]], n: int = POSES
+) -> Array:
+    """Readings spread evenly over the travels by a deterministic low-discrepancy sequence.
 
     Args:
-        chain: The machine.
         limits: Ranges that are narrower than the travels, by axis; a rotary axis that turns more
             than once is taken for one turn.
         n: How many.
@@ -40,8 +41,8 @@ def workspace(chain: Chain, limits: Mapping[str, tuple[float, float]], n: int = 
 
 
 @dataclass(frozen=True, slots=True)
-class Left:
-    """One thing that a compensation does not hold.
+class UncorrectedError:
+    """One error that a compensation does not hold.
 
     Attributes:
         name: Symbol of ISO 230-1, or effect.
@@ -75,7 +76,7 @@ class Result:
     after: Array
     u: Array
     u_tool: float
-    left: tuple[Left, ...]
+    left: tuple[UncorrectedError, ...]
 
     @property
     def u_rms(self) -> float:
@@ -100,7 +101,7 @@ def relative_columns(errors: MachineErrors, touches: Touches, datum: Datum) -> A
 
 
 def aligned(points: Array, field: Array) -> Array:
-    """What of a field no clamping takes up: less the rigid motion that fits it best.
+    """The field less the rigid motion that fits it best, which clamping takes up.
 
     Where a workpiece stands, and how it is turned, is found on the machine itself, so a model
     cannot know it and a part does not feel it.
@@ -119,16 +120,14 @@ def aligned(points: Array, field: Array) -> Array:
 
 def result_of(
     errors: MachineErrors,
-    corrects: Corrects,
+    corrects: CorrectionFunction,
     q: Array,
     datum: Datum,
     unheld: Array | None = None,
 ) -> Result:
-    """Before and after over some poses, and what is left of every error.
+    """Before and after over some poses, and the remainder of every error.
 
     Args:
-        errors: Of the machine; they are the truth.
-        corrects: The compensation, as it was read back.
         q: Poses, (N, A).
         datum: With the tool that is meant.
         unheld: What the compensation leaves per unit of every parameter, first order, (N, 3, P);
@@ -141,15 +140,17 @@ def result_of(
     return Result(
         q=q,
         before=aligned(points, deviation(errors, touches)),
-        after=aligned(points, played(errors, touches, corrects(touches))),
+        after=aligned(points, deviation_after(errors, touches, corrects(touches))),
         u=np.sqrt(np.einsum("nik,nik->n", spread, spread)),
         u_tool=float(np.sqrt(np.einsum("nik,nik->", tool, tool) / len(q))),
-        left=() if unheld is None else _left(errors, columns, aligned(points, unheld)),
+        left=() if unheld is None else _uncorrected(errors, columns, aligned(points, unheld)),
     )
 
 
-def _left(errors: MachineErrors, columns: Array, unheld: Array) -> tuple[Left, ...]:
-    """What is left of every group of errors, the largest first."""
+def _uncorrected(
+    errors: MachineErrors, columns: Array, unheld: Array
+) -> tuple[UncorrectedError, ...]:
+    """Remainder of every group of errors, the largest first."""
     theta = np.concatenate(errors.theta)
     out = []
     for name in errors.groups:
@@ -161,5 +162,5 @@ def _left(errors: MachineErrors, columns: Array, unheld: Array) -> tuple[Left, .
             slope = np.einsum("ni,nik->k", field, spread) / (size * len(field))
             u = float(np.linalg.norm(slope))
         before = rms_length(columns[:, :, rows] @ theta[rows])
-        out.append(Left(name=name, before=before, rms=size, u=u))
+        out.append(UncorrectedError(name=name, before=before, rms=size, u=u))
     return tuple(sorted(out, key=lambda item: -item.rms))

@@ -29,11 +29,6 @@ def contributions(errors: MachineErrors, touches: Touches, datum: Datum) -> tupl
     """What every error adds along some poses, the largest first.
 
     Each is exact; their sum is the deviation of all together to first order.
-
-    Args:
-        errors: As they are switched.
-        touches: Poses in the order of the motion.
-        datum: Where everything is zero.
     """
     out = []
     for name in errors.groups:

@@ -12,12 +12,12 @@ from matstd.twin.record import Touches, at_poses
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """What drives the effects of a model besides the readings; constant but for the time.
+    """Everything but the readings that drives the effects of a model; constant but for the time.
 
     Attributes:
         time: Since the machine was switched on, s.
         temperature: degC by sensor name; bodies that lag behind one have settled at it.
-        spindle_rpm: Speed since the machine was switched on, 1/min; None where nobody knows.
+        spindle_rpm: Speed since the machine was switched on, 1/min; None where unknown.
         value: Columns of the user's own by name and unit.
         force: Load on the tool in table-frame directions, N.
     """
@@ -39,7 +39,6 @@ class State:
         """Poses in this state.
 
         Args:
-            chain: The machine.
             q: Readings, (N, A).
             length: Of the tool, scalar or (N,), mm.
             approach: Sign of the last motion of every axis, (N, A); None where nothing moved.

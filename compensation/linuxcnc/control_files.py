@@ -26,7 +26,7 @@ class Control(Ini):
     """INI file of a LinuxCNC that corrections are given to."""
 
     def check(self, chain: Chain) -> None:
-        """Whether it is the control of a machine, and lets itself be corrected.
+        """Whether it is the control of the machine and accepts corrections.
 
         Raises:
             BadFile: Inches, an axis that is missing, no share of speed for external offsets.
@@ -53,11 +53,6 @@ class Control(Ini):
 
 def write_control_files(control: Control, service: Service, limits: OutputLimits) -> list[Path]:
     """Write the HAL file and the component beside the INI file; those of before are replaced.
-
-    Args:
-        control: That was checked.
-        service: Of its machine.
-        limits: That the component keeps by itself.
 
     Raises:
         DesignError: A file of that name is not ours.
@@ -89,6 +84,7 @@ def hal_text(control: Control, service: Service, limits: OutputLimits) -> str:
     words = [w or "''" for w in words]
     lines = [HEAD, f"# corrections of {chain.name}; net your temperatures and spindle speed below"]
     lines.append(f"loadusr -Wn corrector {' '.join(words)}")
+    # a pin takes one signal only, so signals that the control's files already use are kept
     known = control.signals(but=HAL_FILE)
 
     def connect(name: str, source: str, *sinks: str) -> None:

@@ -21,7 +21,6 @@ async def serve_linuxcnc(
     """Answer until the event is set, or for ever.
 
     Args:
-        service: Of the machine.
         path: Of the socket; one without a listener is removed.
         ready: Called when the component can connect.
         until: Ends it.
@@ -31,7 +30,7 @@ async def serve_linuxcnc(
     """
     until = until or asyncio.Event()
     await _clear(path)
-    asked = _Asked(service)
+    asked = _QuestionHandler(service)
     try:
         server = await asyncio.start_unix_server(asked.answer_all, path)
     except OSError as error:
@@ -61,7 +60,7 @@ async def _clear(path: Path) -> None:
     raise DesignError(f"{path}: another service answers there already; end it first")
 
 
-class _Asked:
+class _QuestionHandler:
     """Questions of the component."""
 
     def __init__(self, service: Service) -> None:
@@ -86,7 +85,7 @@ class _Asked:
             writer.close()
 
     def answer(self, line: bytes) -> str:
-        """The correction at the positions of a line; what is not understood is no question."""
+        """The correction at the positions of a line; an unreadable line is no question."""
         now, chain = time.monotonic(), self.service.errors.chain
         try:
             question = json.loads(line)

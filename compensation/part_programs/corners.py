@@ -6,10 +6,10 @@ import numpy as np
 
 from matstd.compensation.part_programs.language import Reading
 from matstd.compensation.part_programs.motion import Arc, Corner, Item, Motion, angle_between
-from matstd.compensation.part_programs.radius import NEAR, Element, cuts
+from matstd.compensation.part_programs.radius import MAX_OVERSHOOT, Element, cuts
 from matstd.twin.frames import Array
 
-SMOOTH = 1e-6
+MAX_SMOOTH_SINE = 1e-6
 """Sine of the angle of a corner that is none, rad."""
 
 
@@ -46,15 +46,15 @@ def _cut(corner: Corner, before: Motion, after: Motion, reading: Reading) -> tup
     others = [k for k in range(len(before.end)) if k not in plane]
     moved = np.array([m.end - m.start for m in (before, after)])[:, others]
     in_plane = all(m.arc is None or list(m.arc.plane) == plane for m in (before, after))
-    if corner.size < NEAR:
+    if corner.size < MAX_OVERSHOOT:
         raise _refused(reading, corner, "motions by nothing")
     if before.tcpm or before.is_rapid or not in_plane or np.abs(moved).max(initial=0.0) > 0.0:
         raise _refused(reading, corner, "motions that do not stay in X and Y")
     a, b = (Element(m, m.start[plane], m.end[plane], 0.0) for m in (before, after))
-    if any(e.arc is None and np.linalg.norm(e.end - e.start) < NEAR for e in (a, b)):
+    if any(e.arc is None and np.linalg.norm(e.end - e.start) < MAX_OVERSHOOT for e in (a, b)):
         raise _refused(reading, corner, "motions that are too short for it")
     turn = _turn(a, b)
-    if abs(turn) < SMOOTH:
+    if abs(turn) < MAX_SMOOTH_SINE:
         raise _refused(reading, corner, "motions that go straight on")
     first, second, arc = (
         _rounded(corner, a, b, turn, plane, reading)
@@ -63,6 +63,7 @@ def _cut(corner: Corner, before: Motion, after: Motion, reading: Reading) -> tup
     )
     if not (_is_before(a, first, a.end) and _is_before(b, b.start, second)):
         raise _refused(reading, corner, "motions that are too short for it")
+    # the other axes stand still in both motions, so the ends differ in the plane only
     ends = before.end.copy(), after.start.copy()
     ends[0][plane], ends[1][plane] = first, second
     between = before._replace(
@@ -112,7 +113,7 @@ def _rounded(
 def _is_before(element: Element, start: Array, end: Array) -> bool:
     """Whether a piece of an element, from one point to another, goes its way and within it."""
     whole = element.share(element.end)
-    return -SMOOTH <= element.share(start) <= element.share(end) <= whole + SMOOTH
+    return -MAX_SMOOTH_SINE <= element.share(start) <= element.share(end) <= whole + MAX_SMOOTH_SINE
 
 
 def _shortened(motion: Motion, plane: list[int]) -> Motion:

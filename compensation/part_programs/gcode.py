@@ -50,7 +50,6 @@ def lines(
 
     Args:
         motion: Whose lines they are; what else stood in its block goes to the first.
-        axes: That are named.
         shown: Program coordinates of these, mm and degrees.
         parts: Share of the motion that each line is.
     """
@@ -88,11 +87,7 @@ def timed_lines(
     parts: list[float],
     minutes: float,
 ) -> list[str]:
-    """Lines of a motion in inverse time, then back to its feed; arguments as of `lines`.
-
-    Args:
-        minutes: That the whole motion takes.
-    """
+    """Lines of a motion in inverse time, then back to its feed; arguments as of `lines`."""
     words = (w for w in motion.words.split() if w != "G94" and not _FEED.fullmatch(w))
     timed = motion._replace(words=" ".join(words), minutes=minutes)
     return ["G93", *lines(timed, axes, shown, parts), f"G94 F{_number(motion.word)}"]

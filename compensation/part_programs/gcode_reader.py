@@ -47,18 +47,16 @@ _NOT_PLAIN = re.compile(r"[/$]|O\d|O<|.*[#\[=]")
 _CHANGE = re.compile(r"M0*6(?!\d)", re.IGNORECASE)
 
 _IN_CYCLES = frozenset("XYZRPQFLHSTK")
-MOST_HOLES = 1000
+MAX_HOLES = 1000
 """Holes of one line; beyond it the word is no number of holes."""
 
 
-class _Said(NamedTuple):
+class _Block(NamedTuple):
     """One line.
 
     Attributes:
-        line: Of the file.
         g: G words.
         other: Words by letter but for G, M and N, axes among them.
-        axes: Words of axes.
         kept: What stays in the program besides its motion.
     """
 
@@ -106,7 +104,6 @@ class _Reader:
 
     Attributes:
         calls_by_t: Whether T itself changes the tool: nowhere in the program is an M6.
-        next_tool: Of the last T word.
         minutes: That the motion takes, of an F word in inverse time.
         cycle: Words of a canned cycle that stay in force; None outside of one.
         height: Of Z when the first of the cycles in a row was called, mm.
@@ -124,7 +121,7 @@ class _Reader:
         g = [value for letter, value in words if letter == "G"]
         axes = {k: v for k, v in other.items() if k in _AXES}
         kept = [remarks] if remarks else []
-        said = _Said(line=line, g=g, other=other, axes=axes, kept=kept)
+        said = _Block(line=line, g=g, other=other, axes=axes, kept=kept)
         self._modes(said)
         said.kept.extend(f"G{value:g}" for value in g if value in _KEPT)
         self._tool(said)
@@ -146,7 +143,7 @@ class _Reader:
 
     # --- modes ------------------------------------------------------------------------------------
 
-    def _modes(self, said: _Said) -> None:
+    def _modes(self, said: _Block) -> None:
         """G words; raises BadFile."""
         reading, modal = self.reading, self.modal
         for g in said.g:
@@ -169,7 +166,7 @@ class _Reader:
             if not modal.is_cycle:
                 self.cycle = None
 
-    def _tool(self, said: _Said) -> None:
+    def _tool(self, said: _Block) -> None:
         """Tool of a T word, the next one or this, and that whose radius a D word means."""
         if "T" in said.other:
             self.next_tool = int(said.other["T"])
@@ -210,13 +207,13 @@ class _Reader:
 
     # --- motions ----------------------------------------------------------------------------------
 
-    def _home(self, said: _Said) -> None:
+    def _home(self, said: _Block) -> None:
         """G28 or G30: to a place of the machine, by way of one of the program."""
         text = f"{' '.join(said.kept)} {said.placed}".strip()
         text = text if self.modal.is_absolute else f"G91 {text}\nG90"
         self.reading.leave(said.line, text, said.axes or None)
 
-    def _moving(self, said: _Said) -> None:
+    def _moving(self, said: _Block) -> None:
         """A line with axes, or with the centre of a circle."""
         modal = self.modal
         if modal.motion is None or 4.0 in said.g:
@@ -243,7 +240,7 @@ class _Reader:
             end[k] = step if self.modal.is_absolute else end[k] + step
         return end
 
-    def _motion(self, said: _Said, words: str) -> None:
+    def _motion(self, said: _Block, words: str) -> None:
         """The motion of a line."""
         reading, modal, line = self.reading, self.modal, said.line
         end, is_rapid = self._end(line, said.axes), modal.motion == 0.0
@@ -262,7 +259,7 @@ class _Reader:
         minutes = self.minutes if is_timed else 0.0
         reading.move(line, end, is_rapid, words, tuple(said.axes), arc, minutes)
 
-    def _arc(self, said: _Said, end: Array) -> Arc:
+    def _arc(self, said: _Block, end: Array) -> Arc:
         """Circle of a G2 or G3 line."""
         reading, line, other = self.reading, said.line, said.other
         plane = [reading.column(line, letter) for letter in self.modal.plane]
@@ -279,7 +276,7 @@ class _Reader:
 
     # --- canned cycles: a hole along Z, called once at its compensated place ----------------------
 
-    def _holes(self, said: _Said, words: str) -> None:
+    def _holes(self, said: _Block, words: str) -> None:
         """The holes of a line; raises BadFile for what is no cycle along Z."""
         line, modal, reading = said.line, self.modal, self.reading
         if modal.plane != "XY":
@@ -292,15 +289,15 @@ class _Reader:
         back = max(top, self.height) if modal.returns_to_start else top
         cycle = Cycle(f"G{modal.motion:g}{{place}} R{{top}}{stay}", top - bottom, 0)
         times = int(said.other.get("L", said.other.get("K", 1.0)))
-        if not 1 <= times <= MOST_HOLES:
-            raise reading.refusal(line, f"{times} holes", f"1 to {MOST_HOLES}")
+        if not 1 <= times <= MAX_HOLES:
+            raise reading.refusal(line, f"{times} holes", f"1 to {MAX_HOLES}")
         axes = {a: v for a, v in said.axes.items() if a != "Z"}
         for _ in range(times):
             place = self._end(line, axes)
             reading.hole(line, place, z, (top, bottom, back), words, cycle)
             words = ""
 
-    def _levels(self, said: _Said, z: int) -> tuple[float, float, str]:
+    def _levels(self, said: _Block, z: int) -> tuple[float, float, str]:
         """Top and bottom of a hole, mm, and the words that every call has besides."""
         reading, modal = self.reading, self.modal
         assert modal.motion is not None

@@ -17,7 +17,7 @@ _NUMBER = re.compile(rf"\bQ(\d+) *= *({NUMBER})(?=\s|\Z)")
 _SURFACE = re.compile(rf"(\bQ203 *= *){NUMBER}", re.IGNORECASE)
 
 
-PLUNGING = 100.0
+DEFAULT_PLUNGE_FEED = 100.0
 """Feed where a cycle has none as a number, such as FAUTO, mm/min: for the time alone."""
 
 
@@ -67,7 +67,7 @@ def defined(line: int, block: str, reading: Reading) -> Hole:
     text = _SURFACE.sub(r"\1{top}", block.replace("{", "{{").replace("}", "}}"))
     near = found["200"]
     far = max(near, found.get("204", 0.0))
-    feed = found.get("206") or reading.feed * reading.feed_unit or PLUNGING
+    feed = found.get("206") or reading.feed * reading.feed_unit or DEFAULT_PLUNGE_FEED
     return Hole(text=text, surface=found["203"], depth=-found["201"], near=near, far=far, feed=feed)
 
 
@@ -77,7 +77,6 @@ def way(start: Array, end: Array, z: int, height: float) -> list[Array]:
     Args:
         start: Where the axes stand, (A,).
         end: The place of the call, (A,).
-        z: Column of Z.
         height: Above the surface that the cycle begins at, mm.
     """
     up, over = start.copy(), end.copy()

@@ -53,8 +53,6 @@ class _Reader:
     """A program while it is read.
 
     Attributes:
-        preset: The block that has called it.
-        hole: Cycle that a call means.
         is_calling: Whether every motion calls it (M89).
     """
 
@@ -75,6 +73,7 @@ class _Reader:
         bare = " ".join(text.partition(";")[0].split()).upper()
         bare = _ONE_WORD.sub(lambda m: "".join(g for g in m.groups() if g), bare)
         self.line, self.bare = line, bare
+        # the order matters: CYCL DEF 247 and 7 are cycles that are handled before all others
         first = bare.partition(" ")[0]
         if not bare or _KEPT.fullmatch(bare) or bare.startswith("CYCL DEF 247"):
             self._check_preset()

@@ -48,9 +48,6 @@ class Words:
     Attributes:
         kind: First word: L, LP, C, CP or CR.
         end: Where the axes stand after it, (A,), mm and rad.
-        named: Axes that it names.
-        functions: Numbers of its M functions.
-        kept: Words that stay in the block.
         sweep: Angle of a circle that states a step, rad.
     """
 

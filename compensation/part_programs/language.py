@@ -28,7 +28,6 @@ class Reading:
     """A program while it is read: where its axes stand, what is in force.
 
     Attributes:
-        path: Of the program, for messages.
         frame: Where the program's zero stands on the machine.
         lengths: Of tools by number or name, mm; of the others that of the datum.
         radii: Of tools by number, mm.
@@ -160,6 +159,7 @@ class Reading:
             BadFile: No feed, or a contour beside a tool whose radius is not stated.
         """
         is_known = _is_finite(self.at)
+        # an axis without a known place is taken to stand at its end already
         at = self.at if is_known else np.where(np.isnan(self.at), end, self.at)
         is_turn = arc is None and not np.any((end - self.at)[self.linear])
         feed = 0.0 if is_rapid or minutes else self.needed_feed(line, is_turn)
@@ -200,13 +200,8 @@ class Reading:
         """The three motions of a cycle.
 
         Args:
-            line: Of the file.
             place: Where the axes stand above it, (A,).
-            z: Column of Z.
             heights: Of Z above the hole, at its bottom and after it, mm.
-            words: What else stands in the block.
-            cycle: Of the second motion.
-            named: Axes that the block names.
             minutes: That it takes to the bottom where the feed in force is not its own.
 
         Raises:
@@ -230,7 +225,7 @@ def _is_finite(at: Array) -> bool:
     return math.isfinite(sum(at.tolist()))
 
 
-ROUND = 0.02
+MAX_ARC_MISFIT = 0.02
 """An arc's end may lie off its circle by so much, mm: coordinates are rounded to micrometres,
 inches to ten of them."""
 
@@ -274,7 +269,9 @@ def checked_arc(
     """
     start, stop = reading.at[plane], end[plane]
     off = float(abs(np.hypot(*(stop - centre)) - np.hypot(*(start - centre))))
-    if off > ROUND:
-        raise reading.refusal(line, f"an end {off:.4f} mm off the circle", f"{ROUND} mm at most")
+    if off > MAX_ARC_MISFIT:
+        raise reading.refusal(
+            line, f"an end {off:.4f} mm off the circle", f"{MAX_ARC_MISFIT} mm at most"
+        )
     angle = angle_between(start, stop, centre, positive, turns)
     return Arc((plane[0], plane[1]), centre, angle)

@@ -10,8 +10,8 @@ from matstd.twin.files import CsvTable, read_text
 from matstd.twin.frames import Array
 
 COLUMNS = ("first_line", "last_line", "Fx_N", "Fy_N", "Fz_N")
-LARGEST = 1e5
-"""No machine tool cuts with more, N."""
+MAX_FORCE = 1e5
+"""Largest plausible cutting force, N."""
 
 
 class Load(NamedTuple):
@@ -32,7 +32,7 @@ def read_loads(path: str | Path) -> tuple[Load, ...]:
     table.require(COLUMNS)
     table.allow_only(COLUMNS)
     first, last = (table.numbers(c, smallest=1.0) for c in COLUMNS[:2])
-    force = np.column_stack([table.numbers(c, largest=LARGEST) for c in COLUMNS[2:]])
+    force = np.column_stack([table.numbers(c, largest=MAX_FORCE) for c in COLUMNS[2:]])
     out: list[Load] = []
     for row, (a, b) in enumerate(zip(first.astype(int), last.astype(int), strict=True)):
         if b < a:
@@ -50,8 +50,6 @@ def forces(lines: list[int], loads: tuple[Load, ...], usual: Array) -> Array:
     """Force while each motion runs, (M, 3), N.
 
     Args:
-        lines: Of the motions.
-        loads: By lines.
         usual: Where no load names the line, (3,).
     """
     out = np.tile(usual, (len(lines), 1))

@@ -16,7 +16,6 @@ class Keep:
     """A block that moves nothing, or nothing whose place is known; it stays as it is.
 
     Attributes:
-        line: Of the file.
         text: Without its number.
         moves: Whether it moves an axis all the same: in coordinates of the machine, or before
             the place of every axis is known.
@@ -31,9 +30,7 @@ class Corner(NamedTuple):
     """A corner between the motions before and behind it.
 
     Attributes:
-        line: Of the file.
         size: Radius, or the length that a chamfer cuts off both, mm.
-        is_round: Whether it is rounded.
     """
 
     line: int
@@ -77,9 +74,7 @@ class Motion(NamedTuple):
     """A block that moves axes, from where the one before has ended.
 
     Attributes:
-        line: Of the file.
         start: Program coordinates of every axis, (A,), mm and rad.
-        end: The same.
         is_rapid: Whether it cuts nothing.
         feed: mm/min, or degrees/min where axes turn alone; 0 where it is rapid.
         word: The same as the number that the program states.
@@ -89,7 +84,6 @@ class Motion(NamedTuple):
         offset: What the program has shifted its zero by, (A,), mm; in `start` and `end` already.
         unit: One unit of the program's lengths, mm.
         words: What else stands in the block, for its first line.
-        turned: Rotary axes that the block names.
         arc: None for a straight line.
         beside: Way by which the tool's centre goes to the left of the path that is programmed, mm;
             to the right below zero. Zero once it is resolved.
@@ -124,8 +118,6 @@ def angle_between(start: Array, end: Array, centre: Array, positive: bool, turns
 
     Args:
         start: In the plane, (2,), mm.
-        end: The same.
-        centre: The same.
         positive: Against the clock.
         turns: Times that the end is passed.
     """
@@ -143,7 +135,6 @@ class Paths:
 
     Attributes:
         start: Of every motion, (M, A), mm and rad.
-        end: The same.
         arcs: Numbers of the motions that are arcs, with these.
         far: Length of the way of the linear axes, (M,), mm.
         turned: Angle of the rotary axes, (M,), degrees; the root of the sum of squares.

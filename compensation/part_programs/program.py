@@ -33,10 +33,7 @@ class Program:
     """A program that was read.
 
     Attributes:
-        path: Its file.
-        frame: Where its zero stands.
         items: Blocks and motions in their order.
-        language: Module that writes its blocks.
         loads: Force of the process on the tool, block by block; elsewhere that of the state.
     """
 

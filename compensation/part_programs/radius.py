@@ -15,10 +15,10 @@ from matstd.compensation.part_programs.language import Reading
 from matstd.compensation.part_programs.motion import Arc, Item, Keep, Motion, angle_between
 from matstd.twin.frames import Array
 
-SMOOTH = 1e-4
+MAX_SMOOTH_SINE = 1e-4
 """Sine of the angle of a corner that is none, rad: contours are programmed to a micrometre."""
 
-NEAR = 1e-3
+MAX_OVERSHOOT = 1e-3
 """A cut may lie beyond the end of a shifted path by so much, mm: programmed in micrometres."""
 
 
@@ -82,8 +82,6 @@ def resolved(items: Sequence[Item], reading: Reading, is_square: bool) -> list[I
     """Items with the paths of the tool's centre in the place of those beside a contour.
 
     Args:
-        items: Of a program; motions beside a contour have `beside`.
-        reading: Of the program, for messages and columns.
         is_square: Whether the tool comes to the contour square to its first element, as with
             Heidenhain; else square to the way on which it comes, as LinuxCNC does.
 
@@ -173,11 +171,11 @@ class _Contour:
 
     def _element(self, motion: Motion) -> Element:
         start, end = motion.start[self.plane], motion.end[self.plane]
-        if motion.arc is None and np.linalg.norm(end - start) < NEAR:
+        if motion.arc is None and np.linalg.norm(end - start) < MAX_OVERSHOOT:
             found = "no way in X and Y beside a contour"
             raise self.reading.refusal(motion.line, found, "Z before the contour, or on its way")
         element = Element(motion=motion, start=start, end=end, d=self.d)
-        if motion.arc is not None and element.radius < NEAR:
+        if motion.arc is not None and element.radius < MAX_OVERSHOOT:
             self._refuse(motion.line)
         return element
 
@@ -220,11 +218,11 @@ class _Contour:
         at = after.start
         a, b = before.direction(before.end), after.direction(at)
         turn = float(a[0] * b[1] - a[1] * b[0])
-        if abs(turn) < SMOOTH and a @ b > 0.0:
+        if abs(turn) < MAX_SMOOTH_SINE and a @ b > 0.0:
             return after.shifted(at), None
         if turn * self.d < 0.0:
             return end, after.shifted(at)
-        found = cuts(before, after) if abs(turn) > SMOOTH else np.zeros((0, 2))
+        found = cuts(before, after) if abs(turn) > MAX_SMOOTH_SINE else np.zeros((0, 2))
         if not len(found):
             self._refuse(after.motion.line)
         return np.asarray(found[np.argmin(np.linalg.norm(found - at, axis=1))]), None
@@ -241,7 +239,7 @@ class _Contour:
         """The shifted path of an element between two points of it."""
         moved = self._moved(element.motion, start, end)
         if element.arc is None:
-            if (end - start) @ element.direction(element.start) < -NEAR:
+            if (end - start) @ element.direction(element.start) < -MAX_OVERSHOOT:
                 self._refuse(element.motion.line)
             return moved
         positive = element.arc.angle > 0.0
@@ -249,7 +247,7 @@ class _Contour:
         angle = angle_between(start, end, element.arc.centre, positive)
         turns = max(1, int(np.ceil(whole / (2.0 * np.pi) - 1e-9)))
         angle += (1.0 if positive else -1.0) * 2.0 * np.pi * (turns - 1)
-        if abs(angle) > whole + NEAR / element.radius:
+        if abs(angle) > whole + MAX_OVERSHOOT / element.radius:
             self._refuse(element.motion.line)
         return moved._replace(arc=Arc(element.arc.plane, element.arc.centre, angle))
 
@@ -298,7 +296,7 @@ def _circle_circle(a: Element, b: Element) -> Array:
     assert b.arc is not None
     between = b.arc.centre - a.arc.centre
     apart = float(np.linalg.norm(between))
-    if apart < NEAR:
+    if apart < MAX_OVERSHOOT:
         return np.zeros((0, 2))
     along = (apart**2 + a.radius**2 - b.radius**2) / (2.0 * apart)
     half = a.radius**2 - along**2

@@ -8,7 +8,7 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import tip
 from matstd.twin.record import IntArray
 
-PLACES = (0.25, 0.5, 0.75)
+CHECKED_SHARES = (0.25, 0.5, 0.75)
 """Of a line, at which it is looked at: what is left of a chord is a parabola, largest in its
 middle, and of a jump of the error not."""
 
@@ -25,7 +25,6 @@ def off_path(path: ProgramPath, which: IntArray, share: Array, written: Array) -
     begin where no place is known.
 
     Args:
-        path: The program.
         which: Motion of every line, (N,).
         share: Of its motion that is done at its end, (N,).
         written: Where it ends, program coordinates as written, (N, A).
@@ -48,10 +47,10 @@ def _largest(
     path: ProgramPath, which: IntArray, start: Array, part: Array, begin: Array, end: Array
 ) -> Array:
     chain = path.errors.chain
-    aims = [path.touches(which, start + s * part) for s in (0.0, *PLACES, 1.0)]
+    aims = [path.touches(which, start + s * part) for s in (0.0, *CHECKED_SHARES, 1.0)]
     nominal = [tip(chain, touches.q, touches.target) for touches in aims]
     worst = np.zeros(len(which))
-    for k, place in enumerate(PLACES, start=1):
+    for k, place in enumerate(CHECKED_SHARES, start=1):
         along = nominal[k + 1] - nominal[k - 1]
         length = np.linalg.norm(along, axis=1, keepdims=True)
         along /= np.where(length > 0.0, length, 1.0)

@@ -22,10 +22,10 @@ from matstd.twin.units import DEG, MINUTE, UM
 TOLERANCE = 1.0 * UM
 """Distance between the wanted path and a straight line, mm: what good machines repeat."""
 
-COARSEST = 20.0
-"""Longest line of a motion that is looked at as one, mm: an error repeats in less on no guide."""
+MAX_LINE = 20.0
+"""Longest line of a motion that is checked as one, mm: no guide repeats an error over less."""
 
-SHORTEST = 0.01
+MIN_LINE = 0.01
 """A line that is shorter is not divided, mm: controls round there."""
 
 
@@ -34,7 +34,6 @@ class Compensated:
     """A program and its compensation, point by point in the order of the motion.
 
     Attributes:
-        program: As it was read.
         text: The compensated program.
         motion: Index of the motion that every point belongs to, (N,).
         elapsed: Time at every point since the program began, (N,), s.
@@ -109,9 +108,6 @@ def compensated(
     the tolerance of what its middle would need: chords of arcs and of the error field alike.
 
     Args:
-        program: As it was read.
-        errors: Of the machine, in their state when the program begins.
-        head: For the comments at its beginning.
         tolerance: mm.
 
     Raises:
@@ -127,7 +123,8 @@ def compensated(
     _check_travel(path, which, q)
     nominal = tip(errors.chain, touches.q, touches.target)
     aim = nominal + path.aim
-    some = np.unique(np.linspace(0, len(which) - 1, min(len(which), MOST_U)).astype(int))
+    # the uncertainty varies slowly along a program, so some points are enough
+    some = np.unique(np.linspace(0, len(which) - 1, min(len(which), MAX_U_POINTS)).astype(int))
     spread = aligned(nominal[some], errors.columns(touches[some])) @ errors.root
     return Compensated(
         program=program,
@@ -154,7 +151,7 @@ def passed(program: Program, errors: MachineErrors) -> Touches:
     return path.touches(which, share)
 
 
-MOST_U = 200
+MAX_U_POINTS = 200
 """Points at which the uncertainty is taken: it varies slowly along a program."""
 
 
@@ -166,14 +163,14 @@ def _begun(path: ProgramPath, tolerance: float) -> IntArray:
     for axis, step in spacing.items():
         k = path.errors.chain.axis_index(axis)
         if path.errors.chain.link(axis).kind == "linear":
-            step = min(step, COARSEST)
+            step = min(step, MAX_LINE)
         pieces = np.maximum(pieces, np.ceil(far[:, k] / step - 1e-9))
     straight = min(spacing[a] for a in path.errors.chain.linear_axes)
     for k, arc in path.paths.arcs:
         radius = path.paths.radius(k, arc)
         # the height of a chord of angle a above its arc is r (1 - cos(a/2))
         step = 2.0 * np.arccos(1.0 - min(0.8 * tolerance / max(radius, tolerance), 1.0))
-        step = min(step, min(straight, COARSEST) / max(radius, 1e-9))
+        step = min(step, min(straight, MAX_LINE) / max(radius, 1e-9))
         pieces[k] = max(pieces[k], np.ceil(abs(arc.angle) / step))
     pieces[path.is_whole] = 1
     return pieces.astype(np.int64)
@@ -201,7 +198,7 @@ def _divided(
         middle = 0.5 * (a + b)
         at_m = path.needed(motion, middle)
         off = np.linalg.norm((at_m - 0.5 * (at_a + at_b))[:, linear], axis=1)
-        rows = (off > tolerance) & ((b - a) * path.paths.travel[motion] > SHORTEST)
+        rows = (off > tolerance) & ((b - a) * path.paths.travel[motion] > MIN_LINE)
         motion, a, at_a, b, at_b, middle, at_m = (
             v[rows] for v in (motion, a, at_a, b, at_b, middle, at_m)
         )

@@ -12,7 +12,7 @@ from matstd.twin.record import IntArray, Touches
 from matstd.twin.units import DEG, MINUTE
 
 RAPID = 10_000.0
-"""Speed of rapid motions where a time is needed, mm/min: drift does not feel the difference."""
+"""Speed of rapid motions where a time is needed, mm/min; drift hardly depends on it."""
 
 
 def shares_of_lines(which: IntArray, share: Array) -> Array:

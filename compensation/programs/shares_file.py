@@ -17,9 +17,7 @@ def write_shares(path: str | Path, touches: Touches, whole: Array, shares: Seque
     """Write the table: readings, deviation of all errors together, then of each by itself, µm.
 
     Args:
-        touches: The poses.
         whole: Deviation of all together, (N, 3), mm.
-        shares: Of each.
     """
     chain = touches.chain
     axes = list(chain.programmed_axes)

@@ -16,20 +16,20 @@ from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 from matstd.twin.units import DEG, MINUTE
 
-SAME = 0.02
-"""Of the way of the linear axes: by less a correction changes no feed that anybody sets."""
+MIN_CHANGED_SHARE = 0.02
+"""Share of the way of the linear axes below which a correction does not change the feed."""
 
-LIKE = 0.05
+MAX_TIME_DIFFERENCE = 0.05
 """Of the time of a line: by less the controls agree in how they count F of lines that do both."""
 
-SLOWEST = 0.1
+MIN_INVERSE_FEED = 0.1
 """LinuxCNC runs no line of inverse time slower, mm/min or degrees/min (inches in inches); with 1 µm
 of correction in 6 s it would be faster than it was."""
 
 MARGIN = 1.2
-"""Times `SLOWEST`, as what lines are written: coordinates are rounded to 10 nm."""
+"""Times `MIN_INVERSE_FEED`, as what lines are written: coordinates are rounded to 10 nm."""
 
-HELD = 0.1
+MAX_LAG_SHARE = 0.1
 """Of the tolerance: a smaller change of the correction waits for the next line."""
 
 
@@ -55,7 +55,6 @@ def in_time(
     """Keep the time of every line that turns an axis.
 
     Args:
-        path: The program.
         which: Motion of every line, (N,).
         share: Of its motion at its end, (N,).
         written: Where it ends, program coordinates, rounded, (N, A).
@@ -71,9 +70,10 @@ def in_time(
     wanted = path.paths.far[which] * shares_of_lines(which, share)
     turns = np.abs(np.delete(moved, linear, axis=1)).max(axis=1, initial=0.0) > 1e-6 * DEG
     turns &= ~path.is_whole[which] & (path.paths.turned[which] > 0.0)
+    # without a known start the length of a line, and so its time, is unknown
     for k in np.unique(which[turns & ~path.is_from_known[which]]):
         _need_known(path, int(k))
-    changes = turns & (np.abs(far - wanted) > SAME * np.minimum(far, wanted))
+    changes = turns & (np.abs(far - wanted) > MIN_CHANGED_SHARE * np.minimum(far, wanted))
     stated = np.array([m.minutes > 0.0 for m in path.motions])
     timed = frozenset(np.unique(which[changes & ~stated[which]]).tolist())
     for k in timed:
@@ -93,6 +93,7 @@ def in_time(
             made = list(_slowed(path, k, start, share[own], written[own], tolerance))
             number = np.full(len(made), k)
             at = path.rounded(number, np.array([at for _, at in made]))
+            # a line that cannot be slow enough leaves a part of the correction to the next motion
             lag = at[-1] - written[own][-1]
             parts.append((number, np.array([s for s, _ in made]), at))
         else:
@@ -111,13 +112,13 @@ def _slowed(
     takes the correction along at the slowest feed that there is; the rotary axes turn evenly.
     """
     linear = path.frame.linear
-    slowest = MARGIN * SLOWEST * path.motions[k].unit / MINUTE  # mm/s
+    slowest = MARGIN * MIN_INVERSE_FEED * path.motions[k].unit / MINUTE  # mm/s
     at, done = start.copy(), 0.0
     for share, end in zip(shares.tolist(), ends, strict=True):
         far = float(np.linalg.norm((end - at)[linear]))
         could = slowest * path.seconds[k] * (share - done)
         target = end.copy()
-        if far <= HELD * tolerance and far < could:
+        if far <= MAX_LAG_SHARE * tolerance and far < could:
             target[linear] = at[linear]
         elif far < could:
             lag = far * (1.0 - far / could)
@@ -167,14 +168,18 @@ def _check(path: ProgramPath, k: int) -> None:
             f"{said}, which its correction in X, Y, Z would make mm/min",
             f"FMAX or G0: no documented way to state the time of a block {where} is known",
         )
-    if far > 0.0 and np.hypot(far, turned) > (1.0 + LIKE) * far:
+    # controls disagree on F of such a line, so its time is known only if the turn adds little
+    if far > 0.0 and np.hypot(far, turned) > (1.0 + MAX_TIME_DIFFERENCE) * far:
         raise BadFile(
             file,
             line,
             f"{said} while X, Y, Z go {far:.4g} mm, which its correction changes",
             "it in inverse time (G93): LinuxCNC takes F for the mm alone, Fanuc for degrees too",
         )
-    if turned / path.seconds[k] * MINUTE < MARGIN * SLOWEST:
+    if turned / path.seconds[k] * MINUTE < MARGIN * MIN_INVERSE_FEED:
         raise BadFile(
-            file, line, said, f"{MARGIN * SLOWEST:g} degrees/min or more: LinuxCNC's slowest in G93"
+            file,
+            line,
+            said,
+            f"{MARGIN * MIN_INVERSE_FEED:g} degrees/min or more: LinuxCNC's slowest in G93",
         )

@@ -20,12 +20,7 @@ class Drifts:
     """
 
     def __init__(self, errors: MachineErrors, datum: Datum) -> None:
-        """The laws where the preset is taken.
-
-        Args:
-            errors: Of the machine, in the state of that moment.
-            datum: Pose of the preset.
-        """
+        """The laws where the preset is taken."""
         self._errors = errors
         self._at_datum = errors.touches(datum.q[None, :], datum.length)
         laws = [e for e in errors.effects if isinstance(e, DriftLaw) and e.has_unknowns]

@@ -11,17 +11,13 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import Touches, at_poses
 
-MOST = 4000
+MAX_MOMENTS = 4000
 """Moments that are kept; then every other one goes, so that old ones stand wider apart."""
 
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """States of a machine in their order, the present one last.
-
-    Attributes:
-        states: At least one.
-    """
+    """States of a machine in their order, the present one last."""
 
     states: tuple[State, ...] = field(default_factory=tuple)
 
@@ -49,7 +45,7 @@ class History:
                     f"{', '.join(sorted(last.temperature)) or 'none'}"
                 )
         states = (*self.states, state)
-        return History(states if len(states) <= MOST else (*states[:-1:2], state))
+        return History(states if len(states) <= MAX_MOMENTS else (*states[:-1:2], state))
 
     def touches(
         self, chain: Chain, q: Array, length: Array | float, approach: Array | None = None
@@ -57,7 +53,6 @@ class History:
         """Poses at the present moment, behind a pose at every moment before and now.
 
         Args:
-            chain: The machine.
             q: Readings, (N, A).
             length: Of the tool, mm.
             approach: Sign of the last motion of every axis, (N, A).

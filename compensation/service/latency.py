@@ -12,7 +12,7 @@ be waited for at every answer."""
 
 @contextmanager
 def prompt() -> Iterator[None]:
-    """Give way soon, and leave what is there now to no garbage collector.
+    """Yield quickly, and keep present objects out of garbage collection.
 
     The address space of an OPC UA server alone has some 100 000 objects, which a full collection
     looks through for tens of milliseconds.

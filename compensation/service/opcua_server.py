@@ -1,4 +1,4 @@
-"""The service as an OPC UA server: a control, or whoever stands between, writes and reads nodes."""
+"""The service as an OPC UA server: a control, or a gateway, writes and reads nodes."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ NAMESPACE = "urn:material-standard:compensation"
 """Of the nodes."""
 
 PERIOD = 0.005
-"""Between two outputs where nobody writes, s."""
+"""Time between two outputs without a request, s."""
 
 MOVING = 0.002
-"""The same while a correction is on its way."""
+"""The same while a correction is moving."""
 
 _KNOWN_EVERY = 1.0  # s, uncertainty: it changes slowly and takes longer than a correction
 
@@ -39,7 +39,6 @@ async def serve(
     """Answer until the event is set, or for ever.
 
     Args:
-        service: Of the machine.
         endpoint: Such as `opc.tcp://localhost:4840`.
         ready: Called when clients can connect.
         until: Ends it.
@@ -144,7 +143,7 @@ class _Nodes:
             "ProbedUncertainty": ([0.0] * len(service.drifts.columns), double),
             "ProbedSequence": (0, whole),
         }
-        told = {
+        written = {
             "Axes": (list(chain.axes), text),
             "LinearAxes": (list(service.correction.linear_axes), text),
             "Sensors": (list(service.sensors), text),
@@ -164,7 +163,7 @@ class _Nodes:
             "ProbedAnswered": (0, whole),
         }
         inputs = {k: await parent.add_variable(space, k, *v) for k, v in given.items()}
-        outputs = {k: await parent.add_variable(space, k, *v) for k, v in told.items()}
+        outputs = {k: await parent.add_variable(space, k, *v) for k, v in written.items()}
         for node in inputs.values():
             await node.set_writable()
         return cls(inputs, outputs)

@@ -58,7 +58,6 @@ class Sent:
 
     Attributes:
         values: Of the three linear axes, mm.
-        quality: What they are worth.
         age: Since the readings that they were made for, s; infinite before the first.
         lag: Largest way that a value still has to go, mm.
     """
@@ -73,11 +72,7 @@ class Output:
     """Goes towards what is wanted, at a rate; begins at zero."""
 
     def __init__(self, limits: OutputLimits) -> None:
-        """Nothing is added yet.
-
-        Args:
-            limits: What may be added.
-        """
+        """Nothing is added yet."""
         self.limits = limits
         self._values: Point = (0.0, 0.0, 0.0)
         self._wanted: Point = (0.0, 0.0, 0.0)

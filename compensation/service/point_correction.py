@@ -17,7 +17,7 @@ import numpy as np
 
 from matstd.compensation.field import Datum, MachineErrors
 from matstd.compensation.service.history import History
-from matstd.compensation.service.tabulated import CLOSE, ErrorTable, error_tables
+from matstd.compensation.service.tabulated import MAX_INTERPOLATION, ErrorTable, error_tables
 from matstd.twin.errors import DesignError, OutsideTravel
 from matstd.twin.frames import Array, rotation
 from matstd.twin.machine import Chain, Link
@@ -35,7 +35,6 @@ class _Source(NamedTuple):
     """Errors of one link from one table, or one table for each direction of an axis.
 
     Attributes:
-        axes: Numbers of the readings.
         low: Smallest reading of each.
         per: Cells per unit of each reading.
         last: Number of the last cell along each.
@@ -55,16 +54,12 @@ class _Step(NamedTuple):
     """A link on the way of the point: its line where it really is, and where it should be.
 
     Attributes:
-        axis: Number of its reading.
         is_linear: Or else rotary.
         workpiece: Whether it carries the workpiece, so that its error comes before its motion.
         offset: Added to the reading: the zero of the axis is displaced.
-        direction: Of the line.
-        point: Of the line.
         ideal: Direction of the line without errors.
         lever: That angular errors turn about, every axis at zero.
         carries: By how much the lever goes along with the reading, in `ideal`: 0, 1 or -1.
-        sources: Of its errors.
         column: Number of the linear axis that it is, -1 for none.
     """
 
@@ -99,12 +94,11 @@ class PointCorrection:
         errors: MachineErrors,
         length: float,
         datum: Datum | None = None,
-        close: float = CLOSE,
+        close: float = MAX_INTERPOLATION,
     ) -> None:
         """Tabulate the errors.
 
         Args:
-            errors: Of the machine, in the state in which it works.
             length: Of the tool, mm.
             datum: Pose at which nothing is corrected; None to correct the whole deviation.
             close: What straight lines between the points of one table may leave, mm at the tip.
@@ -137,7 +131,6 @@ class PointCorrection:
         The datum stays where it was set, so that what the machine has drifted since is corrected.
 
         Args:
-            history: Of the machine.
             learnt: Parameters that are other ones by now, by the name of their effect.
         """
         other = copy(self)
@@ -150,7 +143,7 @@ class PointCorrection:
 
         Args:
             readings: Of every axis in the chain's order, mm and rad.
-            directions: Sign of the last motion of every axis; None where nobody knows.
+            directions: Sign of the last motion of every axis; None where unknown.
 
         Returns:
             What is to be added, mm, in the order of `linear_axes`.

@@ -27,7 +27,6 @@ class Answer:
     """What a control reads.
 
     Attributes:
-        sequence: Number of the request that it answers.
         sent: Corrections of the three linear axes, and what they are worth.
         k0: Corrections at the readings that were given, mm: those of `sent` once it has settled.
         k1: How each changes with the reading of its own axis, mm/mm.
@@ -56,10 +55,8 @@ class Service:
         """Tabulate the errors.
 
         Args:
-            errors: Of the machine, in the state in which the service begins.
             length: Of the tool, mm.
             datum: Pose at which the preset was taken: nothing is corrected there.
-            limits: What may be added.
 
         Raises:
             DesignError: Errors that cannot be corrected while the machine moves.
@@ -91,7 +88,6 @@ class Service:
         says why.
 
         Args:
-            sequence: Number of the request.
             readings: As the control shows them.
             now: s.
             directions: Sign of the last motion of every axis, -1, 0 or 1.
@@ -140,11 +136,10 @@ class Service:
 
         Args:
             left: Of every column of `drifts.columns`, mm or rad; NaN where nothing was probed.
-            u: Standard uncertainty of each.
 
         Raises:
             DesignError: No law is followed, other numbers of values, or a correction that was not
-                valid: nobody knows then what was left by the law and what by its limits.
+                valid: the remainder of the law cannot be separated from that of its limits.
         """
         if self._quality is not Quality.VALID:
             raise DesignError(f"probed while the correction was {self._quality}, expected valid")

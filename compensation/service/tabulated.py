@@ -19,12 +19,12 @@ from matstd.twin.frames import Array
 from matstd.twin.model import Effect, contribution
 from matstd.twin.units import HOUR, NM
 
-CLOSE = 2.0 * NM
+MAX_INTERPOLATION = 2.0 * NM
 """What straight lines between the points of one table may leave at its middles, mm at the tip."""
 
 _POSES = 12  # random ones at which an effect is asked on what it depends
 _FEWEST = 17  # points of a table along a reading
-_MOST = {1: 4097, 2: 513}  # likewise, by the number of readings
+_MOST = {1: 4097, 2: 513}  # most points, by the number of readings
 _SAME = 1e-15  # mm or rad: by which an error differs that does not depend on a reading
 
 Terms = list[tuple[Effect, Array]]
@@ -35,7 +35,6 @@ class ErrorTable:
     """Errors of links over the same readings, in the same direction.
 
     Attributes:
-        errors: Of the machine, in its state.
         terms: Effects that are in it, with their parameters.
         length: Of the tool, mm.
         axes: Numbers of the readings, none to two.
@@ -94,7 +93,6 @@ class ErrorTable:
         """The same points at the end of a history; None for the state of the errors.
 
         Args:
-            history: Of the machine.
             learnt: Parameters that are other ones by now, by the name of their effect.
         """
         if learnt:
@@ -125,11 +123,12 @@ class ErrorTable:
         return _twist(self.errors, self.terms, q, approach, self.length, history)
 
 
-def error_tables(errors: MachineErrors, length: float, close: float = CLOSE) -> list[ErrorTable]:
+def error_tables(
+    errors: MachineErrors, length: float, close: float = MAX_INTERPOLATION
+) -> list[ErrorTable]:
     """Tables of everything that twists a link; displaced lines of axes are not in them.
 
     Args:
-        errors: Of a machine in one state.
         length: Of the tool, mm.
         close: What straight lines between the points of one table may leave, mm at the tip.
 

@@ -1,9 +1,9 @@
 """Tables of controls: made from the errors of a machine, written, read back and played.
 
 In: `MachineErrors` and a `Datum`. Out: the files of a format and, from what was read back of them,
-`Played`: what they correct, what they cannot hold, and the one-point test of their sign. Tables
-hold errors by name (`iso230`; `heidenhain` an axis's own alone) or corrections over single axes
-(`sinumerik`, `linuxcnc`). A new control is a module with `write` and `read` and a line in
+`VerifiedTables`: what they correct, what they cannot hold, and the one-point test of their sign.
+Tables hold errors by name (`iso230`; `heidenhain` an axis's own alone) or corrections over single
+axes (`sinumerik`, `linuxcnc`). A new control is a module with `write` and `read` and a line in
 `formats.FORMATS`.
 """
 
@@ -11,9 +11,9 @@ from matstd.compensation.tables.by_name import point_spacing
 from matstd.compensation.tables.formats import (
     FORMATS,
     Harmful,
-    Played,
-    play_tables,
+    VerifiedTables,
     refuse_harmful,
+    verify_tables,
     write_tables,
 )
 from matstd.compensation.tables.header import Header, hashed, header_of
@@ -23,12 +23,12 @@ __all__ = [
     "FORMATS",
     "Harmful",
     "Header",
-    "Played",
+    "VerifiedTables",
     "hashed",
     "header_of",
-    "play_tables",
     "point_spacing",
     "refuse_harmful",
+    "verify_tables",
     "write_table_results",
     "write_tables",
 ]

@@ -6,7 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.compensation.field import Corrects, Datum, MachineErrors, played, relative_columns
+from matstd.compensation.field import (
+    CorrectionFunction,
+    Datum,
+    MachineErrors,
+    deviation_after,
+    relative_columns,
+)
 from matstd.twin.frames import Array
 
 
@@ -31,12 +37,12 @@ class Acceptance:
     u: Array
 
 
-def acceptance(errors: MachineErrors, corrects: Corrects, datum: Datum, q: Array) -> Acceptance:
+def acceptance(
+    errors: MachineErrors, corrects: CorrectionFunction, datum: Datum, q: Array
+) -> Acceptance:
     """The one-point test of a table.
 
     Args:
-        errors: Of the machine.
-        corrects: The table, as it was read back.
         datum: To which everything refers.
         q: Poses of the workspace, (N, A): the place is among them but for the rotary axes.
     """
@@ -47,7 +53,7 @@ def acceptance(errors: MachineErrors, corrects: Corrects, datum: Datum, q: Array
     at, there = errors.touches(q[[best]], datum.length), errors.touches(datum.q[None], datum.length)
     shown = []
     for sign in (0.0, 1.0, -1.0):
-        moved = played(errors, at, sign * corrects(at)) - played(
+        moved = deviation_after(errors, at, sign * corrects(at)) - deviation_after(
             errors, there, sign * corrects(there)
         )
         shown.append(moved[0])

@@ -12,12 +12,12 @@ from matstd.compensation.field import (
     aligned,
     correction,
     deviation,
-    played,
+    deviation_after,
 )
 from matstd.compensation.tables.by_name import (
-    BETWEEN,
-    FEWEST,
-    FINE,
+    CHECKED_PLACES,
+    MAX_INTERPOLATION,
+    MIN_POINTS,
     interpolated,
     line,
     on_table,
@@ -29,7 +29,7 @@ from matstd.twin.numbers import rms_length
 from matstd.twin.record import Touches
 from matstd.twin.units import NM
 
-WORTH = 50.0 * NM
+MIN_GAIN = 50.0 * NM
 """A table that lowers the rms error by less is not written, mm."""
 
 
@@ -80,7 +80,6 @@ def along_axes(
     """Corrections along the lines through the datum.
 
     Args:
-        errors: Of the machine.
         datum: Through which the lines go, with the tool that is in the spindle there.
         most: Points of an axis that the format holds.
         crosswise: Whether an axis may correct others, in both directions alike; else every axis
@@ -127,7 +126,7 @@ class _Needed:
 
     @cached_property
     def aim(self) -> Array:
-        return played(self.errors, self.there, self.zero[None, :])[0]
+        return deviation_after(self.errors, self.there, self.zero[None, :])[0]
 
     def along(self, axis: str, readings: Array, move: int) -> Array:
         """Correction of every axis along one line, (n, A)."""
@@ -176,11 +175,11 @@ def _rotary(errors: MachineErrors, touches: Touches) -> Array:
 def _points(needed: _Needed, axis: str, over: tuple[float, float], most: int) -> int:
     """Points of an axis, doubled until linear interpolation is good enough or the table full."""
     low, high = over
-    count = FEWEST
+    count = MIN_POINTS
     while True:
-        between = np.linspace(low, high, BETWEEN * (count - 1) + 1)
+        between = np.linspace(low, high, CHECKED_PLACES * (count - 1) + 1)
         values = needed.along(axis, between, 1)
-        if _missed(between, values, BETWEEN) < FINE or 2 * count - 1 > most:
+        if _missed(between, values, CHECKED_PLACES) < MAX_INTERPOLATION or 2 * count - 1 > most:
             return count
         count = 2 * count - 1
 
@@ -208,7 +207,7 @@ def most_useful(
     while len(chosen) < most:
         trials = {k: rms_length(left + e) for k, e in enumerate(effects) if k not in chosen}
         best = min(trials, key=lambda k: trials[k], default=None)
-        if best is None or trials[best] > rms_length(left) - WORTH:
+        if best is None or trials[best] > rms_length(left) - MIN_GAIN:
             break
         chosen.append(best)
         left = left + effects[best]
@@ -229,7 +228,7 @@ def harmless(tables: AxisTables, errors: MachineErrors, datum: Datum, q: Array) 
     while kept:
         trials = {k: rms_length(left + sum(e for j, e in kept.items() if j != k)) for k in kept}
         worst = min(trials, key=lambda k: trials[k])
-        if trials[worst] > rms_length(left + sum(kept.values())) - WORTH:
+        if trials[worst] > rms_length(left + sum(kept.values())) - MIN_GAIN:
             break
         del kept[worst]
     out = [t if k in kept else _reversal_of(t) for k, t in enumerate(tables.tables)]
@@ -256,11 +255,7 @@ def _reversal_of(table: AxisTable) -> AxisTable:
 
 
 def line_bound(tables: AxisTables, errors: MachineErrors, datum: Datum) -> float:
-    """What interpolation and rounding leave on the lines through the datum at most, mm.
-
-    Args:
-        tables: As they were read back from their file.
-    """
+    """What interpolation and rounding leave on the lines through the datum at most, mm."""
     worst: dict[str, float] = {}
     needed = _Needed(errors, datum)
     lever = np.linalg.norm(errors.touches(datum.q[None, :], datum.length).reach.twist[0], axis=-1)
@@ -273,7 +268,7 @@ def line_bound(tables: AxisTables, errors: MachineErrors, datum: Datum) -> float
 
 def _missed_by(table: AxisTable, needed: _Needed) -> float:
     """Largest difference of a table from what is needed between its points, mm or rad."""
-    count = 2 * BETWEEN * (len(table.nodes) - 1) + 1
+    count = 2 * CHECKED_PLACES * (len(table.nodes) - 1) + 1
     between = np.linspace(table.nodes[0], table.nodes[-1], count)
     k = needed.errors.chain.axis_index(table.moves)
     moves = (0, 0) if np.array_equal(table.forward, table.reverse) else (1, -1)

@@ -11,14 +11,14 @@ from matstd.twin.machine import Chain, Contribution, Link
 from matstd.twin.record import Touches
 from matstd.twin.units import NM
 
-FEWEST = 17
+MIN_POINTS = 17
 """Points of an axis from which the number is doubled until they are enough."""
 
-FINE = 20.0 * NM
+MAX_INTERPOLATION = 20.0 * NM
 """What interpolation of one component may leave at the tool point, mm: far below what a machine
 repeats."""
 
-BETWEEN = 4
+CHECKED_PLACES = 4
 """Places between two points at which interpolation is looked at."""
 
 
@@ -103,7 +103,6 @@ def sampled(
     """Tables of the errors with as many points as linear interpolation needs.
 
     Args:
-        errors: Of the machine.
         datum: Where the other axes stand while one is sampled.
         most: Points of an axis that the format holds.
         points: By axis, where they are given.
@@ -125,13 +124,13 @@ def _points(errors: MachineErrors, datum: Datum, axis: str, most: int) -> int:
     """Points of an axis, doubled until linear interpolation is good enough or the table full."""
     lever = _levers(errors.chain)
     low, high = span(errors.chain.link(axis))
-    count = FEWEST
+    count = MIN_POINTS
     while True:
         nodes = np.linspace(low, high, count)
-        between = np.linspace(low, high, BETWEEN * (count - 1) + 1)
+        between = np.linspace(low, high, CHECKED_PLACES * (count - 1) + 1)
         values = _twist(errors, datum, axis, between)
-        missed = _missed(between, values, nodes, values[::BETWEEN])
-        if missed @ lever < FINE or 2 * count - 1 > most:
+        missed = _missed(between, values, nodes, values[::CHECKED_PLACES])
+        if missed @ lever < MAX_INTERPOLATION or 2 * count - 1 > most:
             return count
         count = 2 * count - 1
 
@@ -139,7 +138,8 @@ def _points(errors: MachineErrors, datum: Datum, axis: str, most: int) -> int:
 def point_spacing(errors: MachineErrors, datum: Datum) -> dict[str, float]:
     """Readings over which every axis's errors are straight to some 0.1 µm, mm or rad.
 
-    Twice the distance of points between which interpolation leaves `FINE`, so four times that.
+    Twice the distance of points between which interpolation leaves `MAX_INTERPOLATION`, so four
+    times that.
     """
     spans = {a: np.ptp(span(errors.chain.link(a))) for a in errors.chain.programmed_axes}
     return {a: 2.0 * far / (_points(errors, datum, a, 4096) - 1) for a, far in spans.items()}
@@ -166,14 +166,13 @@ def interpolation_bound(
     has at some poses, added up over all components as if they met at one place.
 
     Args:
-        tables: As they were read back from their file.
         q: Poses over which levers are taken, (N, A).
     """
     lever = np.linalg.norm(errors.touches(q, datum.length).reach.twist, axis=-1).max(axis=0)
     total = 0.0
     for axis, nodes in tables.nodes.items():
         low, high = nodes[0], nodes[-1]
-        between = np.linspace(low, high, 2 * BETWEEN * (len(nodes) - 1) + 1)
+        between = np.linspace(low, high, 2 * CHECKED_PLACES * (len(nodes) - 1) + 1)
         true = _twist(errors, datum, axis, between) * tables.holds(axis)
         missed = _missed(between, true, nodes, tables.values[axis])
         total += float(missed @ lever[tables.chain.link_index(axis)])

@@ -1,4 +1,4 @@
-"""Every format of tables as one thing: made, written, read back, played."""
+"""Every format of tables: made, written, read back and simulated."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from matstd.compensation.field import Datum, MachineErrors, Result, result_of
 from matstd.compensation.tables import heidenhain_com, iso_csv, linuxcnc_comp, sinumerik_cec
 from matstd.compensation.tables.acceptance import Acceptance, acceptance
 from matstd.compensation.tables.along_axes import (
-    WORTH,
+    MIN_GAIN,
     AxisTables,
     along_axes,
     harmless,
@@ -52,17 +52,15 @@ class Format:
 
 
 @dataclass(frozen=True, eq=False)
-class Played:
-    """Tables that were written, read back and played on the exact twin.
+class VerifiedTables:
+    """Tables that were written, read back and simulated on the exact twin.
 
     Attributes:
         format: Word of the format.
-        files: Names of its files.
         result: Before and after over the workspace, and what the format cannot hold.
         interpolation: What interpolation and rounding leave at most, mm: over the workspace where
             tables hold errors by name, on the lines through the datum where they hold axes.
         by_name: Whether tables hold errors by name.
-        acceptance: The one-point test.
     """
 
     format: str
@@ -77,12 +75,12 @@ class Harmful(DesignError):
     """Tables that would make the machine worse."""
 
 
-def refuse_harmful(played: Played) -> None:
+def refuse_harmful(verified: VerifiedTables) -> None:
     """Raise Harmful for tables that leave more than they found over the workspace."""
-    before, after = rms_length(played.result.before), rms_length(played.result.after)
-    if after > before + WORTH:
+    before, after = rms_length(verified.result.before), rms_length(verified.result.after)
+    if after > before + MIN_GAIN:
         raise Harmful(
-            f"{played.format}: the tables would leave {after / UM:.3g} µm rms over the workspace, "
+            f"{verified.format}: the tables would leave {after / UM:.3g} µm rms in the workspace, "
             f"where the machine without them has {before / UM:.3g} µm; narrow the workspace "
             f"(--within) or compensate part programs instead (--program)"
         )
@@ -124,28 +122,35 @@ FORMATS: Mapping[str, Format] = {
 
 
 def write_tables(
-    form: Format, folder: Path, errors: MachineErrors, datum: Datum, head: Header, q: Array
+    control_format: Format,
+    folder: Path,
+    errors: MachineErrors,
+    datum: Datum,
+    head: Header,
+    q: Array,
 ) -> None:
-    """Write the tables of a format into a folder of their own; arguments as of `play_tables`."""
-    for name, text in form.write(form.make(errors, datum, q), head).items():
+    """Write the tables of a format into a folder of their own; arguments as of `verify_tables`."""
+    for name, text in control_format.write(control_format.make(errors, datum, q), head).items():
         write_whole(folder / name, text)
 
 
-def play_tables(
-    form: Format, folder: Path, errors: MachineErrors, datum: Datum, head: Header, q: Array
-) -> Played:
-    """Read tables back and play them on the exact twin.
+def verify_tables(
+    control_format: Format,
+    folder: Path,
+    errors: MachineErrors,
+    datum: Datum,
+    head: Header,
+    q: Array,
+) -> VerifiedTables:
+    """Read tables back and simulate them on the exact twin.
 
     Args:
-        folder: With the files of this format.
-        errors: Of the machine; they are the truth.
-        head: What the tables must say of themselves.
         q: Poses over which they are judged, (N, A).
 
     Raises:
         BadFile: Files that cannot be read, or are of another machine or datum.
     """
-    tables, found = form.read(folder, errors.chain)
+    tables, found = control_format.read(folder, errors.chain)
     found.check(head, folder)
     touches = errors.touches(q, datum.length)
     if isinstance(tables, NamedTables):
@@ -154,8 +159,8 @@ def play_tables(
     else:
         unheld = unheld_along(tables, errors, datum, touches)
         bound = line_bound(tables, errors, datum)
-    return Played(
-        format=form.name,
+    return VerifiedTables(
+        format=control_format.name,
         files=tuple(sorted(p.name for p in folder.iterdir())),
         result=result_of(errors, tables.correction, q, datum, unheld),
         interpolation=bound,

@@ -18,7 +18,6 @@ class Header:
     """Head of a table, in comment lines of its format.
 
     Attributes:
-        model: Hash of the model file.
         machine: Name of the machine and hash of its chain, travels, points and table.
         datum: Readings and tool length to which the values refer.
         state: Time, temperatures and speed that they hold for.
@@ -79,7 +78,6 @@ def header_of(chain: Chain, model: str, datum: Datum, state: State, sign: int = 
     """Head of the tables of a machine.
 
     Args:
-        model: Hash of the model file.
         sign: -1 where the control wants the opposite.
     """
     return Header(
@@ -101,7 +99,7 @@ def machine_hash(chain: Chain) -> str:
 
 
 def hashed(data: bytes) -> str:
-    """Twelve letters that tell one content from another."""
+    """Twelve letters that identify a content."""
     return hashlib.sha256(data).hexdigest()[:12]
 
 

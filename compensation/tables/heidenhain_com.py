@@ -3,7 +3,7 @@
 The rows have the reading and, in the column of the axis, its positioning error (EXX ...), mm or
 degrees. The raw head of a table file is in no public manual: the rows are to be pasted
 into tables that the control made. Angles, straightness and the lines of rotary axes need rows of
-the control's kinematic description, whose meaning nobody has confirmed to us: they are not written.
+the control's kinematic description, whose meaning is not confirmed: they are not written.
 """
 
 import re

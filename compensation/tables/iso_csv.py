@@ -85,7 +85,7 @@ def _unit(chain: Chain, axis: str) -> float:
 
 
 def _words(row: Array) -> list[str]:
-    """Lengths to 0.1 nm, angles to a nanoradian: nothing that anybody could measure is lost."""
+    """Lengths to 0.1 nm, angles to a nanoradian: finer than any measurement."""
     return [f"{v:.7f}" for v in row[:3]] + [f"{v:.9f}" for v in row[3:]]
 
 

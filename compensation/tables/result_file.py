@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from matstd.compensation.field import MachineErrors, Result
-from matstd.compensation.tables.formats import Played
+from matstd.compensation.tables.formats import VerifiedTables
 from matstd.compensation.tables.header import Header
 from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
@@ -20,7 +20,7 @@ FORMAT = "compensation/1"
 
 
 def write_table_results(
-    path: str | Path, errors: MachineErrors, head: Header, played: Sequence[Played]
+    path: str | Path, errors: MachineErrors, head: Header, verified: Sequence[VerifiedTables]
 ) -> None:
     """Write the figures of every format, µm over the workspace, relative to the datum."""
     data = {
@@ -30,19 +30,19 @@ def write_table_results(
         "datum": head.datum,
         "state": head.state,
         "not_of_the_machine": list(errors.left_out),
-        "tables": [_table(p, errors.chain) for p in played],
+        "tables": [_table(p, errors.chain) for p in verified],
     }
     write_whole(path, json_text(data))
 
 
-def _table(played: Played, chain: Chain) -> dict[str, Any]:
-    result = played.result
+def _table(verified: VerifiedTables, chain: Chain) -> dict[str, Any]:
+    result = verified.result
     return {
-        "control": played.format,
-        "files": list(played.files),
+        "control": verified.format,
+        "files": list(verified.files),
         **figures(result),
-        "interpolation_um": in_um(played.interpolation),
-        "interpolation_holds": "over the workspace" if played.by_name else "along the axes",
+        "interpolation_um": in_um(verified.interpolation),
+        "interpolation_holds": "over the workspace" if verified.by_name else "along the axes",
         "not_held": [
             {
                 "error": x.name,
@@ -53,11 +53,11 @@ def _table(played: Played, chain: Chain) -> dict[str, Any]:
             for x in result.left
         ],
         "acceptance": {
-            "readings": _readings(chain, played.acceptance.q),
-            "without_um": [in_um(v) for v in played.acceptance.without],
-            "with_um": [in_um(v) for v in played.acceptance.with_table],
-            "wrong_sign_um": [in_um(v) for v in played.acceptance.wrong_sign],
-            "u_um": [in_um(v) for v in played.acceptance.u],
+            "readings": _readings(chain, verified.acceptance.q),
+            "without_um": [in_um(v) for v in verified.acceptance.without],
+            "with_um": [in_um(v) for v in verified.acceptance.with_table],
+            "wrong_sign_um": [in_um(v) for v in verified.acceptance.wrong_sign],
+            "u_um": [in_um(v) for v in verified.acceptance.u],
         },
     }
 

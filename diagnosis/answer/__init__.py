@@ -2,10 +2,10 @@
 
 In: a run, a model, effects that a user adds. Out: a `Diagnosis`. `ambiguity` makes classes of
 look-alikes, `sizes` numbers that rest on the touches alone, `detectable` what the run would have
-shown, `next_measurement` touches that tell look-alikes apart, `proof` compares with a known truth.
+shown, `next_measurement` touches that distinguish look-alikes, `proof` compares with a known truth.
 """
 
-from matstd.diagnosis.answer.ambiguity import CONFUSED, ConfusionClass
+from matstd.diagnosis.answer.ambiguity import MAX_LOG_ODDS_CONFUSED, ConfusionClass
 from matstd.diagnosis.answer.comparison import Comparison, GroupResidual, compare
 from matstd.diagnosis.answer.detectable import Detectable
 from matstd.diagnosis.answer.next_measurement import Plan
@@ -15,7 +15,7 @@ from matstd.diagnosis.answer.trend import RunErrors, Trend
 from matstd.diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
 
 __all__ = [
-    "CONFUSED",
+    "MAX_LOG_ODDS_CONFUSED",
     "Candidate",
     "Comparison",
     "ConfusionClass",

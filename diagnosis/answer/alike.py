@@ -1,9 +1,9 @@
-"""Periods that the sampling cannot tell apart.
+"""Periods that the sampling cannot distinguish.
 
 At targets every s mm a sine of period p reads as one of period p' wherever ``1/p' = k/s ± 1/p``.
 Nothing is assumed of the targets here: the evidence is scanned over all periods, and whatever else
-explains the run as well is told. Which one is named says nothing, unless a pitch was stated. Waves
-of a turn likewise: their period is told as a harmonic.
+explains the run equally well is reported. The named one is not preferred, unless a pitch was
+stated. The same holds for waves of a turn, whose period is reported as a harmonic.
 """
 
 from collections.abc import Sequence
@@ -26,23 +26,23 @@ from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Inner, Tunable, is_tunable
 from matstd.twin.numbers import significant
 
-ALIKE = float(np.log(100.0))
-"""Log odds below which two periods count as not told apart."""
+MAX_LOG_ODDS_ALIKE = float(np.log(100.0))
+"""Log odds below which two periods are not distinguished."""
 
-WINDOW = 0.2
+MAX_LOST_SHARE = 0.2
 """Share of the square explained by the best period of the scan by which another may fall behind and
 still be refined: between two scanned ones up to a tenth is lost."""
 
-REFINED = 200
+MAX_REFINED = 200
 """Most periods that are refined."""
 
-LEVELS = 6
+SCANS = 6
 """Scans, each four times finer: alike are periods that agree to a part of their uncertainty."""
 
-EVEN = 0.02
-"""Largest distance of a target from an even grid, in steps of it."""
+MAX_UNEVENNESS = 0.02
+"""Largest distance of a target from an even grid, as a share of its step."""
 
-FRACTIONS = 8
+MAX_FRACTION = 8
 """Whole fractions of a stated pitch that are preferred to other periods."""
 
 
@@ -51,7 +51,6 @@ class Alike:
     """A periodic effect at every other period that explains the run as well.
 
     Attributes:
-        axis: Over whose reading it repeats.
         others: The effect at other periods, longest first, with their sizes.
         step: Distance of the targets, mm, where they stand evenly; None where they do not, and of
             harmonics: those that even targets confuse are not scanned.
@@ -70,9 +69,9 @@ class Alike:
         """The other periods, longest first, mm, or numbers of waves a turn."""
         return tuple(period_value(o.effect) for o in self.others)
 
-    def beside(self, told: ScaledEffect, named: ScaledEffect) -> "Alike":
-        """The same where another period than the one to be named is told after all."""
-        own = period_value(told.effect)
+    def beside(self, reported: ScaledEffect, named: ScaledEffect) -> "Alike":
+        """The same if another period than the one to be named is reported."""
+        own = period_value(reported.effect)
         if own == period_value(named.effect):
             return self
         others = [o for o in self.others if abs(period_value(o.effect) - own) > 1e-3 * own]
@@ -82,15 +81,10 @@ class Alike:
 def periods_alike(
     found: ScaledEffect, others: Sequence[ScaledEffect], base: EffectSet
 ) -> tuple[ScaledEffect, Alike | None]:
-    """The period to be named of a found effect, and those that the run cannot tell from it.
+    """The period to be named of a found effect, and those that the run cannot distinguish from it.
 
     A whole fraction of a stated pitch is named before others, the longest one where there are
     several; without one it is the longest of all.
-
-    Args:
-        found: The effect, refined.
-        others: The other effects of the set.
-        base: The set without it.
 
     Returns:
         The effect as it was found, and None, where it has no period or no other is like it.
@@ -110,7 +104,7 @@ def periods_alike(
     named = int(np.argmin(fraction)) if best else -1
     if named < 0 or len(best) < 2:
         return found, None
-    is_stated = fraction[named] <= FRACTIONS
+    is_stated = fraction[named] <= MAX_FRACTION
     q = complement.touches.reading(inner.over)[complement.used]
     rest = tuple(b for i, b in enumerate(best) if i != named)
     pitch = link.pitch if is_stated else None
@@ -129,7 +123,7 @@ def _best(
     """
     complement = base.complement
     periods = strongest(effect, inner, complement, base.residual)
-    stated = [pitch / k for k in range(1, FRACTIONS + 1)] if pitch else []
+    stated = [pitch / k for k in range(1, MAX_FRACTION + 1)] if pitch else []
     stated = [p for p in stated if inner.grid[0] <= p <= inner.grid[-1]]
     scanned = len(periods)
     periods = np.concatenate([periods, stated])
@@ -139,12 +133,12 @@ def _best(
     padded = np.concatenate([[-np.inf], drop, [-np.inf]])
     # nothing lies between two harmonics
     is_peak = inner.is_harmonic | ((drop >= padded[:-2]) & (drop >= padded[2:]))
-    peaks = np.flatnonzero(is_peak & (drop > (1.0 - WINDOW) * drop.max()))
-    peaks = peaks[np.argsort(-drop[peaks], kind="stable")][:REFINED]
+    peaks = np.flatnonzero(is_peak & (drop > (1.0 - MAX_LOST_SHARE) * drop.max()))
+    peaks = peaks[np.argsort(-drop[peaks], kind="stable")][:MAX_REFINED]
     looked_at = [*peaks, *range(scanned, len(periods))]
-    sized = [refined(base, variants[i], LEVELS) for i in looked_at]
+    sized = [refined(base, variants[i], SCANS) for i in looked_at]
     top = max((e for _, e in sized), default=-np.inf)
-    close = [s for s, e in sized if top - e < ALIKE]
+    close = [s for s, e in sized if top - e < MAX_LOG_ODDS_ALIKE]
     out: list[ScaledEffect] = []
     for s in sorted(close, key=lambda s: period_value(s.effect), reverse=not inner.is_harmonic):
         # two peaks of a scan may climb to one and the same period
@@ -154,7 +148,7 @@ def _best(
 
 
 def _apart(first: Effect, second: Effect, inner: Inner) -> bool:
-    """Whether two periods are farther apart than half of what the travel tells apart."""
+    """Whether two periods differ by more than half of what the travel resolves."""
     both = inner.frequency(np.array([period_value(first), period_value(second)]))
     return float(np.ptp(both)) > 0.5 * _frequency_step(inner)
 
@@ -169,7 +163,7 @@ def _fraction(period: float, pitch: float | None, inner: Inner) -> float:
     if pitch is None:
         return np.inf
     k = round(pitch / period)
-    is_fraction = 1 <= k <= FRACTIONS and abs(1.0 / period - k / pitch) < _frequency_step(inner)
+    is_fraction = 1 <= k <= MAX_FRACTION and abs(1.0 / period - k / pitch) < _frequency_step(inner)
     return float(k) if is_fraction else np.inf
 
 
@@ -195,4 +189,4 @@ def even_step(q: Array) -> float | None:
     count = np.round((q - first) / step)
     step = float(count @ (q - first) / max(float(count @ count), 1.0))
     off = np.abs((q - first) / step - np.round((q - first) / step))
-    return significant(step, 4) if off.max() < EVEN else None
+    return significant(step, 4) if off.max() < MAX_UNEVENNESS else None

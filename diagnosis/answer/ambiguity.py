@@ -1,4 +1,4 @@
-"""What cannot be told apart: effects that explain the same touches equally well."""
+"""Effects that explain the same touches equally well and cannot be distinguished."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
@@ -21,17 +21,17 @@ from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 from matstd.twin.record import Touches
 
-CONFUSED = float(np.log(100.0))
-"""Log odds below which two effects count as not told apart."""
+MAX_LOG_ODDS_CONFUSED = float(np.log(100.0))
+"""Log odds below which two effects are not distinguished."""
 
-WINDOW = 15.0
+MAX_EVIDENCE_LOSS = 15.0
 """Rivals whose evidence on the grid is this far behind that of the named effect on its own grid are
 not refined."""
 
-MOST_RIVALS = 40
-"""Rivals that are refined, the most likely first: a class of more would tell a reader nothing."""
+MAX_RIVALS = 40
+"""Most rivals that are refined, the most likely first; a larger class would not help a reader."""
 
-OWN_SENSOR = 2.0
+OWN_SENSOR_BONUS = 2.0
 """Log odds in favour of a sensor that bears the letter of the axis on which it acts."""
 
 
@@ -40,9 +40,8 @@ class Rival:
     """An effect that explains what another one explains.
 
     Attributes:
-        sized: With its inner parameters refined.
         log_odds: Evidence for the named effect against this one, in natural logarithms; small or
-            negative where the run cannot tell them apart.
+            negative where the run cannot distinguish them.
         overlap: Correlation of what the two explain, 1 where the signatures coincide.
     """
 
@@ -58,19 +57,19 @@ class Rival:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ConfusionClass:
-    """A found effect with everything that the run cannot tell it from.
+    """A found effect with all effects that the run cannot distinguish from it.
 
     Attributes:
         sized: The named one: most evidence, ties broken by what is usual.
-        rivals: Not told apart, most likely first.
-        told_apart: Next in line, but clearly behind.
-        alike: Of a periodic effect every other period that the run cannot tell from the named one;
+        rivals: Not distinguished, most likely first.
+        distinguished: Next in line, but clearly less likely.
+        alike: Of a periodic effect every other period not distinguished from the named one;
             None where there is none.
     """
 
     sized: ScaledEffect
     rivals: tuple[Rival, ...]
-    told_apart: tuple[Rival, ...]
+    distinguished: tuple[Rival, ...]
     alike: Alike | None = None
 
     @property
@@ -87,7 +86,9 @@ class ConfusionClass:
             self,
             sized=sized,
             rivals=tuple(r for r in own if r.effect.name != sized.effect.name),
-            told_apart=tuple(r for r in self.told_apart if r.effect.name != sized.effect.name),
+            distinguished=tuple(
+                r for r in self.distinguished if r.effect.name != sized.effect.name
+            ),
         )
 
     def beside(self, names: Collection[str]) -> "ConfusionClass":
@@ -95,7 +96,7 @@ class ConfusionClass:
         return replace(
             self,
             rivals=tuple(r for r in self.rivals if r.effect.name not in names),
-            told_apart=tuple(r for r in self.told_apart if r.effect.name not in names),
+            distinguished=tuple(r for r in self.distinguished if r.effect.name not in names),
         )
 
 
@@ -103,7 +104,7 @@ def plausibility(effects: Sequence[Effect], touches: Touches) -> dict[str, float
     """Log prior odds of effects by name, for ties alone.
 
     Every family - a kind, and apart from it the same kind after a sensor - is as likely as every
-    other, and shares its weight among its members; a sensor is likely to tell of the axis whose
+    other, and shares its weight among its members; a sensor is likely to explain the axis whose
     letter it bears.
     """
     family = {e.name: _family(e, touches) for e in effects}
@@ -129,7 +130,7 @@ def _own_sensor(effect: Effect, touches: Touches) -> float:
     sensors = [w for w in words if w in touches.temperature]
     axes = {w if w in touches.chain.axes else w[-1:] for w in words if w not in sensors}
     own = any(sensor.endswith(axis) for sensor in sensors for axis in axes if axis)
-    return OWN_SENSOR if own else 0.0
+    return OWN_SENSOR_BONUS if own else 0.0
 
 
 def confusion_class(
@@ -138,14 +139,7 @@ def confusion_class(
     others: Sequence[ScaledEffect],
     fixed: Array | None = None,
 ) -> ConfusionClass:
-    """Everything that explains what a found effect explains, with the other effects in place.
-
-    Args:
-        pool: Signatures of all candidates.
-        found: The found one, refined.
-        others: The other found ones.
-        fixed: Columns that are in the model besides, (N + P, K).
-    """
+    """Everything that explains what a found effect explains, with the other effects in place."""
     complement = pool.complement
     A = projected(complement, others)
     base = EffectSet(complement, A if fixed is None else np.hstack([fixed, A]))
@@ -154,7 +148,9 @@ def confusion_class(
     names = {found.effect.name} | {o.effect.name for o in others}
     rivals = [Rival(found, 0.0, 1.0)]
     explained = _explained(base, found)
-    for variant in _ranked(pool, scores.evidence, min(top, _on_grid(base, found)) - WINDOW):
+    for variant in _ranked(
+        pool, scores.evidence, min(top, _on_grid(base, found)) - MAX_EVIDENCE_LOSS
+    ):
         candidate = pool.variants[variant]
         if candidate.name in names:
             continue
@@ -178,7 +174,7 @@ def _ranked(pool: Signatures, evidence: Array, least: float) -> list[int]:
     order = np.argsort(-evidence, kind="stable")
     _, first = np.unique(pool.owner[order], return_index=True)
     ranked = order[np.sort(first)]
-    return [int(v) for v in ranked if evidence[v] > least][:MOST_RIVALS]
+    return [int(v) for v in ranked if evidence[v] > least][:MAX_RIVALS]
 
 
 def _explained(without: EffectSet, sized: ScaledEffect) -> Array:
@@ -190,7 +186,7 @@ def _explained(without: EffectSet, sized: ScaledEffect) -> Array:
 
 
 def _ordered(found: Sequence[Rival], prior: dict[str, float]) -> ConfusionClass:
-    """Class headed by the likeliest, odds told against it."""
+    """The class headed by its likeliest member, with odds against it."""
 
     def rank(r: Rival) -> float:
         return r.log_odds - prior[r.effect.name]
@@ -198,5 +194,7 @@ def _ordered(found: Sequence[Rival], prior: dict[str, float]) -> ConfusionClass:
     head = min(found, key=rank)
     rest = sorted((r for r in found if r is not head), key=rank)
     shifted = [Rival(r.sized, r.log_odds - head.log_odds, r.overlap) for r in rest]
-    close = tuple(r for r in shifted if r.log_odds < CONFUSED)
-    return ConfusionClass(head.sized, close, tuple(r for r in shifted if r.log_odds >= CONFUSED))
+    close = tuple(r for r in shifted if r.log_odds < MAX_LOG_ODDS_CONFUSED)
+    return ConfusionClass(
+        head.sized, close, tuple(r for r in shifted if r.log_odds >= MAX_LOG_ODDS_CONFUSED)
+    )

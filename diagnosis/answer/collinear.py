@@ -1,33 +1,33 @@
-"""Effects that these touches cannot tell apart, or tell at all: added by a user, or found."""
+"""Effects that these touches cannot distinguish or cannot determine, added by a user or found."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from matstd.diagnosis.answer.verdict import Step
-from matstd.diagnosis.evidence import SAME, ResidualSpace, ScaledEffect
+from matstd.diagnosis.evidence import MIN_OWN_SHARE, ResidualSpace, ScaledEffect
 from matstd.diagnosis.fit import Reported, Role
 from matstd.diagnosis.remarks import NotSignificant
-from matstd.diagnosis.search import CHANCE
+from matstd.diagnosis.search import FALSE_ALARM
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
 
-LIKELY = 0.05
-"""Probability by chance from which nothing is said against chance."""
+MIN_P_CHANCE = 0.05
+"""Probability by chance from which a fall is compatible with chance."""
 
-SIGNIFICANT = 2.0
+MIN_SIGNIFICANT_RATIO = 2.0
 """Standard uncertainties from which a size is significant (GUM, k = 2)."""
 
 
-BEYOND_DOUBT = 1e-12
-"""Probability by chance below which an effect is there, though no single number of it is clear: a
-slip of six numbers that three touches saw."""
+MAX_P_CERTAIN = 1e-12
+"""Probability by chance below which an effect is present although none of its numbers is
+significant: six numbers of a slip that three touches saw."""
 
 
-SIZED = 2
-"""Parameters of an effect, a sine and a cosine, up to which its size is a test of it; the length of
-more, of which the touches may hardly know each, is uncertain where the whole is not: a form of a
-face of 1.9 µm, beyond a chance of 1e-8, is told as 3.0 ± 1.6 µm."""
+MAX_SIZED_PARAMETERS = 2
+"""Most parameters of an effect, a sine and a cosine, whose size tests the effect. The size of more
+parameters may be uncertain although the effect is not: the form of a face of 1.9 µm with a chance
+of 1e-8 is reported as 3.0 ± 1.6 µm."""
 
 
 def left_by(C: Array, others: Array) -> float:
@@ -40,11 +40,7 @@ def left_by(C: Array, others: Array) -> float:
 
 
 def check_distinct(complement: ResidualSpace, added: Sequence[ScaledEffect]) -> None:
-    """Refuse effects of which a run knows no more than a sum.
-
-    Args:
-        complement: What the starting model leaves.
-        added: Effects that the user added, with their inner parameters.
+    """Refuse effects of which a run determines only a sum.
 
     Raises:
         DesignError: Two names, and how much of the one the other imitates; or one name and the
@@ -54,9 +50,9 @@ def check_distinct(complement: ResidualSpace, added: Sequence[ScaledEffect]) -> 
     for i, C in enumerate(columns):
         earlier = columns[:i]
         alone = [left_by(C, other) for other in earlier]
-        if min(alone, default=1.0) < SAME:
+        if min(alone, default=1.0) < MIN_OWN_SHARE:
             _refuse(added[i], [added[int(np.argmin(alone))]], min(alone))
-        if earlier and (left := left_by(C, np.hstack(earlier))) < SAME:
+        if earlier and (left := left_by(C, np.hstack(earlier))) < MIN_OWN_SHARE:
             _refuse(added[i], added[:i], left)
 
 
@@ -71,13 +67,13 @@ def _refuse(one: ScaledEffect, others: Sequence[ScaledEffect], left: float) -> N
 
 
 def not_significant(steps: Sequence[Step]) -> tuple[NotSignificant, ...]:
-    """Effects that were added by name and whose size is within its own uncertainty."""
+    """Effects added by name whose size is within its own uncertainty."""
     out = []
     for step in steps:
         size = _size(step.reported)
         if step.effect is None or not step.is_named or size is None or size.u is None:
             continue
-        if abs(size.value) < SIGNIFICANT * size.u:
+        if abs(size.value) < MIN_SIGNIFICANT_RATIO * size.u:
             name = step.effect.name
             out.append(
                 NotSignificant(
@@ -88,24 +84,23 @@ def not_significant(steps: Sequence[Step]) -> tuple[NotSignificant, ...]:
 
 
 def weakest(steps: Sequence[Step], is_weighed: bool) -> str | None:
-    """Name of the found effect that says least, if it is no more than chance or uncertainty.
+    """Name of the found effect with the least support, if chance or its uncertainty explains it.
 
     Args:
-        steps: Of found effects.
         is_weighed: Whether the set was chosen by what it predicts: then its members stand together,
             and one falls only if neither its size nor its probability speaks for it.
     """
-    out, least = None, SIGNIFICANT
+    out, least = None, MIN_SIGNIFICANT_RATIO
     for step in steps:
         size = _size(step.reported)
         if step.effect is None:
             continue
         worth = np.inf if size is None or not size.u else abs(size.value) / size.u
         if is_weighed:
-            worth = worth if step.p_value > LIKELY else np.inf
-        elif step.p_value >= CHANCE:
+            worth = worth if step.p_value > MIN_P_CHANCE else np.inf
+        elif step.p_value >= FALSE_ALARM:
             worth = 0.0
-        elif step.p_value < BEYOND_DOUBT or len(step.effect.parameters) > SIZED:
+        elif step.p_value < MAX_P_CERTAIN or len(step.effect.parameters) > MAX_SIZED_PARAMETERS:
             continue
         if worth < least:
             out, least = step.effect.name, worth

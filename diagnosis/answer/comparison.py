@@ -29,7 +29,6 @@ class GroupResidual:
 
     Attributes:
         name: `setup a, pose 3`, or the feature.
-        touches: Their number.
         mean: Mean residual, mm.
         rms: Root mean square residual, mm.
         normalised: Root mean square over the standard uncertainty.
@@ -56,10 +55,8 @@ class Comparison(Tabular):
         where: Regions where the model fails.
         geometry: What the run says of the machine's geometry, and what of it changed since the
             model was made, if it is one of an earlier run.
-        faults: Mistakes in the description that would make the run fit.
-        remarks: What else a user should know.
         learnt: The fit that the model was learnt by, where that was from this very run: its
-            figures are those that were told then.
+            figures are those reported then.
     """
 
     fit: Fit
@@ -111,7 +108,7 @@ class Comparison(Tabular):
 
     @property
     def counted(self) -> BoolArray:
-        """Rows that figures are told of: all but gross errors, (N,)."""
+        """Rows that the figures are taken over: all but gross errors, (N,)."""
         return ~(self.fit.gross.rows | self.fit.gross_test_rows)
 
     @cached_property
@@ -121,7 +118,7 @@ class Comparison(Tabular):
 
     @property
     def rms_measured(self) -> float:
-        """Root mean square of the measured deviations, mm: what there was to predict."""
+        """Root mean square of the measured deviations, mm."""
         return rms(self.run.deviation[self.counted])
 
     @property

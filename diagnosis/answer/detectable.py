@@ -8,7 +8,7 @@ from scipy.special import chdtri
 
 from matstd.diagnosis.evidence import EffectSet, ScaledEffect, Signatures, projected
 from matstd.diagnosis.fit import inner_unit
-from matstd.diagnosis.search import CHANCE
+from matstd.diagnosis.search import FALSE_ALARM
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, inner_values
 from matstd.twin.record import Touches
@@ -16,7 +16,7 @@ from matstd.twin.record import Touches
 POWER = 0.84
 """Standard deviations of the statistic above its threshold: found in four of five runs."""
 
-INVISIBLE = 30.0
+MAX_SIZE_RATIO = 30.0
 """Beyond so many times its expected size an effect is called invisible in these touches."""
 
 
@@ -27,8 +27,6 @@ class Scanned:
     Attributes:
         quantity: `period`, `tau`.
         unit: As in files: `mm`, `min`.
-        low: In that unit.
-        high: In that unit.
     """
 
     quantity: str
@@ -42,10 +40,8 @@ class Detectable:
     """Smallest size of one effect that these touches would have shown.
 
     Attributes:
-        effect: The effect.
         size: In the base unit of its first parameter, at the median of its inner parameters; None
             where the model in use imitates the effect.
-        unit: That unit.
         largest: Largest deviation of a touch that an effect of this size causes, mm; None as size.
         survives: Share of its signature (as squares) that the model cannot imitate.
         scanned: Where its inner parameters were looked for; outside, nothing is said of it.
@@ -68,8 +64,6 @@ def detectable(
     signature per unit of prior, averaged over the directions of the effect's parameters.
 
     Args:
-        pool: Signatures of all candidates.
-        found: The final set.
         touches: Number of touches of the run, where set and pool are an even choice of them.
     """
     share = 1.0 if touches is None else len(pool.complement.u) / touches
@@ -108,7 +102,7 @@ def _surviving(effects: EffectSet, pool: Signatures) -> tuple[Array, Array]:
 def _needed(pool: Signatures) -> Array:
     """Non-centrality that every variant needs, (V,)."""
     k = pool.width.astype(float)
-    threshold = chdtri(k, CHANCE / (pool.tries[pool.owner] * pool.tried))
+    threshold = chdtri(k, FALSE_ALARM / (pool.tries[pool.owner] * pool.tried))
     # k + L - POWER sqrt(2 k + 4 L) = threshold, a quadratic in sqrt(2 k + 4 L)
     root = 2.0 * POWER + np.sqrt(4.0 * POWER**2 + 4.0 * threshold - 2.0 * k)
     return np.asarray((root**2 - 2.0 * k) / 4.0)
@@ -118,15 +112,13 @@ def _one(pool: Signatures, variant: int, length: float, survives: float) -> Dete
     """Smallest size of one candidate at one point of its grid.
 
     Args:
-        pool: Signatures of all candidates.
-        variant: Which one.
         length: Of its parameters, in units of their prior standard deviations.
         survives: Share of its signature that the model cannot imitate.
     """
     effect = pool.variants[variant]
     first = effect.parameters[0]
     scanned = tuple(_scans(effect, pool.complement.touches))
-    if not length < INVISIBLE:
+    if not length < MAX_SIZE_RATIO:
         return Detectable(
             effect=effect,
             size=None,

@@ -19,29 +19,29 @@ from matstd.twin.machine import LETTERS
 from matstd.twin.model import Effect
 from matstd.twin.record import IntArray, Touches
 
-CERTAIN = 1e-6
+MAX_P_CERTAIN = 1e-6
 """Probability by chance from which a library effect is named however little it leaves better."""
 
-LIKELY = 1e-3
+MAX_P_LIKELY = 1e-3
 """The same where held-out touches are predicted better with it."""
 
-LIBRARY = 6
+MAX_TRIED = 6
 """Library effects, the best ones by themselves, that are tried beside what was found."""
 
-NAMED = 3
+MAX_NAMED = 3
 """Effects that are named."""
 
-DOUBTFUL = 2.5
+MAX_CREDIBLE_NOISE = 2.5
 """Noise over the stated one that a run does not show by repeats and is not believed: statements
 are wrong by a factor of two, not more, on public records whose noise is known."""
 
-FEWEST_REPEATS = 5
+MIN_REPEAT_DOF = 5
 """Degrees of freedom of repeats that show the noise within a third."""
 
-SHOWN = 1.5
+MAX_REPEAT_RATIO = 1.5
 """Noise of a run over that of its repeats up to which they account for it."""
 
-REPEATED = 6
+MAX_REPEATED = 6
 """Touches to repeat: three times each they give twelve degrees of freedom."""
 
 
@@ -56,14 +56,11 @@ def nearest(
     """Effects nearest to what is left, those that predict best first.
 
     Args:
-        found: Effects in the last model.
-        last: Its fit.
         candidates: Library effects by themselves, best first.
-        depends_on: Variables of what is left.
     """
     known = {sized.effect.name for sized in found}
-    certain = {c.effect for c in candidates if c.p_value < CERTAIN} - known
-    library = [c.effect for c in candidates if c.effect not in known][:LIBRARY]
+    certain = {c.effect for c in candidates if c.p_value < MAX_P_CERTAIN} - known
+    library = [c.effect for c in candidates if c.effect not in known][:MAX_TRIED]
     effects = [parse_effect(name, task.model.chain) for name in library]
     effects += [e for e in _tables(last.run.touches, depends_on) if e.name not in known]
     offers = []
@@ -72,8 +69,8 @@ def nearest(
         p = min(1.0, len(effects) * named_probability(last, fit))
         offers.append(Offer(effect.name, p, float(fit.test_rms)))
     offers.sort(key=lambda offer: offer.test_rms)
-    likely = [o for o in offers if o.p_value < LIKELY and o.test_rms < last.test_rms]
-    return tuple((likely or [o for o in offers if o.effect in certain])[:NAMED])
+    likely = [o for o in offers if o.p_value < MAX_P_LIKELY and o.test_rms < last.test_rms]
+    return tuple((likely or [o for o in offers if o.effect in certain])[:MAX_NAMED])
 
 
 def _tables(touches: Touches, depends_on: Sequence[Dependence]) -> Iterator[Effect]:
@@ -102,10 +99,10 @@ def to_repeat(fit: Fit) -> IntArray:
     noise = fit.noise
     is_shown = (
         noise.replicates is not None
-        and noise.replicates_dof >= FEWEST_REPEATS
-        and noise.factor < SHOWN * noise.replicates
+        and noise.replicates_dof >= MIN_REPEAT_DOF
+        and noise.factor < MAX_REPEAT_RATIO * noise.replicates
     )
-    if noise.factor <= DOUBTFUL or is_shown:
+    if noise.factor <= MAX_CREDIBLE_NOISE or is_shown:
         return np.zeros(0, dtype=np.int64)
     touches = fit.run.touches
     off = np.where(fit.used, np.abs(fit.residual) / fit.run.u, -1.0)
@@ -113,4 +110,4 @@ def to_repeat(fit: Fit) -> IntArray:
     places = np.column_stack([touches.setup, touches.pose])[worst]
     first = np.sort(np.unique(places, axis=0, return_index=True)[1])
     rows = [*worst[first], *np.delete(worst, first)]
-    return np.array([row for row in rows if fit.used[row]][:REPEATED], dtype=np.int64)
+    return np.array([row for row in rows if fit.used[row]][:MAX_REPEATED], dtype=np.int64)

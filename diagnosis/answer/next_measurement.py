@@ -1,4 +1,4 @@
-"""What to measure next: the touches that would tell two effects apart, as a run plan."""
+"""What to measure next: the touches that would distinguish two effects, as a run plan."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
@@ -13,45 +13,45 @@ from matstd.twin.model import columns
 from matstd.twin.record import Run, Touches, linear_approach
 from matstd.twin.units import DEG
 
-WANTED = 24
+PLANNED_TOUCHES = 24
 """Touches of a plan."""
 
-OFFERED = 600
+MAX_OFFERS = 600
 """Touches among which a plan is chosen."""
 
-PACE = 15.0
-"""Time from touch to touch where the run does not tell it, s."""
+DEFAULT_PACE = 15.0
+"""Time from touch to touch where the run does not state times, s."""
 
-LEAST = 1.0
-"""A plan that separates by fewer standard deviations than this is none."""
+MIN_SEPARATION = 1.0
+"""Least separation of a useful plan, standard deviations."""
 
 TARGET_DIGITS = 2
 """Targets are offered to a hundredth of a millimetre, or of a degree."""
 
-DRAWN = 8
+DRAWS_PER_OFFER = 8
 """Combinations drawn for every touch offered; most are out of reach."""
 
-CONE = 15.0 * DEG
-"""A feature is approached within this angle of a direction in which the run has touched it: what
-stands in the way from elsewhere only the standard's own model knows."""
+APPROACH_CONE = 15.0 * DEG
+"""A feature is approached within this angle of a direction in which the run touched it. Obstacles
+elsewhere are known only to the standard's own model."""
 
-STEEPEST = 0.2
-"""A plan touches no surface steeper to the stylus than the run did, and none beyond this cosine."""
+MIN_FACING = 0.2
+"""Least cosine between normal and spindle direction, unless the run itself touched steeper
+faces."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Plan:
-    """Touches that tell effects apart.
+    """Touches that distinguish effects.
 
     Attributes:
-        tells_apart: Names of the effects.
         touches: What to touch, in the order of probing.
         separation: Expected difference of the two explanations after these touches, in standard
             deviations; before them it was nearly none.
-        periods_of: The effect whose periods are told apart; empty where two effects are.
+        periods_of: The effect whose periods are distinguished; empty for two effects.
     """
 
-    tells_apart: tuple[str, str]
+    distinguishes: tuple[str, str]
     touches: Touches
     separation: float
     periods_of: str = ""
@@ -64,13 +64,10 @@ def candidate_touches(run: Run, rng: np.random.Generator) -> Touches:
     another set-up, from either side of each rotary axis, at a later time; the linear axes follow.
     Offers beyond a travel, steeper to the stylus than the run's own touches, or from where the run
     has not touched that feature are left out.
-
-    Args:
-        rng: Draws the combinations.
     """
     t = run.touches
     n = len(t)
-    count = DRAWN * OFFERED
+    count = DRAWS_PER_OFFER * MAX_OFFERS
     point, pose = rng.integers(n, size=count), rng.integers(n, size=count)
     q = t.q[pose].copy()
     picked = replace(t[point], q=q, setup=t.setup[pose], pose=t.pose[pose])
@@ -80,9 +77,9 @@ def candidate_touches(run: Run, rng: np.random.Generator) -> Touches:
     for axis in t.chain.rotary_axes:
         approach[:, t.chain.axis_index(axis)] = rng.choice([-1.0, 1.0], size=count)
     picked = replace(picked, q=q, approach=approach)
-    keep = _within(picked) & (_facing(picked) >= max(float(_facing(t).min()), STEEPEST))
+    keep = _within(picked) & (_facing(picked) >= max(float(_facing(t).min()), MIN_FACING))
     keep &= _known_side(t, picked)
-    return picked[np.flatnonzero(keep)[:OFFERED]]
+    return picked[np.flatnonzero(keep)[:MAX_OFFERS]]
 
 
 def _with_linear(touches: Touches, target: Array, q: Array) -> Array:
@@ -119,7 +116,7 @@ def _known_side(known: Touches, offers: Touches) -> BoolArray:
     for feature in np.unique(offers.feature):
         rows = np.flatnonzero(offers.feature == feature)
         sides = np.unique(np.round(before[known.feature == feature], 6), axis=0)
-        out[rows] = (now[rows] @ sides.T).max(axis=1) >= np.cos(CONE)
+        out[rows] = (now[rows] @ sides.T).max(axis=1) >= np.cos(APPROACH_CONE)
     return out
 
 
@@ -130,12 +127,11 @@ def candidate_targets(run: Run, axis: str, rng: np.random.Generator) -> Touches:
         run: Of an instrument that reads anywhere along the axis, or a ball on a standard: then only
             known points are offered.
         axis: Whose readings are drawn, over the travel that was measured.
-        rng: Draws the readings.
     """
     t = run.touches
     if t.instrument.is_ball_on_standard and bool(np.any(t.radius > 0.0)):
         return candidate_touches(run, rng)
-    picked = t[rng.integers(len(t), size=OFFERED)]
+    picked = t[rng.integers(len(t), size=MAX_OFFERS)]
     q = picked.q.copy()
     reading = t.reading(axis)
     drawn = rng.uniform(reading.min(), reading.max(), len(q))
@@ -155,19 +151,13 @@ def plan(
 
     Greedy: the next touch is the one at which the two fitted models differ most, measured against
     noise and against what the uncertainty of the first could make up for; it then learns from it.
-    Of several rivals it serves the one that is told apart least so far.
-
-    Args:
-        first: The model with one of the effects.
-        rivals: The model with each of the others instead.
-        names: Of the effect and of its rivals.
-        offers: Touches that could be made.
+    Of several rivals it serves the one distinguished least so far.
 
     Returns:
         None where the run gives no touches to choose from, or they all agree.
     """
     run = first.run
-    if len(offers) < WANTED:
+    if len(offers) < PLANNED_TOUCHES:
         return None
     offers = _later(run.touches, offers)
     whole = _joined(run.touches, offers)
@@ -176,7 +166,7 @@ def plan(
     others = [columns(f.effects, whole)[len(run) :] @ f.theta for f in rivals]
     difference = (own @ first.theta - np.array(others)) / u
     chosen, gained = _greedy(difference, own @ first.spread / u)
-    if gained <= LEAST**2:
+    if gained <= MIN_SEPARATION**2:
         return None
     ordered = np.array(sorted(chosen, key=lambda i: (offers.setup[i], offers.pose[i])))
     picked = offers[ordered]
@@ -197,7 +187,7 @@ def _greedy(difference: Array, spread: Array) -> tuple[list[int], float]:
     chosen: list[int] = []
     gained = np.zeros(len(d))
     free = np.ones(d.shape[1], dtype=bool)
-    for _ in range(min(WANTED, d.shape[1])):
+    for _ in range(min(PLANNED_TOUCHES, d.shape[1])):
         variance = 1.0 + np.einsum("np,np->n", S, S)
         i = int(np.argmax(np.where(free, d[int(np.argmin(gained))] ** 2 / variance, -1.0)))
         gained += d[:, i] ** 2 / variance[i]
@@ -214,7 +204,7 @@ def _greedy(difference: Array, spread: Array) -> tuple[list[int], float]:
 def _pace(touches: Touches) -> float:
     """Usual time between touches, s."""
     steps = np.diff(np.sort(touches.time))
-    return float(np.median(steps)) if np.any(steps > 0.0) else PACE
+    return float(np.median(steps)) if np.any(steps > 0.0) else DEFAULT_PACE
 
 
 def _later(touches: Touches, offers: Touches) -> Touches:

@@ -72,11 +72,6 @@ class Proof:
 def probed_volume(run: Run, count: int, rng: np.random.Generator) -> Touches:
     """Poses evenly over the probed volume: the box of the touches, and the rotary readings between.
 
-    Args:
-        run: The measurements, one set-up.
-        count: Number of poses.
-        rng: Draws them.
-
     Raises:
         NotReachable: Hardly any pose of that volume is within the travels.
     """
@@ -113,7 +108,6 @@ def prove(
     """Compare what an identified model predicts with what a simulated machine really does.
 
     Args:
-        fit: The identified model.
         truth: Errors of the simulated machine with their parameters.
         true_setup: Where the standard really stood.
         poses: Poses with the believed set-up, as from `probed_volume` or `seen_from`.

@@ -16,7 +16,7 @@ from matstd.diagnosis.answer.next_measurement import (
     candidate_touches,
     plan,
 )
-from matstd.diagnosis.answer.one_set import ToldSet, told_set, without
+from matstd.diagnosis.answer.reported_set import ReportedSet, reported_set, without
 from matstd.diagnosis.answer.several import with_trend
 from matstd.diagnosis.answer.sizes import sizes
 from matstd.diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
@@ -25,8 +25,8 @@ from matstd.diagnosis.choice import (
     choice_remarks,
     chosen_by_prediction,
     field_shares,
-    followed,
-    found_in,
+    search_with_memory,
+    with_chosen_set,
 )
 from matstd.diagnosis.evidence import (
     EffectSet,
@@ -43,7 +43,7 @@ from matstd.diagnosis.regression import GrossErrors
 from matstd.diagnosis.remarks import Remark, SearchEnded, remarks
 from matstd.diagnosis.residual import Region, Structure, find_structure, regions
 from matstd.diagnosis.search import (
-    LISTED,
+    MAX_LISTED,
     MOST_SETS,
     DiagnosisTask,
     Search,
@@ -58,19 +58,20 @@ from matstd.twin.model import Effect, Model, traits
 from matstd.twin.numbers import rms
 from matstd.twin.record import Run, Touches, with_commanded, without_copies
 
-PERIODS_PLANNED = 8
-"""Periods that look alike, the longest ones, that a plan of touches tells apart."""
+MAX_PERIODS_PLANNED = 8
+"""Most periods that a plan of touches distinguishes, the longest ones."""
 
-ROUGHLY = 1e-4
-"""Probability by chance of a pattern beside noise that remembers from which it is told: a memory is
-a model of its own, right as far as it goes, and a residual of real parts is never quite it."""
+MAX_P_BESIDE_MEMORY = 1e-4
+"""Probability by chance below which a pattern is reported beside noise with memory. A memory is an
+approximate model, and the residual of real parts never follows it exactly."""
 
-COVERED = 0.7
-"""Residual over stated uncertainty below which a pattern in it is told, but nothing is missing: who
-stated so much allowed for it. Scatter of a run of a hundred touches does not reach so low."""
+MAX_COVERED_RATIO = 0.7
+"""Residual over stated uncertainty below which a pattern is reported but no effect counts as
+missing, since the stated uncertainty allows for it. Scatter of a run of a hundred touches does not
+reach so low."""
 
-DEPENDENCES = 2
-"""Patterns, one after the other, of which `depends_on` tells."""
+MAX_DEPENDENCES = 2
+"""Most patterns that `depends_on` reports, one after the other."""
 
 
 @one_blas_thread()
@@ -95,7 +96,7 @@ def diagnose(
 
     Raises:
         NotEnoughData: So few touches that nothing can be said.
-        DesignError: Named effects that these touches cannot tell from one another.
+        DesignError: Named effects that these touches cannot distinguish.
 
     Example:
         ``diagnose(read_run("run.csv")).verdict`` is one of four phrases.
@@ -134,21 +135,21 @@ def _diagnosed(
     known = {e.name for e in (*task.model.effects, *(a.effect for a in added))}
     library = [e for e in library if e.name not in known]
     single = [e for e in library if not traits(e).is_shrunk]
-    task, final = found_in(task, added, single, progress)
+    task, final = search_with_memory(task, added, single, progress)
     if task.model.chain.joints:  # errors of their lines bend like effects that are missing
         task = task.suited((*added, *final.effects))
     choice = chosen_by_prediction(task, added, final, library, progress)
     if choice is not None:
-        task, final = followed(task, added, final, choice, single, progress)
+        task, final = with_chosen_set(task, added, final, choice, single, progress)
     result = _result(task, added, final, progress, rng)
     if choice is None:
         return result
     fields = [e for e in result.found if traits(e).parameter_drives]
-    told: tuple[Remark, ...] = (
+    added_remarks: tuple[Remark, ...] = (
         *choice_remarks(choice, result.found),
         *(field_shares(result.fit, e) for e in fields),
     )
-    return replace(result, choice=choice, remarks=(*told, *result.remarks))
+    return replace(result, choice=choice, remarks=(*added_remarks, *result.remarks))
 
 
 def _result(
@@ -158,11 +159,12 @@ def _result(
     progress: Progress,
     rng: np.random.Generator | None,
 ) -> Diagnosis:
-    """Everything that is told of the last round."""
-    progress(0.5, "what cannot be told apart")
-    tested, steps = _told(task, added, final)
+    """The full report of the last round."""
+    progress(0.5, "what cannot be distinguished")
+    tested, steps = _significant_effects(task, added, final)
     final, classes, gross = tested.state, tested.classes, final.base.gross
     left = _beyond_doubt((*final.nameless, *final.left), steps[-1].fit)
+    # a residual well below the stated uncertainty is allowed for, whatever pattern it has
     unexplained = bool(left) and not _is_covered(steps[-1].fit)
     repeat = to_repeat(steps[-1].fit)
     if unexplained:
@@ -204,24 +206,24 @@ def _result(
 def _beyond_doubt(left: Sequence[Structure], fit: Fit) -> tuple[Structure, ...]:
     """Patterns that stand however the noise remembers."""
     is_modelled = fit.memory is not None and fit.memory.is_filtered
-    return tuple(s for s in left if not is_modelled or s.p_value < ROUGHLY)
+    return tuple(s for s in left if not is_modelled or s.p_value < MAX_P_BESIDE_MEMORY)
 
 
 def _is_covered(fit: Fit) -> bool:
-    """Whether all that is left, patterns and all, is well within what is stated of a touch."""
-    return float(np.std(fit.residual[fit.used] / fit.run.u[fit.used])) < COVERED
+    """Whether the whole residual is well within the stated uncertainty of a touch."""
+    return float(np.std(fit.residual[fit.used] / fit.run.u[fit.used])) < MAX_COVERED_RATIO
 
 
-def _told(
+def _significant_effects(
     task: DiagnosisTask, added: tuple[ScaledEffect, ...], final: SearchState
-) -> tuple[ToldSet, tuple[Step, ...]]:
-    """The set that is told, every member beyond chance and of a size beyond its uncertainty.
+) -> tuple[ReportedSet, tuple[Step, ...]]:
+    """The reported set: every member beyond chance and its size beyond its uncertainty.
 
     A search weighs an effect beside a machine as it is expected to be; a size that rests on the
-    touches alone may be nothing, and such an effect is not told. The weakest goes first.
+    touches alone may be nothing, and such an effect is not reported. The weakest goes first.
     """
     while True:
-        tested = told_set(final)
+        tested = reported_set(final)
         steps = _steps(task, added, tested, final.base.gross)
         weak = weakest(steps[1 + len(added) :], final.is_weighed)
         if weak is None:
@@ -248,7 +250,7 @@ def _where(steps: Sequence[Step], verdict: Verdict) -> tuple[Region, ...]:
 def _steps(
     task: DiagnosisTask,
     added: tuple[ScaledEffect, ...],
-    tested: ToldSet,
+    tested: ReportedSet,
     gross: GrossErrors,
 ) -> tuple[Step, ...]:
     """The error falling: the starting model, named effects, found effects by their worth."""
@@ -258,8 +260,8 @@ def _steps(
     order = _by_worth(final)
     effects: Sequence[ScaledEffect] = [*added, *(final.effects[i] for i in order)]
     first = task.fit((), gross)
-    # the inner parameters that are told are those that are drawn and saved
-    told, effects = sizes(task, effects, gross, ResidualSpace.of(first))
+    # the reported inner parameters are those that are drawn and saved
+    numbers, effects = sizes(task, effects, gross, ResidualSpace.of(first))
     out = [Step(effect=None, fit=first, p_value=1.0, reported=(), confusion=None)]
     for k, sized in enumerate(effects):
         fit = task.fit(effects[: k + 1], gross)
@@ -267,7 +269,7 @@ def _steps(
         p = p_values[i] if i >= 0 else named_probability(out[-1].fit, fit)
         confusion = classes[i] if i >= 0 else None
         out.append(
-            Step(effect=sized.effect, fit=fit, p_value=p, reported=told[k], confusion=confusion)
+            Step(effect=sized.effect, fit=fit, p_value=p, reported=numbers[k], confusion=confusion)
         )
     return tuple(out)
 
@@ -296,7 +298,7 @@ def _candidates(final: SearchState) -> tuple[Candidate, ...]:
     scores = search.scores(nothing)
     n = len(final.pool.complement.u)
     out = []
-    for variant in search.ranking(nothing)[:LISTED]:
+    for variant in search.ranking(nothing)[:MAX_LISTED]:
         member = search.member(nothing, variant)
         effects = search.evaluate((member,)).effects
         u = final.pool.complement.u
@@ -324,7 +326,7 @@ def _structures(final: SearchState, progress: Progress) -> tuple[Structure, ...]
             return (*out, found[0])
         best = most_evident(found)
         out.append(best)
-        if len(out) == DEPENDENCES or best.columns is None:
+        if len(out) == MAX_DEPENDENCES or best.columns is None:
             break
         A = np.hstack([A, best.columns])
         found = find_structure(EffectSet(complement, A), progress, final.smooth)
@@ -349,7 +351,7 @@ def _plans(
     gross: GrossErrors,
     rng: np.random.Generator | None,
 ) -> tuple[Plan, ...]:
-    """For every found effect the touches that would tell it from its likeliest distinct rival."""
+    """For every found effect the touches that would distinguish it from its likeliest rival."""
     if rng is None:
         return ()
     heads = [c.sized for c in classes]
@@ -361,13 +363,14 @@ def _plans(
 
         name, alike = heads[i].effect.name, confusion.alike
         if alike is not None:
-            fits = [instead(other) for other in alike.others[:PERIODS_PLANNED]]
-            periods = [f"{p:.4g}" for p in alike.periods[:PERIODS_PLANNED]]
+            fits = [instead(other) for other in alike.others[:MAX_PERIODS_PLANNED]]
+            periods = [f"{p:.4g}" for p in alike.periods[:MAX_PERIODS_PLANNED]]
             own = period_value(heads[i].effect)
             names = (f"{name}@{own:.4g}", f"{name}@{','.join(periods)}")
             offers = candidate_targets(task.run, alike.axis, rng)
             found = plan(instead(heads[i]), fits, names, offers)
             out += [replace(found, periods_of=name)] if found is not None else []
+        # the likeliest rival may be inseparable by any offer; then the next one is tried
         for rival in confusion.rivals:
             offers = candidate_touches(task.run, rng)
             names = (name, rival.effect.name)

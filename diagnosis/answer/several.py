@@ -20,7 +20,7 @@ from matstd.diagnosis.geometry import (
     geometry_rows,
     with_changes,
 )
-from matstd.diagnosis.regression import CLEARLY
+from matstd.diagnosis.regression import MIN_GAIN_MEMORY
 from matstd.diagnosis.search import FREEDOM, DiagnosisTask
 from matstd.twin.model import Model
 
@@ -76,7 +76,7 @@ def _shown(
         single = single_change(without, run) if run else None
         if single is not None:
             alone[run] = single
-        if is_contradicted or single or _evidence(beside) > _evidence(without) + CLEARLY:
+        if is_contradicted or single or _evidence(beside) > _evidence(without) + MIN_GAIN_MEMORY:
             shown.add(run)
     return sorted(shown), alone
 

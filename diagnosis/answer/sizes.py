@@ -1,7 +1,7 @@
-"""Sizes of found effects as they are told: from the touches alone, inner parameters included.
+"""Reported sizes of found effects: from the touches alone, inner parameters included.
 
 The fit that predicts leans on the distributions that a machine's ordinary errors are expected to
-have, and an effect that the machine can partly imitate is drawn by them. A size that is told shall
+have, and an effect that the machine can partly imitate is drawn by them. A reported size shall
 rest on the touches: here the machine is left nearly free, every inner parameter is moved to where
 the whole model fits best, and its uncertainty is in that of the size.
 """
@@ -25,20 +25,20 @@ from matstd.diagnosis.search import DiagnosisTask
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Inner, Model, Tunable, is_tunable, traits
 
-FREE = 10.0
+PRIOR_FACTOR = 10.0
 """Factor on the stated distributions of the machine's ordinary errors: at the tenth of the stated
 weight no error of a machine within them, or a few times beyond, draws a size noticeably."""
 
-STEPS = 4
+MAX_STEPS = 4
 """Most steps of Gauss and Newton; the inner parameters come refined."""
 
-SETTLED = 0.02
+SETTLED_STEP = 0.02
 """Step over standard uncertainty from which an inner parameter is settled."""
 
-LONGEST_STEP = 0.5
+MAX_GRID_STEP = 0.5
 """In distances of the grid's points: the tangent holds no farther."""
 
-INSTANTS = 60
+MAX_INSTANTS = 60
 """Instants to either side that are weighed for an effect that begins at one."""
 
 
@@ -48,13 +48,7 @@ def sizes(
     gross: GrossErrors,
     complement: ResidualSpace,
 ) -> tuple[tuple[tuple[Reported, ...], ...], tuple[ScaledEffect, ...]]:
-    """Parameters of every effect as a user reads them, and the effects at their inner parameters.
-
-    Args:
-        effects: Everything that was added to the model.
-        gross: Gross errors, as they were found.
-        complement: What the starting model leaves.
-    """
+    """Parameters of every effect as reported, and the effects at their inner parameters."""
     if not effects:
         return (), ()
     fit, at = _settled(task, effects, gross)
@@ -77,10 +71,10 @@ def _settled(
 ) -> tuple[Fit, tuple[Effect, ...]]:
     """The fit with tangents at the inner parameters that suit it best, and the effects there."""
     at = [s.effect for s in effects]
-    prior = task.prior if task.is_known else task.prior.widened(FREE)
+    prior = task.prior if task.is_known else task.prior.widened(PRIOR_FACTOR)
     for sized in effects:
         prior = prior.joined(task.found_prior(sized))
-    for remaining in reversed(range(STEPS)):
+    for remaining in reversed(range(MAX_STEPS)):
         model = Model(task.model.chain, (*task.model.effects, *at))
         theta = fit_run(task.run, model, prior, None, gross, task.memory).theta
         theta = theta[: len(model.parameters)]
@@ -107,11 +101,11 @@ def _stepped(fit: Fit, effects: Sequence[Effect]) -> list[Effect] | None:
         value = list(effect.tuning.values())[tangent.index]
         step = float(fit.theta[place][0])
         farthest = max(farthest, abs(step) / float(np.sqrt(fit.covariance[place, place][0, 0])))
-        longest = LONGEST_STEP * spacing(inner, value)
+        longest = MAX_GRID_STEP * spacing(inner, value)
         target = value + float(np.clip(step, -longest, longest))
         target = float(np.clip(target, np.min(inner.grid), np.max(inner.grid)))
         out[i] = shifted(effect, tangent.index, target - value)
-    return out if farthest > SETTLED else None
+    return out if farthest > SETTLED_STEP else None
 
 
 def _instants(
@@ -139,8 +133,8 @@ def _instants(
 def _jumps(complement: ResidualSpace, inner: Inner, value: float) -> Array:
     """Times of touches around an instant, ascending, within the grid."""
     times = np.unique(complement.touches.time[complement.used])
-    first = int(np.searchsorted(times, value)) - INSTANTS
-    near = times[max(first, 0) : first + 2 * INSTANTS]
+    first = int(np.searchsorted(times, value)) - MAX_INSTANTS
+    near = times[max(first, 0) : first + 2 * MAX_INSTANTS]
     low, high = float(np.min(inner.grid)), float(np.max(inner.grid))
     inside = near[(near >= low) & (near <= high)]
     return np.concatenate([[low], inside, [high]]) if len(inside) < len(near) else inside

@@ -1,4 +1,4 @@
-"""What several runs of one machine tell of its course, and how well each of them is known."""
+"""What several runs show of one machine's course, and how well each of them is known."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -6,7 +6,13 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from matstd.diagnosis.fit import Fit, fit_run
-from matstd.diagnosis.geometry import CHANGED, Estimate, GeometryRow, changed_since, changing
+from matstd.diagnosis.geometry import (
+    MIN_CLEAR_CHANGE,
+    Estimate,
+    GeometryRow,
+    changed_since,
+    changing,
+)
 from matstd.twin.model import Effect, columns, original_of, traits
 from matstd.twin.numbers import rms
 
@@ -16,10 +22,8 @@ class RunErrors:
     """How well one of several runs is known, mm.
 
     Attributes:
-        name: Of the run.
-        touches: Its rows, gross errors left out.
         rms: Root mean square residual of those that were fitted; None if the run was held out.
-        test_rms: Plain error of its poses, each predicted by all others; None likewise.
+        test_rms: Plain error of its poses, each predicted by all others; None for a held-out run.
         left_out: Plain error of the whole run, its set-ups fitted, the machine predicted by the
             other runs: as in the run before, of the first run as in the one after. None where no
             other run was fitted.
@@ -37,9 +41,9 @@ class RunErrors:
         return self.rms is None
 
 
-ALIKE = 1.0
-"""Standard uncertainties by which a location error may be less clear than another effect and is
-still the one that is told: odds of the root of e."""
+LOCATION_BONUS = 1.0
+"""A location error is reported even if it is less clear than another effect by so many standard
+uncertainties: odds of the root of e."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,9 +51,7 @@ class SingleChange:
     """What changed into a run, if nothing else of the geometry did.
 
     Attributes:
-        effect: The clearest of all.
         unit: Of its parameter, "mm" or "rad".
-        size: Of the change.
     """
 
     effect: Effect
@@ -62,7 +64,6 @@ class Trend:
     """What changed between several runs of one machine, and what did not.
 
     Attributes:
-        runs: In their order.
         changed: Runs, by number, whose geometry differs from that of the run before; 0 stands for
             the first beside the model that the diagnosis began with.
         rows: The geometry with its course, every run by itself.
@@ -105,14 +106,10 @@ def run_errors(fit: Fit) -> tuple[RunErrors, ...]:
 
 
 def single_change(fit: Fit, run: int) -> SingleChange | None:
-    """The clearest change of one effect into a run, nothing else changing; None within chance.
+    """The clearest change of one effect into a run, all else constant; None within chance.
 
     One column more beside a fit: ``a = c^T r / c^T P c`` with P the projection on what the model
     cannot imitate and r what it leaves.
-
-    Args:
-        fit: In which that run is as the one before.
-        run: Number of the run.
     """
     touches = fit.run.touches
     beside = changing(fit.model, touches, [run]).effects
@@ -129,8 +126,8 @@ def single_change(fit: Fit, run: int) -> SingleChange | None:
     clear = np.abs(value) / u
     # a slope of a straightness and a squareness are one thing: the user's word is the second
     is_place = np.array([original_of(tried[i]).kind == "location" for i in seen])
-    best = int(np.argmax(clear + ALIKE * is_place))
-    if clear[best] <= CHANGED:
+    best = int(np.argmax(clear + LOCATION_BONUS * is_place))
+    if clear[best] <= MIN_CLEAR_CHANGE:
         return None
     effect = original_of(tried[seen[best]])
     return SingleChange(
@@ -144,7 +141,7 @@ def _without(fit: Fit, run: int) -> Fit | None:
     others = [i for i in np.unique(touches.run[fit.used]) if i != run]
     if not others:
         return None
-    # what changed since a run that nobody has seen is nobody's guess
+    # changes since a run that is left out cannot be estimated
     since = [i for i in changed_since(fit.model) if i in others[1:]]
     split = np.where(fit.used & (touches.run != run), "", "test")
     model = changing(fit.model, touches, since)

@@ -23,7 +23,7 @@ from matstd.twin.units import UM
 
 
 class Verdict(Enum):
-    """What a diagnosis ends in; the values are the words of the file."""
+    """The outcome of a diagnosis; the values are the words of the file."""
 
     NONE = "no missing effect"
     MISSING = "missing effect"
@@ -37,11 +37,10 @@ class Step:
 
     Attributes:
         effect: What was added, with its inner parameters; None for the starting model.
-        fit: The model fitted with it.
         p_value: Probability by chance, grid and number of candidates paid for; 1 for the first.
         reported: Its parameters as a user reads them, from the last fit.
-        confusion: What it cannot be told from; None for the first, and for effects that were named
-            by the user.
+        confusion: What it cannot be distinguished from; None for the first, and for effects that
+            were named by the user.
     """
 
     effect: Effect | None
@@ -70,7 +69,7 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """An effect that comes near what is left, and is named to be added by hand.
+    """An effect close to the remaining residual, offered to be added by hand.
 
     Attributes:
         effect: Its name, for `--add`.
@@ -85,13 +84,7 @@ class Offer:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Dependence:
-    """A variable on which a residual depends.
-
-    Attributes:
-        variable: Column of the run file.
-        p_value: Probability by chance.
-        structure: The pattern that it belongs to.
-    """
+    """A variable on which a residual depends."""
 
     variable: str
     p_value: float
@@ -100,25 +93,19 @@ class Dependence:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Diagnosis(Tabular):
-    """All that a run tells about what its model lacks.
+    """All that a run shows about what its model lacks.
 
     Attributes:
         verdict: One of four; undecided where the noise would have to be far above the stated one
             and no repeats show it.
         steps: The error falling, effect by effect.
-        candidates: Library effects by themselves, best first.
         structure: What the residual of the starting model varies with.
         left: What the residual of the last step varies with; empty unless unexplained.
         depends_on: Variables of `structure`, or of `left` where the verdict is unexplained.
         where: Regions where the same residual fails, drawn by what the found effects explain.
         detectable: Smallest size of every effect that these touches would have shown.
-        plans: Touches that would tell confused effects apart.
-        geometry: What the run says of the machine's geometry.
-        faults: Mistakes in the description that would make the run fit.
-        remarks: What else a user should know.
         choice: How the set was chosen by prediction; None where the search left nothing to choose.
         trend: What changed between several runs; None for a single one.
-        nearest: Effects nearest to what is unexplained.
         repeat: Rows of the touches whose repetition would decide, where the verdict is undecided.
     """
 

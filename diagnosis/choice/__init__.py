@@ -2,12 +2,12 @@
 
 In goes what the search found, with its task; out comes a `Choice` (the ways that were tried, each
 with its plain error of blocks left out, the choice made anew without each block) and the set that
-was chosen, which from here on is the set that is told, drawn and saved. Blocks follow how the data
-are correlated: poses, set-ups, stretches of time longer than the memory of what is left.
+was chosen, which from here on is the set that is reported, drawn and saved. Blocks follow how the
+data are correlated: poses, set-ups, stretches of time longer than the memory of what is left.
 """
 
-from matstd.diagnosis.choice.following import choice_remarks, field_shares, followed
-from matstd.diagnosis.choice.long_runs import found_in
+from matstd.diagnosis.choice.chosen_set import choice_remarks, field_shares, with_chosen_set
+from matstd.diagnosis.choice.long_runs import search_with_memory
 from matstd.diagnosis.choice.prediction import Choice, candidate_effects, chosen_by_prediction
 
 __all__ = [
@@ -16,6 +16,6 @@ __all__ = [
     "choice_remarks",
     "chosen_by_prediction",
     "field_shares",
-    "followed",
-    "found_in",
+    "search_with_memory",
+    "with_chosen_set",
 ]

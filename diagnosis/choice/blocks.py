@@ -6,10 +6,10 @@ from matstd.diagnosis.fit import MIN_POSES, Fit
 from matstd.diagnosis.regression import Memory
 from matstd.twin.record import IntArray
 
-MOST = 6
+MAX_BLOCKS = 6
 """Blocks of a choice by prediction: each is one more search."""
 
-LENGTHS = 3.0
+MEMORY_LENGTHS = 3.0
 """Times that a block is longer than the memory of the residual: 5 % are left at its middle."""
 
 
@@ -22,7 +22,6 @@ def blocks(fit: Fit, memory: Memory | None) -> tuple[IntArray, ...]:
     remembers.
 
     Args:
-        fit: Any fit of the run.
         memory: Of what it leaves; None for none.
     """
     t = fit.run.touches
@@ -35,10 +34,10 @@ def blocks(fit: Fit, memory: Memory | None) -> tuple[IntArray, ...]:
     middle = [float(np.median(t.time[rows][label == k])) for k in range(count)]
     label = np.argsort(np.argsort(middle, kind="stable"))[label]  # numbered as they came
     remembered = _touches(fit, memory)
-    if count >= MIN_POSES and len(rows) / count >= LENGTHS * remembered:
-        merged = label * min(count, MOST) // count
+    if count >= MIN_POSES and len(rows) / count >= MEMORY_LENGTHS * remembered:
+        merged = label * min(count, MAX_BLOCKS) // count
         return tuple(rows[merged == k] for k in range(int(merged.max()) + 1))
-    several = int(np.clip(len(rows) / max(LENGTHS * remembered, 1.0), MIN_POSES, MOST))
+    several = int(np.clip(len(rows) / max(MEMORY_LENGTHS * remembered, 1.0), MIN_POSES, MAX_BLOCKS))
     return tuple(np.sort(rows[part]) for part in np.array_split(order, several))
 
 

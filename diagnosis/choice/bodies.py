@@ -20,7 +20,7 @@ from matstd.diagnosis.evidence import (
     tuned_variants,
 )
 from matstd.diagnosis.regression import GrossErrors
-from matstd.diagnosis.search import WORTH, DiagnosisTask, refined_set
+from matstd.diagnosis.search import MIN_LOG_EVIDENCE_GAIN, DiagnosisTask, refined_set
 from matstd.twin.effects import repeat
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Symbol
@@ -28,14 +28,14 @@ from matstd.twin.model import Effect, moving_axes
 from matstd.twin.record import IntArray, Touches
 from matstd.twin.thermal import ThermalLag, drives, follower, is_speed
 
-ALIKE = 0.999
+MIN_CORRELATION_ALIKE = 0.999
 """Correlation from which two component errors act alike at the touches of a run."""
 
-USUAL = 16.0
-"""Factor on the usual size of every effect of a body: two that share what they explain, one fast
-and one slow, are each larger than the sum."""
+PRIOR_FACTOR = 16.0
+"""Factor on the usual size of every effect of a body. A fast and a slow effect that share what they
+explain are each larger than their sum."""
 
-ROUNDS = 3
+REFINEMENT_ROUNDS = 3
 """Turns in which the time constants of all bodies are refined beside one another."""
 
 
@@ -57,20 +57,15 @@ class _Family:
 def bodies(
     task: DiagnosisTask, added: tuple[ScaledEffect, ...], gross: GrossErrors
 ) -> tuple[ScaledEffect, ...]:
-    """For every component error that touches tell apart the body that explains it best, if any.
-
-    Args:
-        added: Effects that the user added.
-        gross: Gross errors, as they were found.
-    """
+    """For every distinguishable component error the body that explains it best, if any."""
     complement = ResidualSpace.of(task.fit(added, gross))
     touches = complement.touches
     chosen: list[ScaledEffect] = []
     for symbol in carriers(touches):
         base = EffectSet(complement, projected(complement, chosen))
         effects = _best(base, _family(symbol, touches))
-        chosen += [ScaledEffect(e, USUAL) for e in effects]
-    return tuple(refined_set(complement, chosen, ROUNDS)) if chosen else ()
+        chosen += [ScaledEffect(e, PRIOR_FACTOR) for e in effects]
+    return tuple(refined_set(complement, chosen, REFINEMENT_ROUNDS)) if chosen else ()
 
 
 def carriers(touches: Touches) -> Iterator[Symbol]:
@@ -85,7 +80,7 @@ def carriers(touches: Touches) -> Iterator[Symbol]:
             continue
         part = touches.signature.twist[:, chain.link_index(axis), symbol.component]
         size = float(np.linalg.norm(part))
-        if size > 0.0 and all(abs(part @ s) < ALIKE * size for s in seen):
+        if size > 0.0 and all(abs(part @ s) < MIN_CORRELATION_ALIKE * size for s in seen):
             seen.append(part / size)
             yield symbol
 
@@ -107,10 +102,10 @@ def _family(symbol: Symbol, touches: Touches) -> _Family:
 def _best(base: EffectSet, family: _Family) -> list[Effect]:
     """Effects of the body with most evidence; none where none pays for its freedom."""
     complement = base.complement
-    C = complement.project(complement.columns(family.effects)) * USUAL
+    C = complement.project(complement.columns(family.effects)) * PRIOR_FACTOR
     E = base.whiten(C)
     S, g = C.T @ C - E.T @ E, C.T @ complement.residual - E.T @ base.along
-    best, top = np.zeros(0, dtype=np.int64), base.evidence + WORTH
+    best, top = np.zeros(0, dtype=np.int64), base.evidence + MIN_LOG_EVIDENCE_GAIN
     for members in _members(family):
         part = S[members[:, :, None], members[:, None, :]] + np.eye(members.shape[1])
         along = g[members]

@@ -18,12 +18,12 @@ from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 from matstd.twin.record import IntArray
 
-SIZES = 2.0 ** np.arange(-10.0, 3.0)
+PRIOR_SIZES = 2.0 ** np.arange(-10.0, 3.0)
 """Sizes of the prior that are tried, in usual sizes: an octave apart, since the error of prediction
 is flat around the best to a factor of two."""
 
-SETTLINGS = 2
-"""Fits until the size of the noise beside the field is the one that its prior was chosen for."""
+NOISE_PASSES = 2
+"""Fits until the noise beside the field has the size for which its prior was chosen."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,7 +33,6 @@ class _Block:
     Attributes:
         weighted: Over the noise, (K + 1, K + 1).
         plain: In mm, (K + 1, K + 1).
-        rows: Number of rows.
     """
 
     weighted: Array
@@ -51,18 +50,15 @@ def sized_field(
     """A field at the size of its prior with which left-out blocks are predicted best.
 
     Args:
-        added: Effects that the user added.
-        gross: Gross errors, as they were found.
-        warm: The field.
         groups: Rows of the run in every block; rows not in use are passed over.
     """
     base = task.fit(added, gross)
     blocks, model = _blocks(base, warm, groups)
     quiet = _quietest(blocks, model)
-    errors = [_left_out(blocks, model, quiet, float(size)) for size in SIZES]
-    size = float(SIZES[int(np.argmin(errors))])
+    errors = [_left_out(blocks, model, quiet, float(size)) for size in PRIOR_SIZES]
+    size = float(PRIOR_SIZES[int(np.argmin(errors))])
     sized = ScaledEffect(warm, size / FREEDOM)
-    for _ in range(SETTLINGS):
+    for _ in range(NOISE_PASSES):
         noise = task.fit((*added, sized), gross).noise.factor / base.noise.factor
         sized = ScaledEffect(warm, size / FREEDOM * noise / quiet)
     return sized
@@ -91,7 +87,7 @@ def _quietest(blocks: Sequence[_Block], model: int) -> float:
     """Noise with the field at its usual size, over that of the model without it."""
     G = np.sum([b.weighted for b in blocks], axis=0)
     noise = 1.0
-    for _ in range(SETTLINGS + 1):
+    for _ in range(NOISE_PASSES + 1):
         phi = _solved(G, model, noise, 1.0)
         whole = np.append(-phi, 1.0)
         rows = sum(b.rows for b in blocks)

@@ -16,11 +16,11 @@ import numpy as np
 from matstd.diagnosis.choice.blocks import blocks
 from matstd.diagnosis.choice.bodies import bodies
 from matstd.diagnosis.choice.field import sized_field
-from matstd.diagnosis.choice.needed import needed
-from matstd.diagnosis.choice.remembering import memory_of
+from matstd.diagnosis.choice.noise_memory import memory_of
+from matstd.diagnosis.choice.prune import prune_by_held_out_error
 from matstd.diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.regression import CLEARLY, GrossErrors, Memory
+from matstd.diagnosis.regression import MIN_GAIN_MEMORY, GrossErrors, Memory
 from matstd.diagnosis.search import (
     Budget,
     DiagnosisTask,
@@ -38,26 +38,26 @@ from matstd.twin.numbers import rms
 from matstd.twin.record import IntArray, Touches
 from matstd.twin.thermal import drives, field
 
-SLOW = 4.0
+MIN_ROWS_PER_INDEPENDENT = 4.0
 """Touches for one independent observation from which a residual is no longer nearly white."""
 
-SETS = 300.0
+MAX_SETS_PER_BLOCK = 300.0
 """Sets that the search of one block may try: a fifth of what a whole diagnosis may."""
 
-MOST_ROWS = 4000
-"""Rows by which ways of choosing are judged: the searches of all blocks go through them."""
+MAX_ROWS = 4000
+"""Most rows used to judge ways of choosing, since each block needs a search of its own."""
 
-PLAINLY = 0.97
-"""Share of the error of the simpler way that another way must reach to be preferred: blocks are
-few, and 3 % are well inside their scatter."""
+MAX_ERROR_SHARE = 0.97
+"""Share of the error of the simpler way below which another way is preferred. Blocks are few, and 3
+% are well within their scatter."""
 
 
-LOUD = 1.3
-"""Noise with memory over stated noise from which it may be a cause that drives something."""
+MIN_LOUD_NOISE = 1.3
+"""Noise with memory over stated noise above which it may have a cause that a drive explains."""
 
-REMEMBERED = 0.85
-"""Share of the error of a set in noise with memory that a way must reach to take its place: that
-set was found with all rows in sight, and noise that remembers is the simpler cause."""
+MAX_ERROR_SHARE_MEMORY = 0.85
+"""Share of the error of a set in noise with memory below which a way replaces it. That set was
+found from all rows, and noise with memory is the simpler cause."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,7 +66,6 @@ class ChoiceRule:
 
     Attributes:
         name: `nothing`, `two time constants`, `single effects`, `thermal field`.
-        effects: What it chooses with all rows in sight.
         errors: Plain root mean square error of every block left out, the choice made anew each
             time, (B,), mm.
         rows: Of every block, (B,).
@@ -89,10 +88,9 @@ class Choice:
 
     Attributes:
         rules: All that were judged, the simplest first.
-        best: The one to follow.
         blocks: Number of blocks that were left out, one after the other.
         memory: Of what is left with it; None where it is white.
-        is_ended: Whether a search for single effects was ended by its limit, `SETS`.
+        is_ended: Whether a search for single effects was ended by its limit, `MAX_SETS_PER_BLOCK`.
     """
 
     rules: tuple[ChoiceRule, ...]
@@ -116,23 +114,18 @@ def chosen_by_prediction(
 
     There is where structure is left, or noise with memory that is larger than stated, what is left
     is slow, and the run recorded something that may drive it.
-
-    Args:
-        added: Effects that the user added.
-        final: Result of the search.
-        candidates: Effects that may be found, fields among them.
-        progress: Told of every block.
     """
     remembers = task.memory is not None
     is_open = bool(final.left or final.nameless)
     if remembers:
-        is_open = task.fit((*added, *final.effects), final.base.gross).noise.factor > LOUD
+        is_open = task.fit((*added, *final.effects), final.base.gross).noise.factor > MIN_LOUD_NOISE
     if not is_open or not drives(task.run.touches):
         return None
+    # ways are compared in white noise: a memory would absorb what they are to explain
     task = replace(task, memory=None)
     fit = task.fit((*added, *final.effects), final.base.gross)
     memory, gain = memory_of(fit)
-    if gain < CLEARLY or memory.per_independent < SLOW:
+    if gain < MIN_GAIN_MEMORY or memory.per_independent < MIN_ROWS_PER_INDEPENDENT:
         return None
     task = thinned(task, fit)
     fit = task.fit((*added, *final.effects), final.base.gross)
@@ -145,27 +138,29 @@ def chosen_by_prediction(
         progress(done / len(choosers), "choice by prediction")
         errors = _errors(task, added, gross, groups, chooser)
         counts = np.array([len(g) for g in groups])
+        # the choice is made anew without each block, so that its error pays for the choice
         rules.append(ChoiceRule(name, chooser(task, gross), errors, counts))
     best = rules[0]
+    # the simplest way comes first, and a later one must be clearly better
     for rule in rules[1:]:
-        if rule.error < PLAINLY * best.error:
+        if rule.error < MAX_ERROR_SHARE * best.error:
             best = rule
     if remembers:
         errors = _errors(task, added, gross, groups, lambda task, gross: final.effects)
-        if best.error > REMEMBERED * replace(best, errors=errors).error:
+        if best.error > MAX_ERROR_SHARE_MEMORY * replace(best, errors=errors).error:
             return None
     left = memory_of(task.fit((*added, *best.effects), gross))
     return Choice(
         rules=tuple(rules),
         best=best,
         blocks=len(groups),
-        memory=left[0] if left[1] >= CLEARLY else None,
+        memory=left[0] if left[1] >= MIN_GAIN_MEMORY else None,
         is_ended=any(b.is_spent for b in budgets),
     )
 
 
 def candidate_effects(touches: Touches) -> list[Effect]:
-    """All that a diagnosis may find in a run: proposals of the library and the field of drives."""
+    """All effects that a diagnosis may find in a run: proposals of the library, field of drives."""
     warm = field(touches)
     return [*proposals(touches), *([warm] if warm is not None else [])]
 
@@ -183,7 +178,7 @@ def _choosers(
     if {"thermal-lag", "thermal-static"} <= {e.kind for e in single}:
         out["two time constants"] = lambda task, gross: bodies(task, added, gross)
     if single:
-        out["single effects"] = lambda task, gross: named(
+        out["single effects"] = lambda task, gross: single_effects(
             task, added, gross, single, groups, budgets
         )
     if warm is not None:
@@ -208,11 +203,11 @@ def _errors(
 
 
 def thinned(task: DiagnosisTask, fit: Fit) -> DiagnosisTask:
-    """The task, of a long run with an even choice of its instants alone; each is kept whole."""
+    """The task of a long run reduced to an even choice of its instants; each is kept whole."""
     rows = np.flatnonzero(fit.used)
     time = task.run.touches.time
     instants = np.unique(time[rows])
-    every = -(-len(rows) // MOST_ROWS)
+    every = -(-len(rows) // MAX_ROWS)
     if every == 1 or len(instants) < len(blocks(fit, None)) * every:
         return task
     return without(task, rows[~np.isin(time[rows], instants[::every])])
@@ -225,7 +220,7 @@ def without(task: DiagnosisTask, rows: IntArray) -> DiagnosisTask:
     return replace(task, run=replace(task.run, split=split))
 
 
-def named(
+def single_effects(
     task: DiagnosisTask,
     added: tuple[ScaledEffect, ...],
     gross: GrossErrors,
@@ -236,21 +231,18 @@ def named(
     """Single effects by search, then those with inner parameters once more beside themselves.
 
     Args:
-        added: Effects that the user added.
-        gross: Gross errors, as they were found.
-        candidates: Effects that may be found.
         groups: Rows of the run in every block; each effect must lower the error of blocks left out.
-        budgets: Those of its searches join them, for whoever asks whether a limit was met.
+        budgets: Those of its searches join them, so that a limit that was met is reported.
     """
     complement = ResidualSpace.of(task.fit(added, gross))
     found: list[ScaledEffect] = []
     more: list[Effect] = []
     for _ in range(2):
         library = Library.of(complement, [*candidates, *more])
-        budgets.append(Budget(SETS))
+        budgets.append(Budget(MAX_SETS_PER_BLOCK))
         chosen = scaled(best_set(library, found, budgets[-1])[1])
         found = list(refined_set(complement, chosen))
         more = [a for s in found if (a := repeat(s.effect)) is not None]
         if not more:
             break
-    return needed(complement, found, groups)
+    return prune_by_held_out_error(complement, found, groups)

@@ -2,18 +2,17 @@
 
 import numpy as np
 
-from matstd.diagnosis.drift.lags import LAGS, followed
+from matstd.diagnosis.drift.lags import LAGS, first_order_lag
 from matstd.diagnosis.drift.record import DriftRecord, is_speed
 from matstd.twin.frames import Array
 from matstd.twin.units import HOUR
 
-FARTHEST = 2.0 * HOUR
+MAX_LEAD = 2.0 * HOUR
 """Longest lead that is looked for, s."""
 
-CLEARLY = 0.8
-"""What is left of the changes with the lead, over what is left without it, from which it counts:
-records of a real and of a simulated spindle leave 0.98 and more at every lead.
-"""
+MAX_SHARE_LEFT = 0.8
+"""Residual of the changes with the lead over the residual without it, below which the lead counts.
+Records of a real and of a simulated spindle leave 0.98 and more at every lead."""
 
 
 def lead(record: DriftRecord) -> float:
@@ -26,14 +25,14 @@ def lead(record: DriftRecord) -> float:
     speeds = [d for d in record.drives if is_speed(d) and np.ptp(record.columns([d])) > 0.0]
     if not speeds or not len(record.components):
         return 0.0
-    columns = [followed(record, d, tau) for d in speeds for tau in LAGS[:3]]
+    columns = [first_order_lag(record, d, tau) for d in speeds for tau in LAGS[:3]]
     X = np.diff(np.column_stack(columns), axis=0)
     y = np.diff(record.displacement / record.size, axis=0)
     inside = np.diff(record.stretch) == 0
-    most = min(int(FARTHEST / record.step), len(y) // 4)
+    most = min(int(MAX_LEAD / record.step), len(y) // 4)
     left = [_left(X, y, inside, k, most) for k in range(most + 1)]
     best = int(np.argmin(left))
-    return best * record.step if best >= 2 and left[best] < CLEARLY * left[0] else 0.0
+    return best * record.step if best >= 2 and left[best] < MAX_SHARE_LEFT * left[0] else 0.0
 
 
 def _left(X: Array, y: Array, inside: np.ndarray, shift: int, most: int) -> float:

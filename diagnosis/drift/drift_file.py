@@ -33,15 +33,7 @@ def write_drift(
     best: Judged,
     said: Mapping[str, object],
 ) -> None:
-    """Write what every law leaves, and the chosen law with all that a prediction needs.
-
-    Args:
-        path: JSON.
-        record: That was learnt from.
-        judged: Every law.
-        best: The chosen one.
-        said: Of the hours, logs and probings.
-    """
+    """Write what every law leaves, and the chosen law with all that a prediction needs."""
     names = [f"{c}_{SHOWN[u]}" for c, u in zip(record.components, record.units, strict=True)]
     data = {
         "format": FORMAT,
@@ -97,11 +89,7 @@ class SavedLaw:
     """The chosen law of an earlier comparison.
 
     Attributes:
-        name: Of the law.
-        law: As it was fitted.
         factor: By which left-out blocks missed more than residual and leverage say, (K,).
-        drives: That it wants in a log.
-        components: That it predicts.
         units: Of each, "mm" or "rad".
         step: Of its rows, s.
     """
@@ -186,8 +174,6 @@ def write_prediction(path: str | Path, record: DriftRecord, predicted: Array, u:
     """Write a predicted drift with its standard uncertainty as a table over time.
 
     Args:
-        path: CSV.
-        record: Whose rows were predicted.
         predicted: (N, K), base units.
         u: (N, K).
     """

@@ -35,8 +35,6 @@ class Bound:
     """One output of a law as a component error: the same everywhere, or growing along the axis.
 
     Attributes:
-        column: Output of the law.
-        symbol: Component error.
         sign: -1 where the column has the opposite sense.
         zero: Reading at which nothing of it is felt, mm or rad.
         whole: Reading at which all of it is felt; equal to `zero` for the same everywhere.
@@ -92,8 +90,6 @@ class DriftLaw:
 
     Attributes:
         path: Of the law, as it was written.
-        saved: The law.
-        bound: What its columns move.
         has_unknowns: Whether what is not known of the law are parameters too. A model that is
             estimated from touches has only the law, 1 if it is right.
 
@@ -282,8 +278,6 @@ def bound_of(chain: Chain, saved: SavedLaw, arguments: Sequence[str], text: str)
     """One output that is bound; raises UnknownEffect, UnknownSymbol.
 
     Args:
-        chain: The machine.
-        saved: The law.
         arguments: Of the effect, for messages.
         text: `column:EZZ`, `column:-EXX`, `column:EYY@-110:35`.
     """
@@ -305,6 +299,7 @@ def bound_of(chain: Chain, saved: SavedLaw, arguments: Sequence[str], text: str)
         ends = (np.inf, np.inf)
     if not np.isfinite(ends).all() or (low is not None and ends[0] == ends[1]):
         raise refusal(USAGE, arguments, f"two readings after @ for '{text}'")
+    # readings in the text are in degrees for a rotary axis, as in all files
     one = DEG if chain.link(symbol.link).kind == "rotary" else 1.0
     return Bound(
         column=column,

@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 
 from matstd.diagnosis.drift.constant import constant
-from matstd.diagnosis.drift.lags import at_once, remembered
+from matstd.diagnosis.drift.lags import at_once, lagged_drives
 from matstd.diagnosis.drift.linear import ridge
 from matstd.diagnosis.drift.record import DriftRecord, IntArray, blocks, is_speed
 from matstd.twin.compute import Progress
@@ -44,11 +44,9 @@ class Judged:
     """One law and how it did, root mean squares by component, (K,), base units.
 
     Attributes:
-        name: Of the law.
         law: Fitted to all of the training part.
         one_step: In the held-out hours, the displacement of the row before given.
         left_out: Free run in blocks of the training part that neither fit nor choice had seen.
-        free_run: In the held-out hours.
         noisy: The same with noise on the temperatures; None where none was asked for.
         factor: By which left-out blocks miss more than residual and leverage say.
     """
@@ -78,8 +76,8 @@ def offered(record: DriftRecord) -> dict[str, Fits]:
         "static-ridge": lambda r, p: ridge(r, at_once(r), p),
     }
     if any(map(is_speed, record.drives)):
-        laws["speed-lags"] = lambda r, p: ridge(r, remembered(r, temperatures=False), p)
-    laws["lags"] = lambda r, p: ridge(r, remembered(r, temperatures=True), p)
+        laws["speed-lags"] = lambda r, p: ridge(r, lagged_drives(r, temperatures=False), p)
+    laws["lags"] = lambda r, p: ridge(r, lagged_drives(r, temperatures=True), p)
     return laws
 
 
@@ -94,12 +92,7 @@ def judge(
     """Fit and judge laws; the choice among them never sees a held-out row.
 
     Args:
-        record: Training part and held-out hours.
-        train: Rows to learn from.
-        held: Rows held out.
-        laws: By name.
         show: Told which law is at work.
-        noisy: The same record with noise on its temperatures.
     """
     out = []
     for k, (name, fits) in enumerate(laws.items()):

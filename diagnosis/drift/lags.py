@@ -29,19 +29,17 @@ class Lagged:
         drive = record.columns([name for name, _ in self.places])
         out = np.empty_like(drive)
         for k, (name, tau) in enumerate(self.places):
-            out[:, k] = followed(record, name, tau) if tau > 0.0 else drive[:, k]
+            out[:, k] = first_order_lag(record, name, tau) if tau > 0.0 else drive[:, k]
         return out
 
 
-def followed(record: DriftRecord, drive: str, tau: float) -> Array:
+def first_order_lag(record: DriftRecord, drive: str, tau: float) -> Array:
     """A drive after a first-order lag of gain 1, (N,).
 
     In every stretch anew: at its first row the machine has settled at the temperatures that it has
     there, and is cold where speeds are concerned.
 
     Args:
-        record: With the drive.
-        drive: Its name.
         tau: Time constant of the lag, s.
     """
     values = record.columns([drive])[:, 0]
@@ -60,11 +58,10 @@ def at_once(record: DriftRecord) -> Lagged:
     return Lagged(tuple((name, 0.0) for name in record.drives))
 
 
-def remembered(record: DriftRecord, temperatures: bool) -> Lagged:
+def lagged_drives(record: DriftRecord, temperatures: bool) -> Lagged:
     """Every temperature at once, and speeds with every lag.
 
     Args:
-        record: With the drives.
         temperatures: Whether temperatures are followed with lags too.
     """
     speeds = [name for name in record.drives if is_speed(name)]

@@ -12,7 +12,7 @@ from matstd.twin.frames import Array
 WEIGHTS = 10.0 ** np.arange(-6.0, 1.1, 0.5)
 """Of ridge regression, in variances of a standardised column."""
 
-SAME = 1e-9
+MIN_RELATIVE_SPREAD = 1e-9
 """A column whose spread is less than this of its size is constant."""
 
 
@@ -107,7 +107,7 @@ def _with_one(columns: Array) -> Array:
 def standardised(X: Array, rows: IntArray) -> tuple[Array, Array, Array]:
     """Columns less their mean over rows and in units of their spread there, mean and spread."""
     mean, spread = X[rows].mean(axis=0), X[rows].std(axis=0)
-    scale = np.where(spread > SAME * np.maximum(np.abs(mean), 1.0), spread, np.inf)
+    scale = np.where(spread > MIN_RELATIVE_SPREAD * np.maximum(np.abs(mean), 1.0), spread, np.inf)
     return (X - mean) / scale, mean, scale
 
 
@@ -154,6 +154,7 @@ def fitted(
     spread: Array = np.sqrt(np.mean(left**2, axis=0))
     memory = memory_of(left / record.size, record.step)
     independent = max(len(rows) * record.step / (2.0 * memory), 1.0)
+    # columns that are sums of one another make the matrix singular
     inverse: Array = np.asarray(
         np.linalg.pinv((gram + penalty) / len(rows), hermitian=True), dtype=np.float64
     )

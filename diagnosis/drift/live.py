@@ -22,7 +22,6 @@ class LiveDrift:
         """The law at the moment of the preset.
 
         Args:
-            law: Of the machine.
             begin: The machine's history up to then, the moment last.
         """
         self.law = law
@@ -80,7 +79,6 @@ class LiveDrift:
 
         Args:
             left: What is left of every column, base units; NaN where nothing was probed.
-            u: Standard uncertainty of each.
 
         Raises:
             DesignError: Other numbers of values, or an uncertainty that is none.

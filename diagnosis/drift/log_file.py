@@ -25,10 +25,10 @@ DISPLACEMENTS = {
 }
 """Endings of columns of displacements, their base unit, and what one of it is in that."""
 
-BRIDGED = 5.0 * MINUTE
+MAX_BRIDGED = 5.0 * MINUTE
 """Longest time without a reading that is bridged by a straight line, s."""
 
-SHORTEST = 20
+MIN_STRETCH = 20
 """Steps of the shortest stretch between two gaps that is used."""
 
 TYPES = "T_name_degC or name_degC, name_rpm, V_name_unit; name_um, _mm, _urad, _mrad, _arcsec"
@@ -84,9 +84,9 @@ def _text(path: str | Path) -> str:
 
 def _time(table: CsvTable) -> Array:
     """Time of every row, (N,), s, rising."""
-    if len(table) < 2 * SHORTEST:
+    if len(table) < 2 * MIN_STRETCH:
         found = f"{len(table)} rows"
-        raise BadFile(table.path, "table", found, f"{2 * SHORTEST} readings at least")
+        raise BadFile(table.path, "table", found, f"{2 * MIN_STRETCH} readings at least")
     name = next((n for n in ("clock", *TIMES) if n in table), None)
     if name is None:
         table.require(["time_s"])
@@ -140,7 +140,7 @@ def _drive_name(column: str) -> str:
 
 
 def _values(table: CsvTable, name: str, remarks: list[str]) -> Array:
-    """A column; what is missing or absurd is NaN, and told."""
+    """A column; missing or absurd values are NaN and reported."""
     if name.endswith("_degC"):
         values, bad = table.temperatures(name)
     else:
@@ -170,9 +170,11 @@ def _stretches(grid: Array, step: float, remarks: list[str]) -> tuple[np.ndarray
     known = np.isfinite(grid).all(axis=1)
     rows = np.flatnonzero(known)
     apart = np.diff(rows) * step
-    cuts = np.flatnonzero(apart > max(BRIDGED, 3.0 * step))
+    cuts = np.flatnonzero(apart > max(MAX_BRIDGED, 3.0 * step))
     runs = [
-        np.arange(run[0], run[-1] + 1) for run in np.split(rows, cuts + 1) if len(run) >= SHORTEST
+        np.arange(run[0], run[-1] + 1)
+        for run in np.split(rows, cuts + 1)
+        if len(run) >= MIN_STRETCH
     ]
     if len(cuts):
         remarks.append(
@@ -214,7 +216,6 @@ def read_probed(path: str | Path, record: DriftRecord) -> tuple[IntArray, Array,
     Args:
         path: CSV with the record's kind of time, its components with a unit, and where known
             `u_um`.
-        record: The log of the same hours.
 
     Returns:
         Rows (n,), values (n, K) in base units, uncertainties (n,) in components' sizes or None.

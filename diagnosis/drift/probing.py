@@ -19,14 +19,13 @@ from matstd.diagnosis.drift.record import DriftRecord, IntArray
 from matstd.twin.frames import Array
 from matstd.twin.units import DAY
 
-RENEWED = 2.0 * DAY
-"""Time in which a machine changes by as much as its coefficients were unknown, s: of a week with
-a change of its load half-way, 1 to 4 days differ by less than a tenth of what is left.
-"""
+RENEWAL_TIME = 2.0 * DAY
+"""Time in which the coefficients of a machine change by their uncertainty, s. In a week with a
+change of load half-way, 1 to 4 days change the residual by less than a tenth."""
 
 
 @dataclass(frozen=True, eq=False)
-class Kept:
+class ProbedPrediction:
     """A drift as it is predicted with the probings up to every row.
 
     Attributes:
@@ -40,13 +39,13 @@ class Kept:
     offset_only: Array
 
 
-def kept(judged: Judged, record: DriftRecord, rows: IntArray, u: float | Array) -> Kept:
+def predict_with_probings(
+    judged: Judged, record: DriftRecord, rows: IntArray, u: float | Array
+) -> ProbedPrediction:
     """Predict with probings at some rows of a record.
 
     Args:
-        judged: The law, with what it missed in left-out blocks.
         record: Its displacement is known at `rows` only.
-        rows: Rows at which a standard was probed.
         u: Standard uncertainty of what was probed, µm or µrad, one for all or (n,).
     """
     law = judged.law
@@ -67,7 +66,7 @@ def kept(judged: Judged, record: DriftRecord, rows: IntArray, u: float | Array) 
                 filtered.update(basis[t], misses[t], (noise[t] * record.size[k]) ** 2)
             added, v = filtered.at(basis[t])
             out[t, k], spread[t, k] = free[t, k] + added, np.sqrt(v)
-    return Kept(out, spread, _held(record, known))
+    return ProbedPrediction(out, spread, _held(record, known))
 
 
 def _held(record: DriftRecord, known: np.ndarray) -> Array:
@@ -107,7 +106,7 @@ class Unknowns:
         self.covariance[m] *= fades
         self.covariance[:, m] *= fades
         self.covariance[m, m] += self.variance * (1.0 - fades**2)
-        self.covariance[:m, :m] += self.first * step / RENEWED
+        self.covariance[:m, :m] += self.first * step / RENEWAL_TIME
 
     def update(self, row: Array, value: float, noise: float) -> None:
         """With a probed value of what the law misses, and its variance."""

@@ -13,7 +13,7 @@ from matstd.twin.units import UM, URAD
 IntArray = NDArray[np.int64]
 
 SIZE = {"mm": UM, "rad": URAD}
-"""What counts alike where several components are judged together: 1 µm and 1 µrad."""
+"""Sizes that weigh equally where several components are judged together: 1 µm and 1 µrad."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +24,6 @@ class DriftRecord:
         time: Of every row since the start of its log, (N,), s.
         stretch: Number of the stretch without a gap that a row belongs to, (N,), rising.
         step: Between rows of a stretch, s.
-        drives: Names of what may drive the drift.
         drive: Their values, (N, D); degC, 1/min, or the unit of an own column.
         components: Names of the displacements, without unit.
         units: Of each, "mm" or "rad".
@@ -131,7 +130,6 @@ def joined(records: Sequence[DriftRecord], own_zeros: bool = False) -> DriftReco
     """Several logs of one machine, one after the other; their drives and components are equal.
 
     Args:
-        records: Of each.
         own_zeros: Whether displacements of each log count from a zero of its own.
     """
     first = records[0]

@@ -18,7 +18,7 @@ from matstd.diagnosis.evidence.effect_signatures import (
     tuned_variants,
 )
 from matstd.diagnosis.evidence.evidence import (
-    SAME,
+    MIN_OWN_SHARE,
     EffectSet,
     Scores,
     addition,
@@ -29,7 +29,7 @@ from matstd.diagnosis.evidence.evidence import (
 from matstd.diagnosis.evidence.periods import period_of, scanned_grids, strongest
 
 __all__ = [
-    "SAME",
+    "MIN_OWN_SHARE",
     "EffectSet",
     "Grid",
     "Progress",

@@ -27,12 +27,12 @@ Progress = Callable[[float, str], None]
 BLOCK = 256
 """Columns that are projected at a time."""
 
-GRID_MOST = 1000
+MAX_GRID_POINTS = 1000
 """Most points of the grid of one effect's inner parameters."""
 
 
 def quiet(share: float, doing: str) -> None:
-    """Progress that nobody watches."""
+    """Ignore progress."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,6 @@ class ResidualSpace:
         residual: Data and prior rows, (N + P,).
         dof: Degrees of freedom left.
         groups: Rows of every table pose.
-        gross: Which of all touches were left out as gross errors.
         whitener: Filter of the noise's memory; None for white noise.
         stated: Squared residual that the stated size of the noise counts for, as `PRIOR_DOF`
             observations, in units of the found one.
@@ -135,7 +134,6 @@ class ScaledEffect:
     """An effect, and how many times larger than usual it is taken to be.
 
     Attributes:
-        effect: With its inner parameters.
         scale: Factor on the prior standard deviations of its parameters.
     """
 
@@ -158,7 +156,7 @@ def tuned_variants(effect: Effect, touches: Touches) -> list[Effect]:
         return [effect]
     grids = [np.asarray(inner.grid, dtype=float) for inner in effect.inner(touches)]
     points = list(product(*grids))
-    step = max(1, -(-len(points) // GRID_MOST))
+    step = max(1, -(-len(points) // MAX_GRID_POINTS))
     return [effect.tuned(*(float(v) for v in point)) for point in points[::step]] or [effect]
 
 
@@ -167,10 +165,8 @@ class Signatures:
     """Projected columns of many variants, side by side.
 
     Attributes:
-        complement: What they are projected on.
         variants: Effects, one for every point of every grid.
         owner: Index of the candidate that a variant belongs to, (V,).
-        names: Names of the candidates.
         C: Projected, whitened, scaled columns, (N + P, M).
         start: First column of every variant, (V + 1,).
         size: Norm of every column before the projection, (M,).
@@ -238,7 +234,6 @@ class Grid:
     """A candidate at the points of its grid.
 
     Attributes:
-        effect: The candidate.
         variants: At every point that is kept.
         tries: Points that were tried, kept or not.
     """
@@ -267,10 +262,7 @@ def signatures(
     """Signatures of candidates at the points of their grids.
 
     Args:
-        complement: What the fitted model leaves.
-        grids: Candidates that are not in the model.
         tried: Number of candidates that were tried altogether, those of a screening included.
-        progress: Told after every block.
     """
     variants = [v for grid in grids for v in grid.variants]
     owner = np.repeat(np.arange(len(grids)), [len(grid.variants) for grid in grids])

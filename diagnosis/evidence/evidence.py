@@ -11,7 +11,7 @@ from matstd.diagnosis.regression import PRIOR_DOF, LeftOut, f_probability, left_
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 
-VISIBLE = 0.25
+MIN_VISIBLE = 0.25
 """Squared signature per unit of prior, over the noise, below which a direction of an effect's
 parameters could not be seen even at its expected size; it is not counted as a degree of freedom."""
 
@@ -21,9 +21,9 @@ SCALES = (1.0, 4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0)
 Sizes count in units of the noise that the starting model leaves, which an effect of thirty times
 the true noise inflates as much: beside the true noise it must still be free."""
 
-SAME = 1e-4
-"""Share of the square of a signature that model and other effects must leave of it: with less, its
-size is a hundred times as uncertain as it would be without them, and says nothing."""
+MIN_OWN_SHARE = 1e-4
+"""Share of the square of a signature that model and other effects must leave. With less, its size
+is a hundred times as uncertain as it would be alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +31,6 @@ class EffectSet:
     """A model with a set of further effects in it.
 
     Attributes:
-        complement: What the model without them leaves.
         A: Their projected columns, (N + P, K); K may be 0.
     """
 
@@ -149,8 +148,8 @@ class Scores:
     Attributes:
         free_drop: Fall of the squared residual over visible directions, prior aside, (V,).
         freedom: Number of those directions, (V,).
-        evidence: Log evidence of the set with the variant, (V,); none where `SAME` share or less
-            of its signature is its own.
+        evidence: Log evidence of the set with the variant, (V,); none where `MIN_OWN_SHARE` share
+            or less of its signature is its own.
         scale: Factor on its usual size that gives most evidence, (V,).
         p: Probability of such a fall by chance, one variant, no correction, (V,).
     """
@@ -169,8 +168,6 @@ def score_all(effects: EffectSet, pool: Signatures, inside: Array | None = None)
     each variant.
 
     Args:
-        effects: The set.
-        pool: Signatures of all candidates.
         inside: That product, (K, M), where it is known; the touches are then not gone through.
     """
     E = effects.whiten(pool.C) if inside is None else effects.lower_solve(inside)
@@ -184,7 +181,6 @@ def screen(effects: EffectSet, sample: EffectSet, pool: Signatures, along: Array
     the projection, which is much more work, over the choice, and scaled up.
 
     Args:
-        effects: The set over all touches.
         sample: The same set over the choice.
         pool: Signatures over the choice.
         along: Inner product of every column with the residual of the set, all touches, (M,).
@@ -204,13 +200,13 @@ def _scores(effects: EffectSet, pool: Signatures, E: Array, g: Array, share: flo
         values, along = _principal(S, g[cols])
         evidence[which], scale[which] = _scaled_evidence(effects, values, along)
         # beside what is in the set already: a large effect must not hide all smaller ones
-        signal, hidden = values * effects.dof, VISIBLE * effects.objective
+        signal, hidden = values * effects.dof, MIN_VISIBLE * effects.objective
         seen = signal > hidden
         # on a machine worse than its class by a thousand nothing is seen at its usual size
         large = signal * scale[which, None] ** 2 > hidden
         seen = np.where(seen.any(axis=1, keepdims=True), seen, large)
         whole = share * (pool.size[cols] ** 2).sum(axis=1)
-        is_same = values.sum(axis=1) < SAME * whole
+        is_same = values.sum(axis=1) < MIN_OWN_SHARE * whole
         seen[is_same] = False
         evidence[which[is_same]] = -np.inf
         free[which] = np.where(seen, along / np.where(seen, values, 1.0), 0.0).sum(axis=1)
@@ -250,10 +246,6 @@ def addition(effects: EffectSet, effect: Effect) -> tuple[float, float]:
     """Log evidence of a set with one effect more, and the likeliest scale of the effect.
 
     From inner products alone: what is projected out of its columns is never written down.
-
-    Args:
-        effects: The set without it.
-        effect: With its inner parameters.
     """
     C = effects.complement.columns([effect])
     inside = effects.basis.T @ C

@@ -1,9 +1,9 @@
 """Which periods of a long scan are worth a signature: the spectrum of a residual over an axis.
 
-The finer the readings, the more periods they resolve: ten thousand readings over 100 mm tell some
-15 000 apart. A signature of each would fill the memory, while the spectrum of the residual, weighed
-by what the effect does to every touch, costs one fast Fourier transform and ranks them alike. Short
-scans are kept whole.
+The finer the readings, the more periods they resolve: ten thousand readings over 100 mm distinguish
+some 15 000. A signature of each would fill the memory, while the spectrum of the residual,
+weighed by what the effect does to every touch, costs one fast Fourier transform and ranks them
+alike. Short scans are kept whole.
 """
 
 from collections.abc import Sequence
@@ -19,21 +19,21 @@ from matstd.diagnosis.evidence.effect_signatures import (
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Inner, Tunable, columns, is_tunable
 
-KEPT = 300
+MAX_KEPT = 300
 """Periods of a long scan that get a signature."""
 
-WHOLE = 1_000_000
-"""Touches times periods up to which all get one: 16 MB, and no spectrum that knows nothing of what
-the model can imitate has to choose among them."""
+MAX_COMPLETE_SCAN = 1_000_000
+"""Touches times periods up to which every period gets a signature, 16 MB; no spectrum that ignores
+the model then selects among them."""
 
-FINE = 8.0
+BINS_PER_PERIOD = 8.0
 """Bins of a reading in the shortest period: within a bin a sine turns by 45 degrees and keeps 97 %
 of its size."""
 
-NEIGHBOURS = 101
+BACKGROUND_WIDTH = 101
 """Scanned periods whose median is the background of a line of the spectrum."""
 
-ENDLESS = 1e9
+INFINITE_PERIOD = 1e9
 """A period in mm over which a cosine stays 1, as that of no wave a turn does."""
 
 
@@ -44,12 +44,7 @@ def period_of(effect: Effect, complement: ResidualSpace) -> Inner | None:
 
 
 def scanned_grids(candidates: Sequence[Effect], complement: ResidualSpace) -> list[Grid]:
-    """Candidates at every point of their grids; of long scans of a period at the strongest ones.
-
-    Args:
-        candidates: Effects that are not in the model.
-        complement: What the fitted model leaves.
-    """
+    """Candidates at every point of their grids; of long scans of a period at the strongest ones."""
     out = []
     for effect in candidates:
         inner = period_of(effect, complement)
@@ -73,23 +68,22 @@ def strongest(effect: Tunable, inner: Inner, complement: ResidualSpace, residual
     residual hides a small wave in the power that it spreads.
 
     Args:
-        effect: That repeats.
         inner: Its period, with the periods to choose from.
         complement: Which touches count, and their uncertainty.
         residual: Whitened, data rows first, (N + ...,).
     """
     grid = np.asarray(inner.grid, dtype=float)
-    if len(grid) <= KEPT or len(grid) * len(complement.u) <= WHOLE:
+    if len(grid) <= MAX_KEPT or len(grid) * len(complement.u) <= MAX_COMPLETE_SCAN:
         return grid
     q = complement.touches.reading(inner.over)[complement.used]
     # at an endless period the cosine is what the effect does to every touch per unit
-    still = effect.tuned(0.0 if inner.is_harmonic else ENDLESS)
+    still = effect.tuned(0.0 if inner.is_harmonic else INFINITE_PERIOD)
     C = columns([still], complement.touches)[complement.used]
     weight = C[:, int(np.argmax((C**2).sum(axis=0)))] / complement.u
     power = spectrum(q, weight * residual[: len(q)], inner.frequency(grid))
-    background = median_filter(power, NEIGHBOURS, mode="nearest")
+    background = median_filter(power, BACKGROUND_WIDTH, mode="nearest")
     outstanding = power / np.maximum(background, 1e-12 * power.max() + 1e-300)
-    best = {*np.argsort(-power)[: KEPT // 2], *np.argsort(-outstanding)[: KEPT // 2]}
+    best = {*np.argsort(-power)[: MAX_KEPT // 2], *np.argsort(-outstanding)[: MAX_KEPT // 2]}
     return grid[sorted(int(i) for i in best)]
 
 
@@ -101,7 +95,7 @@ def spectrum(q: Array, values: Array, frequencies: Array) -> Array:
         values: At every reading, (N,).
         frequencies: Waves per mm or rad, (F,).
     """
-    width = 1.0 / (FINE * float(frequencies.max()))
+    width = 1.0 / (BINS_PER_PERIOD * float(frequencies.max()))
     bins = np.round((q - q.min()) / width).astype(np.int64)
     binned = np.bincount(bins, weights=values)
     # padded fourfold: a line that lies between two bins of the transform keeps 97 % of its size

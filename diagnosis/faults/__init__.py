@@ -1,7 +1,7 @@
 """Faults of the description: what users get wrong in a machine file or a run, tried and named.
 
 In: a run whose deviations are absurd, or whose prior had to be widened. Out: every
-`DescriptionFault` that would make the run fit, with the figures. It is told and never applied.
+`DescriptionFault` that would make the run fit, with the figures. It is reported and never applied.
 """
 
 from matstd.diagnosis.faults.suspects import Fault

@@ -28,8 +28,8 @@ FREE_ANGLE = 0.1
 AS_COMPUTED = 1e-3
 """Deviations that follow from the readings do so within this, mm."""
 
-TOO_FAST = 1.0
-"""No probe touches more often than once in this time, s."""
+MIN_TOUCH_INTERVAL = 1.0
+"""Least time between two touches of a probe, s."""
 
 
 class Fault(Enum):
@@ -53,8 +53,6 @@ class Suspect:
     """One mistake undone.
 
     Attributes:
-        fault: Which mistake.
-        axes: That it concerns.
         run: As it is without the mistake, but for the free lengths.
         free: Location errors, or the radius of the ball, left free where the mistake is a number.
     """
@@ -69,7 +67,6 @@ def suspects(run: Run, is_absurd: bool) -> Iterator[Suspect]:
     """Every mistake that is tried.
 
     Args:
-        run: As it is described.
         is_absurd: Whether the deviations are no errors of a machine; else only numbers are
             suspected, since an axis that runs the other way is never a matter of micrometres.
     """
@@ -95,18 +92,17 @@ def suspects(run: Run, is_absurd: bool) -> Iterator[Suspect]:
 
 
 def has_minutes_for_seconds(run: Run) -> bool:
-    """Whether touches of a probe follow each other faster than it can make them."""
+    """Whether touches follow each other faster than a probe can make them."""
     if not run.touches.instrument.is_ball_on_standard:
         return False
     steps = np.diff(np.unique(run.touches.time))
-    return bool(len(steps) > 1 and np.median(steps) < TOO_FAST)
+    return bool(len(steps) > 1 and np.median(steps) < MIN_TOUCH_INTERVAL)
 
 
 def corrected(suspect: Suspect, theta: Array) -> Suspect:
     """A suspect with the free numbers moved by what was found, exactly.
 
     Args:
-        suspect: Any suspect.
         theta: Estimates of the parameters of its free effects, (K,).
     """
     run, t = suspect.run, suspect.run.touches
@@ -186,7 +182,7 @@ def recomputed(run: Run, touches: Touches) -> Run:
 
 
 def with_setups_placed(run: Run) -> Run:
-    """The run with its set-ups where its touches say, if its readings tell that."""
+    """The run with its set-ups where its touches indicate, if its readings determine that."""
     return aligned(run)[0] if _is_computed(run) else run
 
 

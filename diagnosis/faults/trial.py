@@ -5,7 +5,7 @@ machine is expected to have, never widened: a wrong description asks for errors 
 and undoing the mistake makes them usual again. The measure is the evidence with the size of the
 noise integrated out, over an even choice of touches without the farthest twentieth, so that chips
 decide nothing. What is named is then undone exactly, and the whole run is fitted anew: the figures
-told are those of that fit.
+reported are those of that fit.
 """
 
 from collections.abc import Iterator, Sequence
@@ -34,39 +34,40 @@ from matstd.twin.library import ordinary_model
 from matstd.twin.model import Effect, columns, traits
 from matstd.twin.record import Run, Setup, Touches
 
-TOUCHES = 400
-"""Touches that suspects are tried on: more change no answer, and thirty suspects take seconds."""
+MAX_TOUCHES = 400
+"""Most touches that suspects are tried on. More change no answer, and thirty suspects take
+seconds."""
 
-TRIMMED = 0.05
+TRIMMED_SHARE = 0.05
 """Share of the touches, farthest from a first fit, that do not count."""
 
-NAMED = 15.0
+MIN_LOG_ODDS = 15.0
 """Log odds against a right description from which a mistake is named: five standard deviations of a
 number beside what its freedom costs."""
 
-CLASS = float(np.log(100.0))
-"""Log odds below which two mistakes are not told apart."""
+MAX_LOG_ODDS_ALIKE = float(np.log(100.0))
+"""Log odds below which two mistakes are not distinguished."""
 
-BETTER = 2.0
+MIN_IMPROVEMENT = 2.0
 """Factor by which undoing a mistake must bring down the held-out error or the excess of the
 machine's errors over what is expected."""
 
-ABSURD = 3.0
+MAX_CREDIBLE_RATIO = 3.0
 """Noise over the stated one, or errors over expected ones, from which axes are suspected."""
 
-SETUPS = 20.0
-"""Factor on the usual freedom of the set-ups (1 mm, 5 mrad): where the standard stands is no
-mistake in the description, and must not pass for the zero of a table or the length of a tool."""
+SETUP_FACTOR = 20.0
+"""Factor on the usual freedom of the set-ups (1 mm, 5 mrad). The place of the standard is no
+mistake in the description and must not pass for the zero of a table or the length of a tool."""
 
-BEYOND = 5.0
-"""A number of the description is wrong beyond so many usual standard deviations of the error that
-does the same; what is smaller is an error of the machine or of the probe, and found as such."""
+MIN_NUMBER_RATIO = 5.0
+"""A number of the description is wrong beyond so many usual standard deviations of the equivalent
+error. A smaller one is an error of the machine or of the probe, and found as such."""
 
-MOVED = 30.0
+MAX_SETUP_COST = 30.0
 """Most log odds that a set-up costs which stands elsewhere than stated by many times its freedom:
 with the standard turned about, one axis the other way looks like another."""
 
-STEPS = 3
+MAX_STEPS = 3
 """Turns in which a number is found and moved exactly: a zero wrong by a degree needs two."""
 
 
@@ -75,14 +76,12 @@ class DescriptionFault:
     """A mistake in the description that makes the run fit once it is undone.
 
     Attributes:
-        fault: Which mistake.
-        axes: That it concerns.
         numbers: What was found where the mistake is a number.
         notation: Chain with which the run fits, "" where it stays.
         log_odds: Evidence for it against the description as it is.
         rms: Residual as described and without the mistake, mm.
         test_rms: Held-out error as described and without the mistake, mm.
-        widened: Errors of the machine over the expected ones, likewise.
+        widened: Errors of the machine over the expected ones, as described and without the mistake.
         alike: Other mistakes that explain the run as well.
     """
 
@@ -99,7 +98,7 @@ class DescriptionFault:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Trial:
-    """A suspect, the how manyth, with its numbers found, and its evidence."""
+    """A suspect with its index, the numbers found and its evidence."""
 
     index: int
     suspect: Suspect
@@ -109,16 +108,11 @@ class _Trial:
 
 
 def description_faults(before: Fit, progress: Progress = quiet) -> tuple[DescriptionFault, ...]:
-    """Mistakes in the description of a run or its machine that make it fit; usually none.
-
-    Args:
-        before: Fit of the run as it is described, whatever its deviations are.
-        progress: Told of the suspects.
-    """
+    """Mistakes in the description of a run or its machine that make it fit; usually none."""
     run = before.run
     named = [_clock(before)] if has_minutes_for_seconds(run) else []
     excess = max(before.widened, before.noise.factor)
-    is_absurd = excess > ABSURD or unit_mistake(before) is not None
+    is_absurd = excess > MAX_CREDIBLE_RATIO or unit_mistake(before) is not None
     few = with_setups_placed(_few(run))
     right = _evidence(few, (), np.zeros(0))[0] - _moved_setups(run.touches.setups, few.touches)
     trials = []
@@ -127,10 +121,14 @@ def description_faults(before: Fit, progress: Progress = quiet) -> tuple[Descrip
         trials.append(_trial(i, suspect, moved, right))
         progress(0.5, "mistakes in the description")
     trials = sorted(trials, key=lambda t: -t.evidence)
-    close = [t for t in trials if t.evidence > max(right + NAMED, trials[0].evidence - CLASS)]
-    told = [_told(before, t, right, is_absurd) for t in close]
+    close = [
+        t
+        for t in trials
+        if t.evidence > max(right + MIN_LOG_ODDS, trials[0].evidence - MAX_LOG_ODDS_ALIKE)
+    ]
+    faults = [_description_fault(before, t, right, is_absurd) for t in close]
     # an axis has many places on the other side that differ in nothing
-    kept = list({(t.fault, t.axes): t for t in reversed(told) if t is not None}.values())[::-1]
+    kept = list({(t.fault, t.axes): t for t in reversed(faults) if t is not None}.values())[::-1]
     if kept:
         named.append(replace(kept[0], alike=tuple(kept[1:])))
     return tuple(named)
@@ -161,7 +159,7 @@ def _clock(fit: Fit) -> DescriptionFault:
 def _few(run: Run) -> Run:
     """An even choice of the rows that a fit uses."""
     rows = np.flatnonzero(run.split != "test")
-    pick = np.unique(np.linspace(0, len(rows) - 1, min(TOUCHES, len(rows))).astype(np.int64))
+    pick = np.unique(np.linspace(0, len(rows) - 1, min(MAX_TOUCHES, len(rows))).astype(np.int64))
     return run[rows[pick]]
 
 
@@ -178,9 +176,9 @@ def _moved_setups(stated: Sequence[Setup], touches: Touches) -> float:
     for before, after in zip(stated, touches.setups, strict=True):
         step = after.T_table_artefact @ inverse(before.T_table_artefact)
         middle = apply(before.T_table_artefact, touches.point.mean(axis=0))
-        shift = float(np.linalg.norm(apply(step, middle) - middle)) / (SETUPS * SHIFT_SD)
-        turn = float(np.linalg.norm(step[:3, :3] - np.eye(3))) / (SETUPS * TURN_SD)
-        cost += min(0.5 * (shift**2 + turn**2), MOVED)
+        shift = float(np.linalg.norm(apply(step, middle) - middle)) / (SETUP_FACTOR * SHIFT_SD)
+        turn = float(np.linalg.norm(step[:3, :3] - np.eye(3))) / (SETUP_FACTOR * TURN_SD)
+        cost += min(0.5 * (shift**2 + turn**2), MAX_SETUP_COST)
     return cost
 
 
@@ -189,14 +187,13 @@ def _trial(index: int, suspect: Suspect, moved: float, right: float) -> _Trial:
 
     Args:
         index: The how manyth it is.
-        suspect: On some of the touches.
         moved: Log odds against where it puts the set-ups.
         right: Evidence for the description as it is: a suspect that gains nothing in its first turn
             is far from being named, and has no further one.
     """
     total = np.zeros(sum(len(e.parameters) for e in suspect.free))
     at = suspect
-    for remaining in reversed(range(STEPS)):
+    for remaining in reversed(range(MAX_STEPS)):
         evidence, theta, u = _evidence(at.run, at.free, total)
         if not suspect.free or not remaining or evidence - moved < right:
             break
@@ -209,7 +206,6 @@ def _evidence(run: Run, free: Sequence[Effect], at: Array) -> tuple[float, Array
     """Log evidence of a run up to a constant, with the free numbers and their uncertainties.
 
     Args:
-        run: As a suspect has it.
         free: Numbers of the description that are left free.
         at: By how much they have been moved already, (K,).
     """
@@ -220,14 +216,14 @@ def _evidence(run: Run, free: Sequence[Effect], at: Array) -> tuple[float, Array
     count = sum(len(e.parameters) for e in free)
     sd_free = np.concatenate([free_sd(e) for e in free]) if free else np.zeros(0)
     sd_machine = [p.sd for e in machine for p in e.parameters]
-    sd_setups = [SETUPS * p.sd for e in setups for p in e.parameters]
+    sd_setups = [SETUP_FACTOR * p.sd for e in setups for p in e.parameters]
     sd_bodies = [p.sd for e in bodies for p in e.parameters]
     sd = np.concatenate([sd_machine, sd_setups, sd_bodies, sd_free])
     X = columns((*usual, *free), touches) * sd / run.u[:, None]
     y = run.deviation / run.u
     first = solve(X, y)
     z = np.abs(first.residual) / np.sqrt(np.maximum(1.0 - first.leverage, 1e-6))
-    kept = z <= np.quantile(z, 1.0 - TRIMMED)
+    kept = z <= np.quantile(z, 1.0 - TRIMMED_SHARE)
     solution = solve(X[kept], y[kept])
     n = len(y)
     objective = solution.objective * n / int(kept.sum())
@@ -246,8 +242,10 @@ def _log_evidence(objective: float, log_det: float, n: int) -> float:
     return -0.5 * (n + PRIOR_DOF) * float(np.log(max(objective, 1e-9) + PRIOR_DOF)) - 0.5 * log_det
 
 
-def _told(before: Fit, trial: _Trial, right: float, is_absurd: bool) -> DescriptionFault | None:
-    """A mistake with the figures of the whole run; None where undoing it does not make it fit.
+def _description_fault(
+    before: Fit, trial: _Trial, right: float, is_absurd: bool
+) -> DescriptionFault | None:
+    """A mistake with the figures of the whole run; None where undoing it does not mend the fit.
 
     A number is named for what it gains beside the usual errors of the machine, where it predicts
     better or leaves a machine less odd. An axis or a sign is wrong altogether: without the mistake
@@ -255,13 +253,16 @@ def _told(before: Fit, trial: _Trial, right: float, is_absurd: bool) -> Descript
     """
     suspect = trial.suspect
     usual = [p.sd for e in _usual_size(suspect) for p in e.parameters]
-    if suspect.free and (np.abs(trial.theta) < BEYOND * np.array(usual)).all():
+    if suspect.free and (np.abs(trial.theta) < MIN_NUMBER_RATIO * np.array(usual)).all():
         return None
     suspect = next(islice(suspects(before.run, is_absurd), trial.index, None))  # on all touches
     undone = corrected(suspect, trial.theta) if suspect.free else suspect
     chain = undone.run.touches.chain
     after = fit_run(undone.run, ordinary_model(chain))
-    falls = before.test_rms > BETTER * after.test_rms or before.widened > BETTER * after.widened
+    falls = (
+        before.test_rms > MIN_IMPROVEMENT * after.test_rms
+        or before.widened > MIN_IMPROVEMENT * after.widened
+    )
     if not suspect.free and (not falls or unit_mistake(after) is not None):
         return None
     if suspect.free and not falls and after.test_rms > before.test_rms:

@@ -2,7 +2,7 @@
 
 `model.toml` ("model/1") is read and written; `diagnosis.json`, `comparison.json`,
 `identification.json` and the tables beside them are written. Numbers come from the results,
-sentences from whoever calls: prose is made in `report`.
+sentences from the caller: prose is made in `report`.
 """
 
 from matstd.diagnosis.files.diagnosis_file import (

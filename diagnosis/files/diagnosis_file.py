@@ -25,12 +25,7 @@ COMPARISON = "comparison/1"
 
 
 def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str, Any]:
-    """Everything of `diagnosis.json`, in the units that stand in its names.
-
-    Args:
-        result: The diagnosis.
-        remarks: Its remarks as sentences.
-    """
+    """Everything of `diagnosis.json`, in the units that stand in its names."""
     choice = {} if result.choice is None else {"choice": choice_table(result.choice)}
     trend = {} if result.trend is None else {"trend": trend_table(result.trend)}
     return {
@@ -77,9 +72,7 @@ def comparison_table(
     """Everything of `comparison.json`, in the units that stand in its names.
 
     Args:
-        found: The comparison.
         structure: Sentences on what its residual varies with, in the order of `found.structure`.
-        remarks: Its remarks as sentences.
     """
     worst = found.worst
     noise = found.fit.noise
@@ -164,7 +157,7 @@ def _step(step: Step) -> dict[str, Any]:
 
 
 def _alike(step: Step) -> dict[str, Any]:
-    """Periods that the targets cannot tell from the one in `parameters`; nothing for most."""
+    """Periods that the targets cannot distinguish from that in `parameters`; nothing for most."""
     alike = step.confusion.alike if step.confusion else None
     if alike is None:
         return {}
@@ -245,7 +238,7 @@ def _detectable(found: Detectable) -> dict[str, Any]:
 
 def _plan(plan: Plan) -> dict[str, Any]:
     """A plan of touches, each with the columns of a run file."""
-    return {"tells_apart": list(plan.tells_apart), "touches": planned(plan.touches)}
+    return {"tells_apart": list(plan.distinguishes), "touches": planned(plan.touches)}
 
 
 def planned(touches: Touches) -> list[dict[str, Any]]:
@@ -280,7 +273,7 @@ def _group(group: GroupResidual) -> dict[str, Any]:
 
 
 def plan_text(plan: Plan) -> str:
-    """A plan as a table with the columns of a run file, for whoever writes the program."""
+    """A plan as a table with the columns of a run file, for writing the program."""
     rows = planned(plan.touches)
-    head = f"# to tell {plan.tells_apart[0]} from {plan.tells_apart[1]}\n"
+    head = f"# to distinguish {plan.distinguishes[0]} from {plan.distinguishes[1]}\n"
     return head + csv_text(rows[0], (row.values() for row in rows))

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from matstd.diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
 from matstd.diagnosis.regression import Memory
-from matstd.diagnosis.remarks import OfAnotherRun
+from matstd.diagnosis.remarks import EffectOfOtherRun
 from matstd.twin.display import Displayed
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files import (
@@ -34,11 +34,11 @@ LARGEST, SMALLEST = 1e12, 1e-300
 """Variances of a file beyond the first (µm, µrad squared ...) are slips; of none below the second a
 root is taken."""
 
-ROUNDED = 1e-6
+MAX_ROUNDING = 1e-6
 """By so much rounding may leave correlations of a file beyond one, or variances below zero."""
 
 
-class ToldEntry(Table):
+class ReportedEntry(Table):
     """`[[effect.told]]`: one number of an effect, in the unit that it states."""
 
     quantity: str
@@ -52,7 +52,7 @@ class ToldEntry(Table):
 class EffectEntry(Table):
     """`[[effect]]`: its name, its inner parameters, and the estimates of the others.
 
-    `told` are its numbers as they were told of the run, which rest on the touches alone where the
+    `told` are its numbers as reported of the run, which rest on the touches alone where the
     estimates lean on what is usual. `run` and `share_um` stand at effects that are not the
     machine's: the fingerprint of their run, and the rms that they made at its touches.
     """
@@ -60,7 +60,7 @@ class EffectEntry(Table):
     name: str
     inner: dict[str, float] = Field(default_factory=dict)
     estimate: dict[str, float]
-    told: list[ToldEntry] = Field(default_factory=list)
+    told: list[ReportedEntry] = Field(default_factory=list)
     run: str = ""
     share_um: float = Field(default=0.0, ge=0.0)
 
@@ -115,9 +115,8 @@ class SavedModel(Displayed):
 
     Attributes:
         estimates: Of the parameters, with their covariance.
-        source: The run that they were learnt from.
         from_inner: Root (P, T) of the part of the covariance that uncertain inner parameters add.
-        told: Numbers of effects as they were told of that run, by name.
+        reported: Numbers of effects as reported of that run, by name.
         left_out: What the file has beside that and is not to be applied here.
     """
 
@@ -125,10 +124,10 @@ class SavedModel(Displayed):
     estimates: Prior
     source: SourceEntry
     from_inner: Array
-    told: dict[str, tuple[Reported, ...]]
-    left_out: tuple[OfAnotherRun, ...] = ()
+    reported: dict[str, tuple[Reported, ...]]
+    left_out: tuple[EffectOfOtherRun, ...] = ()
 
-    def without(self, left_out: Sequence[OfAnotherRun]) -> "SavedModel":
+    def without(self, left_out: Sequence[EffectOfOtherRun]) -> "SavedModel":
         """The model without some effects, as far as what is known of the others goes."""
         names = {one.effect.name for one in left_out}
         if not names:
@@ -142,16 +141,14 @@ class SavedModel(Displayed):
             ),
             estimates=Prior.of_estimates(self.estimates.mean[kept], root @ root.T),
             from_inner=self.from_inner[kept],
-            told={name: numbers for name, numbers in self.told.items() if name not in names},
+            reported={
+                name: numbers for name, numbers in self.reported.items() if name not in names
+            },
             left_out=tuple(left_out),
         )
 
     def learnt(self, run: Run) -> Learnt | None:
-        """What the fit to a run is made again from; None where the last run was another.
-
-        Args:
-            run: The run, copies of rows set aside.
-        """
+        """What the fit to a run is made again from; None where the last run was another."""
         if not self.source.learnt_from or self.source.learnt_from[-1] != run.fingerprint:
             return None
         whole = self.estimates.root @ self.estimates.root.T
@@ -230,6 +227,7 @@ def parsed_model(
         effect = _effect(entry, chain, by_name, path, f"effect[{i}]")
         keys = parameter_keys(effect)
         expected = [key for key, _ in keys]
+        # the covariance has no names, so the order of the estimates must be exact
         if list(entry.estimate) != expected:
             found = ", ".join(entry.estimate)
             raise BadFile(path, f"effect[{i}].estimate", found, ", ".join(expected))
@@ -243,7 +241,7 @@ def parsed_model(
         estimates=Prior.of_estimates(np.array(mean), covariance),
         source=table.source,
         from_inner=_from_inner(table.from_inner, np.array(factors), path),
-        told={entry.name: tuple(_reported(t) for t in entry.told) for entry in table.effect},
+        reported={entry.name: tuple(_reported(t) for t in entry.told) for entry in table.effect},
     )
     return whole.without(list(_of_others(table, effects, [without_copies(run) for run in runs])))
 
@@ -258,7 +256,7 @@ def probes_of(touches: Touches) -> list[tuple[float, float]]:
 
 def _of_others(
     table: ModelTable, effects: Sequence[Effect], runs: Sequence[Run]
-) -> Iterator[OfAnotherRun]:
+) -> Iterator[EffectOfOtherRun]:
     """Effects of a file that are not to be applied to some runs.
 
     A file that does not say which run an effect is of has it of the last that it was learnt from.
@@ -271,7 +269,7 @@ def _of_others(
         owner = owner_of(effect)
         is_here = prints == {entry.run or last} or (owner == "probe" and is_probe)
         if owner != "machine" and not is_here:
-            yield OfAnotherRun(
+            yield EffectOfOtherRun(
                 effect=effect,
                 owner=owner,
                 inner=entry.inner,
@@ -280,16 +278,16 @@ def _of_others(
             )
 
 
-def _reported(told: ToldEntry) -> Reported:
-    """A number as it was told; one of its unit in the base unit is of no more use."""
+def _reported(entry: ReportedEntry) -> Reported:
+    """A number as it was reported; its unit in the base unit is not needed any more."""
     return Reported(
-        quantity=told.quantity,
-        unit=told.unit,
-        value=told.value,
-        u=told.u,
+        quantity=entry.quantity,
+        unit=entry.unit,
+        value=entry.value,
+        u=entry.u,
         factor=1.0,
-        role=Role(told.role),
-        bound=told.bound,
+        role=Role(entry.role),
+        bound=entry.bound,
     )
 
 
@@ -357,9 +355,9 @@ def _check_covariance(matrix: Array, path: str | Path) -> None:
         raise BadFile(path, f"covariance[{i}][{i}]", matrix[i, i], "a variance")
     sd = np.sqrt(np.maximum(variance, SMALLEST))
     correlation = matrix / np.outer(sd, sd)
-    if np.abs(correlation).max(initial=0.0) > 1.0 + ROUNDED:
-        i, j = (int(k) for k in np.argwhere(np.abs(correlation) > 1.0 + ROUNDED)[0])
+    if np.abs(correlation).max(initial=0.0) > 1.0 + MAX_ROUNDING:
+        i, j = (int(k) for k in np.argwhere(np.abs(correlation) > 1.0 + MAX_ROUNDING)[0])
         expected = "a covariance within what the two variances allow"
         raise BadFile(path, f"covariance[{max(i, j)}][{min(i, j)}]", matrix[i, j], expected)
-    if np.linalg.eigvalsh(correlation).min(initial=0.0) < -ROUNDED * len(matrix):
+    if np.linalg.eigvalsh(correlation).min(initial=0.0) < -MAX_ROUNDING * len(matrix):
         raise BadFile(path, "covariance", "variances below zero of sums", "a covariance")

@@ -32,21 +32,20 @@ def write_model(
     before: SavedModel | None = None,
     made_with: str = "",
     held_out: float | None = None,
-    told: Mapping[str, Sequence[Reported]] | None = None,
+    reported: Mapping[str, Sequence[Reported]] | None = None,
 ) -> None:
     """Write the model of a fit, whole or not at all; set-ups of the standard stay with their run.
 
     Of several runs the machine is written as it is in the last one.
 
     Args:
-        fit: What was learnt.
-        run_name: Name of the run file, for whoever reads the model later.
+        run_name: Name of the run file, for a later reader of the model.
         before: Model whose estimates the fit began with; None if it began with none.
         made_with: Name and version of the program, for the same reader.
         held_out: Plain error that is promised for rows not seen, mm; None for that of the fit.
-        told: Sizes of effects as they are told, by name.
+        reported: Sizes of effects as reported, by name.
     """
-    write_whole(path, model_text(fit, run_name, before, made_with, held_out, told))
+    write_whole(path, model_text(fit, run_name, before, made_with, held_out, reported))
 
 
 def model_text(
@@ -55,7 +54,7 @@ def model_text(
     before: SavedModel | None = None,
     made_with: str = "",
     held_out: float | None = None,
-    told: Mapping[str, Sequence[Reported]] | None = None,
+    reported: Mapping[str, Sequence[Reported]] | None = None,
 ) -> str:
     """Text of a model file; arguments as of `write_model`."""
     import tomli_w
@@ -74,9 +73,9 @@ def model_text(
             entry["inner"] = inner
         values = theta[start : start + len(keys)]
         entry["estimate"] = {key: float(v) / f for (key, f), v in zip(keys, values, strict=True)}
-        numbers = (told or {}).get(effect.name, ())
+        numbers = (reported or {}).get(effect.name, ())
         if numbers:
-            entry["told"] = [_told(r) for r in numbers]
+            entry["told"] = [_reported_entry(r) for r in numbers]
         if owner_of(effect) != "machine":
             entry["run"] = fit.run.fingerprint
             entry["share_um"] = _share(fit, effect, values) / UM
@@ -130,8 +129,8 @@ def _share(fit: Fit, effect: Effect, theta: Array) -> float:
     return rms(left)
 
 
-def _told(number: Reported) -> dict[str, Any]:
-    """A number of an effect as it is told."""
+def _reported_entry(number: Reported) -> dict[str, Any]:
+    """A number of an effect as reported."""
     u = {} if number.u is None else {"u": number.u}
     return {
         "quantity": number.quantity,

@@ -18,7 +18,6 @@ def uncertainty_table(
     """Everything of `uncertainty.json`, in the units that stand in its names.
 
     Args:
-        task: Its name.
         budgets: By what results are corrected with: nothing, a model.
         tolerance: Width of the zone, mm; None for none.
     """

@@ -5,7 +5,14 @@ set aside, the size of the noise, and errors of poses that were left out. `estim
 combinations the run determines; `reported` gives parameters as a user reads them.
 """
 
-from matstd.diagnosis.fit.describe import SINE, Reported, Role, file_unit, inner_unit, reported
+from matstd.diagnosis.fit.describe import (
+    SINE_PREFIX,
+    Reported,
+    Role,
+    file_unit,
+    inner_unit,
+    reported,
+)
 from matstd.diagnosis.fit.estimability import Estimable, estimable
 from matstd.diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run, prior_for
 from matstd.diagnosis.fit.inner import continuous_inner, shifted, spacing
@@ -16,7 +23,7 @@ from matstd.diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake, unit_m
 __all__ = [
     "MIN_POSES",
     "MIN_TOUCHES",
-    "SINE",
+    "SINE_PREFIX",
     "Estimable",
     "Fit",
     "Learnt",

@@ -15,19 +15,19 @@ from matstd.twin.numbers import rms
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG, MINUTE, UM, URAD
 
-AT_END = 1e-3
+END_SHARE = 1e-3
 """Share of an end of a scan within which a value lies at it."""
 
-UNSEEN = 0.99
+MIN_UNSEEN_SHARE = 0.99
 """Share of its prior uncertainty that a parameter keeps if no touch sees it."""
 
-ALIKE = 1e-6
+RANK_TOLERANCE = 1e-6
 """Singular values of columns below this share of the largest are rounding: they say the same."""
 
-SEEN = 0.1
-"""Share of the largest lever below which a row says little of a curve, and noise would tell."""
+MIN_LEVER_SHARE = 0.1
+"""Share of the largest lever below which a row shows noise rather than the curve."""
 
-SINE = "sine_"
+SINE_PREFIX = "sine_"
 """Begins the amplitude of a sine of a period, before its number."""
 
 _HEADS = {"mm": ("um", UM), "rad": ("urad", URAD), "s": ("ms", 1e-3)}
@@ -49,7 +49,6 @@ class Reported:
     Attributes:
         quantity: What it is: `amplitude`, `tau`.
         unit: As the file spells it: `um`, `min`, `um_per_K`; "" for a pure number.
-        value: In that unit.
         u: Standard uncertainty, or None where the run gives none.
         factor: One of that unit in the base unit.
         role: Of the number among those of its effect.
@@ -88,7 +87,7 @@ def file_unit(unit: str) -> tuple[str, float]:
 def inner_unit(inner: Inner) -> tuple[str, float]:
     """Suffix of an inner parameter in files, and one of it in the base unit.
 
-    Spans of time such as time constants are told in minutes, instants as the run tells time.
+    Spans of time such as time constants are reported in minutes, instants as the run states time.
 
     Example:
         >>> inner_unit(Inner("tau", "s", np.array([60.0, 600.0])))
@@ -110,7 +109,6 @@ def reported(
     Args:
         fit: A fit with the effect, and with the tangents of its inner parameters where their
             uncertainty is wanted.
-        effect: As it stands in the fit.
         wider: Factor on the uncertainties of the fit.
         without_tangent: Inner parameters that have none, with their uncertainties, by index.
     """
@@ -147,7 +145,7 @@ def _sines(effect: Effect, sines: int, theta: Array, covariance: Array) -> Itera
     for k in range(1, sines + 1):
         own = np.arange(len(theta)) // 2 == k - 1
         one = size(effect, theta, covariance, own)
-        yield replace(one, quantity=f"{SINE}{k}", role=Role.COEFFICIENT)
+        yield replace(one, quantity=f"{SINE_PREFIX}{k}", role=Role.COEFFICIENT)
 
 
 def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> Reported:
@@ -161,7 +159,7 @@ def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> 
     size = rms(explained)
     # d rms / d theta = C^T C theta / (n size)
     slope = C.T @ explained / max(len(C) * size, 1e-300)
-    return _told("rms", "mm", size, slope, covariance)
+    return _reported_size("rms", "mm", size, slope, covariance)
 
 
 def curve_sizes(fit: Fit, effect: Effect) -> Sequence[Reported]:
@@ -185,15 +183,15 @@ def curve_sizes(fit: Fit, effect: Effect) -> Sequence[Reported]:
         u = fit.u[fit.used][:, None]
         beside = columns(others, touches) / u
         beside /= np.maximum(np.linalg.norm(beside, axis=0), 1e-300)
-        Q = orth(beside, rcond=ALIKE)
+        Q = orth(beside, rcond=RANK_TOLERANCE)
         # which side of it a lever is on shows where the curve is not freed of others yet
         side = np.sign(np.einsum("np,np->n", C, curve))
         C = C - u * (Q @ (Q.T @ (C / u)))
         curve = C * (side / np.maximum(lever, 1e-300))[:, None]
-    seen = lever > SEEN * lever.max()
+    seen = lever > MIN_LEVER_SHARE * lever.max()
     values = np.where(seen, curve @ theta, np.nan)
     across = curve[int(np.nanargmax(values))] - curve[int(np.nanargmin(values))]
-    whole = _told("peak_to_valley", unit, float(across @ theta), across, covariance)
+    whole = _reported_size("peak_to_valley", unit, float(across @ theta), across, covariance)
     return [whole, *_reversals(fit, effect)]
 
 
@@ -232,7 +230,7 @@ def _reversals(fit: Fit, effect: Effect) -> Iterator[Reported]:
     reversal = own.reversal(touches[first])
     widest = reversal[int(np.argmax(np.abs(reversal @ theta)))]
     for name, w in (("on_average", reversal.mean(axis=0)), ("at_most", widest)):
-        yield _told(f"reversal_{name}", own.symbol.unit, float(w @ theta), w, covariance)
+        yield _reported_size(f"reversal_{name}", own.symbol.unit, float(w @ theta), w, covariance)
 
 
 def _curve(effects: Sequence[Effect], touches: Touches) -> tuple[Array, str]:
@@ -252,7 +250,9 @@ def _curve(effects: Sequence[Effect], touches: Touches) -> tuple[Array, str]:
     return np.einsum("c,cnp->np", along, A), "rad" if np.any(along[3:]) else "mm"
 
 
-def _told(quantity: str, unit: str, value: float, slope: Array, covariance: Array) -> Reported:
+def _reported_size(
+    quantity: str, unit: str, value: float, slope: Array, covariance: Array
+) -> Reported:
     """A size of an effect in files, with the uncertainty of a function with this slope."""
     suffix, factor = file_unit(unit)
     return Reported(
@@ -266,9 +266,9 @@ def _told(quantity: str, unit: str, value: float, slope: Array, covariance: Arra
 
 
 def _is_seen(fit: Fit, place: slice) -> BoolArray:
-    """Which parameters the run says anything of; all, where it says nothing of any."""
+    """Which parameters the run determines at all; all, where it determines none."""
     u = np.sqrt(np.diag(fit.covariance[place, place]))
-    seen = np.asarray(u < UNSEEN * fit.prior.sd[place])
+    seen = np.asarray(u < MIN_UNSEEN_SHARE * fit.prior.sd[place])
     return seen if seen.any() else np.ones(len(u), dtype=bool)
 
 
@@ -345,6 +345,6 @@ def _bound(inner: Inner, value: float) -> int:
         return 0
     low, high = sorted((float(grid[0]), float(grid[-1])))
     # where a scan is finer than that share, what lies within it is an estimate all the same
-    at_low = value - low < AT_END * min(low, high - low)
-    at_high = high - value < AT_END * min(high, high - low)
+    at_low = value - low < END_SHARE * min(low, high - low)
+    at_high = high - value < END_SHARE * min(high, high - low)
     return -1 if at_low else 1 if at_high else 0

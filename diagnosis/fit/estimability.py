@@ -15,7 +15,7 @@ from matstd.information.identifiability import (
 from matstd.twin.frames import Array
 from matstd.twin.model import columns
 
-DETERMINED = 10.0
+MIN_DETERMINED_GAIN = 10.0
 """A parameter counts as determined when the run cuts its standard deviation by this factor."""
 
 
@@ -28,7 +28,6 @@ class Combination:
 
     Attributes:
         value: Estimate, base unit of the leading parameter.
-        u: Standard uncertainty of the value.
         gain: Prior over posterior standard deviation.
         unit: Base unit of the leading parameter.
         weights: Weight of every parameter, (P,).
@@ -124,7 +123,7 @@ def _combinations(fit: Fit, W: Array) -> tuple[Combination, ...]:
 def _determined(fit: Fit) -> tuple[Determined, ...]:
     """Single parameters whose uncertainty the run cuts tenfold, the most certain first."""
     sd, u, theta = fit.prior.sd, np.sqrt(np.diag(fit.covariance)), fit.theta
-    order = [k for k in np.argsort(u / sd) if u[k] * DETERMINED < sd[k]]
+    order = [k for k in np.argsort(u / sd) if u[k] * MIN_DETERMINED_GAIN < sd[k]]
     return tuple(
         Determined(
             name=fit.names[k],

@@ -33,8 +33,8 @@ from matstd.twin.model import Effect, Model, Parameter, columns
 from matstd.twin.numbers import rms
 from matstd.twin.record import IntArray, Run
 
-PASSES = 5
-SETTLED = 0.005
+MAX_PASSES = 5
+SETTLED_CHANGE = 0.005
 """Most passes of a fit, and the relative change of the noise below which it weights with the noise
 that it finds: gross errors and the widening of the prior then stay what they are."""
 
@@ -42,7 +42,7 @@ MIN_POSES = 4  # of fewer, one held out leaves the fit with less than three quar
 BLOCKS = 10
 """With fewer table poses than that, held out are so many blocks of touches one after the other."""
 
-BY_CHANCE = 3.0
+MAX_BY_CHANCE = 3.0
 """Standard deviations of the number of accidents that chance may add."""
 
 MIN_TOUCHES = 8
@@ -62,8 +62,6 @@ class Fit(Displayed):
         X: Columns of all rows times the root of the prior over the noise, (N, P).
         y: Deviations over the noise, less what the prior's mean predicts, all rows, (N,).
         used: Rows that the estimates rest upon, (N,): not held out, no gross error.
-        solution: The fit to those rows.
-        gross: Test of every touch for gross errors.
         noise: What the noise is, against what is stated.
         widened: Factor by which the prior of the machine was widened, 1 unless it was exceeded.
         memory: Of the noise, of which `X`, `y` and `solution` are freed in the rows used; None for
@@ -123,8 +121,8 @@ class Fit(Displayed):
     def residual(self) -> Array:
         """Measured minus predicted, all rows, (N,), mm.
 
-        In a set-up of which no touch was used nobody knows where the standard stands: its rows are
-        freed of that, so that they tell how well the machine is predicted.
+        Without a touch in use the place of the standard in a set-up is unknown: its rows are
+        freed of that, so that they show how well the machine is predicted.
         """
         z = (self.y - self.X @ self.solution.phi) * self.weight
         if self.whitener is not None:
@@ -173,7 +171,7 @@ class Fit(Displayed):
         held_out = self.run.split == "test"
         far = held_out & (np.abs(self.gross.score) > self.gross.limit)
         expected = self.gross.rows.sum() / max(self.used.sum(), 1) * held_out.sum()
-        most = expected + BY_CHANCE * np.sqrt(expected)
+        most = expected + MAX_BY_CHANCE * np.sqrt(expected)
         return far if far.sum() <= most else np.zeros_like(far)
 
     @cached_property
@@ -181,7 +179,7 @@ class Fit(Displayed):
         """Rows of the fit, by numbers within it, of every table pose in every set-up.
 
         With fewer than `MIN_POSES` poses blocks of touches in the order of probing instead, and so
-        in a set-up of one pose: without any touch nobody knows where the standard stands.
+        in a set-up of one pose: without any touch the place of the standard is unknown.
         """
         t = self.run.touches
         key = np.column_stack([t.setup, t.pose])[self.used]
@@ -208,7 +206,7 @@ class Fit(Displayed):
         another run, where a standard is placed anew: ``s^2 mean u_i^2 (1 + l_i - p_i)`` with s the
         weighted error of left-out poses, l_i the variance of the machine's prediction that no
         set-up takes up and p_i the share of a touch that its set-up takes. A pose far from all
-        others, once left out, is extrapolated to, and a plain mean would tell of little else.
+        others, once left out, is extrapolated to, and a plain mean would show little else.
         """
         if self.test_rows.any():
             return rms(self.residual[self.test_rows])
@@ -319,7 +317,7 @@ def fit_run(
     factor, widened, weight, shot = 1.0, 1.0, row_weight(memory), shots(run.touches)
     if beside is not None:
         factor, widened = beside.noise.factor, beside.widened
-    for remaining in reversed(range(PASSES if beside is None else 1)):
+    for remaining in reversed(range(MAX_PASSES if beside is None else 1)):
         root = machine.root * widening(model.effects, widened)
         belief = Prior(machine.mean, root, machine.narrowed).joined(free)
         whole = factor * weight
@@ -327,7 +325,7 @@ def fit_run(
         solution, found = _solved(X, rest, train, gross, shot)
         chi2 = float(solution.residual @ solution.residual) * whole**2
         better = noise_factor(chi2, solution.dof)
-        if abs(better / factor - 1.0) < SETTLED or not remaining:
+        if abs(better / factor - 1.0) < SETTLED_CHANGE or not remaining:
             break
         factor = better
         if machine.narrowed is None:  # else the run chose its size already

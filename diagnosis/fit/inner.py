@@ -12,7 +12,7 @@ from matstd.twin.record import Touches
 STEP = 0.02
 """Step of the central difference, as a share of the distance to the neighbour on the grid."""
 
-WIDE = 5.0
+TANGENT_PRIOR_SD = 5.0
 """Prior standard deviation of a displacement, in distances of the grid's points."""
 
 
@@ -25,8 +25,6 @@ class Tangent:
     Gauss and Newton.
 
     Attributes:
-        effect: The effect at its present inner parameters.
-        index: Which inner parameter.
         theta: Present linear parameters of the effect, (K,), base units.
         step: Of the difference, base unit of the inner parameter.
         sd: Prior standard deviation of the displacement.
@@ -101,8 +99,6 @@ def tangents(model: Model, touches: Touches, theta: Array) -> list[Tangent]:
     """Tangents of every inner parameter in a model with which its columns change smoothly.
 
     Args:
-        model: Effects at their present inner parameters.
-        touches: The touches, which set the grids.
         theta: Present linear parameters, (P,).
     """
     out: list[Tangent] = []
@@ -116,6 +112,6 @@ def tangents(model: Model, touches: Touches, theta: Array) -> list[Tangent]:
             step = STEP * spacing(inner, value)
             if not is_smooth(effect, index, step, touches):
                 continue
-            sd = WIDE * spacing(inner, value)
+            sd = TANGENT_PRIOR_SD * spacing(inner, value)
             out.append(Tangent(effect=effect, index=index, theta=own, step=step, sd=sd))
     return out

@@ -81,6 +81,7 @@ def _again(run: Run, model: Model, learnt: Learnt) -> Fit:
     whole = learnt.factor * row_weight(learnt.memory)
     prior = learnt.estimates.joined(Prior.of_effects(setups))
     X, rest = A @ prior.root / whole, (y - A @ prior.mean) / whole
+    # the machine stays as it was learnt; only the set-ups are fitted again
     solution = _solution(X[used], rest[used], len(learnt.estimates))
     left = (rest - X @ solution.phi) * whole
     return Fit(

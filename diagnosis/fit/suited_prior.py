@@ -1,4 +1,4 @@
-"""The prior that suits a machine: its errors curve as much as expected, or clearly less.
+"""The prior that suits a machine: its errors curve as expected, or clearly less.
 
 What is expected of a class of machines is wide, since it must hold for the worst of them. On a good
 machine, probed at few places, curves of which the run says little would then be free to follow the
@@ -38,12 +38,12 @@ PRIOR_EXCEEDED = 2.0
 """Mean squared parameter over its prior variance from which the machine is called worse than its
 stated distributions, and the prior is widened."""
 
-CLEARLY = 3.0
-"""Log evidence that a smaller factor must gain, 20 : 1."""
+MIN_GAIN_SUITED_PRIOR = 3.0
+"""Log evidence that a smaller factor must gain: odds of 20 : 1."""
 
-RELEASED = 1.0
-"""Log evidence that one error must gain to be left to its class: some of seventy gain less by
-chance, and would take what a weak effect does."""
+MIN_GAIN_RELEASED = 1.0
+"""Log evidence that one error must gain to keep the size of its class. Some of seventy errors gain
+less by chance and would absorb a weak effect."""
 
 
 def narrowed(prior: Prior, model: Model, X: Array, y: Array) -> Prior:
@@ -65,7 +65,7 @@ def narrowed(prior: Prior, model: Model, X: Array, y: Array) -> Prior:
         factor[: len(kinds)][kinds == "tilts"] = tilts
     evidence = [_evidence(G, g, square, len(y), factor) for factor in each]
     best = int(np.argmax(evidence))
-    if evidence[best] < evidence[0] + CLEARLY:
+    if evidence[best] < evidence[0] + MIN_GAIN_SUITED_PRIOR:
         return prior
     chosen = _released(G, g, square, len(y), each[best], _errors_of(model, kinds))[: len(prior)]
     return Prior(prior.mean, chosen[:, None] * prior.root, chosen)
@@ -101,7 +101,7 @@ def _released(
         left = max(square - float(half[:, -1] @ half[:, -1]), 0.0) + PRIOR_DOF
         gains = [_gain(K, k, left, count, of, 1.0 - factor[of[0]] ** 2) for of in errors]
         best = int(np.argmax(gains)) if gains else 0
-        if not gains or gains[best] < RELEASED:
+        if not gains or gains[best] < MIN_GAIN_RELEASED:
             return factor
         factor[errors[best]] = 1.0
 
@@ -109,8 +109,8 @@ def _released(
 def _gain(K: Array, k: Array, left: float, count: int, of: IntArray, more: float) -> float:
     """Log evidence gained by so much more variance of some parameters."""
     wide = np.eye(len(of)) + more * K[np.ix_(of, of)]
-    told = more * float(k[of] @ np.linalg.solve(wide, k[of]))
-    less = np.log(max(left - told, PRIOR_DOF) / left)
+    gained = more * float(k[of] @ np.linalg.solve(wide, k[of]))
+    less = np.log(max(left - gained, PRIOR_DOF) / left)
     return float(-0.5 * np.linalg.slogdet(wide)[1] - 0.5 * (count + PRIOR_DOF) * less)
 
 

@@ -9,20 +9,20 @@ from matstd.diagnosis.fit.identification import Fit
 from matstd.diagnosis.regression import robust_scale, solve
 from matstd.twin.units import UM
 
-SMALL = 30.0
+MIN_SMALL_RATIO = 30.0
 """Times smaller than expected that deviations are suspect if they also fall short of the noise."""
 
-TINY = 300.0
+MIN_TINY_RATIO = 300.0
 """Times smaller that they are suspect by themselves: between the best machines and a thousand."""
 
-LARGE = 10.0
+MIN_LARGE_RATIO = 10.0
 """Times larger than expected that no machine of the kind is."""
 
-QUIET = 0.1
+MIN_SCATTER_RATIO = 0.1
 """Scatter over stated uncertainty that no fit leaves, however good the machine."""
 
-LOUD = 30.0
-"""The same the other way round."""
+MAX_SCATTER_RATIO = 30.0
+"""The same in the other direction."""
 
 FINEST, COARSEST = 0.02 * UM, 30.0 * UM
 """Standard uncertainties (mm) that touches on a machine tool stay between."""
@@ -45,11 +45,9 @@ class UnitMistake:
 
     Attributes:
         what: Which column, and which unit it looks like.
-        measured: Of the deviations.
         expected: Of the deviations of such a machine before it was probed: what its model predicts,
             and the spread that the parameters have.
         stated: Of the standard uncertainty of a touch.
-        scatter: Of the touches about the model.
     """
 
     what: MistakenUnit
@@ -85,17 +83,17 @@ def _mistaken(fit: Fit, measured: float, expected: float, stated: float) -> Mist
     has_ball = fit.run.touches.instrument.is_ball_on_standard
     if measured == 0.0:
         return None
-    if measured > LARGE * np.hypot(expected, min(stated, COARSEST)):
+    if measured > MIN_LARGE_RATIO * np.hypot(expected, min(stated, COARSEST)):
         both = stated > COARSEST
         return MistakenUnit.BOTH_IN_NM if both else MistakenUnit.DEVIATIONS_IN_NM
-    if SMALL * measured < expected and measured < QUIET * stated:
+    if MIN_SMALL_RATIO * measured < expected and measured < MIN_SCATTER_RATIO * stated:
         return MistakenUnit.DEVIATIONS_IN_MM
     # encoders and interferometers resolve so little, and what they measure may be as good
-    if TINY * measured < expected and stated < FINEST and has_ball:
+    if MIN_TINY_RATIO * measured < expected and stated < FINEST and has_ball:
         return MistakenUnit.BOTH_IN_MM
-    if measured < QUIET * stated:
+    if measured < MIN_SCATTER_RATIO * stated:
         return MistakenUnit.UNCERTAINTIES_IN_NM
-    if stated < FINEST and fit.noise.factor > LOUD:
+    if stated < FINEST and fit.noise.factor > MAX_SCATTER_RATIO:
         return MistakenUnit.UNCERTAINTIES_IN_MM
     return None
 

@@ -23,11 +23,11 @@ from matstd.diagnosis.geometry.learnt import (
 )
 from matstd.diagnosis.geometry.quantities import Quantity
 from matstd.diagnosis.geometry.rivals import FoundNumber
-from matstd.diagnosis.geometry.rows import CHANGED, CLEAR, Estimate, GeometryRow
+from matstd.diagnosis.geometry.rows import MIN_CLEAR_CHANGE, MIN_CLEAR_EXCESS, Estimate, GeometryRow
 
 __all__ = [
-    "CHANGED",
-    "CLEAR",
+    "MIN_CLEAR_CHANGE",
+    "MIN_CLEAR_EXCESS",
     "Correction",
     "Estimate",
     "FoundNumber",

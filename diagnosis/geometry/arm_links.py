@@ -31,10 +31,11 @@ from matstd.twin.frames import Array, rotation
 from matstd.twin.machine import Chain, Symbol
 from matstd.twin.model import traits
 
-PARALLEL = 0.05
-"""Sine of the angle between two lines below which their distance, not their crossing, is told."""
+MAX_PARALLEL_SINE = 0.05
+"""Sine of the angle between two lines below which their distance, not their crossing, is
+reported."""
 
-APART = 1.0
+MIN_LINE_DISTANCE = 1.0
 """Distance (mm) of parallel lines below which no link has a direction."""
 
 STEP = 1e-4
@@ -57,12 +58,12 @@ class Lines:
         """Common normal of line i and the next one, unit, (3,); zero where they are one line."""
         d, e = self.direction[i], self.direction[i + 1]
         across, between = np.cross(d, e), self.point[i + 1] - self.point[i]
-        if np.linalg.norm(across) < PARALLEL:
+        if np.linalg.norm(across) < MAX_PARALLEL_SINE:
             across = between - (between @ d) * d
-            if np.linalg.norm(across) < APART:
+            if np.linalg.norm(across) < MIN_LINE_DISTANCE:
                 return np.zeros(3)
         n = across / np.linalg.norm(across)
-        return np.asarray(-n if n @ between < -APART else n)
+        return np.asarray(-n if n @ between < -MIN_LINE_DISTANCE else n)
 
     def foot(self, i: int, other: int) -> Array:
         """Where the common normal with another line stands on line i, (3,)."""
@@ -74,7 +75,7 @@ class Lines:
     def is_parallel(self, i: int) -> bool:
         """Whether line i and the next one are parallel, or nearly so."""
         across = np.cross(self.direction[i], self.direction[i + 1])
-        return bool(np.linalg.norm(across) < PARALLEL)
+        return bool(np.linalg.norm(across) < MAX_PARALLEL_SINE)
 
 
 def arm_functionals(fit: Fit, joints: Sequence[str]) -> Iterator[Functional]:
@@ -161,7 +162,7 @@ def _measures(
             d = lines.direction[i]
             angle = float(np.arctan2(d @ np.cross(before, after), before @ after))
             out[Quantity.JOINT_ZERO, f"E{names[i][0]}0{names[i]}"] = (names[i],), angle
-        # of parallel lines one after the other nobody knows where on which an offset is
+        # the place of an offset along successive parallel lines is undetermined
         last = i
         while last < len(names) - 1 and is_parallel[last]:
             last += 1

@@ -5,7 +5,7 @@ displaced tracker or the zero of a neighbour. So all location errors become the 
 directions of all lines at once, fitted by themselves: beside errors of joints and effects, which a
 machine file cannot hold, a line takes a share that makes the arm worse without them. The zero of a
 joint, about its own line, turns everything that follows it; where the reflector sits after that is
-found anew by whoever imports the run.
+found anew when the run is imported.
 """
 
 from dataclasses import dataclass, replace

@@ -23,8 +23,6 @@ def changing(model: Model, touches: Touches, since: Sequence[int]) -> Model:
     """The model with a geometry that may be another from some runs on.
 
     Args:
-        model: As of the runs before; changes that it already has are kept out.
-        touches: Of all runs.
         since: Runs from which on it may differ, as in `Touches.run`.
     """
     own = standing(model)
@@ -44,7 +42,7 @@ def changed_since(model: Model) -> tuple[int, ...]:
 
 
 def since_first_run(model: Model) -> Model:
-    """The model without changes since an earlier model: what its runs alone can tell."""
+    """The model without changes since an earlier model: what its own runs determine."""
     kept = [e for e in model.effects if traits(e).since_run != 0]
     return Model(model.chain, tuple(kept))
 

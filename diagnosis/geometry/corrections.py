@@ -8,7 +8,7 @@ import numpy as np
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry.quantities import Quantity
 from matstd.diagnosis.geometry.rivals import Descriptions, FoundNumber
-from matstd.diagnosis.geometry.rows import CLEAR, Estimate, GeometryRow
+from matstd.diagnosis.geometry.rows import MIN_CLEAR_EXCESS, Estimate, GeometryRow
 from matstd.twin.machine import LETTERS, Link
 
 
@@ -19,7 +19,6 @@ class Correction:
     Attributes:
         key: `axis.C.point`, `axis.Y.direction`, `probe.length_mm`.
         stated: What the file says, mm.
-        found: What the run says.
         u: Standard uncertainty of every number; of those that stay as stated it is None.
         rivals: Other numbers that explain the run equally: of all of them one is wrong.
     """
@@ -39,10 +38,6 @@ def corrections(
     A displacement of a rotary axis's line moves its point, a tilt and a squareness turn the
     direction, ``d' = d + omega x d``. Only what the run determines by itself.
 
-    Args:
-        fit: That the rows were made from.
-        rows: As from `learnt_geometry`.
-
     Returns:
         The corrections, and numbers each of which explains by itself all lines that are far from
         where they are stated: a zero of a rotary axis tilts and displaces the axes that it carries.
@@ -51,7 +46,9 @@ def corrections(
     clear = [
         r
         for r in rows
-        if r.quantity in kinds and r.is_determined and abs(r.estimate.value) > CLEAR * r.estimate.u
+        if r.quantity in kinds
+        and r.is_determined
+        and abs(r.estimate.value) > MIN_CLEAR_EXCESS * r.estimate.u
     ]
     if not clear:
         return (), ()
@@ -66,6 +63,7 @@ def corrections(
                 rivals = descriptions.rivals([(s, e.value) for s, e in wrong.items()])
                 correction = made(link, {letters.index(s[1]): e for s, e in wrong.items()})
                 out.append(replace(correction, rivals=rivals))
+    # only lines that are wrong beyond an ordinary error may have one common cause
     far = [r for r in clear if r.is_far or r.is_beyond_expected]
     together = descriptions.rivals([(r.symbol, r.estimate.value) for r in far])
     return tuple(out), together if len({key_of(r) for r in far}) > 1 else ()

@@ -4,7 +4,7 @@
   the scale (slope along the axis), the straightness (across it, about the straight line of least
   squares) and, two by two, the squareness;
 - the angular errors of a linear axis and all errors of a rotary one are curves of its reading, of
-  which the peak-to-valley over the probed readings is told;
+  which the peak-to-valley over the probed readings is reported;
 - the line of a rotary axis is where the tool sees it, place and tilt, while the axis turns;
 - of joints instead the lengths and twists of links and the zeros of joints (`arm_links`).
 
@@ -29,7 +29,7 @@ POINTS = 21
 
 
 def functionals(fit: Fit, theta: Array) -> Iterator[Functional]:
-    """Everything that can be told, axis by axis.
+    """All quantities that can be reported, axis by axis.
 
     Args:
         fit: Of a model with component and location errors; others are no geometry.
@@ -146,6 +146,7 @@ class _Line:
         for i in (k for k in range(3) if k != self.link.own):
             across = np.eye(3)[i] - self.direction[i] * self.direction
             curve = np.einsum("nip,i->np", self.D, across)
+            # a slope of the line is squareness, not straightness
             curve = curve - curve.mean(axis=0) - self.q[:, None] * self.slope(across)
             yield Functional(
                 quantity=Quantity.STRAIGHTNESS,

@@ -6,7 +6,7 @@ was probed. So every quantity (`geometry_functionals`) is a linear function of a
 ``value = w . theta``, whatever they share among themselves, and its variance is ``w . C . w``.
 
 Where the run leaves more than a third of what was expected beforehand, the estimate is mostly
-expectation: such a quantity is no result, and it is told what it cannot be separated from.
+expectation: such a quantity is no result, and what it cannot be separated from is reported.
 """
 
 from collections.abc import Sequence
@@ -32,15 +32,15 @@ from matstd.diagnosis.geometry.rows import Estimate, GeometryRow, is_clear
 from matstd.twin.frames import Array
 from matstd.twin.model import Model
 
-DETERMINED = 3.0
-"""Expected over remaining standard deviation from which a quantity is a result: with less the
-expectation has a say of more than a tenth, ``1 / 3^2``, in the estimate."""
+MIN_DETERMINED_RATIO = 3.0
+"""Expected over remaining standard deviation from which a quantity is a result. With less the
+expectation contributes more than a tenth, ``1 / 3^2``, to the estimate."""
 
-SHARED = 0.3
+MIN_SHARED_CORRELATION = 0.3
 """Correlation of estimates from which a parameter is named as one that a quantity is shared with;
 four parameters that share one direction evenly have a third each."""
 
-NAMED = 4
+MAX_NAMED = 4
 """Parameters that are named so."""
 
 
@@ -56,13 +56,7 @@ class Rung(Enum):
 
 @dataclass(frozen=True, slots=True)
 class LadderStep:
-    """Errors of one step, mm.
-
-    Attributes:
-        rung: What is in the model.
-        rms: Root mean square residual of the rows fitted.
-        test_rms: Of the rows held out.
-    """
+    """Errors of one step, mm."""
 
     rung: Rung
     rms: float
@@ -76,7 +70,6 @@ class LearntGeometry:
     Attributes:
         rows: Every quantity, axis by axis.
         ladder: The error from the set-up alone to everything in the model.
-        corrections: Numbers of the machine file as the run has them.
         together: Numbers each of which explains by itself all lines far from where they are stated,
             where several keys of the machine file would have to be changed instead.
     """
@@ -113,16 +106,12 @@ def geometry_rows(fit: Fit, before: Prior | None = None) -> tuple[GeometryRow, .
     states = [state(fit.model, r) for r in range(len(fit.run.touches.runs) if has_course else 1)]
     # peaks are chosen between all states, so that choosing them favours none
     known = [L @ theta for L in states] + ([] if before is None else [_padded(before, len(theta))])
-    stated, told = stated_sizes(fit), functionals(fit, np.mean(known, axis=0))
-    return tuple(_row(fit, one, states, before, stated) for one in told)
+    stated, quantities = stated_sizes(fit), functionals(fit, np.mean(known, axis=0))
+    return tuple(_row(fit, one, states, before, stated) for one in quantities)
 
 
 def changed_runs(fit: Fit) -> tuple[int, ...]:
-    """Runs in which a quantity differs by more than chance from a run since the last change.
-
-    Args:
-        fit: In which every run has its own geometry.
-    """
+    """Runs in which a quantity differs by more than chance from a run since the last change."""
     fitted = [int(i) for i in np.unique(fit.run.touches.run[fit.used])]
     states = {i: state(fit.model, i) for i in fitted}
     prior = fit.prior.root[: len(fit.model.parameters), : len(fit.model.parameters)]
@@ -143,7 +132,7 @@ def changed_runs(fit: Fit) -> tuple[int, ...]:
 
 def _differs(fit: Fit, w: Array, one: Array, other: Array, prior: Array) -> bool:
     """Whether a quantity is determined in two states and differs between them."""
-    most = float(np.linalg.norm(w @ prior)) / DETERMINED
+    most = float(np.linalg.norm(w @ prior)) / MIN_DETERMINED_RATIO
     is_known = max(_of(fit, w @ one).u, _of(fit, w @ other).u) < most
     return is_known and is_clear(_of(fit, w @ other - w @ one))
 
@@ -160,9 +149,10 @@ def _row(
     every = np.stack([one.weights @ L for L in states])
     sd = float(np.linalg.norm(one.weights @ fit.prior.root[:machine, :machine]))
     values = [_of(fit, w) for w in every]
-    is_known = [e.u * DETERMINED < sd for e in values]
+    is_known = [e.u * MIN_DETERMINED_RATIO < sd for e in values]
     fitted = set(fit.run.touches.run[fit.used])
     course = tuple(e if is_known[i] and i in fitted else None for i, e in enumerate(values))
+    # a difference is taken by its own weights, since the states share most of their errors
     steps = [
         _of(fit, every[i + 1] - every[i]) if is_known[i] and is_known[i + 1] else None
         for i in range(len(every) - 1)
@@ -223,8 +213,8 @@ def _shared_with(fit: Fit, weights: Array) -> tuple[str, ...]:
     u = np.sqrt(np.diag(fit.covariance))
     r = np.abs(along) / np.maximum(u * np.sqrt(max(float(w @ along), 1e-300)), 1e-300)
     r[w != 0.0] = 0.0
-    order = np.argsort(-r)[:NAMED]
-    return tuple(dict.fromkeys(fit.names[k] for k in order if r[k] > SHARED))
+    order = np.argsort(-r)[:MAX_NAMED]
+    return tuple(dict.fromkeys(fit.names[k] for k in order if r[k] > MIN_SHARED_CORRELATION))
 
 
 def ladder(geometry: Fit, effects: Fit | None = None) -> tuple[LadderStep, ...]:

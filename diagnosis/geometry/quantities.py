@@ -1,4 +1,4 @@
-"""What is told of a machine's geometry, each a linear function of the parameters of a model."""
+"""Reported quantities of a machine's geometry, each linear in the parameters of a model."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from matstd.twin.model import Effect
 
 
 class Quantity(Enum):
-    """What is told of the geometry of a machine."""
+    """A reported quantity of the geometry of a machine."""
 
     SCALE = "scale"
     STRAIGHTNESS = "straightness"

@@ -3,7 +3,7 @@
 A number of the description that is wrong by d shows as ``c d`` with c its first-order column.
 Of that, what ordinary errors of the machine and the set-ups take up at their usual sizes costs half
 the square of their sizes over the usual ones, and what remains half its square over the noise.
-Another number is a rival where it leaves so little of both that this run cannot tell them apart.
+Another number is a rival where it leaves so little of both that this run cannot distinguish them.
 """
 
 from collections.abc import Iterator, Sequence
@@ -18,16 +18,16 @@ from matstd.twin.machine import Family
 from matstd.twin.model import Effect, columns, traits
 from matstd.twin.record import Touches
 
-TOUCHES = 1000
-"""Touches that are looked at: more tell no two columns apart that these do not."""
+MAX_TOUCHES = 1000
+"""Most touches that are used: more do not distinguish any further columns."""
 
-ALIKE = float(np.log(100.0))
+MAX_LOG_ODDS_ALIKE = float(np.log(100.0))
 """Log odds below which two descriptions are not distinguished."""
 
-HALF = 0.5
+MIN_COST_SHARE = 0.5
 """Share of the cost that a rival must at least take away; what takes less explains nothing."""
 
-SETUPS = 20.0
+SETUP_FACTOR = 20.0
 """Factor on the usual freedom of the set-ups (1 mm, 5 mrad): they are no part of a machine."""
 
 
@@ -38,7 +38,6 @@ class FoundNumber:
     Attributes:
         name: `radius`, `length`, or the location error that does the same, `EX0C`.
         change: What has to be added to what is stated.
-        u: Its standard uncertainty.
     """
 
     name: str
@@ -51,12 +50,14 @@ class Descriptions:
 
     def __init__(self, fit: Fit) -> None:
         rows = np.flatnonzero(fit.used)
-        rows = rows[np.unique(np.linspace(0, len(rows) - 1, min(TOUCHES, len(rows))).astype(int))]
+        rows = rows[
+            np.unique(np.linspace(0, len(rows) - 1, min(MAX_TOUCHES, len(rows))).astype(int))
+        ]
         touches = fit.run.touches[rows]
         unit = fit.u[rows][:, None]
         machine = ordinary_model(touches.chain).effects
         sd = [p.sd for e in machine for p in e.parameters]
-        sd += [SETUPS * p.sd for e in fit.setups for p in e.parameters]
+        sd += [SETUP_FACTOR * p.sd for e in fit.setups for p in e.parameters]
         A = columns((*machine, *fit.setups), touches) * sd / unit
         numbers = list(_numbers(touches))
         own = columns(numbers, touches) / unit
@@ -84,7 +85,7 @@ class Descriptions:
                 continue
             change = float(c @ y) / strength
             left = cost - 0.5 * change**2 * strength
-            if left < min(ALIKE, HALF * cost):
+            if left < min(MAX_LOG_ODDS_ALIKE, MIN_COST_SHARE * cost):
                 # the ball higher up is a shorter tool
                 size = -change if name == "length" else change
                 found.append((left, FoundNumber(name, size, strength**-0.5)))

@@ -6,14 +6,15 @@ import numpy as np
 
 from matstd.diagnosis.geometry.quantities import Quantity
 
-CLEAR = 3.0
-"""Standard uncertainties from which what exceeds the expectation is no chance."""
+MIN_CLEAR_EXCESS = 3.0
+"""Standard uncertainties from which an excess over the expectation is not due to chance."""
 
-CHANGED = 4.0
-"""Standard uncertainties from which a change is none: some fifty quantities are looked at, of which
-one in three hundred such tables exceeds this by chance; of 3 one in eight would."""
+MIN_CLEAR_CHANGE = 4.0
+"""A change counts as real from this many standard uncertainties. Some fifty quantities are
+compared; chance makes one of them exceed this in one of three hundred such tables, and would in one
+of eight at 3."""
 
-FAR = 5.0
+MIN_FAR_LINE = 5.0
 """Own standard uncertainties, and usual sizes of a location error, from which the line of a rotary
 axis is far from where the machine file has it, whatever other errors may add up to: of 64 lines of
 simulated machines of the class the farthest was 1.7 usual sizes away."""
@@ -32,7 +33,6 @@ class GeometryRow:
     """One quantity of the machine's geometry.
 
     Attributes:
-        quantity: What it is.
         symbol: Its ISO 230-1 name, such as EC0Y for the squareness of Y to X.
         axes: The axis, or the two of a squareness, the reference first.
         unit: "mm", "rad", or "1" for a scale.
@@ -71,7 +71,7 @@ class GeometryRow:
         """Whether it is the line of a rotary axis that is not where the machine file has it."""
         if self.usual is None or not self.is_determined:
             return False
-        return abs(self.estimate.value) > FAR * max(self.usual, self.estimate.u)
+        return abs(self.estimate.value) > MIN_FAR_LINE * max(self.usual, self.estimate.u)
 
     @property
     def at_ends(self) -> Estimate:
@@ -81,7 +81,7 @@ class GeometryRow:
     @property
     def is_beyond_expected(self) -> bool:
         """Whether it exceeds what such a machine was expected to have by more than chance."""
-        bound = CLEAR * float(np.hypot(self.expected, self.estimate.u))
+        bound = MIN_CLEAR_EXCESS * float(np.hypot(self.expected, self.estimate.u))
         return self.is_determined and abs(self.estimate.value) > bound
 
     @property
@@ -104,5 +104,5 @@ class GeometryRow:
 
 
 def is_clear(change: Estimate | None) -> bool:
-    """Whether a change is none by chance."""
-    return change is not None and abs(change.value) > CHANGED * change.u
+    """Whether a change exceeds chance."""
+    return change is not None and abs(change.value) > MIN_CLEAR_CHANGE * change.u

@@ -18,7 +18,6 @@ def f_tail(ratio: Array | float, k: Array | float, dof: Array | float) -> Array:
     Args:
         ratio: Mean square of k values over that of the others.
         k: Degrees of freedom above the line; need not be whole.
-        dof: Of those below it.
     """
     p = fdtrc(np.maximum(k, 1e-9), np.maximum(dof, 1.0), np.maximum(ratio, 0.0))
     return np.maximum(p, SMALLEST)
@@ -31,7 +30,6 @@ def f_probability(
 
     Args:
         drop: Fall of the squared residual by k further columns.
-        k: Their number.
         rest: Squared residual with them.
         dof: Degrees of freedom with them.
     """

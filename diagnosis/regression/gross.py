@@ -9,40 +9,41 @@ from matstd.diagnosis.regression.linear import BoolArray, Solution, solve
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 
-CHANCE = 1e-3
+FALSE_ALARM = 1e-3
 """Probability that a run without gross errors is said to have one."""
 
-MOST = 0.05
-"""Share of touches up to which what stands out is an accident by itself; more must look like it."""
+MAX_ACCIDENT_SHARE = 0.05
+"""Share of touches up to which an outlier is an accident by itself; more must look like
+accidents."""
 
-LARGEST = 0.2
-"""Largest share of touches that may be gross errors: of more a median is no longer free."""
+MAX_GROSS_SHARE = 0.2
+"""Largest share of touches that may be gross errors, since the median must stay free of them."""
 
-UNEVEN = 0.2
+MIN_VARIATION = 0.2
 """Coefficient of variation from which sizes, or gaps, are those of accidents: one shift of many
 touches, or of every tenth, has a cause. Sizes beyond a limit have 0.4 and more, gaps nearly 1."""
 
-ALIKE = 7
-"""So many shots have sizes and gaps that can be called even: of four it happens by chance."""
+MIN_EVEN_SHOTS = 7
+"""Least number of shots whose sizes and gaps can be called even; of four it happens by chance."""
 
-APART = 1.25
+MIN_MEDIAN_SCORE = 1.25
 """Median of the scores of many accidents over the limit; a tail of wide noise has 1.1 to 1.2."""
 
-TOGETHER = 1e-2
+MAX_P_NEIGHBOURS = 1e-2
 """Probability of so many neighbours among accidents, below which they are a crowd."""
 
-CROWD = 3
+MIN_CROWD_NEIGHBOURS = 3
 """Of a shot's four neighbours in the run, so many also apart make it part of a crowd, which has a
 cause of its own and is not a row of accidents."""
 
-BY_HALVES = 0.5
+MIN_SCORE_SHARE = 0.5
 """A round takes out only what stands out at least half as far as the farthest touch: chips that
 bend the fit make good touches look bad, until they are out."""
 
-ROUNDS = 30
-"""Most rounds; two touches that take turns would go on for ever."""
+MAX_ROUNDS = 30
+"""Most rounds; two touches that alternate would never settle."""
 
-FEWEST_DOF = 10.0
+MIN_DOF = 10.0
 """With fewer degrees of freedom there is no scale by which a touch could stand out."""
 
 
@@ -68,8 +69,8 @@ class GrossErrors:
 
     @property
     def are_many(self) -> bool:
-        """Whether more than usual were taken out: the error with all of them is worth telling."""
-        return float(self.rows.sum()) > MOST * len(self.rows)
+        """Whether more than usual were taken out, so that both errors are reported."""
+        return float(self.rows.sum()) > MAX_ACCIDENT_SHARE * len(self.rows)
 
 
 def robust_scale(values: Array) -> float:
@@ -125,30 +126,32 @@ def find_gross(
     """
     shot = np.arange(len(y)) if shot is None else shot
     n = int(allowed.sum())
-    limit = float(-ndtri(0.5 * CHANCE / max(n, 1)))
+    limit = float(-ndtri(0.5 * FALSE_ALARM / max(n, 1)))
     used = allowed.copy()
     fit = solve(X[used], y[used])
-    if fit.dof < FEWEST_DOF:
+    if fit.dof < MIN_DOF:
         zero, nothing = np.zeros(len(y)), np.zeros(len(y), dtype=bool)
         return fit, GrossErrors(rows=nothing, size=zero, score=zero, limit=limit)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ROUNDS):
         error, variance = _left_out_each(X, y, fit, used)
         z = error / np.sqrt(variance)
         scale = robust_scale(z[allowed])
         score = z / scale if scale > 0.0 else np.zeros_like(z)
         inside = np.abs(score[used])
-        bar = max(limit, BY_HALVES * float(inside.max(initial=0.0)))
+        # gross errors bend the fit, so only the farthest go out in one round
+        bar = max(limit, MIN_SCORE_SHARE * float(inside.max(initial=0.0)))
         far = np.abs(score) > np.where(used, bar, limit)
         wanted = allowed & ~_alone(far, shot)
         if (wanted == used).all():
             break
         used = wanted
-        if n - int(wanted.sum()) > LARGEST * n:
+        if n - int(wanted.sum()) > MAX_GROSS_SHARE * n:
             break
         fit = solve(X[used], y[used])
     out = allowed & ~used
-    if out.sum() <= MOST * n or _are_accidents(out, allowed, score / limit, shot):
+    if out.sum() <= MAX_ACCIDENT_SHARE * n or _are_accidents(out, allowed, score / limit, shot):
         return fit, GrossErrors(rows=out, size=error, score=score, limit=limit)
+    # too many, or with a common cause: then all touches stay in the fit
     nothing = np.zeros(len(y), dtype=bool)
     kept = GrossErrors(
         rows=nothing, size=error, score=score, limit=limit, too_many=True, standing=out
@@ -169,14 +172,16 @@ def _are_accidents(out: BoolArray, allowed: BoolArray, score: Array, shot: IntAr
     np.maximum.at(size, place, np.abs(score[allowed]))
     bad = np.flatnonzero(np.isin(every, shot[out]))
     n, g = len(every), len(bad)
-    if g > LARGEST * n or np.median(size[bad]) < APART:
+    if g > MAX_GROSS_SHARE * n or np.median(size[bad]) < MIN_MEDIAN_SCORE:
         return False
     gaps = np.diff(bad)
     pairs, mean = int((gaps == 1).sum()), g * (g - 1) / n
-    is_crowd = pairs > 0 and float(gammainc(pairs, mean)) < TOGETHER
-    if is_crowd or g < ALIKE:
+    is_crowd = pairs > 0 and float(gammainc(pairs, mean)) < MAX_P_NEIGHBOURS
+    if is_crowd or g < MIN_EVEN_SHOTS:
         return not is_crowd
-    return all(float(np.std(v, ddof=1)) > UNEVEN * float(np.mean(v)) for v in (size[bad], gaps))
+    return all(
+        float(np.std(v, ddof=1)) > MIN_VARIATION * float(np.mean(v)) for v in (size[bad], gaps)
+    )
 
 
 def _alone(far: BoolArray, shot: IntArray) -> BoolArray:
@@ -189,4 +194,4 @@ def _alone(far: BoolArray, shot: IntArray) -> BoolArray:
     padded = np.pad(is_far, 2).astype(int)
     n = len(every)
     crowd = padded[0:n] + padded[1 : n + 1] + padded[3 : n + 3] + padded[4 : n + 4]
-    return np.asarray((is_far & (crowd < CROWD))[place])
+    return np.asarray((is_far & (crowd < MIN_CROWD_NEIGHBOURS))[place])

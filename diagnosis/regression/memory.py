@@ -18,17 +18,17 @@ from matstd.diagnosis.regression.noise import PRIOR_DOF
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 
-CLEARLY = 8.0
+MIN_GAIN_MEMORY = 8.0
 """Gain of log likelihood by which noise with memory must beat white noise: a chance of 6e-5, since
 twice the gain is chi-squared with one degree of freedom."""
 
-STRETCH = 2500
-"""Rows that a memory is estimated from; more would make it no better and take long."""
+MAX_ROWS_MEMORY = 2500
+"""Most rows that a memory is estimated from; more would not improve it and take long."""
 
-SIZINGS = 3
+NOISE_PASSES = 3
 """Turns in which the size of the noise settles."""
 
-STRONGEST = 0.9995
+MAX_CORRELATION = 0.9995
 """Largest correlation from touch to touch that is tried: beyond, it is no noise but a drift."""
 
 
@@ -43,7 +43,7 @@ class Memory:
         by_place: Whether the touch before is the last one at the same point along the same normal
             (a nest of probes that read together), and not merely the last one.
         is_filtered: Whether rows are freed of it. Of a slow memory, which may be a cause that
-            nobody has named, they are not, since what is slow is what shall be explained; each row
+            has no name yet, they are not, since what is slow is what shall be explained; each row
             then counts for less than one.
     """
 
@@ -119,7 +119,7 @@ class Whitener:
 
     @cached_property
     def alone(self) -> Array:
-        """Share of a touch that the one before does not tell, ``sqrt(1 - a^2)``, (n,)."""
+        """Share of a touch that the one before does not predict, ``sqrt(1 - a^2)``, (n,)."""
         return np.sqrt(1.0 - self.kept**2)
 
     @cached_property
@@ -132,7 +132,6 @@ def whitener(memory: Memory, touches: Touches, u: Array, used: BoolArray) -> Whi
     """The filter of a memory for the rows that a fit uses.
 
     Args:
-        memory: Of the noise.
         u: Standard uncertainty of every touch, (N,), mm.
         used: Rows of the fit, (N,).
     """
@@ -203,7 +202,7 @@ def likely_memory(
             return -_marginal(filter_.filtered(X), filter_.filtered(y), filter_.log_det)
 
         # past a correlation of 0.9 its distance from 1 is what matters: atanh spaces both evenly
-        bounds = (0.02, float(np.arctanh(STRONGEST)))
+        bounds = (0.02, float(np.arctanh(MAX_CORRELATION)))
         found = minimize_scalar(loss, bounds=bounds, method="bounded", options={"xatol": 0.02})
         gain = -float(found.fun) - white
         if gain > best[1]:
@@ -215,9 +214,9 @@ def _stretch(touches: Touches, used: BoolArray) -> BoolArray:
     """The used rows, of a long run a stretch in its middle: memory is between neighbours."""
     rows = np.flatnonzero(used)
     rows = rows[np.argsort(touches.time[rows], kind="stable")]
-    first = max(len(rows) - STRETCH, 0) // 2
+    first = max(len(rows) - MAX_ROWS_MEMORY, 0) // 2
     out = np.zeros_like(used)
-    out[rows[first : first + STRETCH]] = True
+    out[rows[first : first + MAX_ROWS_MEMORY]] = True
     return out
 
 
@@ -232,7 +231,7 @@ def _marginal(X: Array, y: Array, log_det: float) -> float:
     """
     n, s = len(y), 1.0
     G, g, square = X.T @ X, X.T @ y, float(y @ y)
-    for remaining in reversed(range(SIZINGS + 1)):
+    for remaining in reversed(range(NOISE_PASSES + 1)):
         M = G / s**2
         M[np.diag_indices_from(M)] += 1.0
         low = cho_factor(M, lower=True, check_finite=False)

@@ -23,7 +23,7 @@ SAME_READING = 1e-6
 SAME_SIDE = 0.02
 """Their normals agree within this."""
 
-WRONG_BY = 1.96
+MAX_CREDIBLE_DIFFERENCE = 1.96
 """Standard deviations between stated and found noise from which the statement is called wrong."""
 
 
@@ -33,10 +33,8 @@ class Noise:
 
     Attributes:
         factor: Standard deviation of the noise over the stated one.
-        dof: Degrees of freedom that it rests upon.
         chi2_ratio: Weighted squared residual per degree of freedom, stated uncertainty.
         replicates: The factor from replicates alone, or None where there are none.
-        replicates_dof: Degrees of freedom of the replicates.
     """
 
     factor: float
@@ -49,7 +47,7 @@ class Noise:
     def is_wrongly_stated(self) -> bool:
         """Whether the noise differs from the stated one by more than chance."""
         spread = (0.5 / max(self.dof, 1.0)) ** 0.5
-        return abs(self.factor - 1.0) > max(WRONG_BY * spread * self.factor, 0.05)
+        return abs(self.factor - 1.0) > max(MAX_CREDIBLE_DIFFERENCE * spread * self.factor, 0.05)
 
 
 def noise_factor(chi2: float, dof: float) -> float:

@@ -6,7 +6,7 @@ Something new to notice is a record here, and a function that makes it.
 
 from matstd.diagnosis.remarks.body_size import BodySize, body_sizes
 from matstd.diagnosis.remarks.order import JumpInOrder
-from matstd.diagnosis.remarks.other_run import OfAnotherRun
+from matstd.diagnosis.remarks.other_run import EffectOfOtherRun
 from matstd.diagnosis.remarks.run_remarks import (
     ChosenByPrediction,
     FewDegreesOfFreedom,
@@ -35,6 +35,7 @@ from matstd.diagnosis.remarks.turns import HarmonicsAlike
 __all__ = [
     "BodySize",
     "ChosenByPrediction",
+    "EffectOfOtherRun",
     "FewDegreesOfFreedom",
     "FewPoses",
     "FewTouches",
@@ -48,7 +49,6 @@ __all__ = [
     "NoiseMisstated",
     "NoiseRemembers",
     "NotSignificant",
-    "OfAnotherRun",
     "OutliersKept",
     "OutliersLeftOut",
     "PriorWidened",

@@ -13,7 +13,6 @@ class BodySize:
     """The size of the standard of one run, on which every scale rests.
 
     Attributes:
-        run: Its name; empty for a single run.
         body: What the run states; None where it states nothing.
         temperature: Of the standard, on average, degC; None where nothing is known of it.
         length: Of what was touched, from corner to corner, mm.

@@ -9,22 +9,22 @@ from matstd.diagnosis.regression import f_probability, solve
 from matstd.twin.frames import Array
 from matstd.twin.record import Instrument, IntArray
 
-CHANCE = 1e-6
-"""Probability, over all rows at which it may be, below which a jump is told."""
+FALSE_ALARM = 1e-6
+"""Probability, over all rows at which it may be, below which a jump is reported."""
 
-SHARE = 0.2
+MIN_SHARE = 0.2
 """Share of the squared residual that it must hold: half of the standard deviation or so."""
 
-FEWEST = 20
+MIN_MOMENTS = 20
 """Moments (rows of the file, or poses) from which a run has a before and an after."""
 
-FREE = 3
+COMPONENTS = 3
 """Components of a displacement."""
 
-WIDE = 10.0
+PRIOR_SD = 10.0
 """What is believed of it, mm."""
 
-PASSES = 4
+NOISE_PASSES = 4
 """Times that the noise is found anew with it; three settle it."""
 
 
@@ -63,18 +63,18 @@ def jump_in_order(fit: Fit) -> JumpInOrder | None:
     order = np.argsort(line, kind="stable")
     line = line[order]
     first = np.flatnonzero(np.diff(pose[order], prepend=-1) != 0)
-    if len(first) < FEWEST or len(np.unique(pose)) < len(first):
+    if len(first) < MIN_MOMENTS or len(np.unique(pose)) < len(first):
         return None
     N = (t.normal_table / (fit.u * fit.weight)[:, None])[fit.used][order]
     fall = _falls(N, fit.solution.Q[order], fit.solution.residual[order], first)
     k = int(np.argmax(fall))
-    share, dof = min(fall[k] / fit.solution.objective, 1.0), len(first) - 2 * FREE
-    p = float(f_probability(share, FREE, 1.0 - share, dof)) * len(fall)
-    if p > CHANCE or share < SHARE:
+    share, dof = min(fall[k] / fit.solution.objective, 1.0), len(first) - 2 * COMPONENTS
+    p = float(f_probability(share, COMPONENTS, 1.0 - share, dof)) * len(fall)
+    if p > FALSE_ALARM or share < MIN_SHARE:
         return None
     after = np.arange(len(line)) >= first[k + 1]
     X, y = fit.X[fit.used][order], fit.y[fit.used][order]
-    size, u = _size(X, y, N * after[:, None], FREE * len(first))
+    size, u = _size(X, y, N * after[:, None], COMPONENTS * len(first))
     return JumpInOrder(int(line[first[k + 1] - 1]), int(line[first[k + 1]]), size, u)
 
 
@@ -84,12 +84,12 @@ def _size(X: Array, y: Array, N: Array, independent: int) -> tuple[float, float]
     With the displacement the noise is smaller: it is found anew, and so is the rest.
     """
     factor = 1.0
-    for _ in range(PASSES):
-        found = solve(np.column_stack([X, WIDE * N]) / factor, y / factor)
+    for _ in range(NOISE_PASSES):
+        found = solve(np.column_stack([X, PRIOR_SD * N]) / factor, y / factor)
         factor *= float(np.sqrt(found.objective / max(found.dof, 1.0)))
-    step = WIDE * found.phi[-FREE:]
+    step = PRIOR_SD * found.phi[-COMPONENTS:]
     size = float(np.linalg.norm(step))
-    u = WIDE * float(np.linalg.norm(step / size @ found.root[-FREE:]))
+    u = PRIOR_SD * float(np.linalg.norm(step / size @ found.root[-COMPONENTS:]))
     return size, u * float(np.sqrt(max(len(y) / independent, 1.0)))
 
 

@@ -7,14 +7,12 @@ from matstd.twin.model import Effect
 
 
 @dataclass(frozen=True, slots=True)
-class OfAnotherRun:
+class EffectOfOtherRun:
     """An effect that a saved model has of another run, and that is not applied.
 
     Attributes:
-        effect: At its inner parameters.
         owner: What it belongs to, as its kind says: "probe" or "run".
         inner: Its inner parameters, as in the file.
-        run: Name of the run that it was learnt from.
         share: What it made there, rms, mm, beside where the standard stood; 0 where unknown.
     """
 

@@ -10,28 +10,28 @@ import numpy as np
 from matstd.diagnosis.fit import MIN_POSES, Fit, UnitMistake, fit_run, unit_mistake
 from matstd.diagnosis.remarks.body_size import BodySize, body_sizes
 from matstd.diagnosis.remarks.order import JumpInOrder, jump_in_order
-from matstd.diagnosis.remarks.other_run import OfAnotherRun
+from matstd.diagnosis.remarks.other_run import EffectOfOtherRun
 from matstd.diagnosis.remarks.turns import HarmonicsAlike, harmonics_alike
 from matstd.twin.elastic import short_beams
 from matstd.twin.numbers import rms
 
-FEW_DOF = 30.0
+MIN_DOF = 30.0
 """Below so many degrees of freedom only large effects can be seen."""
 
-DOUBTFUL = 2.0
+MAX_HELD_OUT_RATIO = 2.0
 """Error of held-out touches over the stated noise from which few touches leave all open."""
 
-FELT = 1e-3
+MIN_FELT = 1e-3
 """Effect of a parameter of its expected size on all touches together, over the noise, below which
 they do not feel it: a rotary axis that stands still."""
 
-LOADED = ("stiffness", "tool-point-stiffness")
-"""Kinds of effects of which a touch tells nothing but by its load."""
+LOAD_EFFECTS = ("stiffness", "tool-point-stiffness")
+"""Kinds of effects that a touch shows only by its load."""
 
-STANDS = 1e-3
-"""Range of readings (rad) below which a joint of an arm stood still: a jitter tells nothing."""
+MAX_STILL_RANGE = 1e-3
+"""Range of readings (rad) below which a joint of an arm stood still; jitter shows nothing."""
 
-FEWEST_REPLICATES = 10
+MIN_REPLICATE_DOF = 10
 """Degrees of freedom from which the scatter of replicates is a yardstick for residuals."""
 
 
@@ -117,11 +117,10 @@ class OutliersLeftOut:
 
 @dataclass(frozen=True, slots=True)
 class ManyStoodOut:
-    """So many touches stood out that the error is told both ways.
+    """So many touches stood out that the error is reported with and without them.
 
     Attributes:
         touches: That stood out, of `of`.
-        left_out: Whether they were left out.
         without: Error of held-out touches with them left out, mm.
         whole: With all touches in the fit, and judged, mm.
     """
@@ -155,7 +154,6 @@ class NoiseRemembers:
         correlation: From one touch to the next, or over `step`.
         step: Time over which it is stated, s; 0 for from touch to touch.
         by_place: Whether touches remember the last one at the same place.
-        rows: Touches used.
         independent: As many independent ones they count as.
         is_noise: Whether it is a property of the noise, rather than something slow that is left.
     """
@@ -195,11 +193,7 @@ class NotSignificant:
     """An effect that was added by name, with its size within twice its uncertainty.
 
     Attributes:
-        effect: Its name.
-        quantity: What the size is.
-        value: In `unit`.
         u: Standard uncertainty, in `unit`.
-        unit: As files spell it.
     """
 
     effect: str
@@ -219,12 +213,7 @@ class ShortBeam:
 
 @dataclass(frozen=True, slots=True)
 class LoadTooSmall:
-    """An effect of loads of which all touches together tell less than is believed beforehand.
-
-    Attributes:
-        effect: Its name.
-        load: Largest recorded one, N.
-    """
+    """An effect of loads that all touches together determine less well than its prior does."""
 
     effect: str
     load: float
@@ -254,7 +243,7 @@ Remark = (
     | JumpInOrder
     | ShortBeam
     | LoadTooSmall
-    | OfAnotherRun
+    | EffectOfOtherRun
 )
 
 
@@ -262,7 +251,6 @@ def remarks(fit: Fit, start: Fit | None = None) -> tuple[Remark, ...]:
     """Everything noteworthy in a fit: units, what the reader of the file noticed, the rest.
 
     Args:
-        fit: Of the model that is told.
         start: Of the model before effects were put in, which may stand in for a jump; None for
             that one itself.
     """
@@ -285,21 +273,21 @@ def remarks(fit: Fit, start: Fit | None = None) -> tuple[Remark, ...]:
 def _touches(fit: Fit) -> list[Remark]:
     """Too few touches or poses."""
     out: list[Remark] = []
-    n, felt = int(fit.used.sum()), np.linalg.norm(fit.X[fit.used], axis=0) > FELT
+    n, felt = int(fit.used.sum()), np.linalg.norm(fit.X[fit.used], axis=0) > MIN_FELT
     p = int(felt.sum())
     if n < p:
         out.append(FewTouches(n, p))
-    if fit.solution.dof < FEW_DOF:
+    if fit.solution.dof < MIN_DOF:
         out.append(FewDegreesOfFreedom(fit.solution.dof))
         ratio = fit.standardised_test_rms / rms(fit.run.u)
-        if ratio > DOUBTFUL:
+        if ratio > MAX_HELD_OUT_RATIO:
             out.append(HeldOutInDoubt(ratio))
     t = fit.run.touches
     poses = len(np.unique(np.column_stack([t.setup, t.pose])[fit.used], axis=0))
     if poses < MIN_POSES:
         turns = bool(t.chain.rotary_axes) and not t.instrument.reads_angle
         out.append(FewPoses(poses, turns))
-    stood = tuple(j for j in t.chain.joints if np.ptp(t.reading(j)[fit.used]) < STANDS)
+    stood = tuple(j for j in t.chain.joints if np.ptp(t.reading(j)[fit.used]) < MAX_STILL_RANGE)
     if stood:
         out.append(JointsStood(stood))
     return out
@@ -314,13 +302,13 @@ def _elastic(fit: Fit) -> list[Remark]:
     if touches.force is None:
         return out
     load = float(np.linalg.norm(touches.force, axis=1).max())
-    told = np.linalg.norm(fit.X[fit.used], axis=0)
+    felt = np.linalg.norm(fit.X[fit.used], axis=0)
     for effect in dict.fromkeys(e for e, _ in fit.parameters):
         rows = [
             p for p, (e, q) in enumerate(fit.parameters)
-            if e is effect and (e.kind in LOADED or (e.kind == "beam" and q.name == "load"))
+            if e is effect and (e.kind in LOAD_EFFECTS or (e.kind == "beam" and q.name == "load"))
         ]  # fmt: skip
-        if rows and float(told[rows].max()) < 1.0:
+        if rows and float(felt[rows].max()) < 1.0:
             out.append(LoadTooSmall(effect.name, load))
     return out
 
@@ -346,7 +334,7 @@ def _memory(fit: Fit) -> list[Remark]:
 def _noise(fit: Fit) -> list[Remark]:
     """Noise that is not what the file states."""
     noise = fit.noise
-    if noise.replicates is not None and noise.replicates_dof >= FEWEST_REPLICATES:
+    if noise.replicates is not None and noise.replicates_dof >= MIN_REPLICATE_DOF:
         ratio = noise.factor / noise.replicates
         if ratio > 1.0 + 3.0 * (0.5 / noise.replicates_dof) ** 0.5:
             return [WorseThanReplicates(ratio, noise.replicates_dof)]

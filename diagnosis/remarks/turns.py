@@ -1,4 +1,4 @@
-"""What evenly spaced targets of a turn cannot tell of a rotary axis."""
+"""What evenly spaced targets of a turn cannot show of a rotary axis."""
 
 from dataclasses import dataclass
 
@@ -8,11 +8,11 @@ from matstd.diagnosis.fit import Fit
 from matstd.twin.frames import Array
 from matstd.twin.model import original_of, traits
 
-EVEN = 2e-3
+MAX_UNEVENNESS = 2e-3
 """Largest distance of a target from an even spacing, rad: a tenth of a degree."""
 
-FEWEST_TARGETS = 3
-"""Targets of a turn up to which no harmonic is told from another at all."""
+MIN_TARGETS = 3
+"""Targets of a turn up to which no harmonics are distinguished."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +30,7 @@ class HarmonicsAlike:
 
 
 def harmonics_alike(fit: Fit) -> list[HarmonicsAlike]:
-    """Harmonics that even targets cannot tell from a found one: n of them, k and every m n ± k.
+    """Harmonics that n even targets cannot distinguish from a found one k: every m n ± k.
 
     Of a curve, which may be any of them, the number of targets alone.
     """
@@ -58,7 +58,7 @@ def targets_a_turn(q: Array) -> int:
         (4, 0)
     """
     turn = 2.0 * np.pi
-    places = np.unique(np.round(np.mod(q + EVEN, turn), 4))
+    places = np.unique(np.round(np.mod(q + MAX_UNEVENNESS, turn), 4))
     n = len(places)
     off = places - places[0] - turn / n * np.arange(n)
-    return n if n > FEWEST_TARGETS and np.abs(off).max() < EVEN else 0
+    return n if n > MIN_TARGETS and np.abs(off).max() < MAX_UNEVENNESS else 0

@@ -7,7 +7,7 @@ A new test is a module beside `waves` and `crowds`, called by `structure`.
 
 from matstd.diagnosis.residual.failing_regions import Condition, Region, Side, regions
 from matstd.diagnosis.residual.mean_displacements import has_poses, pose_vectors
-from matstd.diagnosis.residual.partial_residuals import SEES, Partial, Seen, partial
+from matstd.diagnosis.residual.partial_residuals import MIN_VIEW, Partial, Seen, partial
 from matstd.diagnosis.residual.pattern_tests import PatternTests
 from matstd.diagnosis.residual.patterns import directions, groups, variables
 from matstd.diagnosis.residual.ranked_variables import (
@@ -19,7 +19,7 @@ from matstd.diagnosis.residual.ranked_variables import (
 from matstd.diagnosis.residual.structure import Shape, Structure, find_structure
 
 __all__ = [
-    "SEES",
+    "MIN_VIEW",
     "Condition",
     "Partial",
     "PatternTests",

@@ -8,10 +8,10 @@ from matstd.diagnosis.regression import BoolArray, shots
 from matstd.diagnosis.residual.patterns import pairs, variables
 from matstd.twin.record import Touches
 
-NEAREST = 5
+NEIGHBOURS = 5
 """Neighbours of a touch that are looked at."""
 
-FEWEST = 3
+MIN_GROSS = 3
 """Fewer gross errors than this make no crowd."""
 
 
@@ -34,13 +34,13 @@ def crowds(touches: Touches, allowed: BoolArray, gross: BoolArray) -> dict[tuple
     n, g = len(rows), int(bad.sum())
     known = variables(touches)
     out: dict[tuple[str, str], float] = {}
-    if g < FEWEST or n <= 2 * NEAREST:
+    if g < MIN_GROSS or n <= 2 * NEIGHBOURS:
         return out
     for names in pairs(touches, known):
         place = np.column_stack([known[name][rows] for name in names])
         place = (place - place.min(axis=0)) / np.ptp(place, axis=0)
-        near = cKDTree(place).query(place, k=NEAREST + 1)[1]
-        own = np.repeat(np.arange(n), NEAREST + 1)
+        near = cKDTree(place).query(place, k=NEIGHBOURS + 1)[1]
+        own = np.repeat(np.arange(n), NEIGHBOURS + 1)
         # a link either way is one number: a unique column is found ten times sooner than a pair
         links = np.unique(np.minimum(own, near.ravel()) * n + np.maximum(own, near.ravel()))
         low, high = links // n, links % n

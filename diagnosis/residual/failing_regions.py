@@ -21,16 +21,16 @@ from matstd.diagnosis.residual.patterns import variables
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
 
-CHANCE = 1e-3
+FALSE_ALARM = 1e-3
 """Probability that noise is said to have a region."""
 
-DEPTH = 3
+MAX_CONDITIONS = 3
 """Most conditions that are joined."""
 
-SMALLEST = 12
+MIN_TOUCHES = 12
 """Fewest touches of a region in either half of the poses."""
 
-CUTS = 16
+MAX_CUTS = 16
 """Thresholds that are tried for a variable."""
 
 
@@ -85,11 +85,9 @@ def regions(fit: Fit, cured: Fit | None = None, most: int = 6) -> tuple[Region, 
     chance is found out.
 
     Args:
-        fit: Any fit; rows in use count.
         cured: The same with the effects that it lacked. What they explain then draws the regions:
             so few numbers, that are known not to be chance, need no half of the poses to judge
             them, and the residuals of all do.
-        most: Largest number of regions.
 
     Reference:
         Friedman and Fisher, Bump hunting in high-dimensional data, Statistics and Computing 9
@@ -106,6 +104,7 @@ def regions(fit: Fit, cured: Fit | None = None, most: int = 6) -> tuple[Region, 
     drawing = z if cured is None else (fit.residual - cured.residual) / u
     squares = z**2 if cured is None else 1.0 + drawing**2
     for kind, values in ((_BY_MEAN, drawing), (_BY_SIZE, squares)):
+        # a region that the judging half rejects is removed too, so that the search goes on
         left = fit.used
         found: list[Region] = []
         for _ in range(most):
@@ -141,7 +140,7 @@ def _size_worth(sums: Array, counts: Array, values: Array) -> Array:
     here = np.maximum(sums / np.maximum(counts, 1.0), 1e-12)
     there = np.maximum((total - sums) / others, 1e-12)
     gained = count * np.log(total / count) - counts * np.log(here) - others * np.log(there)
-    return np.where((here > there) & (count - counts >= SMALLEST), 0.5 * gained, 0.0)
+    return np.where((here > there) & (count - counts >= MIN_TOUCHES), 0.5 * gained, 0.0)
 
 
 def _mean_chance(z: Array, others: Array) -> float:
@@ -184,7 +183,7 @@ def _judged(
     rows, judges = who
     seen, z = rows & judges, _even(fit) / noise
     p = min(1.0, kind.chance(z[seen], z[judges & ~rows]) * count)
-    if p >= CHANCE:
+    if p >= FALSE_ALARM:
         return None
     r = fit.residual[seen]
     u = float(np.sqrt(np.sum(noise[seen] ** 2)) / len(r))
@@ -254,7 +253,6 @@ def _best_box(
         values: Of which a region's sum is taken, (N,).
         draws: Touches that draw, (N,).
         judges: Touches that judge, (N,).
-        kind: How a region stands out.
     """
     drawn, judged = inside[:, draws].astype(float), inside[:, judges].astype(float)
     here = values[draws]
@@ -262,14 +260,14 @@ def _best_box(
         return None
 
     def worth(sums: Array, counts: Array, others: Array) -> Array:
-        enough = (counts >= SMALLEST) & (others >= SMALLEST)
+        enough = (counts >= MIN_TOUCHES) & (others >= MIN_TOUCHES)
         return np.where(enough, kind.worth(sums, counts, here), 0.0)
 
     both = worth((drawn * here) @ drawn.T, drawn @ drawn.T, judged @ judged.T)
     both = both - np.log(len(inside)) * (2.0 - np.eye(len(inside)))
     i, j = np.unravel_index(int(np.argmax(both)), both.shape)
     box, best = tuple(dict.fromkeys((int(i), int(j)))), float(both[i, j])
-    while len(box) < DEPTH:
+    while len(box) < MAX_CONDITIONS:
         part = np.all(drawn[list(box)] > 0.0, axis=0)
         other = np.all(judged[list(box)] > 0.0, axis=0)
         sums, counts = drawn[:, part] @ here[part], drawn[:, part].sum(axis=1)
@@ -287,7 +285,7 @@ def _cuts(values: Array) -> list[float]:
     unique = np.unique(values)
     if len(unique) < 2:
         return []
-    at = np.unique(np.linspace(0, len(unique) - 2, CUTS).astype(int))
+    at = np.unique(np.linspace(0, len(unique) - 2, MAX_CUTS).astype(int))
     return [_round_between(float(unique[i]), float(unique[i + 1])) for i in at]
 
 

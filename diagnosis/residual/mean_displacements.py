@@ -6,7 +6,7 @@ from matstd.diagnosis.fit import Fit
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
-SEEN = 0.05
+MIN_SINGULAR_VALUE = 0.05
 """Smallest singular value of the normals, over the root of their number, of touches from all
 sides."""
 
@@ -46,4 +46,6 @@ def has_poses(fit: Fit) -> bool:
     t = fit.run.touches
     n = t.normal_table[fit.used]
     turned = np.unique(np.column_stack([t.setup, t.pose])[fit.used], axis=0)
-    return len(turned) > 2 and bool(np.linalg.svd(n, compute_uv=False)[-1] > SEEN * len(n) ** 0.5)
+    return len(turned) > 2 and bool(
+        np.linalg.svd(n, compute_uv=False)[-1] > MIN_SINGULAR_VALUE * len(n) ** 0.5
+    )

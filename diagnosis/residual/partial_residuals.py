@@ -23,11 +23,11 @@ from matstd.twin.units import DEG
 
 LETTERS = "XYZABC"
 
-ROUGH = 0.12
+MAX_ROUGHNESS = 0.12
 """Share of an effect's variance in its steps between neighbours over a variable, from which it is
 no function of that variable."""
 
-SEES = 0.25
+MIN_VIEW = 0.25
 """Touches that see an effect with less than this share of the best view are not drawn as points."""
 
 
@@ -64,7 +64,6 @@ class Partial:
         driver: What it is drawn over; without a column it is no function of one variable, and `x`
             is then what it explains.
         x: Of every touch, in the unit of the driver's column, (M,).
-        drawn: What it is drawn as.
         explained: By the effect, (M,), mm or rad.
         observed: The same plus the residual of the whole model, (M,).
         weight: Of every touch, one over its variance, (M,).
@@ -87,10 +86,6 @@ class Partial:
 def partial(fit: Fit, effect: Effect) -> Partial:
     """Partial residuals of an effect that is in a fit.
 
-    Args:
-        fit: The model with everything in it.
-        effect: As it stands in the fit.
-
     Raises:
         KeyError: It is not in the fit.
     """
@@ -103,7 +98,7 @@ def partial(fit: Fit, effect: Effect) -> Partial:
     usable = np.where(np.abs(seen) > 1e-12, seen, 1e-12)
     observed = explained + fit.residual[rows] / usable
     weight = (usable / fit.run.u[rows]) ** 2
-    shown = np.flatnonzero(np.abs(seen) >= SEES * float(np.quantile(np.abs(seen), 0.99)))
+    shown = np.flatnonzero(np.abs(seen) >= MIN_VIEW * float(np.quantile(np.abs(seen), 0.99)))
     driver, x = _driver(effect, touches, rows, explained)
     return Partial(
         driver=driver,
@@ -180,10 +175,10 @@ def _place(where: Where, touches: Touches) -> Drawn:
 def _driver(
     effect: Effect, touches: Touches, rows: IntArray, explained: Array
 ) -> tuple[Driver, Array]:
-    """The variable that an effect is a smooth function of, the most telling first."""
+    """The variable that an effect is a smooth function of, the most informative first."""
     known = {k: v[rows] for k, v in _drivers(effect, touches).items()}
     rough = {k: roughness(v, explained) for k, v in known.items()}
-    smooth = [k for k in known if rough[k] < ROUGH]
+    smooth = [k for k in known if rough[k] < MAX_ROUGHNESS]
     if not smooth:
         return Driver(""), explained
     # the order in which drivers are offered decides between those that are about equally good

@@ -17,7 +17,7 @@ from matstd.diagnosis.residual.quadratic import ratio_probability
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
-SIZES = np.geomspace(0.3, 3e4, 11) ** 2
+PATTERN_VARIANCES = np.geomspace(0.3, 3e4, 11) ** 2
 """Variances of a pattern over the noise variance of one touch that are tried for its evidence."""
 
 
@@ -44,7 +44,6 @@ class TestedPattern:
     """A pattern with the probability of what its roughnesses hold, and on demand what they hold.
 
     Attributes:
-        pattern: Which one.
         effects: Beside which it was looked for.
         freed: Its functions, freed of them.
         p: Probability of so much in white noise, not corrected, (L,).
@@ -70,7 +69,7 @@ class TestedPattern:
     def _at_sizes(self) -> tuple[Array, Array]:
         """Sizes that are tried (T,), variances over that of the noise, and log evidence (T, L)."""
         values, along = self._principal
-        sizes = SIZES / max(float(np.mean(values.sum(axis=1))), 1e-300)
+        sizes = PATTERN_VARIANCES / max(float(np.mean(values.sum(axis=1))), 1e-300)
         scaled = sizes[:, None, None]
         fall = (scaled * along / (1.0 + scaled * values)).sum(axis=2)
         charge = np.log1p(scaled * values).sum(axis=2)
@@ -105,11 +104,7 @@ class TestedPattern:
 
 @dataclass(frozen=True, eq=False)
 class PatternTests:
-    """All patterns of a run, ready to be looked for in what any set of effects leaves.
-
-    Attributes:
-        complement: What the fitted model leaves.
-    """
+    """All patterns of a run, ready to be looked for in what any set of effects leaves."""
 
     __test__ = False
 
@@ -152,9 +147,6 @@ class PatternTests:
         The statistic is the squared correlation of the functions with the residual, weighted by the
         spectrum (the score of a random function of that roughness); its distribution in white noise
         after the projection is exact.
-
-        Args:
-            effects: Model and effects in it; the model is that of `complement`.
         """
         assert effects.complement is self.complement
         freed = list(self._beside(effects))

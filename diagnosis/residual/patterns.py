@@ -25,7 +25,7 @@ ORDER_PAIR = 9
 ROUGHNESS = (0.3, 0.12, 0.05)
 """Correlation lengths that are tried, as shares of the range."""
 
-MOST_GROUPS = 150
+MAX_GROUPS = 150
 """Labels with more values than this are not tried one by one."""
 
 FULL_BELOW = 4000
@@ -54,7 +54,6 @@ class Pattern:
         """Deviation along the normal by every function over the noise, (R, K).
 
         Args:
-            complement: Says which touches are in use, and their noise.
             rows: Which of the touches in use, (R,).
         """
         if complement.whitener is not None:
@@ -133,7 +132,7 @@ def groups(touches: Touches) -> dict[str, IntArray]:
     both = len(np.unique(np.column_stack([labels["feature"], labels["pose"]]), axis=0))
     if both == 1 + labels["feature"].max() == 1 + labels["pose"].max():
         del labels["pose"]  # cycles of a positioning test, holes of a list
-    return {k: v for k, v in labels.items() if 1 < len(np.unique(v)) <= MOST_GROUPS}
+    return {k: v for k, v in labels.items() if 1 < len(np.unique(v)) <= MAX_GROUPS}
 
 
 def pairs(touches: Touches, known: Mapping[str, Array]) -> list[tuple[str, str]]:

@@ -55,7 +55,7 @@ def _tail(a: Array, c: Array, rest: float) -> Array:
     curvature = 2.0 * ((a / factors) ** 2).sum(axis=1) + 2.0 * rest * (c / base) ** 2
     w = np.sign(s) * np.sqrt(np.maximum(-2.0 * K, 0.0))
     v = s * np.sqrt(curvature)
-    middle = np.abs(w) < 1e-3  # the formula is 0/0 at the mean, where nobody needs digits
+    middle = np.abs(w) < 1e-3  # the formula is 0/0 at the mean, where no digits are needed
     safe = np.where(middle, 1.0, w)
     corrected = safe + np.log(np.where(middle, 1.0, v / safe)) / safe
     return np.asarray(np.where(middle, 0.5, np.exp(log_ndtr(-corrected))))

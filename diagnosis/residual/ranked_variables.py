@@ -9,13 +9,13 @@ from matstd.diagnosis.residual.patterns import variables
 from matstd.twin.frames import Array
 from matstd.twin.record import Touches
 
-MOST_BINS = 12
+MAX_BINS = 12
 """Bins of a variable, of equally many touches each."""
 
-FEWEST = 6
+MIN_TOUCHES = 6
 """Touches of a bin, at least."""
 
-MOST_LABELS = 16
+MAX_LABELS = 16
 """Labels of a feature that are shown one by one."""
 
 
@@ -32,7 +32,7 @@ def standardised(fit: Fit) -> Array:
 
 
 def binned(
-    values: Array, r: Array, weight: Array, most: int = MOST_BINS
+    values: Array, r: Array, weight: Array, most: int = MAX_BINS
 ) -> tuple[Array, Array, Array]:
     """Means of residuals in bins of a variable that hold equally many touches.
 
@@ -43,7 +43,6 @@ def binned(
         values: Of the variable, (N,).
         r: Residuals, (N,).
         weight: Of each, such as one over its variance, (N,).
-        most: Number of bins.
 
     Returns:
         Mean value, mean residual and its standard error of every bin, (B,) each.
@@ -52,7 +51,7 @@ def binned(
     if len(distinct) <= most:
         label = np.searchsorted(distinct, values)
     else:
-        count = int(np.clip(len(values) // FEWEST, 1, most))
+        count = int(np.clip(len(values) // MIN_TOUCHES, 1, most))
         edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, count + 1)[1:-1]))
         label = np.searchsorted(edges, values, side="right")
     w = np.bincount(label, weight)
@@ -113,7 +112,7 @@ def labelled(touches: Touches) -> list[tuple[str, Array, tuple[str, ...] | None]
         words = tuple({-1.0: "minus", 0.0: "unknown", 1.0: "plus"}[s] for s in present)
         out.append((name, label.astype(float), words))
     names, label = np.unique(touches.feature, return_inverse=True)
-    shown = tuple(str(n) for n in names) if len(names) <= MOST_LABELS else None
+    shown = tuple(str(n) for n in names) if len(names) <= MAX_LABELS else None
     out.append(("feature", label.astype(float), shown))
     out.append(("set-up", touches.setup.astype(float), tuple(s.name for s in touches.setups)))
     out.append(("pose", touches.pose.astype(float), None))

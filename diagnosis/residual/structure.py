@@ -21,14 +21,14 @@ from matstd.diagnosis.residual.waves import Wave, best_wave
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 
-CHANCE = 1e-3
+FALSE_ALARM = 1e-3
 """Probability, all tests together, that white noise is said to have structure."""
 
-MATERIAL = 0.01
-"""Share of the squared residual that a pattern must hold to count: in ten thousand rows less is
-beyond chance too, but whoever knew it would predict no more than half a per cent better."""
+MIN_MATERIAL_SHARE = 0.01
+"""Share of the squared residual that a pattern must hold to count. In ten thousand rows less is
+beyond chance too, but a model of it would improve the prediction by half a per cent at most."""
 
-FAR = 1e4
+FEATURE_DISTANCE = 1e4
 """Distance (mm) by which different features are held apart in the search for neighbours."""
 
 
@@ -46,12 +46,8 @@ class Structure:
     """One test of a residual for one kind of pattern.
 
     Attributes:
-        shape: What kind of pattern it is.
-        variables: What the pattern varies with.
-        direction: Along what it acts.
         p_value: Probability in white noise, corrected for all the tests made.
         share: Of the squared residual that it holds beyond chance.
-        evidence: Log evidence for the pattern against noise alone.
         columns: Projected features scaled to their most likely size, (N + P, K): a prior of one
             each; None for tests that name no pattern.
         period: Of a wave, s; zero for everything else.
@@ -80,8 +76,6 @@ def find_structure(
     that lie together are no accidents.
 
     Args:
-        effects: Model and effects in it.
-        progress: Told after every pattern.
         smooth: Patterns freed of the same model, where other effects are looked at as well.
         most: Columns are returned for so many of the most certain.
     """
@@ -94,13 +88,13 @@ def find_structure(
     wave = best_wave(effects, complement.touches, smooth.rows)
     neighbours = [*_neighbours(effects), *_crowds(complement)]
     count = sum(len(t.p) for t in tested) + wave.count + len(neighbours)
-    beyond = {_as_structure(t, count): t for t in tested if t.p.min() * count < CHANCE}
+    beyond = {_as_structure(t, count): t for t in tested if t.p.min() * count < FALSE_ALARM}
     found = [
         *beyond,
         _wave_structure(effects, wave, count, smooth.rows),
         *(_corrected(n, count) for n in neighbours),
     ]
-    counts = (f for f in found if f.p_value < CHANCE and f.share > MATERIAL)
+    counts = (f for f in found if f.p_value < FALSE_ALARM and f.share > MIN_MATERIAL_SHARE)
     found = sorted(counts, key=lambda f: f.p_value)
     progress(1.0, "structure left")
     first = [replace(f, columns=beyond[f].columns()) if f in beyond else f for f in found[:most]]
@@ -138,7 +132,7 @@ def _wave_structure(effects: EffectSet, wave: Wave, count: int, rows: IntArray) 
         p_value=p,
         share=wave.drop * (len(effects.complement.u) / len(rows)) / effects.objective,
         evidence=float(gained),
-        columns=effects.complement.project(wave.columns) if p < CHANCE else None,
+        columns=effects.complement.project(wave.columns) if p < FALSE_ALARM else None,
         period=wave.period,
     )
 
@@ -173,7 +167,7 @@ def _neighbours(effects: EffectSet) -> list[Structure]:
         pairs = max(len(left), 1)
         common = float(r[left] @ r[right]) - mean
         p = float(ndtr(-common / np.sqrt(pairs)))
-        # a neighbour that correlates by c tells c^2 of the square of a touch
+        # a neighbour that correlates by c explains c^2 of the square of a touch
         out.append(_without_columns(Shape.NEIGHBOURS, variables, p, (common / pairs) ** 2))
     return out
 
@@ -192,11 +186,11 @@ def _neighbour_pairs(touches: Touches) -> list[tuple[tuple[str, ...], IntArray, 
     if np.ptp(touches.time) > 0.0:
         out.append((("time_s",), order[:-1], order[1:]))
     label = np.unique(touches.feature, return_inverse=True)[1]
-    tree = cKDTree(np.column_stack([touches.point, FAR * label]))
+    tree = cKDTree(np.column_stack([touches.point, FEATURE_DISTANCE * label]))
     distance, index = tree.query(tree.data, k=2)
     near = np.sort(np.column_stack([np.arange(len(label)), index[:, 1]]), axis=1)
     # a touch repeated at one point may come first in its own list: it is no neighbour of itself
-    near = np.unique(near[(distance[:, 1] < FAR) & (near[:, 0] < near[:, 1])], axis=0)
+    near = np.unique(near[(distance[:, 1] < FEATURE_DISTANCE) & (near[:, 0] < near[:, 1])], axis=0)
     if len(near):
         out.append((("px_mm", "py_mm", "pz_mm"), near[:, 0], near[:, 1]))
     return out

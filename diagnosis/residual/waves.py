@@ -11,27 +11,27 @@ from matstd.diagnosis.residual.patterns import directions
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 
-SHORTEST = 4.0
+MIN_PERIOD_TOUCHES = 4.0
 """Shortest period, in mean distances of touches."""
 
-ALIAS = 2.0
+MIN_PERIOD_STEPS = 2.0
 """Shortest period in usual steps between times: a faster wave looks like a slower one."""
 
-LONGEST = 0.5
+MIN_TURNS = 0.5
 """Lowest frequency, in turns over the run: what is slower is no wave but a drift."""
 
-PER_LINE = 2.0
+OVERSAMPLING = 2.0
 """Scanned frequencies per resolvable one."""
 
-MOST = 800
+MAX_FREQUENCIES = 800
 """Most scanned frequencies."""
 
 BLOCK = 64
 """Frequencies that are tried at a time."""
 
-FINER = 8
+REFINEMENT_POINTS = 8
 """Points of the scan around the best frequency, and how many times it is repeated."""
-TIMES = 3
+REFINEMENTS = 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,11 +39,8 @@ class Wave:
     """The best wave of a scan.
 
     Attributes:
-        count: Frequencies and directions that were tried.
         p_value: Probability by chance of the best, not corrected for their number.
-        drop: Fall of the objective by it.
         period: Of the best, s.
-        direction: Along which it acts.
         columns: Whitened sine and cosine, (N, 2), so large that a prior of one leaves them free.
     """
 
@@ -59,7 +56,6 @@ def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
     """Scan waves in time over every period that the touches can show, in every direction.
 
     Args:
-        effects: Model and effects in it.
         rows: Which of the touches in use are looked at, (R,).
     """
     complement = effects.complement
@@ -74,9 +70,9 @@ def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
             direction="normal",
             columns=np.zeros((len(time), 0)),
         )
-    highest = min(len(rows) / (SHORTEST * span), 1.0 / (ALIAS * _step(time)))
-    count = int(min(MOST, max(BLOCK, PER_LINE * highest * span)))
-    frequency = np.linspace(LONGEST / span, max(highest, 1.0 / span), count)
+    highest = min(len(rows) / (MIN_PERIOD_TOUCHES * span), 1.0 / (MIN_PERIOD_STEPS * _step(time)))
+    count = int(min(MAX_FREQUENCIES, max(BLOCK, OVERSAMPLING * highest * span)))
+    frequency = np.linspace(MIN_TURNS / span, max(highest, 1.0 / span), count)
     along = directions(touches)
     weights = {name: part[complement.used] / complement.u for name, part in along.items()}
     _, strongest, direction = _scan(effects, time, frequency, weights, rows)
@@ -85,6 +81,7 @@ def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
     drop, found = _finer(effects, time, strongest, step, lowest, {direction: weight}, rows)
     p = float(f_probability(drop, 2.0, effects.objective - drop, effects.dof - 2.0))
     columns = _seen(effects, _wave(time, np.array([found])) * weight[:, None])
+    # far beyond the noise, so that a prior of one leaves both amplitudes free
     scale = 10.0 / max(float(np.abs(columns).max()), 1e-300)
     return Wave(
         count=count * len(along),
@@ -145,10 +142,10 @@ def _finer(
 ) -> tuple[float, float]:
     """The same around the best frequency of the scan, finer and finer."""
     best = (0.0, frequency)
-    for _ in range(TIMES):
-        around = best[1] + step * np.linspace(-1.0, 1.0, 2 * FINER + 1)
+    for _ in range(REFINEMENTS):
+        around = best[1] + step * np.linspace(-1.0, 1.0, 2 * REFINEMENT_POINTS + 1)
         best = max(best, _scan(effects, time, around[around >= lowest], weights, rows)[:2])
-        step /= FINER
+        step /= REFINEMENT_POINTS
     return best
 
 

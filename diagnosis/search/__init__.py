@@ -16,10 +16,10 @@ from matstd.diagnosis.search.search_loop import (
     search_until_stable,
 )
 from matstd.diagnosis.search.selection import (
-    CHANCE,
-    LISTED,
+    FALSE_ALARM,
+    MAX_LISTED,
+    MIN_LOG_EVIDENCE_GAIN,
     MOST_SETS,
-    WORTH,
     Budget,
     Member,
     Search,
@@ -28,12 +28,12 @@ from matstd.diagnosis.search.selection import (
 from matstd.diagnosis.search.task import FREEDOM, DiagnosisTask
 
 __all__ = [
-    "CHANCE",
+    "FALSE_ALARM",
     "FREEDOM",
-    "LISTED",
+    "MAX_LISTED",
+    "MIN_LOG_EVIDENCE_GAIN",
     "MOST_SETS",
     "WHOLE_BELOW",
-    "WORTH",
     "Budget",
     "DiagnosisTask",
     "Library",

@@ -1,4 +1,4 @@
-"""Gross errors at an edge in time: accidents, or all there is on one side of a slip?
+"""Gross errors at an edge in time: accidents, or all touches on one side of a slip.
 
 A standard that slips two touches before the end of its set-up leaves two touches that no other
 agrees with. As accidents they would lie anywhere; where that is too unlikely they are put back into
@@ -17,13 +17,13 @@ from matstd.twin.frames import Array
 from matstd.twin.model import inner_values
 from matstd.twin.record import IntArray, Touches
 
-CHANCE = 1e-3
-"""Probability, all edges and lengths together, that accidents lie so at an edge."""
+FALSE_ALARM = 1e-3
+"""Probability, all edges and lengths together, that accidents form such a group at an edge."""
 
-LONGEST = 8
+MAX_EDGE_LENGTH = 8
 """Touches from an edge that are looked at; a slip farther inside is a crowd to begin with."""
 
-FEWEST = 2
+MIN_EDGE_ERRORS = 2
 """Gross errors at an edge that may be no accidents."""
 
 
@@ -34,10 +34,6 @@ def unexplained_near_slip(
 
     At the edges of a set-up those that so few accidents would hardly ever form; at the instant of a
     slip that was found, all that adjoin it, since the instant rests upon the touches without them.
-
-    Args:
-        gross: Of the fit.
-        effects: That were found.
     """
     instants = np.array(
         [
@@ -51,15 +47,15 @@ def unexplained_near_slip(
     bad = gross.rows
     edges = list(_edges(touches, instants))
     for rows, is_instant in edges:
-        near = rows[:LONGEST]
+        near = rows[:MAX_EDGE_LENGTH]
         if is_instant:
             stop = int(np.argmin(np.append(bad[near], False)))
             out[near[:stop]] = True
             continue
         count = np.cumsum(bad[near])
-        for k in np.flatnonzero(bad[near] & (count >= FEWEST)):
+        for k in np.flatnonzero(bad[near] & (count >= MIN_EDGE_ERRORS)):
             p = _by_chance(len(touches), int(bad.sum()), int(k) + 1, int(count[k]))
-            if p * len(edges) * LONGEST < CHANCE:
+            if p * len(edges) * MAX_EDGE_LENGTH < FALSE_ALARM:
                 out[near[: k + 1]] |= bad[near[: k + 1]]
     return out
 

@@ -13,9 +13,9 @@ import numpy as np
 from matstd.diagnosis.evidence import EffectSet
 from matstd.diagnosis.regression import f_tail
 
-SHARED = 0.5
-"""Share of rows that stand at the instant and the readings of the row before, from which rows of an
-instant are taken together."""
+MIN_SHARED_ROWS = 0.5
+"""Share of rows with the instant and readings of the row before, from which rows of an instant are
+grouped."""
 
 
 def p_by_instants(others: EffectSet, whole: EffectSet) -> float:
@@ -24,10 +24,6 @@ def p_by_instants(others: EffectSet, whole: EffectSet) -> float:
     ``F = g^T G^-1 g / tr(G^-1 V)`` of k and M - k degrees of freedom, with D the columns beside the
     others, ``G = D^T D``, ``g = D^T r``, and V the sum over M instants of the squares of
     ``D_m^T e_m``, e the errors of what was held out.
-
-    Args:
-        others: The set without the effect.
-        whole: The set with it.
 
     Reference:
         Liang and Zeger, Biometrika 73 (1986) 13-22 (estimates of variance from clusters).
@@ -38,7 +34,7 @@ def p_by_instants(others: EffectSet, whole: EffectSet) -> float:
     first = np.flatnonzero(begins)
     added = whole.A.shape[1] - others.A.shape[1]
     freedom = len(first) - added
-    is_shared = len(first) <= (1.0 - SHARED) * len(q)
+    is_shared = len(first) <= (1.0 - MIN_SHARED_ROWS) * len(q)
     if not is_shared or freedom < 1 or len(first) > len(space.groups):
         return 0.0
     D = whole.A - others.A @ others.coefficients(whole.A) if others.A.shape[1] else whole.A

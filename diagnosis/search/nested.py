@@ -1,12 +1,12 @@
-"""Candidates that hold a member of a set, and so stand in its place or not at all."""
+"""Candidates that contain a member of a set, and so replace it or stay out."""
 
 from collections.abc import Iterable
 
 from matstd.twin.model import Effect, traits
 
 
-def would_hold(effect: Effect, members: Iterable[Effect]) -> bool:
-    """Whether an effect is a table by direction of what a member is the plain table of."""
+def contains(effect: Effect, members: Iterable[Effect]) -> bool:
+    """Whether an effect is a table by direction, and a member its plain table."""
     own = traits(effect)
     if not own.is_table or own.reversal is None:
         return False

@@ -5,30 +5,27 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, addition, projected
-from matstd.diagnosis.search.selection import WORTH
-from matstd.twin.effects import MOST_OVERTONES, usual_distance
+from matstd.diagnosis.search.selection import MIN_LOG_EVIDENCE_GAIN
+from matstd.twin.effects import MAX_OVERTONES, usual_distance
 from matstd.twin.model import Effect, Wave, original_of, traits
 
-HIGHEST_FOUND = 4
+MAX_STRONGEST_ORDER = 4
 """The strongest wave of a period is at most its fourth."""
 
 
 def with_overtones(
     complement: ResidualSpace, found: Sequence[ScaledEffect]
 ) -> tuple[ScaledEffect, ...] | None:
-    """A set with waves over one axis exchanged for one period of several sines; None for none.
-
-    Args:
-        complement: What the model without them leaves.
-        found: Effects that were found, inner parameters refined.
-    """
+    """A set with waves over one axis exchanged for one period of several sines; None for none."""
     best: tuple[float, tuple[ScaledEffect, ...] | None] = (
-        EffectSet(complement, projected(complement, found)).evidence + WORTH,
+        EffectSet(complement, projected(complement, found)).evidence + MIN_LOG_EVIDENCE_GAIN,
         None,
     )
     for wave in found:
         own = _wave(wave.effect)
-        for period in () if own is None else [k * own.period for k in range(1, HIGHEST_FOUND + 1)]:
+        for period in (
+            () if own is None else [k * own.period for k in range(1, MAX_STRONGEST_ORDER + 1)]
+        ):
             for comb in _combs(complement, wave.effect, period):
                 rest = tuple(s for s in found if not _is_fraction(complement, s.effect, comb))
                 beside = EffectSet(complement, projected(complement, rest))
@@ -44,7 +41,7 @@ def _combs(complement: ResidualSpace, effect: Effect, period: float) -> Iterator
     assert wave is not None
     assert with_sines is not None
     q = complement.touches.reading(wave.symbol.link)[complement.used]
-    most = min(MOST_OVERTONES, int(period / (2.0 * usual_distance(q))))
+    most = min(MAX_OVERTONES, int(period / (2.0 * usual_distance(q))))
     if period < 0.5 * float(np.ptp(q)):
         for order in range(2, most + 1):
             yield with_sines(period, order)
@@ -57,7 +54,7 @@ def _wave(effect: Effect) -> Wave | None:
 
 
 def _is_fraction(complement: ResidualSpace, effect: Effect, sines: Effect) -> bool:
-    """Whether an effect is one of the sines of a period, as far as the travel can tell."""
+    """Whether an effect is one of the sines of a period, within the resolution of the travel."""
     wave, comb = _wave(effect), traits(sines).wave
     if wave is None or comb is None or wave.symbol != comb.symbol:
         return False

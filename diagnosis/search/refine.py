@@ -4,8 +4,8 @@ A time constant or a period enters a signature non-linearly, and the search sees
 of a grid. From the best point the evidence is scanned over one distance of the grid to either side,
 then four times finer around the best of that, and so on: the evidence has several maxima within a
 distance of the grid for a period, which a step along its slope would miss. Several inner parameters
-are scanned in turn until the evidence stays; several effects likewise, each with the others in
-place.
+are scanned in turn until the evidence stays; several effects in the same way, each with the
+others in place.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,38 +24,32 @@ from matstd.diagnosis.evidence import (
 from matstd.diagnosis.fit import continuous_inner, spacing
 from matstd.twin.model import Effect, Tunable, is_tunable
 
-POINTS = 9
+SCAN_POINTS = 9
 """Points of every scan, over one distance of the grid to either side."""
 
-LEVELS = 10
+MAX_SCANS = 10
 """Most scans, each four times finer than the one before: an effect of a thousand times the noise
 shows an inner parameter to a part in some ten thousand of the distance of its grid."""
 
-FEWEST = 3
+MIN_SCANS = 3
 """Scans that are made in any case: between the points of the first there may be nothing better."""
 
-SWEEPS = 6
+MAX_SWEEPS = 6
 """Most turns through the inner parameters of an effect that has several: the best value of one
 depends on the others."""
 
-SETTLED = 0.01
+SETTLED_GAIN = 0.01
 """Gain of log evidence in one turn below which they are settled."""
 
 
-def refined(base: EffectSet, effect: Effect, levels: int = LEVELS) -> tuple[ScaledEffect, float]:
-    """An effect with its inner parameters refined, and the log evidence of the set with it.
-
-    Args:
-        base: What else is in the set.
-        effect: At the best point of its grid.
-        levels: Number of scans.
-    """
+def refined(base: EffectSet, effect: Effect, levels: int = MAX_SCANS) -> tuple[ScaledEffect, float]:
+    """An effect with its inner parameters refined, and the log evidence of the set with it."""
     best, (top, scale) = effect, addition(base, effect)
     several = len(continuous_inner(effect, base.complement.touches)) > 1
-    for _ in range(SWEEPS if several else 1):
+    for _ in range(MAX_SWEEPS if several else 1):
         before = top
         best, top, scale = _sweep(base, best, top, scale, levels)
-        if top - before < SETTLED:
+        if top - before < SETTLED_GAIN:
             break
     return ScaledEffect(best, scale), top
 
@@ -70,12 +64,12 @@ def _sweep(
         for level in range(levels):
             before, value = top, list(best.tuning.values())[index]
             half = spacing(inner, value) / 4.0**level
-            for point in np.clip(np.linspace(value - half, value + half, POINTS), low, high):
+            for point in np.clip(np.linspace(value - half, value + half, SCAN_POINTS), low, high):
                 trial = _moved(best, index, float(point))
                 found, size = addition(base, trial)
                 if found > top:
                     best, top, scale = trial, found, size
-            if level >= FEWEST and top - before < SETTLED:
+            if level >= MIN_SCANS and top - before < SETTLED_GAIN:
                 break
     return best, top, scale
 
@@ -102,7 +96,6 @@ def with_moved_points(pool: Signatures, to: Mapping[int, Effect]) -> Signatures:
     """A pool with points of its grids moved, in the place of the old ones, which are lost.
 
     Args:
-        pool: Signatures of all candidates.
         to: New effect by the number of the variant.
     """
     variants = list(pool.variants)

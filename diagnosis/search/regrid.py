@@ -11,9 +11,9 @@ from dataclasses import replace
 from matstd.diagnosis.evidence import EffectSet, Grid, ScaledEffect, projected, signatures
 from matstd.diagnosis.fit import continuous_inner
 from matstd.diagnosis.search.refine import refined_set, with_moved_points
-from matstd.diagnosis.search.selection import WORTH, EffectSubset, Member, Search
+from matstd.diagnosis.search.selection import MIN_LOG_EVIDENCE_GAIN, EffectSubset, Member, Search
 
-SETTLINGS = 3
+MAX_SEARCHES = 3
 """Most searches with points of the grid moved to refined inner parameters."""
 
 
@@ -23,19 +23,15 @@ def regridded(search: Search, chosen: EffectSubset) -> tuple[Search, EffectSubse
     What a coarse grid leaves would otherwise pass for a further effect, or for structure that no
     effect explains.
 
-    Args:
-        search: As it was made.
-        chosen: Its result.
-
     Returns:
         The search with the moved points, and its result.
     """
-    for _ in range(SETTLINGS):
+    for _ in range(MAX_SEARCHES):
         start = [ScaledEffect(m.effect, m.scale) for m in chosen.members]
         members = refined_set(search.complement, start)
         effects = EffectSet(search.complement, projected(search.complement, members))
         kept, members = _needed(search, chosen.members, members)
-        is_better = effects.evidence >= chosen.effects.evidence + WORTH
+        is_better = effects.evidence >= chosen.effects.evidence + MIN_LOG_EVIDENCE_GAIN
         if len(kept) == len(chosen.members) and not is_better:
             break
         pool = with_moved_points(
@@ -50,13 +46,7 @@ def regridded(search: Search, chosen: EffectSubset) -> tuple[Search, EffectSubse
 def _needed(
     search: Search, chosen: Sequence[Member], members: Sequence[ScaledEffect]
 ) -> tuple[list[Member], list[ScaledEffect]]:
-    """A set without what only mops up: a member that falls where the others are refined without it.
-
-    Args:
-        search: As it was made.
-        chosen: Members of its result.
-        members: The same effects, refined beside one another.
-    """
+    """The set without members that become redundant once the others are refined without them."""
     complement = search.complement
     for i in reversed(range(len(chosen))):
         others = [s for k, s in enumerate(members) if k != i]

@@ -8,7 +8,7 @@ from matstd.diagnosis.search.regrid import regridded
 from matstd.diagnosis.search.screening import Library, joined_shortlists
 from matstd.diagnosis.search.selection import Budget, EffectSubset, Member, Search
 
-SCREENINGS = 3
+MAX_SCREENINGS = 3
 """Most screenings of the library in one round of a long run."""
 
 
@@ -22,19 +22,13 @@ def best_set(
 ) -> tuple[Search, EffectSubset]:
     """The best set of effects; of a long run among those that screenings let through.
 
-    Args:
-        library: Candidates.
-        found: Effects to begin with.
-        budget: Sets that may be tried.
-        progress: Told of every step.
-
     Returns:
         The search, and its result.
     """
     complement = library.complement
     begun = EffectSet(complement, projected(complement, found))
     shortlist = library.shortlist(found, begun)
-    for _ in range(SCREENINGS):
+    for _ in range(MAX_SCREENINGS):
         search, start = _begun(Search(library.pool(shortlist), None, progress, budget), found)
         search, chosen = regridded(search, search.run(start))
         if library.is_whole or _found_again(chosen, found):

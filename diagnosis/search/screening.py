@@ -5,7 +5,7 @@ in full. In a long run the library is first scored against an even choice of the
 signature has in common with the residual is counted over all touches, which is one product, and
 only its length after the projection, which is the work, over the choice. A shortlist names the
 points of grids that may matter beside a set of effects; the search then has exact signatures of
-those points alone, and whoever searches asks for another shortlist once it knows more effects.
+those points alone, and a search asks for another shortlist once it knows more effects.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,10 +36,10 @@ WHOLE_BELOW = 4000
 """Up to so many touches the whole library is searched at every point of its grids; beyond, a choice
 of as many touches screens it first."""
 
-SHORT = 40
+MAX_CANDIDATES = 40
 """Candidates that a screening lets through."""
 
-POINTS = 12
+MAX_POINTS = 12
 """Best points of a candidate's grid that it lets through."""
 
 
@@ -58,8 +58,6 @@ class Library:
     """Candidate effects with what is needed to search among them in one run.
 
     Attributes:
-        complement: What the fitted model leaves, all touches.
-        grids: Every candidate at every point of its grid.
         sample: Signatures of all of them over the touches, or over an even choice of many.
     """
 
@@ -99,12 +97,7 @@ class Library:
         return signatures(self.complement, grids, len(self.grids))
 
     def shortlist(self, found: Sequence[ScaledEffect], effects: EffectSet) -> Shortlist:
-        """Candidates that may matter beside a set of effects; empty where all are searched.
-
-        Args:
-            found: Effects of the set.
-            effects: The set over all touches.
-        """
+        """Candidates that may matter beside a set of effects; empty where all are searched."""
         if self.is_whole:
             return {}
         scores = self._screen(found, effects)
@@ -113,8 +106,8 @@ class Library:
             best.setdefault(int(self.sample.owner[variant]), []).append(int(variant))
         names = {s.effect.name for s in found}
         known = [i for i, grid in enumerate(self.grids) if grid.effect.name in names]
-        let_through = dict.fromkeys([*list(best)[:SHORT], *known])
-        return {i: frozenset(best[i][:POINTS]) for i in let_through}
+        let_through = dict.fromkeys([*list(best)[:MAX_CANDIDATES], *known])
+        return {i: frozenset(best[i][:MAX_POINTS]) for i in let_through}
 
     def _screen(self, found: Sequence[ScaledEffect], effects: EffectSet) -> Scores:
         """Scores of all variants beside a set of effects."""

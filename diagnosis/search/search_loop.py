@@ -35,43 +35,43 @@ from matstd.diagnosis.residual import PatternTests, Structure, find_structure
 from matstd.diagnosis.search.edges import unexplained_near_slip, without
 from matstd.diagnosis.search.overtones import with_overtones
 from matstd.diagnosis.search.refine import refined_set
+from matstd.diagnosis.search.restore_outliers import restore_predicted_outliers
 from matstd.diagnosis.search.screened import best_set, scaled
 from matstd.diagnosis.search.screening import Library
 from matstd.diagnosis.search.selection import Budget, EffectSubset, Search
-from matstd.diagnosis.search.taken_back import foretold
 from matstd.diagnosis.search.task import DiagnosisTask
 from matstd.twin.effects import repeat
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, traits
 from matstd.twin.numbers import rms
 
-ROUNDS = 4
+MAX_ROUNDS = 4
 """Most rounds of looking for gross errors and effects in turn; a usual run needs two."""
 
-QUIETER = 0.7
-"""Share of the noise, or of the widening of the prior, that found effects must leave for the search
-to be made again beside them: a large effect passes for noise, and for a machine worse than stated,
-and the model then imitates half of everything."""
+MAX_NOISE_SHARE = 0.7
+"""Share of the noise, or of the widening of the prior, below which the search is repeated beside
+the found effects. A large effect passes for noise and for a machine worse than stated, and the
+model then imitates half of everything."""
 
-PERIODS = 4
+MAX_PERIODS = 4
 """Most periods of one component error of one axis."""
 
-MISJUDGED = 1.5
+MAX_MISSTATED_NOISE = 1.5
 """Noise that is left over the stated one from which further periods are looked for."""
 
-NAMELESS = 3
+MAX_NAMELESS = 3
 """Most patterns without a name that are put beside the effects of an unexplained run."""
 
-CLEARLY = 15.0
+MIN_LOG_ODDS_NAMELESS = 15.0
 """Log odds by which one pattern without a name must beat all library effects together to say that
 they only imitate it."""
 
 STRETCHES = 5
 """Stretches of time that are left out to weigh patterns against named effects."""
 
-BETTER = 0.97
-"""Share of the held-out error of named effects that patterns without a name, or tables, must reach
-to push one of them out: as far as both predict alike, the name stays."""
+MAX_ERROR_SHARE = 0.97
+"""Share of the held-out error of named effects below which nameless patterns, or tables, replace
+one of them. Where both predict equally well, the named effect stays."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,13 +80,8 @@ class SearchState:
 
     Attributes:
         base: The starting model, and what the user added, fitted.
-        library: Candidates of the run.
-        search: The last search.
-        chosen: Its result.
         effects: The same effects with their inner parameters refined.
         smooth: Tests for patterns in what the starting model leaves.
-        at_start: Structure that the starting model leaves.
-        left: Structure that the effects and the patterns leave.
         nameless: Patterns without a name that had to be put beside them.
         chances: Probabilities by chance that rest on blocks left out, by the name of the effect.
         is_weighed: Whether the set was chosen by prediction, and no other may stand in for it.
@@ -120,12 +115,7 @@ class SearchState:
 def refined_named(
     task: DiagnosisTask, named: Sequence[Effect], progress: Progress = quiet
 ) -> tuple[ScaledEffect, ...]:
-    """Named effects with their inner parameters at the best point of their grids, refined.
-
-    Args:
-        named: Effects that the user adds.
-        progress: Told of the signatures.
-    """
+    """Named effects with their inner parameters at the best point of their grids, refined."""
     if not named:
         return ()
     complement = ResidualSpace.of(task.fit())
@@ -152,9 +142,6 @@ def search_until_stable(
     imitate any of them.
 
     Args:
-        added: Effects that the user added.
-        candidates: Effects that may be found.
-        progress: Told of every stage.
         start: A set to begin with, inner parameters refined, as a choice of the rows gave it: what
             tables there are, it holds.
     """
@@ -164,7 +151,7 @@ def search_until_stable(
     if start or len(laws) == len(candidates):
         return state
     other = _with_further_periods(task, added, candidates, progress, ())
-    return other if _held_out(other) < BETTER * _held_out(state) else state
+    return other if _held_out(other) < MAX_ERROR_SHARE * _held_out(state) else state
 
 
 def _held_out(state: SearchState) -> float:
@@ -189,7 +176,7 @@ def _with_further_periods(
     names = {e.name for e in candidates}
     offered = [*candidates, *(s.effect for s in start if s.effect.name not in names)]
     state = _until_gross_errors_stay(task, added, offered, progress, start)
-    for number in range(2, PERIODS + 1):
+    for number in range(2, MAX_PERIODS + 1):
         state, offered = _as_one_period(task, added, offered, progress, state)
         before = {s.effect.name for s in state.effects}
         found = [e for e in offered if e.name in before and period_of(e, state.library.complement)]
@@ -206,13 +193,13 @@ def _with_further_periods(
 
 
 def _is_open(state: SearchState) -> bool:
-    """Whether something is left: a pattern, or noise beyond what any user misjudges.
+    """Whether a pattern remains, or more noise than a user may misstate.
 
     No smooth pattern follows a wave that is short beside the travel.
     """
     chosen = state.chosen.effects
     noise = state.base.noise.factor * float(np.sqrt(chosen.objective / max(chosen.dof, 1.0)))
-    return bool(state.left or state.nameless) or noise > MISJUDGED
+    return bool(state.left or state.nameless) or noise > MAX_MISSTATED_NOISE
 
 
 def _as_one_period(
@@ -248,12 +235,6 @@ def _until_gross_errors_stay(
 
     Gross errors beside an edge in time are offered to the search once: it may find the slip that
     explains them, and if not they are gross errors in the next turn.
-
-    Args:
-        added: Effects that the user added.
-        candidates: Effects that may be found.
-        progress: Told of every stage.
-        start: A set to begin with.
     """
     touches = task.run.touches
     whole = task.fit((*added, *start))
@@ -263,11 +244,11 @@ def _until_gross_errors_stay(
         base = task.fit(added, without(base.gross, tried), whole if start else None)
     found: Sequence[ScaledEffect] = start
     budget = Budget()
-    for remaining in reversed(range(ROUNDS)):
+    for remaining in reversed(range(MAX_ROUNDS)):
         library = Library.of(ResidualSpace.of(base), candidates, progress)
         search, chosen = best_set(library, found, budget, progress)
         effects = refined_set(library.complement, scaled(chosen))
-        whole = foretold(task, (*added, *effects), base.gross)
+        whole = restore_predicted_outliers(task, (*added, *effects), base.gross)
         further = unexplained_near_slip(touches, whole.gross, effects) & ~tried & (remaining > 1)
         is_same = np.array_equal(whole.gross.rows, base.gross.rows) and not further.any()
         if (is_same and not _is_quieter(whole, base)) or not remaining:
@@ -279,9 +260,9 @@ def _until_gross_errors_stay(
 
 
 def _is_quieter(whole: Fit, base: Fit) -> bool:
-    """Whether found effects leave clearly less noise, or a machine clearly less odd."""
+    """Whether found effects clearly reduce the noise or the widening of the prior."""
     noise, odd = whole.noise.factor, whole.widened
-    return noise < QUIETER * base.noise.factor or odd < QUIETER * base.widened
+    return noise < MAX_NOISE_SHARE * base.noise.factor or odd < MAX_NOISE_SHARE * base.widened
 
 
 def _with_structure(
@@ -296,7 +277,8 @@ def _with_structure(
         left = _patterns_that_win(at_start, nothing, chosen)
     nameless: list[Structure] = []
     named = (search, chosen, left)
-    while any(s.columns is not None for s in left) and len(nameless) < NAMELESS:
+    # an unexplained pattern would otherwise be imitated by several named effects
+    while any(s.columns is not None for s in left) and len(nameless) < MAX_NAMELESS:
         nameless.append(most_evident(left))
         fixed = np.hstack([s.columns for s in nameless if s.columns is not None])
         search = Search(search.pool, fixed, progress, search.budget)
@@ -319,7 +301,7 @@ def _with_structure(
 
 
 def _evicted(before: EffectSubset, after: EffectSubset) -> bool:
-    """Whether patterns without a name pushed out named effects and predict no better for it.
+    """Whether nameless patterns replaced named effects without a better prediction.
 
     They are judged by long stretches of time left out: between neighbours a pattern of time always
     runs well.
@@ -327,7 +309,7 @@ def _evicted(before: EffectSubset, after: EffectSubset) -> bool:
     kept = {m.effect.name for m in after.members}
     if all(m.effect.name in kept for m in before.members):
         return False
-    return _by_stretches(after.effects) > BETTER * _by_stretches(before.effects)
+    return _by_stretches(after.effects) > MAX_ERROR_SHARE * _by_stretches(before.effects)
 
 
 def _by_stretches(effects: EffectSet) -> float:
@@ -348,4 +330,6 @@ def _patterns_that_win(
 ) -> list[Structure]:
     """Patterns that explain the run clearly better than all found effects together."""
     gained = chosen.effects.evidence - nothing.effects.evidence
-    return [s for s in at_start if s.columns is not None and s.evidence > gained + CLEARLY]
+    return [
+        s for s in at_start if s.columns is not None and s.evidence > gained + MIN_LOG_ODDS_NAMELESS
+    ]

@@ -25,56 +25,55 @@ from matstd.diagnosis.evidence import (
     score_all,
 )
 from matstd.diagnosis.search.instants import p_by_instants
-from matstd.diagnosis.search.nested import would_hold
+from matstd.diagnosis.search.nested import contains
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 
-CHANCE = 1e-3
+FALSE_ALARM = 1e-3
 """Probability, all candidates and grids together, that a run without a hidden effect gets one."""
 
-WORTH = 3.0
-"""Least gain of log evidence, and of the log density of what was held out, by which an effect pays
-for its freedom: odds of twenty to one."""
+MIN_LOG_EVIDENCE_GAIN = 3.0
+"""Least gain of log evidence, and of held-out log density, of an effect: odds of twenty to one."""
 
-ALONE = 1.5
-"""Touches that a member must at least explain: what explains a single one explains an accident."""
+MIN_TOUCHES_EXPLAINED = 1.5
+"""Fewest touches that a member must explain; a single one may be an accident."""
 
-ALIKE = 0.95
-"""Correlation of two fitted signatures from which one set need not be carried beside the other."""
+MIN_CORRELATION_ALIKE = 0.95
+"""Correlation of two fitted signatures from which only one of the sets is carried on."""
 
-CARRIED = 4
-"""Sets that are carried from one size to the next."""
+MAX_CARRIED_SETS = 4
+"""Most sets that are carried from one size to the next."""
 
-OPENED = 8
-"""Ways to begin anew where two members of a set are taken out."""
+MAX_REOPENED_SETS = 8
+"""Most pairs of members that are taken out for a new start."""
 
-REOPENINGS = 3
+MAX_REOPENINGS = 3
 """Most turns of growing a set and of taking two members out of it."""
 
-USUAL = 6
-"""Effects of a set from which a search is told of as nearly done; it goes on while more stand."""
+USUAL_SET_SIZE = 6
+"""Effects at which a search is reported as nearly done; it continues while more pass."""
 
-LISTED = 25
-"""Candidates that are told of, best first."""
+MAX_LISTED = 25
+"""Most candidates that are listed, best first."""
 
 MOST_SETS = 1500.0
-"""Sets of effects that all searches of one diagnosis may try. A usual run asks for a hundred, one
-that nothing explains for three hundred; a long record of which every sensor knows something, or
-one of near copies, asks for more, and is told when it did not get it."""
+"""Sets of effects that all searches of one diagnosis may try. A usual run needs a hundred, an
+unexplained one three hundred; long records of many related sensors need more, and a remark says so
+when the limit ended the search."""
 
-LARGE = 5e7
+UNIT_CHARGE_SIZE = 5e7
 """Touches times squared columns from which a set counts for more than one."""
 
 USUAL_POOL = 1.3e6
 """Touches times columns of all candidates in a usual run; a set of a small one counts for less."""
 
-LEAST = 0.1
-"""What any set counts for."""
+MIN_CHARGE = 0.1
+"""Least charge of a set."""
 
 
 @dataclass(slots=True)
 class Budget:
-    """Sets that searches may still try, shared; spent, they end with what they have.
+    """Number of sets that searches may still try, shared; once spent, they return what they have.
 
     Attributes:
         left: Number of sets of ordinary size.
@@ -84,8 +83,8 @@ class Budget:
 
     def spend(self, touches: int, columns: int, pool: int) -> None:
         """Charge for one set, and for all columns of the pool beside it."""
-        beside = min(LEAST + float(touches) * pool / USUAL_POOL, 1.0)
-        self.left -= beside + float(touches) * columns * columns / LARGE
+        beside = min(MIN_CHARGE + float(touches) * pool / USUAL_POOL, 1.0)
+        self.left -= beside + float(touches) * columns * columns / UNIT_CHARGE_SIZE
 
     @property
     def is_spent(self) -> bool:
@@ -95,14 +94,7 @@ class Budget:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Member:
-    """An effect in a set, at one point of its grid.
-
-    Attributes:
-        variant: Index into the variants of the pool.
-        candidate: Index into its names.
-        effect: With its inner parameters.
-        scale: Factor on its usual size.
-    """
+    """An effect in a set, at one point of its grid."""
 
     variant: int
     candidate: int
@@ -112,12 +104,7 @@ class Member:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class EffectSubset:
-    """A set of effects with what it explains.
-
-    Attributes:
-        members: In the order in which they joined.
-        effects: The set in the projection.
-    """
+    """A set of effects with what it explains in the projection."""
 
     members: tuple[Member, ...]
     effects: EffectSet
@@ -128,13 +115,10 @@ class Verified:
     """Tests of one member with all the others in place.
 
     Attributes:
-        member: The effect.
         p_value: Probability by chance, corrected for grid and number of candidates.
-        evidence: Gain of log evidence by this member.
         held_out: Held-out error with it over that without it.
         density: Gain of the held-out log predictive density by it.
-        touches: Effective number of touches that it explains, ``(sum d^2)^2 / sum d^4`` of what it
-            changes.
+        touches: Effective number it explains, ``(sum d^2)^2 / sum d^4`` of what it changes.
     """
 
     member: Member
@@ -148,11 +132,11 @@ class Verified:
     def stands(self) -> bool:
         """Whether all tests are passed."""
         return (
-            self.p_value < CHANCE
-            and self.evidence > WORTH
+            self.p_value < FALSE_ALARM
+            and self.evidence > MIN_LOG_EVIDENCE_GAIN
             and self.held_out < 1.0
-            and self.density > WORTH
-            and self.touches > ALONE
+            and self.density > MIN_LOG_EVIDENCE_GAIN
+            and self.touches > MIN_TOUCHES_EXPLAINED
         )
 
 
@@ -173,9 +157,7 @@ class Search:
     """Search among sets of effects of one pool.
 
     Args:
-        pool: Signatures of all candidates.
         fixed: Further columns that are in every set, (N + P, K), such as a pattern without a name.
-        progress: Told after every step.
         budget: Shared with other searches; None for one of its own.
     """
 
@@ -249,9 +231,9 @@ class Search:
         return [v for v in self._scored(chosen)[1] if int(self.pool.owner[v]) not in taken]
 
     def additions(self, chosen: EffectSubset) -> list[int]:
-        """The same without what would hold a member."""
+        """The same without candidates that would contain a member."""
         members, variants = [m.effect for m in chosen.members], self.pool.variants
-        return [v for v in self.ranking(chosen) if not would_hold(variants[v], members)]
+        return [v for v in self.ranking(chosen) if not contains(variants[v], members)]
 
     def extensions(self, chosen: EffectSubset, most: int) -> list[EffectSubset]:
         """The best sets of one member more, no two alike in what they explain."""
@@ -262,7 +244,7 @@ class Search:
             if len(out) >= most or scores.evidence[variant] <= chosen.effects.evidence:
                 break
             direction = self.explained(chosen, variant)
-            if all(abs(direction @ d) < ALIKE for d in directions):
+            if all(abs(direction @ d) < MIN_CORRELATION_ALIKE for d in directions):
                 directions.append(direction)
                 out.append(self.evaluate((*chosen.members, self.member(chosen, variant))))
         return out
@@ -300,7 +282,10 @@ class Search:
             others = self.evaluate(chosen.members[:i] + chosen.members[i + 1 :])
             p = float(self.scores(others).p[member.variant])
             gained = chosen.effects.evidence - others.effects.evidence
-            if self.corrected(member.candidate, p) >= CHANCE or gained <= WORTH:
+            if (
+                self.corrected(member.candidate, p) >= FALSE_ALARM
+                or gained <= MIN_LOG_EVIDENCE_GAIN
+            ):
                 return False
         return all(v.stands for v in self.verify(chosen))
 
@@ -339,10 +324,13 @@ class Search:
             start: Members of a set to begin with, as from an earlier round.
         """
         best = self.backward(self.polished(self.evaluate(start)))
-        for _ in range(REOPENINGS):
+        for _ in range(MAX_REOPENINGS):
             best = self.backward(self.grown(best))
             other = self.reopened(best)
-            if other.effects.evidence <= best.effects.evidence + WORTH or not self.stands(other):
+            if (
+                other.effects.evidence <= best.effects.evidence + MIN_LOG_EVIDENCE_GAIN
+                or not self.stands(other)
+            ):
                 break
             best = other
         return best
@@ -353,10 +341,16 @@ class Search:
         for size in count(len(best.members) + 1):
             if self.budget.is_spent:
                 break
-            grown = [s for c in carried for s in self.extensions(c, CARRIED)]
-            carried = self.kept(self.polished(s) for s in grown[: CARRIED * CARRIED])
-            self.progress(min(size / USUAL, 1.0), "sets of effects")
-            better = [c for c in carried if c.effects.evidence > best.effects.evidence + WORTH]
+            grown = [s for c in carried for s in self.extensions(c, MAX_CARRIED_SETS)]
+            carried = self.kept(
+                self.polished(s) for s in grown[: MAX_CARRIED_SETS * MAX_CARRIED_SETS]
+            )
+            self.progress(min(size / USUAL_SET_SIZE, 1.0), "sets of effects")
+            better = [
+                c
+                for c in carried
+                if c.effects.evidence > best.effects.evidence + MIN_LOG_EVIDENCE_GAIN
+            ]
             standing = next((c for c in better if self.stands(c)), None)
             if standing is None:
                 break
@@ -366,15 +360,15 @@ class Search:
     def reopened(self, chosen: EffectSubset) -> EffectSubset:
         """The best set with two of its members out and two others in, or the set itself.
 
-        Two effects may stand in for two others, each being the best beside the other; no exchange
-        of one at a time finds the way out.
+        Two effects may replace two others, each the best beside the other; single exchanges
+        do not find that.
         """
         best = chosen
         for pair in combinations(chosen.members, 2):
             if self.budget.is_spent:
                 break
             rest = self.evaluate(m for m in chosen.members if m not in pair)
-            for first in self.extensions(rest, OPENED):
+            for first in self.extensions(rest, MAX_REOPENED_SETS):
                 for second in self.extensions(first, 1):
                     found = self.polished(second)
                     if found.effects.evidence > best.effects.evidence:
@@ -384,7 +378,7 @@ class Search:
     def kept(self, sets: Iterable[EffectSubset]) -> list[EffectSubset]:
         """The few best of some sets, each once."""
         unique = {tuple(sorted(m.variant for m in s.members)): s for s in sets}
-        return sorted(unique.values(), key=lambda s: -s.effects.evidence)[:CARRIED]
+        return sorted(unique.values(), key=lambda s: -s.effects.evidence)[:MAX_CARRIED_SETS]
 
     def backward(self, chosen: EffectSubset) -> EffectSubset:
         """Take out members that a better one made superfluous, the weakest first."""

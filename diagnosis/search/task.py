@@ -10,8 +10,8 @@ from matstd.twin.model import Model
 from matstd.twin.record import Run
 
 FREEDOM = 3.0
-"""Factor on the prior of a found effect in its last fit: being found tells more of its size than
-what is usual, and an estimate shall not be drawn to zero."""
+"""Factor on the prior of a found effect in its last fit. Being found indicates its size better than
+the usual size, and the estimate must not be drawn to zero."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -19,8 +19,6 @@ class DiagnosisTask:
     """What is diagnosed: a run, the starting model, and what is believed of it.
 
     Attributes:
-        model: Machine and effects of the starting model.
-        prior: Of its parameters.
         is_known: Whether the prior is an earlier fit, rather than what is usual.
         memory: Of the noise; None for white noise.
         alone: Prior of the starting model by itself, where `prior` is what suits it beside effects.
@@ -50,9 +48,6 @@ class DiagnosisTask:
         """The same with the prior that suits the machine once these effects are in the model.
 
         What an effect does, errors of the machine seem to do as long as it is missing.
-
-        Args:
-            effects: Everything that was found or added.
         """
         if self.is_known or not effects:
             return self

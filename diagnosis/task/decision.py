@@ -45,7 +45,6 @@ def guarded(tolerance: float, u: float, dof: float, bias: float = 0.0) -> Guarde
     Args:
         tolerance: Width of the zone, mm.
         u: Combined standard uncertainty of a measured deviation, mm.
-        dof: Its degrees of freedom.
         bias: Systematic error that results are not corrected for, mm.
 
     Reference:

@@ -4,7 +4,7 @@ A place j on a feature, at a table pose, was found at y_ij in visit i:
 
     y_ij = mu + m_j - K_j c + v_ij        m ~ N(0, s_b^2 R),  c ~ N(0, 1),  v_i ~ N(0, s_p^2 R')
 
-with m the machine's systematic error, known to nobody, K the calibration, known, and v what changes
+with m the machine's systematic error, unknown, K the calibration, known, and v what changes
 from visit to visit. The next result, corrected by b, the mean of all y, at a new place and in a new
 visit, errs by a normal deviate of the variance
 
@@ -81,7 +81,6 @@ def expected_error(visits: Visits, u_w: float = 0.0) -> Expected:
     """Distribution of a result's error beyond the mean of all places, as derived above.
 
     Args:
-        visits: At least two.
         u_w: Standard uncertainty of the workpieces, mm.
     """
     frame = _Frame.of(visits)
@@ -107,26 +106,26 @@ def _averaged(p: Array, variance: Array) -> Expected:
 
 @dataclass(frozen=True, eq=False)
 class _Covariance:
-    """Of J places: r coordinates are told apart, in the other directions it is a multiple of one.
+    """Of J places: r coordinates are separate, in the other directions it is a multiple of one.
 
     Attributes:
-        told: (r, r).
+        separate: (r, r).
         beside: Variance in every other direction.
     """
 
-    told: Array
+    separate: Array
     beside: float
 
     @staticmethod
     def sum(weights: Array, of: "Sequence[_Covariance]") -> "_Covariance":
         """The weighted sum of several."""
-        told = np.tensordot(weights, np.stack([one.told for one in of]), axes=1)
-        return _Covariance(told, float(weights @ [one.beside for one in of]))
+        separate = np.tensordot(weights, np.stack([one.separate for one in of]), axes=1)
+        return _Covariance(separate, float(weights @ [one.beside for one in of]))
 
 
 @dataclass(frozen=True, eq=False)
 class _Frame:
-    """Visits in coordinates that tell features, poses and calibration apart.
+    """Visits in coordinates that separate features, poses and calibration.
 
     The first coordinate is that of what all places share, ``1 / sqrt(J)``.
 
@@ -140,7 +139,6 @@ class _Frame:
         of_machine: What may add to its error: by region, by feature, by pose, by place, those that
             there are several of.
         of_visit: What may change: all places as one, by feature, by pose, by place.
-        of_calibration: What is known of it.
     """
 
     places: int
@@ -197,22 +195,22 @@ def _of_visits(frame: _Frame) -> tuple[Expected, _Covariance]:
     parts = frame.of_visit
     size = float(np.sum(frame.within**2) + frame.within_beside)
     if size == 0.0:
-        return _NOTHING, _Covariance(np.zeros_like(frame.of_calibration.told), 0.0)
+        return _NOTHING, _Covariance(np.zeros_like(frame.of_calibration.separate), 0.0)
     scatter = frame.within.T @ frame.within
     evidence, squares, shapes = [], [], []
     for w in _shares(len(parts)):
         if w[-1] == 0.0:
             continue  # places err by themselves too
         R = _Covariance.sum(w, parts)
-        square = np.trace(np.linalg.solve(R.told, scatter)) + frame.within_beside / R.beside
-        log_det = np.linalg.slogdet(R.told)[1] + frame.others * np.log(R.beside)
+        square = np.trace(np.linalg.solve(R.separate, scatter)) + frame.within_beside / R.beside
+        log_det = np.linalg.slogdet(R.separate)[1] + frame.others * np.log(R.beside)
         evidence.append(-0.5 * (n - 1) * log_det - 0.5 * dof * np.log(square / size))
         squares.append(square)
         shapes.append(R)
     p = np.exp(np.array(evidence) - max(evidence))
     p /= p.sum()
     quantiles = chdtri(dof, (np.arange(_QUANTILES) + 0.5) / _QUANTILES)  # of chi squared
-    in_b = np.array([R.told[0, 0] for R in shapes]) / (n * J)
+    in_b = np.array([R.separate[0, 0] for R in shapes]) / (n * J)
     variance = (np.array(squares) * (1.0 + in_b))[:, None] / quantiles
     p_each = np.repeat(p[:, None] / _QUANTILES, _QUANTILES, axis=1)
     mean = _Covariance.sum(p * np.array(squares) / (dof * n), shapes)
@@ -223,18 +221,15 @@ def _of_machine(frame: _Frame, of_visits: _Covariance) -> Expected:
     """What the machine's systematic error adds: how it varies over the task, and what b has of it.
 
     The contrasts of the places are brought to independent ones of variance ``1 + s_b^2 l``.
-
-    Args:
-        of_visits: Covariance of the mean of the visits.
     """
     V = _Covariance.sum(np.ones(2), [frame.of_calibration, of_visits])
     square = float(np.sum(frame.mean[1:] ** 2) + frame.mean_beside)
-    least = _LEAST * (np.trace(V.told) + V.beside + square)
+    least = _LEAST * (np.trace(V.separate) + V.beside + square)
     if frame.places < 2 or least == 0.0:
         return _NOTHING
-    L = np.linalg.cholesky(V.told[1:, 1:] + least * np.eye(len(V.told) - 1))
+    L = np.linalg.cholesky(V.separate[1:, 1:] + least * np.eye(len(V.separate) - 1))
     z = np.linalg.solve(L, frame.mean[1:])
-    within = [np.linalg.solve(L, part.told[1:, 1:]) for part in frame.of_machine]
+    within = [np.linalg.solve(L, part.separate[1:, 1:]) for part in frame.of_machine]
     white = [np.linalg.solve(L, half.T) for half in within]
     beside, z2_beside = V.beside + least, frame.mean_beside / (V.beside + least)
     times = np.append(np.ones(len(z)), frame.others)
@@ -244,7 +239,7 @@ def _of_machine(frame: _Frame, of_visits: _Covariance) -> Expected:
         lam = np.append(np.maximum(lam, 0.0), w[-1] / beside)
         z2 = np.append((z @ turn) ** 2, z2_beside)
         s, log_p_each = _of_size(lam, z2, times)
-        in_b = float(w @ [part.told[0, 0] for part in frame.of_machine]) / frame.places
+        in_b = float(w @ [part.separate[0, 0] for part in frame.of_machine]) / frame.places
         log_p.append(log_p_each)
         variance.append(s**2 * (1.0 + in_b))
     p = np.exp(np.array(log_p) - np.max(log_p))
@@ -257,7 +252,6 @@ def _of_size(lam: Array, z2: Array, times: Array) -> tuple[Array, Array]:
     Args:
         lam: Contrasts have the variance ``1 + s_b^2 lam``.
         z2: Their squares; summed where there are several of one kind.
-        times: How many there are of each.
     """
     lam = np.where(lam < _LEAST * lam.max(), 0.0, lam)
     has = (lam > 0.0) & (times > 0.0)

@@ -43,10 +43,7 @@ class TaskUncertainty:
     """The budget of a task.
 
     Attributes:
-        visits: Their number n.
-        places: Their number J.
         faces: Number of features that the places are on.
-        poses: Number of table poses.
         bias: b, mm.
         u_cal: Of b by the calibration, mm.
         u_p: Of one visit, mm.
@@ -54,7 +51,6 @@ class TaskUncertainty:
         expected: What calibration lets expect of it, mm.
         u_w: Of the workpieces, mm.
         u: Combined standard uncertainty of a result that is corrected for b, mm.
-        dof: Its degrees of freedom.
         by_face: Of every feature its name, the mean of its places and their spread about it, mm.
     """
 
@@ -100,7 +96,6 @@ def task_uncertainty(visits: Visits, u_w: float = 0.0) -> TaskUncertainty:
     """The budget of a task from visits to its places.
 
     Args:
-        visits: At least two.
         u_w: Standard uncertainty of the workpieces, mm.
     """
     y, K = visits.deviation, visits.shared
@@ -112,6 +107,7 @@ def task_uncertainty(visits: Visits, u_w: float = 0.0) -> TaskUncertainty:
     u_cal = float(np.linalg.norm(common))
     u_p = float(np.sqrt(np.sum((y - mean) ** 2) / (J * (n - 1))))
     error = expected_error(visits, u_w)
+    # the last argument is the scale where no Student distribution has both intervals
     u, dof = _as_student(
         error.half_width(LEVEL),
         error.half_width(_GUARD),

@@ -65,13 +65,11 @@ def visits_of(
     """Pair the places of several runs of one standard.
 
     Args:
-        runs: One a visit.
         is_task: Touches like those of the task, of every run, (N,).
         is_datum: Touches that place the standard, (N,); all others take no part.
         calibration: Columns (N, Q) of the first run per standard uncertainty of the features'
             places, mm; what its size leaves open comes to it, the same in all visits.
         model: What is known of the machine; None for nothing.
-        estimates: Of its parameters.
 
     Raises:
         NotEnoughData: One visit, no datum, or too few places that all of them have.
@@ -92,6 +90,7 @@ def visits_of(
     there = np.all(at >= 0, axis=0)
     deviation = np.stack([d[0][r] for d, r in zip(seen, at, strict=True)])
     far = np.any(np.stack([d[1][r] for d, r in zip(seen, at, strict=True)]), axis=0) & there
+    # a place counts only if every visit has it: the covariances compare the same places
     kept = there & ~far
     if kept.sum() < MIN_PLACES:
         raise NotEnoughData(

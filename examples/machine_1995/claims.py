@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import warm_up
 
-from matstd.compensation.field import MachineErrors, correction, played, shifted
+from matstd.compensation.field import MachineErrors, correction, deviation_after, shifted
 from matstd.diagnosis.drift import chosen, joined, judge, offered, read_log
 from matstd.twin.compute import silent
 from matstd.twin.files import read_machine
@@ -62,7 +62,7 @@ def line(truth, model, axis, at, ends, rng=None):
     """Distance errors along a line, mm, relative to its first point; None as model: without."""
     touches = poses(truth, at, axis, np.linspace(*ends, 16))
     added = 0.0 * touches.q if model is None else correction(model, touches)
-    moved = played(truth, touches, added)
+    moved = deviation_after(truth, touches, added)
     which = truth.chain.axis_index(axis)
     along = tip(truth.chain, shifted(touches, 0.0 * added).q, 0.0)
     step = along[-1] - along[0]
@@ -112,7 +112,9 @@ def hole_pattern(truth, model):
         for name, value in (("X", x), ("Y", y), ("Z", -500.0)):
             q[k, truth.chain.axis_index(name)] = value
     touches = truth.touches(q, 0.0)
-    moved = played(truth, touches, 0.0 * q if model is None else correction(model, touches))
+    moved = deviation_after(
+        truth, touches, 0.0 * q if model is None else correction(model, touches)
+    )
     sides = [(1, 0, 0), (3, 2, 0), (2, 0, 1), (3, 1, 1)]
     return max(abs(float(moved[a, c] - moved[b, c])) for a, b, c in sides)
 

@@ -19,7 +19,7 @@ _COLUMNS = {
 
 
 def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tuple[Chain, Array]:
-    """An arm from a table of Denavit and Hartenberg's parameters, a row a joint.
+    """An arm from a table of Denavit and Hartenberg's parameters, one row per joint.
 
     The machine frame has the directions of the base and its origin at the flange with every joint
     at zero; the table frame is the base. An axis gets the letter of the direction that its line is
@@ -36,7 +36,7 @@ def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tup
         The arm, and the rotation R (3, 3) that takes flange to tool coordinates.
 
     Raises:
-        BadFile: A column that is not there, or as many rows as there are no joints.
+        BadFile: A missing column, or another number of rows than of joints.
 
     Reference:
         Denavit and Hartenberg 1955; Craig, Introduction to Robotics (modified parameters).
@@ -45,6 +45,7 @@ def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tup
     if len(a) != readings.shape[1]:
         found = f"{len(a)} rows for {readings.shape[1]} columns of joints"
         raise BadFile(sheet.path, "table", found, "a row a joint")
+    # an axis is the z of the frame before its own rotation: modified parameters first go across
     T, origins, lines = np.eye(4), [], []
     ex, ez = np.eye(3)[0], np.eye(3)[2]
     for i in range(len(a)):

@@ -1,7 +1,7 @@
-"""What a table of joint readings and a description of the arm may disagree about.
+"""Mistakes in a table of joint readings, or in the description of the arm.
 
-A tracker that stands anywhere and reflectors that sit anywhere are solved for with every mistake
-undone in turn: what makes absurd deviations ordinary is reported, and never applied.
+Tracker and reflectors are located again with each possible mistake undone. A mistake that explains
+implausible deviations is reported, but not applied.
 """
 
 from collections.abc import Callable, Iterator
@@ -12,33 +12,32 @@ from matstd.importers.arms.table import coupled
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 
-ABSURD = 5.0
-"""Deviations (mm rms) beyond what an arm as it comes from its maker shows (about 1 mm)."""
+IMPLAUSIBLE_RMS = 5.0
+"""Deviations (mm rms) beyond those of an uncalibrated arm (about 1 mm)."""
 
-BETTER = 0.2
-"""Share of the deviations that may be left where a mistake explains them."""
+EXPLAINED_SHARE = 0.2
+"""A mistake explains the deviations if at most this share remains."""
 
 
 def likely_mistake(
-    q: Array, chain: Chain, other: Chain | None, left: Callable[[Chain, Array], float]
+    q: Array, chain: Chain, other: Chain | None, residual: Callable[[Chain, Array], float]
 ) -> tuple[str, float] | None:
-    """The mistake that explains absurd deviations, and what it leaves, mm rms; None for none.
+    """The mistake that explains implausible deviations, and the remaining ones, mm rms, or None.
 
     Args:
         q: Readings, (N, J), rad.
-        chain: The arm.
         other: The arm with Denavit and Hartenberg's parameters read in the other convention.
-        left: Deviations that an arm and readings leave, mm rms.
+        residual: Deviations of an arm at some readings, mm rms.
     """
-    stated = left(chain, q)
-    if stated < ABSURD:
+    stated = residual(chain, q)
+    if stated < IMPLAUSIBLE_RMS:
         return None
-    found = [(left(chain, readings), words) for words, readings in _mistakes(q)]
+    found = [(residual(chain, readings), words) for words, readings in _mistakes(q)]
     if other is not None:
         words = "its parameters are read in the other convention (with or without --modified)"
-        found.append((left(other, q), words))
+        found.append((residual(other, q), words))
     best, words = min(found)
-    return (words, best) if best < BETTER * stated else None
+    return (words, best) if best < EXPLAINED_SHARE * stated else None
 
 
 def _mistakes(q: Array) -> Iterator[tuple[str, Array]]:

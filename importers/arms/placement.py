@@ -1,4 +1,4 @@
-"""Where a tracker stands and reflectors sit on an arm, from the places that were measured."""
+"""Positions of a tracker, and of reflectors on an arm, from measured places."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,51 +11,43 @@ from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.machine import Chain, table_to_tool
 from matstd.twin.record import rigid_motion
 
-FEWEST = 6
+MIN_POSES = 6
 """Poses for the nine unknown numbers of tracker and reflector, three equations each, with some
 over."""
 
-OPEN = 10.0
-"""Standard uncertainty (mm) of a direction from which poses do not determine it. Thirty poses of an
-arm that is 1 mm wrong leave 0.4 mm; a path with one orientation leaves metres."""
+UNDETERMINED_SD = 10.0
+"""From this standard uncertainty (mm) a direction is undetermined. Thirty poses of an arm that is 1
+mm wrong give 0.4 mm; a path with one orientation gives metres."""
 
-ROUGH = 5.0
-"""Most scatter (mm) that this is judged with: what scatters more is not of the stated arm."""
+MAX_SCATTER = 5.0
+"""Largest scatter (mm) in this decision; larger scatter is not that of the stated arm."""
 
-LOST = 0.5
-"""Share of the spread of the measured places from which what is left is no error of an arm."""
+UNEXPLAINED_SHARE = 0.5
+"""From this share of the spread of the measured places, residuals are no errors of an arm."""
 
-TAKES_PART = 0.05
-"""Share of a unit vector from which a parameter takes part in a direction."""
+MIN_COMPONENT = 0.05
+"""From this component of a unit vector a parameter belongs to a direction."""
 
 
 @dataclass(frozen=True, eq=False)
 class Placement:
-    """Where the tracker stands and the reflectors sit, and whether the poses say so.
+    """Positions of tracker and reflectors, and whether the poses determine them."""
 
-    Attributes:
-        T_table_tracker: Pose of the tracker's frame in the table frame, (4, 4).
-        reflector: Places in the tool frame, (K, 3), mm.
-        rms: Of the coordinates that are left, mm.
-        spread: Of the measured coordinates about their mean, rms, mm.
-        is_settled: Whether the search for the reflectors has converged.
-        free: Directions that the poses do not determine, in words; empty where they do.
-    """
-
-    T_table_tracker: Array
-    reflector: Array
-    rms: float
-    spread: float
-    is_settled: bool
+    T_table_tracker: Array  # pose of the tracker's frame in the table frame, (4, 4)
+    reflector: Array  # places in the tool frame, (K, 3), mm
+    rms: float  # of the residuals of the coordinates, mm
+    spread: float  # of the measured coordinates about their mean, rms, mm
+    is_settled: bool  # whether the search for the reflectors has converged
+    # directions that the poses do not determine, in words; empty where they do
     free: tuple[str, ...]
 
     @property
-    def is_lost(self) -> bool:
-        """Whether an arm that moved so could not have been measured so."""
-        return self.rms > max(LOST * self.spread, ROUGH)
+    def is_unexplained(self) -> bool:
+        """Whether the places cannot be those of this arm."""
+        return self.rms > max(UNEXPLAINED_SHARE * self.spread, MAX_SCATTER)
 
 
-def placed(table: ArmTable, chain: Chain, u: float, reflector: Array | None) -> Placement:
+def located(table: ArmTable, chain: Chain, u: float, reflector: Array | None) -> Placement:
     """Tracker and reflectors from the places where reflectors were measured.
 
     ``R (p + R_i v) + t = x`` with (R, t) what takes the table to the tracker and v a reflector.
@@ -63,8 +55,6 @@ def placed(table: ArmTable, chain: Chain, u: float, reflector: Array | None) -> 
     damped least squares from the flange (variable projection, Golub and Pereyra 1973).
 
     Args:
-        table: Readings and measured places.
-        chain: The nominal arm.
         u: Standard uncertainty of one coordinate, mm.
         reflector: Its place in the tool frame, (3,), mm, if that is known.
 
@@ -81,49 +71,51 @@ def placed(table: ArmTable, chain: Chain, u: float, reflector: Array | None) -> 
     if reflector is not None and len(table.names) > 1:
         raise DesignError(f"{path}: {len(table.names)} reflectors, expected one where it is stated")
     poses = int(table.shots.any(axis=1).sum())
-    if poses < FEWEST:
-        raise NotEnoughData(f"{path}: {poses} poses, expected {FEWEST} at least")
+    if poses < MIN_POSES:
+        raise NotEnoughData(f"{path}: {poses} poses, expected {MIN_POSES} at least")
     problem = _Problem(table, chain, reflector is not None)
     if reflector is None:
         from scipy.optimize import least_squares  # a third of a second, for arms alone
 
         start = np.zeros(3 * problem.count)
-        found = least_squares(problem.left, start, problem.slopes, xtol=1e-14, ftol=1e-14)
+        found = least_squares(problem.residuals, start, problem.slopes, xtol=1e-14, ftol=1e-14)
         v, is_settled = found.x.reshape(-1, 3), bool(found.status > 0)
     else:
         v, is_settled = reflector[None], True
-    rms = float(np.sqrt(np.mean(problem.left(v) ** 2)))
+    rms = float(np.sqrt(np.mean(problem.residuals(v) ** 2)))
     return Placement(
         T_table_tracker=inverse(problem.tracker(v)),
         reflector=v,
         rms=rms,
-        spread=float(np.sqrt(np.mean((problem.seen - problem.seen.mean(axis=0)) ** 2))),
+        spread=float(np.sqrt(np.mean((problem.measured - problem.measured.mean(axis=0)) ** 2))),
         is_settled=is_settled,
-        free=tuple(problem.free(v, float(np.clip(rms, u, max(u, ROUGH))))),
+        free=tuple(problem.free(v, float(np.clip(rms, u, max(u, MAX_SCATTER))))),
     )
 
 
 class _Problem:
-    """Places of K reflectors at N poses, and what they say of tracker and reflectors."""
+    """Residuals and Jacobian of the places of K reflectors at N poses."""
 
     def __init__(self, table: ArmTable, chain: Chain, is_known: bool) -> None:
         self.count, self.is_known = len(table.names), is_known
         row, self.of = np.nonzero(table.shots)
         self.T = table_to_tool(chain, table.q[row])  # (M, 4, 4), a pose for every place
-        self.seen = table.place[table.shots]  # (M, 3)
+        self.measured = table.place[table.shots]  # (M, 3)
 
-    def believed(self, v: Array) -> Array:
-        """Where the arm takes the reflectors to be, (M, 3), table frame."""
+    def nominal_places(self, v: Array) -> Array:
+        """Places of the reflectors by the nominal arm, (M, 3), table frame."""
         return apply(self.T, v[self.of])
 
     def tracker(self, v: Array) -> Array:
         """What takes the table to the tracker, (4, 4)."""
-        return rigid_motion(self.believed(v), self.seen, flat=0.0)
+        return rigid_motion(self.nominal_places(v), self.measured, flat=0.0)
 
-    def left(self, v: Array) -> Array:
-        """What is left of the coordinates for reflectors (3 K,), (3 M,)."""
+    def residuals(self, v: Array) -> Array:
+        """Residuals of the coordinates, (3 M,), for reflectors at v, (3 K,)."""
         at = v.reshape(-1, 3)
-        return np.asarray((apply(self.tracker(at), self.believed(at)) - self.seen).ravel())
+        return np.asarray(
+            (apply(self.tracker(at), self.nominal_places(at)) - self.measured).ravel()
+        )
 
     def columns(self, v: Array) -> Array:
         """Motion per unit of every parameter, (3 M, 6 + 3 K).
@@ -131,7 +123,7 @@ class _Problem:
         Turns of the table about its directions, by what moves a place of the usual distance by one
         mm; shifts along them; the reflectors along the directions of the tool frame, mm.
         """
-        R, at = self.tracker(v)[:3, :3], self.believed(v)
+        R, at = self.tracker(v)[:3, :3], self.nominal_places(v)
         arm = at - at.mean(axis=0)
         reach = max(float(np.sqrt(np.mean(np.sum(arm**2, axis=1)))), 1e-9)
         J = np.zeros((len(at), 3, 6 + 3 * self.count))
@@ -143,16 +135,16 @@ class _Problem:
         return np.einsum("ij,mjp->mip", R, J).reshape(-1, J.shape[2])
 
     def slopes(self, v: Array) -> Array:
-        """Of `left`, (3 M, 3 K): what of the reflectors' columns the tracker cannot follow."""
+        """Jacobian of `residuals`, (3 M, 3 K): what the tracker cannot absorb."""
         J = self.columns(v.reshape(-1, 3))
         Q = np.linalg.qr(J[:, :6])[0]
         return np.asarray(J[:, 6:] - Q @ (Q.T @ J[:, 6:]))
 
     def free(self, v: Array, scatter: float) -> Iterator[str]:
-        """Directions that are open by more than OPEN where coordinates scatter, in words."""
+        """Undetermined directions at this scatter of the coordinates, in words."""
         J = self.columns(v)[:, : 6 if self.is_known else None]
         _, s, Vt = np.linalg.svd(J, full_matrices=False)
-        undetermined = Vt[s * OPEN < scatter].T  # (P, d)
+        undetermined = Vt[s * UNDETERMINED_SD < scatter].T  # (P, d)
         if not undetermined.shape[1]:
             return
         for k in range((len(undetermined) - 6) // 3):
@@ -166,7 +158,7 @@ class _Problem:
 def _directions(block: Array, preposition: str, letters: str) -> Iterator[str]:
     """What the columns of a block (3, d) span: nothing, a line, a plane or everything."""
     U, s, _ = np.linalg.svd(block)
-    rank = int((s > TAKES_PART).sum())
+    rank = int((s > MIN_COMPONENT).sum())
     if rank == 3:
         yield f"{preposition} every direction"
     elif rank:

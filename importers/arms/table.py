@@ -21,19 +21,12 @@ _COUPLED = re.compile(r"J?(\d)\s*([+-])\s*J?(\d)\Z", re.IGNORECASE)
 
 @dataclass(frozen=True, eq=False)
 class ArmTable:
-    """Joint readings and measured places, a row a pose.
-
-    Attributes:
-        sheet: What they stand in.
-        q: Readings, (N, J), rad, of a joint that slides mm.
-        joints: Columns of the readings.
-        place: Where the reflectors were measured, (N, K, 3), mm; not a number where one was not.
-        names: Of the reflectors.
-    """
+    """Joint readings and measured places, one row per pose."""
 
     sheet: Sheet
-    q: Array
-    joints: tuple[str, ...]
+    q: Array  # readings, (N, J), rad, of a joint that slides mm
+    joints: tuple[str, ...]  # columns of the readings
+    # where the reflectors were measured, (N, K, 3), mm; not a number where one was not
     place: Array
     names: tuple[str, ...]
 
@@ -55,7 +48,7 @@ def read_arm(sheet: Sheet, axes: Sequence[str] = ()) -> ArmTable:
         axes: Names of the axes of the arm; columns named so are taken, if all are there.
 
     Raises:
-        BadFile: No such columns, a joint twice or left out, places that may be several things.
+        BadFile: No such columns, a joint twice or missing, ambiguous columns of places.
     """
     joints = _joints(sheet, axes)
     reflectors = _reflectors(sheet, joints)
@@ -129,17 +122,13 @@ def _reflectors(sheet: Sheet, joints: Sequence[int]) -> list[dict[str, int]]:
 
 
 def coupled(q: Array, how: str) -> Array:
-    """Readings of joints one of which counts from another one's link, (N, J).
+    """Readings of joints one of which counts from another one's link, (N, J); raises DesignError.
 
     On arms with a parallel linkage, and in the readings of some controls without one, joint 3
     counts from the horizontal: its angle against link 2 is J3 + J2 (or J3 - J2).
 
     Args:
-        q: Readings as they stand, (N, J), rad.
         how: `J3+J2`.
-
-    Raises:
-        DesignError: Joints that are not there.
     """
     match = _COUPLED.match(how.strip())
     joint, other = (int(match[1]) - 1, int(match[3]) - 1) if match else (-1, -1)

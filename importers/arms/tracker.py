@@ -1,9 +1,8 @@
-"""Serial arms under a tracker: joint readings with the places at which reflectors really were.
+"""Serial arms under a tracker: joint readings with measured places of reflectors.
 
-The tracker says where the reflector is, the readings where a controller that believes in the
-nominal arm takes it to be; the run has the difference along x, y and z of the tracker. Where the
-tracker stands, and where on the arm the reflector sits unless that is stated, is solved for first,
-at any size.
+The tracker measures where the reflector is; the nominal arm at the readings predicts it. The run
+has the differences along x, y and z of the tracker. The pose of the tracker, and the place of the
+reflector on the arm unless stated, are determined first, without linearisation.
 """
 
 import re
@@ -14,7 +13,7 @@ import numpy as np
 
 from matstd.importers.arms.dh import arm_from_dh
 from matstd.importers.arms.mistakes import likely_mistake
-from matstd.importers.arms.placement import Placement, placed
+from matstd.importers.arms.placement import Placement, located
 from matstd.importers.arms.table import ArmTable, coupled, read_arm
 from matstd.importers.sheets import Sheet, loads, own_columns, seconds, temperatures
 from matstd.twin.errors import DesignError, NotEnoughData
@@ -27,17 +26,13 @@ _TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
 
 @dataclass(frozen=True, eq=False)
 class ArmImport:
-    """What a table of joints and reflectors became.
-
-    Attributes:
-        joints: Columns of the readings, in the order of the programmed axes of the arm.
-        mistake: What its readings and its description may disagree about, and the deviations that
-            are left then, mm rms.
-    """
+    """Run and machine of a table of joints and reflectors."""
 
     run: Run
     chain: Chain
+    # columns of the readings, in the order of the programmed axes of the arm
     joints: tuple[str, ...]
+    # likely mistake in readings or description, and the remaining deviations, mm rms
     mistake: tuple[str, float] | None
 
     @property
@@ -84,14 +79,15 @@ def import_arm(
     chain, turned, other = machine, np.eye(3), None
     if dh is not None:
         chain, turned = arm_from_dh(dh, table.q, is_modified)
+        # reading the parameters in the other convention is one of the likely mistakes
         other = arm_from_dh(dh, table.q, not is_modified)[0]
     assert chain is not None
     stated = None if reflector is None else turned @ np.array(reflector)
 
-    def left(arm: Chain, q: Array) -> float:
-        return placed(replace(table, q=q), arm, u, stated).rms
+    def residual(arm: Chain, q: Array) -> float:
+        return located(replace(table, q=q), arm, u, stated).rms
 
-    mistake = likely_mistake(table.q, chain, other, left)
+    mistake = likely_mistake(table.q, chain, other, residual)
     try:
         run = tracker_run(table, chain, u, stated)
     except DesignError as refusal:
@@ -110,7 +106,6 @@ def tracker_run(table: ArmTable, chain: Chain, u: float, reflector: Array | None
 
     Args:
         table: Readings in the order of the axes of the arm.
-        chain: The arm.
         u: Standard uncertainty of one coordinate, mm.
         reflector: In the tool frame, (3,), mm; None finds it.
 
@@ -118,7 +113,7 @@ def tracker_run(table: ArmTable, chain: Chain, u: float, reflector: Array | None
         DesignError: Readings of other joints than the arm has, or of another arm.
         NotEnoughData: Poses too few or too alike to say where reflector and tracker are.
     """
-    found = placed(table, chain, u, reflector)
+    found = located(table, chain, u, reflector)
     _check_placed(table.sheet, found, reflector is not None)
     sheet = table.sheet
     clock, force = sheet.find(_TIME), loads(sheet)
@@ -143,8 +138,8 @@ def tracker_run(table: ArmTable, chain: Chain, u: float, reflector: Array | None
 
 
 def _check_placed(sheet: Sheet, found: Placement, is_stated: bool) -> None:
-    """Refuse what the poses do not determine, and what no arm is measured with."""
-    if found.is_lost:
+    """Refuse undetermined positions, and places that are not those of an arm."""
+    if found.is_unexplained:
         raise DesignError(
             f"{sheet.path}: {found.rms:.4g} mm rms are left of measured places that spread by "
             f"{found.spread:.4g} mm: these readings and places are not of one arm; expected joints "

@@ -1,4 +1,4 @@
-"""Machine files for imported measurements: what the data tell of a machine, to be checked."""
+"""Draft machine files for imported measurements; the user checks what the data cannot determine."""
 
 import numpy as np
 
@@ -6,11 +6,11 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.units import DEG, UM
 
-USUAL = (1.0 * UM, 15e-6)
-"""What an axis has that is nothing unusual: so much, and so much of its travel. It is the size of
-new machines of ordinary accuracy: 8.5 µm over 500 mm (ISO 10791-4 tolerates 22 µm there)."""
+ORDINARY_ERROR = (1.0 * UM, 15e-6)
+"""Ordinary translational error of a linear axis: a constant (mm) and a share of the travel. New
+machines of ordinary accuracy have 8.5 µm over 500 mm (ISO 10791-4 tolerates 22 µm there)."""
 
-SIDES = "# PLACEHOLDER: which axes carry the workpiece (a prime) the data cannot tell"
+SIDES = "# PLACEHOLDER: the data do not show which axes carry the workpiece (prime)"
 
 
 def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
@@ -21,10 +21,10 @@ def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
         is_known: Whether order, lines and sides of the axes are stated by the source.
 
     Returns:
-        TOML in which everything that the data cannot tell is marked PLACEHOLDER.
+        TOML; every line that the data do not determine is marked PLACEHOLDER.
     """
     lines = [
-        f"# Made from {source}. What is marked PLACEHOLDER the data cannot tell: check it.",
+        f"# Made from {source}. The data do not determine lines marked PLACEHOLDER: check them.",
         'format = "machine/1"',
         f'name = "{chain.name}"  # PLACEHOLDER',
         *(() if is_known else (SIDES,)),
@@ -53,8 +53,8 @@ def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
 
 
 def usual(travel: float) -> float:
-    """Translational error of a linear axis that is nothing unusual, mm."""
-    return USUAL[0] + USUAL[1] * travel
+    """Ordinary translational error of a linear axis, mm."""
+    return ORDINARY_ERROR[0] + ORDINARY_ERROR[1] * travel
 
 
 def _listed(values: Array) -> str:

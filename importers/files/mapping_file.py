@@ -1,4 +1,4 @@
-"""Mapping file (TOML, "import/1"): which column of a foreign table is which column of a run."""
+"""Mapping file (TOML, "import/1"): the columns of a run by those of a foreign table."""
 
 import csv
 import io
@@ -38,7 +38,7 @@ class ColumnTable(Table):
 
 
 How = ColumnTable | float | int | str
-"""How a column is made: of one of the table, or a constant."""
+"""Source of a column: one of the table, or a constant."""
 
 
 class MappingTable(Table):
@@ -55,7 +55,7 @@ _TEXT = ("feature", "setup", "pose", "split")
 
 
 class MappedRun(NamedTuple):
-    """Text of a run file, the run that it reads back as, and how many readings had no deviation."""
+    """Text of a run file, the run read from it, and the number of readings without a deviation."""
 
     text: str
     run: Run
@@ -65,15 +65,14 @@ class MappedRun(NamedTuple):
 def import_mapped(
     sheet: Sheet, path: str | Path, folder: Path, chain: Chain | None = None
 ) -> MappedRun:
-    """A run by a mapping file, read once as the run file that it will be in a folder.
+    """A run by a mapping file, checked by reading it as the run file that it becomes.
 
     Args:
-        path: The mapping file.
         folder: Of the run file, from which its head names the machine.
         chain: The machine, in place of the one that the head names.
 
     Raises:
-        BadFile: The mapping file's key, or what is wrong in the run that it makes.
+        BadFile: A key of the mapping file, or a fault of the run that it makes.
     """
     text, left_out = mapped_run(sheet, path)
     if chain is None:
@@ -93,19 +92,16 @@ def import_mapped(
 
 
 def mapped_run(sheet: Sheet, path: str | Path) -> tuple[str, int]:
-    """Text of a run file from a foreign table and a mapping file.
+    """Text of a run file from a foreign table and a mapping file; raises BadFile.
 
     A column is `factor * cell + offset` of a foreign one, or a constant (a number, or a name for
     `feature`, `setup`, `split`); with `of` the cosine, sine or sign of the cell stands for it.
     Where a row of the table holds several readings at one instant, each `[[rows]]` makes one row of
-    them, with columns of its own beside the common ones; they are one pose. The head stands in the
-    mapping file as it shall stand in the run.
+    the run from it, of one pose, with its own and the common columns. The head of the run is
+    copied.
 
     Returns:
         The text, and the number of readings left out because they have no deviation.
-
-    Raises:
-        BadFile: The mapping file's key, or a column that the table does not have.
     """
     import tomli_w
 
@@ -160,7 +156,7 @@ def _cells(sheet: Sheet, name: str, how: How, key: str, path: str | Path) -> lis
     if name in _TEXT:
         return sheet.text(column)
     values = how.factor * _values(sheet, column, name, how) + how.offset
-    # twelve digits: more would be rounding, as in 0.1 * 3
+    # twelve digits: more would show rounding, as in 0.1 * 3
     return ["" if np.isnan(v) else f"{v + 0.0:.12g}" for v in values]
 
 

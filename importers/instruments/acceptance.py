@@ -1,4 +1,4 @@
-"""Figures of a test of one axis as its standard defines them, straight from the readings."""
+"""Figures of a test of one axis as its standard defines them, from the readings alone."""
 
 from dataclasses import dataclass
 
@@ -9,23 +9,14 @@ from matstd.importers.instruments.positioning import PositioningTest
 
 @dataclass(frozen=True)
 class PositioningFigures:
-    """Figures of ISO 230-2 of one axis, mm or rad.
+    """Figures of ISO 230-2 of one axis, mm or rad."""
 
-    Attributes:
-        reversal: B, the largest reversal error of a target, with its sign.
-        mean_reversal: Mean of the reversal errors of all targets.
-        mean_range: M, range of the mean bidirectional deviations.
-        systematic: E, bidirectional systematic deviation.
-        repeatability: R, bidirectional repeatability (k = 2).
-        accuracy: A, bidirectional accuracy (k = 2).
-    """
-
-    reversal: float
-    mean_reversal: float
-    mean_range: float
-    systematic: float
-    repeatability: float
-    accuracy: float
+    reversal: float  # B, the largest reversal error of a target, with its sign
+    mean_reversal: float  # mean of the reversal errors of all targets
+    mean_range: float  # M, range of the mean bidirectional deviations
+    systematic: float  # E, bidirectional systematic deviation
+    repeatability: float  # R, bidirectional repeatability (k = 2)
+    accuracy: float  # A, bidirectional accuracy (k = 2)
 
 
 def positioning_figures(test: PositioningTest) -> PositioningFigures | None:

@@ -1,4 +1,4 @@
-"""Runs of tests of one axis: where the instrument looked, and along which direction."""
+"""Runs of tests of one axis: the measured point, and the direction of measurement."""
 
 from dataclasses import replace
 
@@ -13,11 +13,11 @@ from matstd.twin.thermal import CYCLE, PROGRESS
 ARM = 1000.0
 """Arm (mm) by which an angle is written as a length: 1 µrad is 1 µm."""
 
-ENOUGH_CYCLES = 4
-"""Cycles from which one can be held out: of fewer it would be more than a quarter of the test."""
+MIN_CYCLES_TO_HOLD_OUT = 4
+"""Cycles needed to hold one out; with fewer it would be more than a quarter of the test."""
 
-SQUARE = 0.5
-"""Sine below which an axis and the direction about which it turns are called parallel."""
+MIN_SINE = 0.5
+"""Sine below which an axis and the direction it turns about count as parallel."""
 
 
 def one_axis_machine(axis: str, target: Array) -> Chain:
@@ -30,36 +30,33 @@ def one_axis_machine(axis: str, target: Array) -> Chain:
 
 
 def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
-    """Run of a test of one axis on a machine that has it.
+    """Run of a test of one axis on a machine that has it; raises UnknownAxis.
 
-    Every reading is a distance along the motion: its direction is that in which the tool moves
-    relative to the workpiece while the reading grows, its deviation the negative of what the
-    instrument says; of a straightness the direction is that of the component. An angle is
-    written times `ARM`, as an autocollimator reads it: neither an eccentric polygon nor an axis
-    that wanders aside changes it.
+    Every reading is a distance along the motion of the tool relative to the workpiece, for a
+    straightness along the direction of the component; its deviation is the negative of the
+    instrument's. An angle is written times `ARM`, as an autocollimator reads it: neither an
+    eccentric polygon nor lateral motion of the axis changes it.
 
     Args:
-        test: The readings.
         chain: The machine; its other axes stand at zero.
         u: Standard uncertainty of one deviation, mm, or rad of an angle.
-
-    Raises:
-        UnknownAxis: The machine does not have the axis.
     """
     n = len(test.target)
     i = chain.axis_index(test.axis)
     q = np.zeros((n, len(chain.axes)))
     q[:, i] = test.target
-    at, centre, motion = _seen(test, chain, q)
+    at, centre, motion = _viewpoint(test, chain, q)
     point = tip(chain, q, at)
     per_unit = ARM if test.is_angle else 1.0
     approach = np.zeros(q.shape)
     approach[:, i] = test.direction
-    # what repeats at the targets is what the test is for: held out are cycles, if it has some
+    # errors repeat at the targets, so whole cycles are held out where there are several
     cycles = np.unique(test.cycle, return_inverse=True)[1].reshape(-1)
     targets = np.unique(np.round(test.target, 9), return_inverse=True)[1].reshape(-1)
-    # a log hardly ever reads the same twice
-    held_out = cycles if test.is_log or cycles.max(initial=0) + 1 >= ENOUGH_CYCLES else targets
+    # a log rarely repeats a reading exactly
+    held_out = (
+        cycles if test.is_log or cycles.max(initial=0) + 1 >= MIN_CYCLES_TO_HOLD_OUT else targets
+    )
     touches = replace(
         at_poses(chain, q, -at[:, 2]),
         offset=at[:, :2],
@@ -78,16 +75,16 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
         if test.is_log
         else Instrument.LASER,
     )
-    # one line of the file may hold many readings: the rows of the run are what messages name
+    # one line of the file may hold many readings: messages name the rows of the run
     u_of_row = np.full(n, u * per_unit)
     return Run(touches, -test.deviation * per_unit, u_of_row, repeat=test.cycle)
 
 
 def _progress(test: PositioningTest) -> dict[str, Array]:
-    """What stands in the place of times: a test has none, and yet what warms up moves.
+    """Progress of the test in place of times, for effects of warming.
 
-    The cycle, and how much of the test was done: a cycle goes up over all targets and down again,
-    whatever the order in which a table lists them.
+    The cycle, and the part of the test done: a cycle runs up over all targets and down again, in
+    whatever order a table lists them.
     """
     done = np.zeros(len(test.target))
     numbers = np.unique(test.cycle)
@@ -99,7 +96,7 @@ def _progress(test: PositioningTest) -> dict[str, Array]:
     return {CYCLE: test.cycle.astype(float), PROGRESS: done}
 
 
-def _seen(test: PositioningTest, chain: Chain, q: Array) -> tuple[Array, Array, Array]:
+def _viewpoint(test: PositioningTest, chain: Chain, q: Array) -> tuple[Array, Array, Array]:
     """Target in the tool frame at every row, origin of the set-up, and direction of the reading.
 
     The other axes stand at zero, where all frames have the same directions.
@@ -114,12 +111,12 @@ def _seen(test: PositioningTest, chain: Chain, q: Array) -> tuple[Array, Array, 
         return np.zeros((n, 3)), np.zeros(3), along
     about = np.eye(3)["ABC".index(test.component[1])]
     aside = np.cross(link.direction, about)
-    if np.linalg.norm(aside) < SQUARE:  # of a roll any arm across the axis will do
+    if np.linalg.norm(aside) < MIN_SINE:  # for a roll any arm across the axis is right
         aside = np.roll(about, 1)
     aside = aside - (aside @ about) * about
     aside = aside / np.linalg.norm(aside)
     start = tip(chain, np.zeros_like(q[:1]), np.zeros((1, 3)))
-    # a mirror's angle is the same wherever it is: the point stays, at the end of the arm
+    # a mirror's angle does not depend on its place: the point stays at the end of the arm
     at = start + ARM * aside - tip(chain, q, np.zeros((n, 3)))
     return at, start[0], np.cross(about, aside)
 

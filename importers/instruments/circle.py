@@ -1,8 +1,8 @@
 """Circular tests (ISO 230-4): radial deviations of a ball bar or a grid plate over the angle.
 
-The bar says by how much the tool is farther from the centre than the path that was programmed:
-actual minus nominal. A controller that believes in its machine sees the circle outside its place by
-the negative of that, along the radius; a deviation in the file gets the other sign here.
+The bar measures how much farther from the centre the tool is than programmed: actual minus nominal.
+A controller that assumes the nominal machine sees the circle displaced by the negative of that
+along the radius, so a deviation in the file gets the opposite sign here.
 
 Reference:
     ISO 230-4 (circular tests for numerically controlled machine tools).
@@ -21,14 +21,14 @@ from matstd.twin.machine import Axis, Chain, linear_directions, make_chain
 from matstd.twin.record import Instrument, IntArray, Labels, Run, Setup, at_poses
 from matstd.twin.units import MINUTE
 
-BETWEEN = 10.0
-"""Pause (s) that is assumed between two runs."""
+PAUSE_BETWEEN_RUNS = 10.0
+"""Assumed pause between two runs, s."""
 
-JUST = 1e-6
-"""Angle (rad) before a reading at which its axes last moved for certain."""
+ANGLE_BEFORE_READING = 1e-6
+"""Angle (rad) before a reading at which its axes were still moving."""
 
-IS_RADIUS = 0.1
-"""Distance of a column's mean from the radius, as a share of it, up to which it holds radii."""
+RADIUS_TOLERANCE = 0.1
+"""A column holds radii if its mean differs from the radius by less than this share of it."""
 
 Order = tuple[IntArray, Labels, IntArray]
 """Sense and name of the run of every row, and the rows in the order in which they were taken."""
@@ -42,29 +42,19 @@ _DEVIATION = re.compile(r"dev|radial|radius|error|abweich|fehler|δ|delta|\bdr",
 
 @dataclass(frozen=True, eq=False)
 class CircularTest:
-    """Readings of a circular test in the order in which they were taken.
+    """Readings of a circular test in the order in which they were taken."""
 
-    Attributes:
-        plane: Letters of its two axes; angles count from the first to the second.
-        radius: Nominal, mm.
-        angle: (N,), rad.
-        deviation: Actual minus nominal radius, (N,), mm.
-        sense: 1 from the first axis to the second, -1 the other way round, (N,).
-        run: Name of the run, (N,).
-        line: Line of the file, (N,).
-    """
-
-    plane: str
-    radius: float
-    angle: Array
-    deviation: Array
-    sense: IntArray
-    run: Labels
-    line: IntArray
+    plane: str  # letters of its two axes; angles count from the first to the second
+    radius: float  # nominal, mm
+    angle: Array  # (N,), rad
+    deviation: Array  # actual minus nominal radius, (N,), mm
+    sense: IntArray  # 1 from the first axis to the second, -1 the other way round, (N,)
+    run: Labels  # name of the run, (N,)
+    line: IntArray  # line of the file, (N,)
 
 
 def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None) -> CircularTest:
-    """A circular test from a table: a row a reading, or a row an angle and a column a run.
+    """A circular test from a table: one row per reading, or per angle with columns of runs.
 
     Places `X` and `Y` from the centre, as of a grid plate, may stand for angles and deviations.
     Runs are those of a column of directions, or of columns named for theirs (CCW, CW, G3, G2,
@@ -84,6 +74,7 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
         raise sheet.lacking("a column of angles, or of both coordinates")
     if at is None:
         x, y = (sheet.quantity(i, MM, "mm") for i in places)
+        # rows of places are in the order of time, those of a table over angles need not be
         angle, all_rows = np.arctan2(y, x), np.arange(len(sheet))
         found = [(np.hypot(x, y) - radius, (*_by_motion(angle), all_rows))]
     else:
@@ -105,23 +96,23 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
 
 
 def _letter(letter: str) -> re.Pattern[str]:
-    """What finds the column of a coordinate."""
+    """Pattern of the column of a coordinate."""
     return re.compile(rf"(?<![a-zA-Z]){letter}(?![a-zA-Z])", re.IGNORECASE)
 
 
 def _columns(
     sheet: Sheet, at: int, angle: Array, radius: float, unit: str | None
 ) -> list[tuple[Array, Order]]:
-    """Deviations of every column that has some, with the order of their rows."""
+    """Deviations of every column that holds some, with the order of their rows."""
     others = [i for i in range(len(sheet.columns)) if i != at]
-    said = next((i for i in others if _says_sense(sheet, i)), None)
+    said = next((i for i in others if _states_sense(sheet, i)), None)
     values = [i for i in others if i != said and _is_value(sheet, i)]
     if not values:
         raise sheet.lacking("a column of radial deviations")
     out = []
     for i in values:
         reading = sheet.quantity(i, MM, unit)
-        if abs(float(np.nanmean(reading)) - radius) < IS_RADIUS * radius:
+        if abs(float(np.nanmean(reading)) - radius) < RADIUS_TOLERANCE * radius:
             reading = reading - radius
         out.append((reading, _order(sheet, i, angle, said, len(values) > 1)))
     return out
@@ -134,9 +125,9 @@ def _by_motion(angle: Array) -> tuple[IntArray, Labels]:
     return sense, np.array([f"run{k}" for k in stroke])
 
 
-def _says_sense(sheet: Sheet, column: int) -> bool:
-    """Whether a column states for every row which way round it was taken."""
-    words = {t for t in sheet.looked_at(column) if t}
+def _states_sense(sheet: Sheet, column: int) -> bool:
+    """Whether a column states the sense of rotation of every row."""
+    words = {t for t in sheet.cells_as_text(column) if t}
     return bool(_RUN.search(sheet.names[column])) and bool(words) and all(map(_sense, words))
 
 
@@ -149,7 +140,7 @@ def _is_value(sheet: Sheet, column: int) -> bool:
 
 
 def _sense(word: str) -> int:
-    """1 counter-clockwise, -1 clockwise, 0 for a word that says neither."""
+    """1 counter-clockwise, -1 clockwise, 0 for any other word."""
     if word in ("1", "-1"):
         return int(word)
     return 1 if _CCW.search(word) else -1 if _CW.search(word) else 0
@@ -192,8 +183,6 @@ def circle_run(
     """Run of a circular test: a row a reading, along the radius outwards.
 
     Args:
-        test: The readings.
-        chain: A machine with the two axes.
         u: Standard uncertainty of one reading, mm.
         centre: Readings of X, Y and Z at the centre of the circle, mm.
         feed: Along the path, mm/min: times of the rows follow from it; None leaves them 0.
@@ -221,7 +210,9 @@ def circle_run(
                 f"its travel is {low:g} to {high:g}; --centre states the middle of the circle"
             )
     approach = np.zeros(q.shape)
-    before = test.angle - JUST * test.sense  # at a quadrant an axis has not turned round yet
+    before = (
+        test.angle - ANGLE_BEFORE_READING * test.sense
+    )  # at a quadrant an axis has not reversed yet
     turned = np.column_stack([-np.sin(before), np.cos(before)]) * test.sense[:, None]
     approach[:, [first, second]] = np.sign(turned)
     D = linear_directions(chain, at_centre)
@@ -248,5 +239,5 @@ def _times(test: CircularTest, feed: float | None) -> Array:
     step = np.abs(np.diff(np.unwrap(test.angle), prepend=test.angle[:1]))
     took = step * test.radius / (feed / MINUTE)
     changes = np.flatnonzero(test.run[1:] != test.run[:-1]) + 1
-    took[changes] = BETWEEN
+    took[changes] = PAUSE_BETWEEN_RUNS
     return np.asarray(np.cumsum(took))

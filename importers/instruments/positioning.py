@@ -1,9 +1,9 @@
 """Tests of one axis (ISO 230-2, ISO 230-1): targets, cycles, both directions of approach.
 
-The instrument (laser interferometer, autocollimator, encoder) says by how much the axis really
-moved: ``actual - target``, tool relative to workpiece, which is the component error of the axis. A
-controller that believes in the nominal machine sees the surface outside its place by the negative
-of that along the direction of motion; a deviation in the file therefore gets the other sign here.
+The instrument (laser interferometer, autocollimator, encoder) measures the true motion of the axis:
+``actual - target``, tool relative to workpiece, which is the component error of the axis. A
+controller that assumes the nominal machine sees the surface displaced by the negative of that along
+the direction of motion, so a deviation in the file gets the opposite sign here.
 
 Reference:
     ISO 230-2:2014, clauses 3 and 5 (terms, target positions, cycles).
@@ -34,8 +34,9 @@ from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
-ALL_BUT = 0.1
-"""Slope over the targets, off from 1 by less, of positions: no axis is wrong by a tenth."""
+SLOPE_TOLERANCE = 0.1
+"""Values with a slope over the targets within this of 1 are positions: no axis is wrong by a
+tenth."""
 
 _TARGET = re.compile(
     r"target|tgt|soll|nominal|command|set ?p(oin)?t|position|cible|consigne|\bp_?i\b",
@@ -43,7 +44,7 @@ _TARGET = re.compile(
 )
 _ACTUAL = re.compile(r"actual|measured|ist\b|\bist|réel|mesur", re.IGNORECASE)
 _REFERENCE = re.compile(r"reference\Z|\bref(_pos)?\Z", re.IGNORECASE)
-"""The better instrument, in tables of two; a `reference position` is a target to others."""
+"""Column of the reference instrument in tables of two; a `reference position` is a target."""
 _DEVIATION = re.compile(r"dev|error|abweich|fehler|écart|erreur|\bx_?ij\b", re.IGNORECASE)
 _ASIDE = re.compile(
     r"straight|gerad|rectitud|pitch|yaw|roll\b|angle|tilt|winkel|neig|nick|gier|roulis|tangage|"
@@ -63,40 +64,28 @@ _ALONE = re.compile(
     re.IGNORECASE,
 )
 """A direction alone, where there is one cycle."""
-_LONGEST = 9  # digits of the number of a cycle
+_MAX_DIGITS = 9  # digits of the number of a cycle
 
 
 @dataclass(frozen=True, eq=False)
 class PositioningTest:
-    """Readings of a positioning test, one entry a reading.
-
-    Attributes:
-        axis: Letter of the axis.
-        target: Commanded position, (N,), mm or rad.
-        deviation: Actual minus target, (N,), mm or rad.
-        cycle: Number of the cycle, (N,).
-        direction: 1 where the target was reached with a growing reading, -1 else, 0 unknown.
-        line: Line of the file, (N,).
-        time: Since the start of a log, (N,), s; None of a table.
-        temperature: By sensor, each (N,), degC; of a log.
-        is_by_order: Whether directions are those in which the rows follow each other.
-        component: Component error that was measured, such as EYX; "" of positioning.
-    """
+    """Readings of a positioning test, one entry per reading."""
 
     axis: str
-    target: Array
-    deviation: Array
-    cycle: IntArray
-    direction: IntArray
-    line: IntArray
-    time: Array | None = None
+    target: Array  # commanded position, (N,), mm or rad
+    deviation: Array  # actual minus target, (N,), mm or rad
+    cycle: IntArray  # number of the cycle, (N,)
+    direction: IntArray  # 1 where the target was reached with a growing reading, -1 else, 0 unknown
+    line: IntArray  # line of the file, (N,)
+    time: Array | None = None  # since the start of a log, (N,), s; None of a table
+    # by sensor, each (N,), degC; of a log
     temperature: Mapping[str, Array] = field(default_factory=dict)
-    is_by_order: bool = False
-    component: str = ""
+    is_by_order: bool = False  # whether directions are those in which the rows follow each other
+    component: str = ""  # component error that was measured, such as EYX; "" of positioning
 
     @property
     def is_own(self) -> bool:
-        """Whether it is how far the axis went, not how it leads aside or tilts."""
+        """Whether the test is of positioning, not of straightness or tilt."""
         return _is_own(self.axis, self.component)
 
     @property
@@ -127,11 +116,11 @@ def read_positioning(
 ) -> PositioningTest:
     """A positioning test from a table.
 
-    Two layouts are understood: a row a reading (columns target, cycle, direction, and deviation or
-    actual position), and a row a target with a column a cycle and direction (`1 up`, `1 down`, or
-    the cycle in one header row and the direction in the next). With a column of times the first is
-    a log: cycles are its strokes, directions those of its motion. Without columns of directions or
-    cycles the order of the rows gives them.
+    Two layouts are read: one row per reading (columns target, cycle, direction, and deviation or
+    actual position), and one row per target with one column per cycle and direction (`1 up`, `1
+    down`, or the cycle in one header row and the direction in the next). With a column of times the
+    first is a log: cycles are its strokes, directions those of its motion. Without columns of
+    directions or cycles the order of the rows gives them.
 
     Args:
         axis: Letter of the axis, which says whether it turns (A B C).
@@ -152,10 +141,13 @@ def read_positioning(
     units = ANGLES if _is_angle(axis, component) else MM
     column, is_position = _readings(sheet, target, named[1], _is_own(axis, component))
     if column is None:
-        return _present(sheet, stacked(_wide(sheet, axis, component, target, at, unit)))
+        return _without_gaps(sheet, stacked(_wide(sheet, axis, component, target, at, unit)))
     deviation = sheet.quantity(column, units, unit)
     cycle, direction, clock = map(sheet.find, (_CYCLE, _DIRECTION, _TIME))
-    sign, stroke = approaches(_held(at)) if clock is None else strokes(_held(at))
+    sign, stroke = (
+        approaches(_filled_forward(at)) if clock is None else strokes(_filled_forward(at))
+    )
+    # words above the parts of a table are surer than the order of its rows
     parted = _ways_of_parts(sheet)
     if clock is None and np.any(parted):
         sign = parted
@@ -163,7 +155,7 @@ def read_positioning(
         axis=axis,
         target=at,
         deviation=deviation - at if is_position else deviation,
-        cycle=stroke if cycle is None else _whole(sheet, cycle),
+        cycle=stroke if cycle is None else _cycle_numbers(sheet, cycle),
         direction=sign if direction is None else signs(sheet, direction),
         line=np.array(sheet.lines),
         time=None if clock is None else seconds(sheet, clock),
@@ -171,11 +163,11 @@ def read_positioning(
         is_by_order=direction is None and bool(np.any(sign < 0)),
         component=component,
     )
-    return _present(sheet, test)
+    return _without_gaps(sheet, test)
 
 
 def _readings(sheet: Sheet, target: int, named: str, is_own: bool) -> tuple[int | None, bool]:
-    """Column of readings, None of a table with a column a run; whether they are positions."""
+    """Column of readings, None for a table with one column per run; whether they are positions."""
     if is_own and named:
         return sheet.column(named), True
     values, actual = sheet.find(_DEVIATION), sheet.find(_ACTUAL)
@@ -189,8 +181,8 @@ def _readings(sheet: Sheet, target: int, named: str, is_own: bool) -> tuple[int 
     return (None if len(aside) > 1 else values), False
 
 
-def _held(at: Array) -> Array:
-    """Targets with those that are missing taken for the last one before them, or the first."""
+def _filled_forward(at: Array) -> Array:
+    """Targets with missing ones replaced by the last one before them, or the first."""
     there = np.isfinite(at)
     last = np.maximum.accumulate(np.where(there, np.arange(len(at)), np.argmax(there)))
     held: Array = at[last]
@@ -198,7 +190,7 @@ def _held(at: Array) -> Array:
 
 
 def _upright(sheet: Sheet) -> Sheet:
-    """The table with a row a target, where it has a column a target: `Target [mm], 0, 100, 200`."""
+    """The table with one row per target, transposed where needed: `Target [mm], 0, 100, 200`."""
     first = str(sheet.cells[0][0]) if len(sheet) else ""
     if not _TARGET.search(bare(first)) or not all(isinstance(r[0], str) for r in sheet.cells):
         return sheet
@@ -226,7 +218,7 @@ def _wide(
         digits = number[0] if number else "1" if _ALONE.match(name) else ""
         if i == target or not digits:
             continue
-        if len(digits) > _LONGEST:
+        if len(digits) > _MAX_DIGITS:
             shown = f"column {sheet.columns[i][:40]!r}"
             raise BadFile(sheet.path, "header", shown, "the number of a cycle")
         found[i] = sign_of(name.replace(digits, "", 1))
@@ -244,6 +236,7 @@ def _wide(
     if not parts:
         expected = "a column of deviations, or a column a cycle and direction (1 up, 1 down, ...)"
         raise sheet.lacking(expected)
+    # one direction without a word is one run; beside others with words it would be a guess
     unsaid = next((i for i, sign in found.items() if sign == 0), None)
     if unsaid is not None and any(found.values()):
         expected = "up or down (fwd, bwd, +, -) in its name, as in others"
@@ -252,7 +245,7 @@ def _wide(
 
 
 def _ways_of_parts(sheet: Sheet) -> IntArray:
-    """Signs of directions as the words above the parts of a table say, 0 where they do not."""
+    """Signs of directions from the words above the parts of a table, 0 without any."""
     ways = [1 if _WAY_OUT.search(a) else -1 if _WAY_BACK.search(a) else 0 for a in sheet.above]
     both = {1, -1} <= set(ways)
     return np.array(ways if both else np.zeros(len(sheet)), dtype=np.int64)
@@ -274,18 +267,18 @@ def _is_position(values: Array, at: Array) -> bool:
     if rows.sum() < 2 or not np.ptp(at[rows]) > 0.0:
         return False
     slope = np.polyfit(at[rows] - at[rows].mean(), values[rows], 1)[0]
-    return abs(float(slope) - 1.0) < ALL_BUT
+    return abs(float(slope) - 1.0) < SLOPE_TOLERANCE
 
 
-def _present(sheet: Sheet, test: PositioningTest) -> PositioningTest:
-    """Without readings that are not there."""
+def _without_gaps(sheet: Sheet, test: PositioningTest) -> PositioningTest:
+    """The test without rows that lack a target or a reading."""
     rows = np.isfinite(test.target) & np.isfinite(test.deviation)
     if not rows.any():
         raise BadFile(sheet.path, "table", "no row with a target and a reading", "one or more")
     return picked(test, rows)
 
 
-def _whole(sheet: Sheet, column: int) -> IntArray:
+def _cycle_numbers(sheet: Sheet, column: int) -> IntArray:
     """Numbers of cycles."""
     numbers = sheet.numbers(column)
     odd = np.flatnonzero(~np.isfinite(numbers) | (numbers != np.round(numbers)))

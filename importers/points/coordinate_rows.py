@@ -1,7 +1,7 @@
-"""Lists of points with a row a coordinate, as reports of CMMs are laid out.
+"""Lists of points with one row per coordinate, as in reports of CMMs.
 
-Rows of one point share its name, wherever they stand; or several columns together, where one does
-not distinguish points (a part and the number of its hole); else the order of the rows decides.
+Rows of one point share its name, or several columns together where one does not distinguish points
+(a part and the number of its hole); otherwise the order of the rows decides.
 """
 
 import re
@@ -11,11 +11,11 @@ from itertools import pairwise
 from matstd.importers.sheets import Sheet
 
 _VALUE = re.compile(r"\A(value|wert|valeur|reading|result|ergebnis)\Z", re.IGNORECASE)
-"""Names of a column of what was measured, where none says so more plainly."""
+"""Names of the column of measured values, where no clearer one exists."""
 
-LONELY = 2.0 / 3.0
-"""Share of coordinates that points must have, below which the order of the rows gives no points:
-tables with all X first, then all Y."""
+MIN_COMPLETE_SHARE = 2.0 / 3.0
+"""If points have a smaller share of their coordinates, the order of the rows does not define points
+(all X first, then all Y)."""
 
 
 def letters_of_rows(sheet: Sheet) -> list[str] | None:
@@ -24,7 +24,7 @@ def letters_of_rows(sheet: Sheet) -> list[str] | None:
     Most rows have one; of a report with diameters at least a third.
     """
     for i in range(len(sheet.columns)):
-        named = [c.upper() if c.upper() in ("X", "Y", "Z") else "" for c in sheet.looked_at(i)]
+        named = [c.upper() if c.upper() in ("X", "Y", "Z") else "" for c in sheet.cells_as_text(i)]
         if 3 * sum(map(bool, named)) > len(named):
             sheet.used.add(i)
             return named
@@ -56,7 +56,7 @@ def points_of_rows(
     if points is not None:
         return label, points
     points = _in_order(rows, label, letters)
-    if LONELY * len(points) * len({letters[k] for k in rows}) > len(rows):
+    if MIN_COMPLETE_SHARE * len(points) * len({letters[k] for k in rows}) > len(rows):
         several = _several_names(sheet, rows, label, setup, letters)
         if several is not None:
             return several
@@ -96,9 +96,9 @@ def _several_names(
     letters: Sequence[str],
 ) -> tuple[list[str], list[dict[str, int]]] | None:
     """Names of points made of several columns that come again with every letter."""
-    texts = {i: sheet.looked_at(i) for i in range(len(sheet.columns)) if i not in sheet.used}
+    texts = {i: sheet.cells_as_text(i) for i in range(len(sheet.columns)) if i not in sheet.used}
     each = len({letters[k] for k in rows})
-    # what names a point is the same in its rows: a column of n points has at most n values
+    # a name is equal in all rows of its point: a column over n points has at most n values
     names = [
         i for i, t in texts.items() if 1 < len({t[k] for k in rows}) <= len(rows) // max(each, 2)
     ]

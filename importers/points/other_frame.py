@@ -1,8 +1,9 @@
-"""Lists measured in a frame that is not the drawing's: turned or shifted, by any amount.
+"""Point lists measured in another frame than the drawing's: turned or shifted by any amount.
 
-A CMM has its own origin, a plate lies anywhere on a table. The rigid motion that joins nominal and
-measured places best is known in closed form at any size, in as many directions as were measured;
-the machine's errors are small beside what makes it necessary.
+A CMM has its own origin, and a plate may lie anywhere on a table. The rigid motion that fits
+nominal to measured points has a closed form for any size, in one to three directions. Outliers are
+left out by repeating the fit; a mirrored fit that is far better reveals an axis that counts the
+other way.
 """
 
 from collections.abc import Callable, Sequence
@@ -16,38 +17,31 @@ from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.record import rigid_motion, turn_of
 
 SHIFT = 1.0
-"""Displacement (mm) from which a list is taken for one in another frame; a smaller one is found
-with the set-up, which is linear in it."""
+"""A larger displacement (mm) is another frame; a smaller one is found by the linear fit of the
+set-up."""
 
 TURN = 1e-3
-"""Rotation (rad) from which it is: half its square times 200 mm is 0.1 µm, what a linear fit of
-the set-up would get wrong."""
+"""A larger rotation (rad) is another frame: half its square times 200 mm is 0.1 µm, the error of
+the linear fit of the set-up."""
 
-NEAR = 5.0
-"""Points farther off than so many times the median are gross and turn nothing."""
+OUTLIER_RATIO = 5.0
+"""Points farther off than this multiple of the median are outliers and left out of the fit."""
 
-ROUNDS = 20
-"""Most times that the near points are chosen anew; two are usual."""
+MAX_ROUNDS = 20
+"""Repetitions of the choice of near points; two are usual."""
 
-MIRRORED = 10.0
-"""So many times better a mirrored frame fits where an axis counts the other way."""
+MIRROR_RATIO = 10.0
+"""A mirrored frame must fit better by this factor before an axis counts as reversed."""
 
 
 @dataclass(frozen=True, eq=False)
 class OtherFrame:
-    """Where the points of one set-up were measured.
-
-    Attributes:
-        setup: Label of the set-up.
-        T: Takes nominal places to measured ones, (4, 4), mm.
-        shift: How far the middle of the points was moved, mm.
-        turn: By which angle they were turned, rad.
-    """
+    """Where the points of one set-up were measured."""
 
     setup: str
-    T: Array
-    shift: float
-    turn: float
+    T: Array  # takes nominal places to measured ones, (4, 4), mm
+    shift: float  # how far the middle of the points was moved, mm
+    turn: float  # by which angle they were turned, rad
 
     @property
     def is_far(self) -> bool:
@@ -56,7 +50,7 @@ class OtherFrame:
 
 
 def measured_frames(points: PointList) -> list[OtherFrame]:
-    """Frames in which the set-ups were measured, of those that have points enough to tell.
+    """Frames in which the set-ups were measured, for those with enough points to determine it.
 
     Raises:
         DesignError: Points that fit a mirrored frame alone.
@@ -118,18 +112,18 @@ def _moved(
 
 
 def _motion(setup: str, a: Array, b: Array) -> Array:
-    """Pose (k + 1, k + 1) that takes a to b, gross points aside, in k directions."""
+    """Pose (k + 1, k + 1) that takes a to b in k directions, without outliers."""
     near = np.ones(len(a), dtype=bool)
-    for _ in range(ROUNDS):
+    for _ in range(MAX_ROUNDS):
         T = rigid_motion(a[near], b[near])
         off = np.linalg.norm(_at(T, a) - b, axis=1)
-        kept = off <= max(NEAR * float(np.median(off)), 1e-9)
+        kept = off <= max(OUTLIER_RATIO * float(np.median(off)), 1e-9)
         if np.array_equal(kept, near):
             break
         near = kept
     mirrored = rigid_motion(a[near], b[near], is_mirrored=True)
     left, other = (float(np.sqrt(np.mean((_at(M, a[near]) - b[near]) ** 2))) for M in (T, mirrored))
-    if a.shape[1] > 1 and left > SHIFT and left > MIRRORED * other and _fills(a):
+    if a.shape[1] > 1 and left > SHIFT and left > MIRROR_RATIO * other and _fills(a):
         raise DesignError(
             f"points of {setup!r}: they fit a mirrored frame to {other:.3g} mm rms and no other "
             f"({left:.3g} mm); expected axes that count the same way as the nominal ones"

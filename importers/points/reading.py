@@ -1,6 +1,6 @@
 """Lists of nominal and measured coordinates: a machined part, or a calibrated plate.
 
-Both compare where a point is with where it should be, and mean opposite things:
+Both compare the actual with the nominal place of a point, with opposite signs:
 
 - ``part``: the machine under test made the point, a better one measured it. Measured minus nominal
   is where the tool really went relative to the workpiece: the machine's own deviation. A controller
@@ -25,7 +25,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 
 Meaning = Literal["part", "standard"]
-"""Who made a list: see the module."""
+"""What a list is of: see the module."""
 
 _NOMINAL = re.compile(r"nom|soll|target|calib|ref|theor|théor|cad", re.IGNORECASE)
 _MEASURED = re.compile(r"meas|act|ist\b|\bist|gemessen|mesur|réel|cmm|found", re.IGNORECASE)
@@ -78,6 +78,7 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
             deviation[:, i] = measured - np.nan_to_num(nominal[:, i])
         elif ("deviation", letter) in found:
             deviation[:, i] = sheet.quantity(found["deviation", letter], MM, unit)
+        # only now: a coordinate without a measurement needs no nominal value
         if at is not None:
             nominal[:, i] = _stated(sheet, at, nominal[:, i], deviation[:, i])
     if not np.isfinite(deviation).any() or not any(role == "nominal" for role, _ in found):

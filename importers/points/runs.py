@@ -23,18 +23,14 @@ from matstd.twin.record import Instrument, Run, Setup, at_poses
 
 @dataclass(frozen=True, eq=False)
 class PointsImport:
-    """What lists of points became.
-
-    Attributes:
-        count: Number of points.
-        frames: Set-ups that were measured in another frame than the nominal one.
-        misplaced: Points that were found nearer to where another one belongs, with its name.
-    """
+    """Run and machine of lists of points."""
 
     run: Run
     chain: Chain
     count: int
+    # set-ups that were measured in another frame than the nominal one
     frames: tuple[OtherFrame, ...]
+    # points that were found nearer to where another one belongs, with its name
     misplaced: tuple[tuple[str, str], ...]
 
 
@@ -48,7 +44,7 @@ def import_points(
     """Run of one list of points, or of several as runs of their own, with its machine.
 
     Args:
-        meaning: Who made and who measured the points: see `reading`.
+        meaning: Machined part or calibrated standard: see `reading`.
         u: Standard uncertainty of one coordinate, mm.
         machine: None makes one whose travels are those of the points.
         unit: Of columns whose name has none; None takes mm for coordinates and refuses deviations.
@@ -64,7 +60,7 @@ def import_points(
     far = tuple(f for f in frames if f.is_far)
     is_part = meaning == "part"
     points = (in_nominal_frame if is_part else in_measured_frame)(points, far)
-    stands = () if is_part else far  # a part's list is brought back, a standard stays where it is
+    stands = () if is_part else far  # only a part's list is moved to the nominal frame
     chain = linear_machine(points, stands) if machine is None else machine
     return PointsImport(
         run=points_run(points, meaning, chain, u, stands),
@@ -128,7 +124,7 @@ def points_run(
     touches = replace(
         at_poses(chain, q, 0.0),
         point=points.nominal[rows],
-        normal=turned[np.arange(len(rows)), axis],  # of the machine, as the standard sees it
+        normal=turned[np.arange(len(rows)), axis],  # directions of the standard
         setups=tuple(Setup(_key(k), stands[k], run=of.get(k, "")) for k in labels),
         setup=np.array([labels.index(label) for label in setups], dtype=np.int64)[rows],
         approach=_approach(points, chain)[rows],
@@ -145,7 +141,7 @@ def _readings(chain: Chain, place: Array) -> Array:
     q = np.zeros((len(place), len(chain.axes)))
     if len(chain.linear_axes) == 3:
         return inverse_linear(chain, place, q, 0.0)
-    # fewer axes reach places in their own directions only: what is beside them is the set-up's
+    # fewer axes reach places in their own directions only; the rest belongs to the set-up
     columns = [chain.axis_index(name) for name in chain.linear_axes]
     back = np.linalg.pinv(linear_directions(chain, q))
     q[:, columns] = np.einsum("nmi,ni->nm", back, place - tip(chain, q, 0.0))

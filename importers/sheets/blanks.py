@@ -1,4 +1,4 @@
-"""Text tables whose columns stand below one another, with nothing but blanks between them."""
+"""Text tables whose columns are separated by blanks only."""
 
 import re
 from collections import Counter
@@ -6,12 +6,12 @@ from collections import Counter
 _WIDE = re.compile(r"\s{2,}|\t")
 _NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?\Z")
 
-ALIKE = 0.8
-"""Share of the rows of numbers with one count of columns from which a text is such a table."""
+MIN_EQUAL_ROWS = 0.8
+"""Share of the rows of numbers that must have the same number of columns."""
 
 
 def by_blanks(text: str) -> list[tuple[int, list[str]]]:
-    r"""Rows of a table with columns of blanks, each with its line; none where it is no such table.
+    r"""Rows of a table separated by blanks, each with its line; empty for any other text.
 
     Words of one cell stand a blank apart, columns two or more; where numbers stand closer every
     blank parts them, and of a header with twice as many words two make a name (`Meas X Meas Y`).
@@ -28,7 +28,7 @@ def by_blanks(text: str) -> list[tuple[int, list[str]]]:
     wide = {i: _WIDE.split(line) for i, line in lines}
     for cells in (wide, narrow):
         width, count = Counter(len(cells[i]) for i in data).most_common(1)[0]
-        if width > 1 and count >= ALIKE * len(data) and _are_numbers_in(cells, data):
+        if width > 1 and count >= MIN_EQUAL_ROWS * len(data) and _are_numbers_in(cells, data):
             return [(i, _row(wide[i], narrow[i], cells[i], i in data, width)) for i, _ in lines]
     return []
 
@@ -52,4 +52,4 @@ def _are_numbers(cells: list[str]) -> bool:
 
 
 def _are_numbers_in(cells: dict[int, list[str]], data: list[int]) -> bool:
-    return sum(_are_numbers(cells[i]) for i in data) >= ALIKE * len(data)
+    return sum(_are_numbers(cells[i]) for i in data) >= MIN_EQUAL_ROWS * len(data)

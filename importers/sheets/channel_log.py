@@ -1,4 +1,4 @@
-"""Logs of control systems with a line a value or a line an event, made a table of channels.
+"""Logs of control systems, one line per value or event, as a table with a column per channel.
 
 EPICS (`camonitor`, `pvmonitor`) writes a name, a date, a time and a number: channels come in turn,
 each when it changed, or whole arrays of samples behind their count. Programs that log JSON write an
@@ -15,17 +15,17 @@ import numpy as np
 
 _LINE = re.compile(r"(\S+)\s+(\d{4}-\d{2}-\d{2})[T\s]+(\d{2}:\d{2}:\d{2}(?:\.\d+)?)\s+(\S.*)\Z")
 _CLOCK = re.compile(r"ts|t|time|timestamp|eventtime|zeit", re.IGNORECASE)
-"""Keys under which an object has its time."""
+"""Keys of the time of an object."""
 
-MOSTLY = 0.8
-"""Share of the lines from which a text is such a log; others are remarks and alarms."""
+MIN_LOG_SHARE = 0.8
+"""Share of the lines that must be readings; others are remarks and alarms."""
 
-FEWEST = 3
-"""Values from which a channel is more than the setting of something."""
+MIN_VALUES = 3
+"""Values that distinguish a channel from a setting."""
 
 
 class Reading(NamedTuple):
-    """What a channel said at a time, s: one value, or an array of samples."""
+    """Reading of a channel at a time, s: one value, or an array of samples."""
 
     line: int
     channel: str
@@ -34,7 +34,7 @@ class Reading(NamedTuple):
 
 
 def by_channels(text: str) -> list[tuple[int, list[str]]]:
-    r"""Rows of a table of such a log, each with its line; none where it is no such log.
+    r"""Rows of the table of a log, each with its line; empty for any other text.
 
     The channel with most values gives the times; the others are interpolated between their own
     values, and rows before or after those are left out.
@@ -51,7 +51,9 @@ def by_channels(text: str) -> list[tuple[int, list[str]]]:
     for reading in readings:
         at.setdefault(reading.channel, []).append(reading)
     is_array = any(len(r.values) > 1 for r in readings)
-    kept = {n: r for n, r in at.items() if (len(r) >= FEWEST) != is_array or len(r[0].values) > 1}
+    kept = {
+        n: r for n, r in at.items() if (len(r) >= MIN_VALUES) != is_array or len(r[0].values) > 1
+    }
     if len(kept) < 2:
         return []
     return _arrays(kept) if is_array else _scalars(kept, readings[0].time)
@@ -60,7 +62,7 @@ def by_channels(text: str) -> list[tuple[int, list[str]]]:
 def _of_lines(lines: Sequence[tuple[int, str]]) -> list[Reading]:
     """Readings of a log with a line a value; none of another text."""
     found = [(i, m) for i, line in lines if (m := _LINE.match(line))]
-    if len(found) < MOSTLY * len(lines):
+    if len(found) < MIN_LOG_SHARE * len(lines):
         return []
     return [
         Reading(i, m[1], _instant(f"{m[2]} {m[3][:15]}") or 0.0, _numbers(m[4])) for i, m in found

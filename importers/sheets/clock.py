@@ -1,4 +1,4 @@
-"""Times of foreign tables: numbers in a unit, or what a clock on the wall said."""
+"""Times of foreign tables: numbers in a unit, or times of day."""
 
 import re
 from collections.abc import Sequence
@@ -19,16 +19,16 @@ _CLOCK = re.compile(
 """A time of day, with its date or without."""
 
 _ORDERS = ("%Y-%m-%d", "%d-%m-%Y", "%m-%d-%Y", "%d-%m-%y", "%m-%d-%y")
-"""Orders of the parts of a date: the first in which all dates of a column are dates holds."""
+"""Orders of the parts of a date; the first in which all dates of a column are valid is used."""
 
 
 def seconds(sheet: Sheet, column: int) -> Array:
     """A column of times, (N,), s: numbers in the unit of its name, or clock times from the first.
 
-    A time of day without a date that falls back by more than half a day has passed midnight.
+    A time of day without a date that goes back by more than half a day has passed midnight.
 
     Raises:
-        BadFile: A cell that is neither; a date that may be read in two ways where it matters.
+        BadFile: A cell that is neither; an ambiguous date.
     """
     if has_clock(sheet, column):
         return clock_times(sheet, column)

@@ -1,4 +1,4 @@
-"""Directions of approach: in words of a table, and as the order of its rows shows them."""
+"""Directions of approach, from words of a table or from the order of its rows."""
 
 import re
 
@@ -17,7 +17,7 @@ _UP = re.compile(
 
 
 def sign_of(words: str) -> int:
-    """1 for words such as up or forward, -1 for down or back, 0 for those that say neither."""
+    """1 for words such as up or forward, -1 for down or back, 0 for others."""
     return 1 if _UP.search(words) else -1 if _DOWN.search(words) else 0
 
 

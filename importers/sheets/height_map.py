@@ -1,4 +1,4 @@
-"""Height maps that controls of printers and routers keep of their beds.
+"""Height maps of beds, as controls of printers and routers save them.
 
 RepRapFirmware writes `heightmap.csv`: a line of limits and spacings, and a matrix with a row of
 the first axis for every place of the second. Klipper keeps its meshes at the end of `printer.cfg`.
@@ -16,7 +16,7 @@ _MESH = re.compile(r"(?:#\*#\s*)?\[bed_mesh\s+([^\]]+)\]\s*\Z")
 _SECTION = re.compile(r"(?:#\*#\s*)?\[")
 _KEY = re.compile(r"(?:#\*#\s*)?([a-z_]+)\s*[=:]\s*(.*?)\s*\Z")
 _NOT_PROBED = ("0", "nan")
-"""What stands for a point that was not probed; a height of zero has decimals."""
+"""Cells of points that were not probed; a height of zero has decimals."""
 
 HEADER = ["x [mm]", "y [mm]", "dz [mm]", "set-up"]
 """Columns of the table that a height map becomes."""

@@ -1,4 +1,4 @@
-"""Rows of records: some of them, those of several records as one, and times by their order."""
+"""Rows of records: selecting, stacking, and times by their order."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def picked(record: Record, rows: np.ndarray) -> Record:
 
 
 def stacked(records: Sequence[Record]) -> Record:
-    """The rows of all records one after the other; what is no array is that of the first."""
+    """The rows of all records one after the other; other fields are those of the first."""
     names = [
         f.name for f in fields(records[0]) if isinstance(getattr(records[0], f.name), np.ndarray)
     ]
@@ -47,7 +47,7 @@ def timed_by_rows(run: Run, step: float) -> Run:
         step: Time from one row to the next, s.
 
     Raises:
-        DesignError: A step that is none, or a run that has times.
+        DesignError: A step out of range, or a run that has times.
     """
     if not 0.0 < step <= DAY:
         raise DesignError(f"--in-order {step:g}: expected seconds from 0 to {DAY:g}")

@@ -1,4 +1,4 @@
-"""Columns beside the readings: temperatures, loads, and quantities of any other unit."""
+"""Recorded columns: temperatures, loads, and quantities of any other unit."""
 
 import re
 

@@ -1,12 +1,12 @@
-"""Reports with several tables of different columns in one file: which of them is the record."""
+"""Choice of the table to read in a report with several tables."""
 
 from collections.abc import Callable, Sequence
 
 Row = tuple[int, Sequence[str | float]]
 """A line of the file with its cells."""
 
-ALIKE = 0.5
-"""Share of equal names from which two headers are those of one table in parts."""
+MIN_EQUAL_NAMES = 0.5
+"""From this share of equal names two headers belong to parts of one table."""
 
 
 def fullest_table(
@@ -58,4 +58,4 @@ def _names(row: Sequence[str | float]) -> tuple[str, ...]:
 
 def _alike(one: tuple[str, ...], other: tuple[str, ...]) -> bool:
     same = sum(a == b for a, b in zip(one, other, strict=False))
-    return len(one) == len(other) and same >= ALIKE * len(one)
+    return len(one) == len(other) and same >= MIN_EQUAL_NAMES * len(one)

@@ -12,33 +12,24 @@ from matstd.importers.sheets.units import bare, unit_of_column
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 
-LARGEST = 1e15
-"""What a cell may hold: more than milliseconds of a clock, and far from where squares overflow."""
+LARGEST_CELL = 1e15
+"""Largest number of a cell: above milliseconds of a clock, and squares do not overflow."""
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """One table of a foreign file.
-
-    Attributes:
-        columns: Names in its header, with their units as they stand there.
-        cells: Rows of numbers, each as long as `columns`; "" where a cell is empty.
-        lines: Line or row of the file that each of them stands in.
-        title: What stands above the header.
-        left_out: Lines below the header that hold no row of numbers.
-        above: For each row what stands between it and the last row of numbers before its block: a
-            table in two parts names its parts there.
-        used: Columns from which something was taken.
-    """
+    """One table of a foreign file."""
 
     path: Path
-    columns: tuple[str, ...]
+    columns: tuple[str, ...]  # names in its header, with their units as they stand there
+    # rows of numbers, each as long as `columns`; "" where a cell is empty
     cells: tuple[tuple[str | float, ...], ...]
-    lines: tuple[int, ...]
-    title: tuple[str, ...] = ()
-    left_out: tuple[int, ...] = ()
+    lines: tuple[int, ...]  # line or row of the file that each of them stands in
+    title: tuple[str, ...] = ()  # lines above the header
+    left_out: tuple[int, ...] = ()  # lines below the header that hold no row of numbers
+    # for each row the words above its block of numbers, such as the names of parts
     above: tuple[str, ...] = ()
-    used: set[int] = field(default_factory=set, compare=False, repr=False)
+    used: set[int] = field(default_factory=set, compare=False, repr=False)  # columns that were read
 
     def __len__(self) -> int:
         return len(self.cells)
@@ -49,11 +40,7 @@ class Sheet:
         return tuple(map(bare, self.columns))
 
     def numbers(self, column: int, missing: float | None = None) -> Array:
-        """Numbers of a column, (N,); not a number where a cell is empty or says `missing`.
-
-        Raises:
-            BadFile: A cell that is no number; its line and what stood there.
-        """
+        """Numbers of a column, (N,); NaN where a cell is empty or `missing`; raises BadFile."""
         self.used.add(column)
         out = np.full(len(self), np.nan)
         for i, row in enumerate(self.cells):
@@ -62,8 +49,8 @@ class Sheet:
                 expected = "a number" if "," not in cell else "one decimal mark in the whole file"
                 raise self.bad(i, column, repr(cell), expected)
             if cell != "" and cell != missing:
-                if abs(float(cell)) > LARGEST:
-                    raise self.bad(i, column, f"{cell:g}", f"{LARGEST:g} at most")
+                if abs(float(cell)) > LARGEST_CELL:
+                    raise self.bad(i, column, f"{cell:g}", f"{LARGEST_CELL:g} at most")
                 out[i] = cell
         return out
 
@@ -85,21 +72,21 @@ class Sheet:
     def text(self, column: int) -> list[str]:
         """Cells of a column as text; whole numbers without a decimal mark."""
         self.used.add(column)
-        return self.looked_at(column)
+        return self.cells_as_text(column)
 
-    def looked_at(self, column: int) -> list[str]:
-        """The same, to see what a column holds; it does not count as used."""
+    def cells_as_text(self, column: int) -> list[str]:
+        """The same without counting the column as used."""
         cells = [row[column] for row in self.cells]
         return [f"{c:g}" if isinstance(c, float) else c for c in cells]
 
     @property
     def unused(self) -> tuple[str, ...]:
-        """Columns with a name and cells in them from which nothing was taken."""
+        """Named, non-empty columns that were not read."""
         rest = [i for i, name in enumerate(self.columns) if name and i not in self.used]
-        return tuple(self.columns[i] for i in rest if any(self.looked_at(i)))
+        return tuple(self.columns[i] for i in rest if any(self.cells_as_text(i)))
 
     def find(self, pattern: re.Pattern[str], *without: re.Pattern[str]) -> int | None:
-        """The first column whose name one pattern finds, and none of the others."""
+        """The first column whose name matches one pattern and none of the others."""
         return next(
             (
                 i
@@ -110,11 +97,7 @@ class Sheet:
         )
 
     def column(self, name: str) -> int:
-        """Index of a column by its whole name or its name without unit.
-
-        Raises:
-            BadFile: No such column, with those that are there.
-        """
+        """Index of a column by its whole name or its name without unit; raises BadFile."""
         for names in (self.columns, self.names):
             if name in names:
                 return names.index(name)

@@ -1,7 +1,7 @@
-"""Foreign tables as they come: workbooks, and text with any separator and decimal mark.
+"""Reader of foreign tables: workbooks, and text with any separator and decimal mark.
 
-The table of a file is found, not declared: its first row of numbers ends the header; what stands
-above the header is a title, what follows the last row of numbers a footer (means, remarks).
+The table is found by its rows of numbers: the first one ends the header, words above are the title,
+words below the last one a footer (means, remarks).
 """
 
 import csv
@@ -28,13 +28,13 @@ WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 """Endings of files that are read as workbooks."""
 
 _SEPARATORS = (";", "\t", ",", "|")
-"""In the order in which they are tried: a comma last, because it may be a decimal mark."""
+"""In the order of trial: a comma late, because it may be a decimal mark."""
 
-MOSTLY = 0.6
-"""Share of rows with a number from which a column is one of numbers."""
+MIN_NUMBER_SHARE = 0.6
+"""From this share of numbers a column is one of numbers."""
 
 _RULE = re.compile(r":?-{2,}:?\Z|\Z")
-"""Cells of a line that rules off the header, as in tables of a wiki."""
+"""Cells of a line that separates the header, as in tables of a wiki."""
 
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?\Z")
 _DECIMAL_POINT = re.compile(r"[+-]?\d+\.\d*([eE][+-]?\d+)?\Z")
@@ -50,7 +50,7 @@ def read_sheet(path: str | Path, name: str | None = None, names: Sequence[str] =
         names: Of the columns, of a table without a header.
 
     Raises:
-        BadFile: No table of numbers, a sheet that is not there, or mixed decimal marks.
+        BadFile: No table of numbers, no such sheet, or mixed decimal marks.
     """
     path = Path(path)
     if path.suffix.lower() in WORKBOOKS:
@@ -211,7 +211,7 @@ def _data_rows(rows: Sequence[Row]) -> tuple[list[Row], list[int]]:
 def _footers(data: Sequence[Row]) -> set[int]:
     """Lines of means and limits, which have a word in the first column of numbers."""
     for cells in zip(*(row for _, row in data), strict=True):
-        if sum(isinstance(c, float) for c in cells) > MOSTLY * len(cells):
+        if sum(isinstance(c, float) for c in cells) > MIN_NUMBER_SHARE * len(cells):
             lines = (line for line, _ in data)
             return {n for n, c in zip(lines, cells, strict=True) if isinstance(c, str) and c}
     return set()

@@ -1,4 +1,4 @@
-"""What touches are chosen for: a measure of what stays unknown, over machines and directions.
+"""Criteria for choosing touches: remaining uncertainty over machines and directions.
 
 With ``M_s = prior_s + F`` for the information ``F = W^T W`` of the touches and the prior of a drawn
 machine s, the criterion is the mean of its `matstd.information.criteria.measures.Measure` over the
@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from matstd.information.criteria.measures import (
-    VISIBLE,
+    MIN_EIGENVALUE_RATIO,
     Determinant,
     LargestEigenvalue,
     LargestVariance,
@@ -30,20 +30,14 @@ from matstd.twin.frames import Array
 
 @dataclass(frozen=True, eq=False)
 class DesignCriterion:
-    """A criterion over the directions of parameter space that matter; smaller is better.
+    """A criterion over the relevant directions of parameter space; smaller is better."""
 
-    Attributes:
-        directions: Orthonormal columns, (P, R'): everything that a tool point or a touch can feel.
-        measure: Of what stays unknown of one machine, over R directions and potential terms.
-        priors: Inverse covariances of drawn machines, (S, R, R); None for the unit matrix.
-        tail: Share of the machines, the worst, over which is averaged; 1 for all.
-        primary: The same without potential terms; None where there are none.
-    """
-
-    directions: Array
-    measure: Measure
+    directions: Array  # orthonormal columns, (P, R'): all that moves a tool point or a touch
+    measure: Measure  # of the uncertainty of one machine, over R directions and potential terms
+    # inverse covariances of drawn machines, (S, R, R); None for the unit matrix
     priors: Array | None = None
-    tail: float = 1.0
+    tail: float = 1.0  # share of the machines, the worst, over which is averaged; 1 for all
+    # the same without potential terms; None where there are none
     primary: "DesignCriterion | None" = None
 
     def __post_init__(self) -> None:
@@ -97,7 +91,7 @@ class DesignCriterion:
         return self.measure.shown(self.raw(information))
 
     def merit(self, information: Array) -> float:
-        """As `value`, with a power mean for the largest: what a search may go down by."""
+        """As `value`, with a power mean for the largest; smooth, for searches."""
         return self.measure.shown(self.raw(information, smooth=True))
 
     def tangents(self, information: Array) -> tuple[Tangent, ...]:
@@ -127,8 +121,8 @@ def _worst_weights(values: Array, tail: float) -> Array:
 def mean_prediction(G: Array, W: Array, prior_sd: Array) -> DesignCriterion:
     """To predict the tool point at M poses, on average (I).
 
-    Directions that neither move the tool point at any pose nor show in any row stay at their prior
-    whatever is measured; they are left out, which is exact and a third of the work.
+    Directions that neither move the tool point at any pose nor show in any row keep their prior;
+    they are left out, which is exact and saves two thirds of the work.
 
     Args:
         G: Deviation of the tip per unit of every parameter at the poses, (M, 3, P), mm.
@@ -140,18 +134,12 @@ def mean_prediction(G: Array, W: Array, prior_sd: Array) -> DesignCriterion:
     shown = W.T @ W
     felt_or_shown = K / np.trace(K) + shown / max(float(np.trace(shown)), 1e-300)
     values, vectors = np.linalg.eigh(felt_or_shown)
-    V = vectors[:, values > VISIBLE * values[-1]]
+    V = vectors[:, values > MIN_EIGENVALUE_RATIO * values[-1]]
     return DesignCriterion(V, MeanVariance(V.T @ K @ V))
 
 
 def five_criteria(G: Array, W: Array, prior_sd: Array) -> dict[str, DesignCriterion]:
-    """The criteria I, G, D, A and E over the same directions.
-
-    Args:
-        G: Deviation of the tip per unit of every parameter at the poses, (M, 3, P), mm.
-        W: Some whitened rows that span what can be measured, (N, P).
-        prior_sd: Expected standard deviation of every parameter, (P,).
-    """
+    """The criteria I, G, D, A and E over the same directions; arguments as of `mean_prediction`."""
     mean = mean_prediction(G, W, prior_sd)
     V, R = mean.directions, mean.size
     assert isinstance(mean.measure, MeanVariance)
@@ -195,7 +183,6 @@ def with_potential(criterion: DesignCriterion, count: int, worth: float) -> Desi
     Args:
         criterion: Any over the primary terms.
         count: Number of potential terms, Q.
-        worth: Of the potential terms, mm^2.
     """
     priors, R = None, criterion.size
     if criterion.priors is not None:

@@ -1,4 +1,4 @@
-"""What stays unknown of one machine after touches, as one number: the letters of optimal design.
+"""Remaining uncertainty of one machine after touches as one number: the criteria I, G, D, A, E.
 
 With ``M = prior + F`` for the information ``F = W^T W`` of the touches,
 
@@ -28,22 +28,18 @@ import numpy as np
 from matstd.information.criteria.tangents import LogDeterminant, Tangent, Trace
 from matstd.twin.frames import Array
 
-VISIBLE = 1e-13
+MIN_EIGENVALUE_RATIO = 1e-13
 """Share of the largest eigenvalue below which a direction is neither felt nor shown: rounding."""
 
 _SHARPNESS = 16.0  # power that stands for the largest at first; searches raise it
-_LOUD = 1e-6  # share of the largest weight below which a form is left out of a tangent
+_MIN_WEIGHT_RATIO = 1e-6  # share of the largest weight below which a form is left out of a tangent
 
 
 @dataclass(frozen=True, eq=False)
 class MeanVariance:
-    """``trace(K M^-1)``: the mean variance of a prediction (I), or of the parameters (A), mm^2.
+    """``trace(K M^-1)``: the mean variance of a prediction (I), or of the parameters (A), mm^2."""
 
-    Attributes:
-        K: Moments of the prediction, (R, R), mm^2; the unit matrix for A.
-    """
-
-    K: Array
+    K: Array  # moments of the prediction, (R, R), mm^2; the unit matrix for A
 
     @property
     def size(self) -> int:
@@ -74,17 +70,11 @@ class MeanVariance:
 
 @dataclass(frozen=True, eq=False)
 class _Largest(ABC):
-    """The largest of several variances, and the mean variance of what counts in any case.
+    """The largest of several variances, and the mean variance of what counts in any case."""
 
-    Attributes:
-        roots: Roots of the forms, (J, R, k).
-        K: Form that counts in any case, (R, R): that of potential terms.
-        sharpness: Power of the mean that stands for the largest in a search.
-    """
-
-    roots: Array
-    K: Array
-    sharpness: float = _SHARPNESS
+    roots: Array  # roots of the forms, (J, R, k)
+    K: Array  # form that counts in any case, (R, R): that of potential terms
+    sharpness: float = _SHARPNESS  # power of the mean that stands for the largest in a search
 
     @property
     def size(self) -> int:
@@ -133,7 +123,9 @@ class LargestVariance(_Largest):
 
     def mixed(self, roots: Array, share: Array) -> Array:
         """Mean over the poses that are among the worst."""
-        loud = share > _LOUD * share.max()  # what is left out makes the sum less than one: no harm
+        loud = (
+            share > _MIN_WEIGHT_RATIO * share.max()
+        )  # what is left out makes the sum less than one: no harm
         flat = np.moveaxis(roots[loud] * np.sqrt(share[loud])[:, None, None], 1, 0)
         flat = flat.reshape(self.size, -1)
         return np.asarray(flat @ flat.T, dtype=np.float64)
@@ -155,7 +147,7 @@ class LargestEigenvalue(_Largest):
     def of(cls, K: Array) -> "LargestEigenvalue":
         """For a root of a form K, (R, R)."""
         values, vectors = np.linalg.eigh(K)
-        kept = values > VISIBLE * values[-1]
+        kept = values > MIN_EIGENVALUE_RATIO * values[-1]
         root = vectors[:, kept] * np.sqrt(values[kept])
         return cls(root[None], np.zeros_like(K))
 
@@ -176,13 +168,9 @@ class LargestEigenvalue(_Largest):
 
 @dataclass(frozen=True)
 class Determinant:
-    """``-log det M``: the volume of what stays unknown (Bayesian D), shown as ``det(M)^(-1/R)``.
+    """``-log det M``: the volume of what stays unknown (Bayesian D), shown as ``det(M)^(-1/R)``."""
 
-    Attributes:
-        size: R.
-    """
-
-    size: int
+    size: int  # R
 
     @property
     def sharpness(self) -> float:

@@ -1,4 +1,4 @@
-"""What measurements can know of a model's parameters, before any of them is made.
+"""Posterior of a model's parameters for planned measurements.
 
 Everything here is linear: a row is the deviation along the normal of one touch per unit of every
 parameter (``n^T J`` times the shape functions, `matstd.twin.model.model.columns`), with a prior
@@ -36,16 +36,10 @@ def whitened(rows: Array, prior_sd: Array, u: Array | float) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Posterior:
-    """What is known of the parameters after touches that could be made; normal, linear.
+    """Posterior of the parameters after planned touches; normal, linear."""
 
-    Attributes:
-        W: Whitened rows, shape (N, P).
-        prior_sd: Expected standard deviation of every parameter, (P,).
-        names: Of the parameters.
-    """
-
-    W: Array
-    prior_sd: Array
+    W: Array  # whitened rows, shape (N, P)
+    prior_sd: Array  # expected standard deviation of every parameter, (P,)
     names: tuple[str, ...]
 
     @cached_property
@@ -91,7 +85,7 @@ class Posterior:
 
     @cached_property
     def alone(self) -> tuple[str, ...]:
-        """Parameters that are known for themselves: variance down at least tenfold."""
+        """Parameters determined individually: variance reduced at least tenfold."""
         known = self.sd**2 < 0.1 * self.prior_sd**2
         return tuple(name for name, k in zip(self.names, known, strict=True) if k)
 

@@ -29,34 +29,21 @@ from matstd.twin.frames import Array
 
 
 class RowStep(NamedTuple):
-    """One row that comes in or goes out (Sherman and Morrison): ``M^-1`` falls by ``c a a^T``.
+    """One row that comes in or goes out (Sherman and Morrison): ``M^-1`` falls by ``c a a^T``."""
 
-    Attributes:
-        W: All rows, (N, R).
-        inverse: ``M^-1`` before, (R, R).
-        a: ``M^-1 w``, (R,).
-        along: ``W a``, (N,).
-        signed: Leverage of the row, negative where it goes out.
-        c: ``sign / (1 + sign leverage)``.
-    """
-
-    W: Array
-    inverse: Array
-    a: Array
-    along: Array
-    signed: float
-    c: float
+    W: Array  # all rows, (N, R)
+    inverse: Array  # ``M^-1`` before, (R, R)
+    a: Array  # ``M^-1 w``, (R,)
+    along: Array  # ``W a``, (N,)
+    signed: float  # leverage of the row, negative where it goes out
+    c: float  # ``sign / (1 + sign leverage)``
 
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """``trace(K M^-1)``.
+    """``trace(K M^-1)``."""
 
-    Attributes:
-        K: The form, with the weight of the machine in it, (R, R).
-    """
-
-    K: Array
+    K: Array  # the form, with the weight of the machine in it, (R, R)
 
     def value(self, M: Array, inverse: Array) -> float:
         """``trace(K M^-1)``."""
@@ -113,13 +100,9 @@ class Trace:
 
 @dataclass(frozen=True)
 class LogDeterminant:
-    """``-weight log det M``.
+    """``-weight log det M``."""
 
-    Attributes:
-        weight: Of the machine.
-    """
-
-    weight: float
+    weight: float  # of the machine
 
     def value(self, M: Array, inverse: Array) -> float:
         """``-log det M``."""

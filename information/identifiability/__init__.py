@@ -5,7 +5,7 @@ them, combinations that are determined, parameters that are tied, degrees that a
 it is data; `matstd.report.words` puts it into words.
 """
 
-from matstd.information.identifiability.correlation import STRONG, Pair, Ties, ties
+from matstd.information.identifiability.correlation import STRONG_CORRELATION, Pair, Ties, ties
 from matstd.information.identifiability.degrees import Degree, supported_degrees
 from matstd.information.identifiability.estimable_combinations import (
     EstimableCombination,
@@ -22,7 +22,7 @@ from matstd.information.identifiability.nullspace import rank_analysis
 from matstd.information.identifiability.separation import Identifiability, identifiability
 
 __all__ = [
-    "STRONG",
+    "STRONG_CORRELATION",
     "Degree",
     "EstimableCombination",
     "Freedom",

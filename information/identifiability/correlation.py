@@ -1,4 +1,4 @@
-"""Which parameters the touches tie together: correlations after the fit, groups and pairs.
+"""Parameters that touches tie together: correlations after the fit, pairs and groups.
 
 Two parameters whose estimates rise and fall together (r near +1) are known by their difference;
 where one falls as the other rises (r near -1) by their sum; difference and sum of both in units of
@@ -13,19 +13,13 @@ import numpy as np
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array
 
-STRONG = 0.9
-"""Absolute correlation from which two parameters are called tied."""
+STRONG_CORRELATION = 0.9
+"""Absolute correlation from which two parameters count as tied."""
 
 
 @dataclass(frozen=True)
 class Pair:
-    """Two parameters that are tied.
-
-    Attributes:
-        first: Index of one.
-        second: Index of the other.
-        r: Their correlation.
-    """
+    """Two tied parameters by their indices, and their correlation."""
 
     first: int
     second: int
@@ -34,19 +28,13 @@ class Pair:
 
 @dataclass(frozen=True, eq=False)
 class Ties:
-    """Parameters that touches tie together.
-
-    Attributes:
-        names: Of all parameters.
-        r: Correlations of all of them, (P, P).
-        pairs: Tied ones, the strongest first.
-        groups: Indices of parameters joined by ties, the largest group first, each in an order in
-            which neighbours are alike.
-    """
+    """Parameters that touches tie together."""
 
     names: tuple[str, ...]
-    r: Array
-    pairs: tuple[Pair, ...]
+    r: Array  # correlations of all of them, (P, P)
+    pairs: tuple[Pair, ...]  # tied ones, the strongest first
+    # indices of parameters joined by ties, the largest group first, each in an order in which
+    # neighbours are alike
     groups: tuple[tuple[int, ...], ...]
 
 
@@ -59,16 +47,12 @@ def correlation(covariance: Array) -> Array:
     return r
 
 
-def ties(covariance: Array, names: Sequence[str], strong: float = STRONG) -> Ties:
-    """Parameters that are tied after a fit.
+def ties(covariance: Array, names: Sequence[str], strong: float = STRONG_CORRELATION) -> Ties:
+    """Parameters that are tied after a fit; raises ShapeMismatch.
 
     Args:
         covariance: Of the parameters after the touches, (P, P).
-        names: Of the parameters, P.
         strong: Absolute correlation from which a pair counts, between 0 and 1.
-
-    Raises:
-        ShapeMismatch: Names and covariance do not go together.
     """
     if covariance.shape != (len(names), len(names)):
         raise ShapeMismatch(f"covariance of shape {covariance.shape} for {len(names)} names")
@@ -101,7 +85,7 @@ def _groups(pairs: Sequence[Pair], r: Array) -> tuple[tuple[int, ...], ...]:
 
 
 def _alike_beside_alike(group: list[int], r: Array) -> list[int]:
-    """Start with the parameter of the strongest ties, then always the one nearest to the last."""
+    """Order from the parameter of the strongest ties, each followed by its nearest one."""
     left = list(group)
     strength = np.abs(r[np.ix_(group, group)]).sum(axis=1)
     out = [left.pop(int(np.argmax(strength)))]

@@ -1,4 +1,4 @@
-"""To which degree the touches support every component error."""
+"""Highest degree of every component error that touches support."""
 
 from dataclasses import dataclass
 
@@ -11,32 +11,25 @@ from matstd.twin.machine import Family, Link, Symbol
 from matstd.twin.model import Model, columns, traits
 from matstd.twin.record import Touches
 
-HIGHEST = 8
+MAX_DEGREE = 8
 """Highest degree that is tried."""
 
-SUPPORTED = 0.5
+MAX_POSTERIOR_SHARE = 0.5
 """A coefficient is supported when the touches leave less than this part of its expected size."""
 
 
 @dataclass(frozen=True)
 class Degree:
-    """What touches support of one component error over its reading.
-
-    Attributes:
-        symbol: Name, `EXX`.
-        supported: Degrees (harmonics on a rotary axis) whose coefficients the touches determine,
-            all of them free together; the first may be 2, where degree 1 is tied to a location
-            error or the set-up.
-        largest: Largest of them; 0 where there is none.
-        u: Standard uncertainty of the coefficient of that degree, mm or rad; 0 where there is none.
-        unit: Base unit of u.
-    """
+    """Supported degrees of one component error."""
 
     symbol: str
+    # degrees (harmonics on a rotary axis) whose coefficients the touches determine, all of them
+    # free together; the first may be 2, where degree 1 is tied to a location error or the set-up
     supported: tuple[int, ...]
-    largest: int
+    largest: int  # largest of them; 0 where there is none
+    # standard uncertainty of the coefficient of that degree, mm or rad; 0 where there is none
     u: float
-    unit: str
+    unit: str  # base unit of u
 
 
 def supported_degrees(model: Model, touches: Touches, W: Array, noise: float) -> tuple[Degree, ...]:
@@ -45,12 +38,10 @@ def supported_degrees(model: Model, touches: Touches, W: Array, noise: float) ->
     The error's own distributions are replaced by Chebyshev polynomials, or harmonics, of expected
     size ``sd/k^1.5``; all other errors and the set-up stay free. Of the variance of the
     coefficients up to degree n ``(1 + C^T C - C^T W M^-1 W^T C)^-1`` is left. A degree is supported
-    when with it none of the degrees below falls out: one more coefficient than touches over a part
-    of the travel can carry spoils those that they had.
+    if all lower degrees stay supported with it: one coefficient too many over a part of the travel
+    spoils the others.
 
     Args:
-        model: Machine and its expected errors.
-        touches: The touches, (N,).
         W: Their whitened rows with the set-up free, (N, P).
         noise: Standard deviation of a touch, mm.
     """
@@ -62,7 +53,7 @@ def supported_degrees(model: Model, touches: Touches, W: Array, noise: float) ->
         if symbol.family is not Family.COMPONENT or not link.programmed or not own.any():
             continue
         sd = float(model.prior_sd[own].max())
-        effect = HigherOrder(symbol, HIGHEST, sd, link.kind == "rotary")
+        effect = HigherOrder(symbol, MAX_DEGREE, sd, link.kind == "rotary")
         size = np.array([p.sd for p in effect.parameters])
         C = columns([effect], touches) * size / noise
         rest = W[:, ~own]
@@ -76,12 +67,12 @@ def supported_degrees(model: Model, touches: Touches, W: Array, noise: float) ->
 def _degree(symbol: Symbol, link: Link, A: Array, size: Array) -> Degree:
     """Degrees that an information A supports, in units of the expected sizes."""
     each = 2 if link.kind == "rotary" else 1
-    left = np.ones((HIGHEST, HIGHEST))  # of degree k + 1 in column k, with n + 1 degrees free
-    for n in range(HIGHEST):
+    left = np.ones((MAX_DEGREE, MAX_DEGREE))  # of degree k + 1 in column k, with n + 1 degrees free
+    for n in range(MAX_DEGREE):
         free = each * (n + 1)
         covariance = np.linalg.solve(np.eye(free) + A[:free, :free], np.eye(free))
         left[n, : n + 1] = np.sqrt(np.diag(covariance)).reshape(n + 1, each).max(axis=1)
-    supported = _run(left < SUPPORTED)
+    supported = _run(left < MAX_POSTERIOR_SHARE)
     u = 0.0
     if supported:
         last = supported[-1] - 1

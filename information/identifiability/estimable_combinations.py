@@ -13,20 +13,13 @@ class EstimableCombination:
     """A combination of parameters that touches determine by itself.
 
     ``sum_k weight_k theta_k`` with weight 1 at the leading parameter, in whose unit u is.
-
-    Attributes:
-        u: Standard uncertainty after the touches, base unit of the leading parameter.
-        gain: Prior over posterior standard deviation.
-        unit: Base unit of the leading parameter.
-        weights: Of every parameter, (P,).
-        importance: Weights in units of what is expected of each parameter, (P,).
     """
 
-    u: float
-    gain: float
-    unit: str
-    weights: Array
-    importance: Array
+    u: float  # standard uncertainty after the touches, base unit of the leading parameter
+    gain: float  # prior over posterior standard deviation
+    unit: str  # base unit of the leading parameter
+    weights: Array  # of every parameter, (P,)
+    importance: Array  # weights in units of what is expected of each parameter, (P,)
 
 
 def combinations(
@@ -38,8 +31,6 @@ def combinations(
 
     Args:
         W: Whitened rows, (N, P).
-        prior_sd: Shape (P,).
-        units: Base units of the parameters.
         free: Parameters that count as unknown and of no interest, such as a set-up: rows are first
             freed of what they can imitate.
     """
@@ -49,6 +40,7 @@ def combinations(
         U, s, _ = np.linalg.svd(W[:, list(free)], full_matrices=False)
         U = U[:, s > 1e-12 * s[0]]
         rows = rows - U @ (U.T @ rows)
+    # R has the singular values of the rows at (P, P) instead of (N, P)
     _, s, Vt = np.linalg.svd(np.linalg.qr(rows, mode="r"))
     out = []
     for v, x in zip(Vt, s, strict=False):

@@ -1,4 +1,4 @@
-"""Gauge freedoms: what imitates what and why, and freedoms that differ in their shape alone."""
+"""Gauge freedoms: which parameters imitate each other, and why."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -31,7 +31,7 @@ class Reason(Enum):
 
 
 class Resolution(Enum):
-    """What would tell the members of a freedom apart."""
+    """Measurement that would distinguish the members of a freedom."""
 
     UNTRIED = "nothing else was tried"
     TOUCHES = "other touches that were tried"
@@ -49,23 +49,15 @@ class Term(NamedTuple):
 
 @dataclass(frozen=True)
 class Freedom:
-    """A parameter that the touches cannot tell from others: only their sum has a value.
+    """A parameter that the touches cannot distinguish from others: only their sum is determined."""
 
-    Attributes:
-        parameter: That can be left out.
-        unit: Its base unit.
-        alike: What imitates it exactly; nothing for a parameter that moves no touch.
-        reason: What makes them alike; None where nothing is known of the parameters.
-        resolution: What would tell them apart.
-        resolved_by: The touches that would, by the name they were tried under.
-    """
-
-    parameter: str
+    parameter: str  # that can be left out
     unit: str
-    alike: tuple[Term, ...]
+    alike: tuple[Term, ...]  # what imitates it exactly; nothing for a parameter that moves no touch
+    # what makes them alike; None where nothing is known of the parameters
     reason: Reason | None = None
-    resolution: Resolution = Resolution.UNTRIED
-    resolved_by: str = ""
+    resolution: Resolution = Resolution.UNTRIED  # measurement that would distinguish them
+    resolved_by: str = ""  # name of the tried touches that would
 
     @property
     def values(self) -> dict[str, float]:
@@ -75,18 +67,13 @@ class Freedom:
 
 @dataclass(frozen=True)
 class FreedomFamily:
-    """Freedoms that say the same of several shapes of an error.
+    """Equal freedoms of several shapes of one error."""
 
-    Attributes:
-        first: One of them; of several shapes with the component errors themselves for names,
-            `geometric(EXX,)`.
-        shapes: Of the errors, in their usual order; empty for a freedom by itself.
-        count: Number of freedoms.
-    """
-
+    # one of them; of several shapes with the component errors themselves for names,
+    # `geometric(EXX,)`
     first: Freedom
-    shapes: tuple[str, ...]
-    count: int
+    shapes: tuple[str, ...]  # of the errors, in their usual order; empty for a freedom by itself
+    count: int  # number of freedoms
 
 
 def reason(members: Sequence[int], parameters: Parameters, chain: Chain) -> Reason | None:
@@ -115,11 +102,7 @@ def reason(members: Sequence[int], parameters: Parameters, chain: Chain) -> Reas
 
 
 def in_families(freedoms: Iterable[Freedom]) -> tuple[FreedomFamily, ...]:
-    """Freedoms, those that say the same of several shapes of an error together.
-
-    Returns:
-        In the order of their first members.
-    """
+    """Freedoms, with equal ones of several shapes of an error joined."""
     families: dict[object, list[Freedom]] = {}
     for freedom in freedoms:
         families.setdefault(_family(freedom) or (freedom.parameter,), []).append(freedom)

@@ -1,10 +1,9 @@
-"""What no touch of a run or design can show: the null space of its rows, in sparse directions.
+"""Null space of the rows of a run or design, in sparse directions.
 
-Columns are brought to length one first, so that units and expected sizes do not decide what counts
-as seen. Parameters that can be moved together without any touch noticing fall into groups that have
-nothing to do with one another; in every group the directions with the fewest parameters are looked
-for by the smallest sum of absolute values (a linear program), which for such geometry finds the
-pairs and triples that an engineer would name.
+Columns are scaled to length one first, so the rank does not depend on units and expected sizes.
+Parameters that share null directions form separate groups. In each group the directions with the
+fewest parameters are found by the smallest sum of absolute weights (a linear program), which for
+such geometry gives the pairs and triples that an engineer would name.
 
 Reference:
     Coleman and Pothen, SIAM J. Alg. Disc. Meth. 7 (1986) 527 (sparse null bases, greedy and hard);
@@ -20,34 +19,30 @@ from scipy.optimize import linprog
 
 from matstd.twin.frames import Array
 
-INVISIBLE = 1e-8
-"""Singular value over the largest, columns of length one, below which a direction is never seen:
-far above rounding, far below the weakest direction that a probed run shows."""
+MIN_SINGULAR_RATIO = 1e-8
+"""Singular value over the largest, columns of length one, below which a direction is invisible: far
+above rounding, far below the weakest visible direction of a probed run."""
 
-SILENT = 1e-9
+MIN_LENGTH_RATIO = 1e-9
 """Length of a column over the longest below which its parameter moves nothing."""
 
-_NOTHING = 1e-6  # part of a direction's largest weight that counts as zero
+_MIN_WEIGHT_RATIO = 1e-6  # part of a direction's largest weight that counts as zero
 
 
 @dataclass(frozen=True, eq=False)
 class RankAnalysis:
-    """What rows see of their parameters, without any prior.
+    """Rank analysis of rows, without any prior."""
 
-    Attributes:
-        length: Of every column, (P,).
-        singular: Singular values of the columns brought to length one, largest first, (P,).
-        directions: Right singular vectors, one a row, (P, P); silent columns have their own.
-    """
-
-    length: Array
-    singular: Array
-    directions: Array
+    length: Array  # of every column, (P,)
+    singular: Array  # singular values of the columns brought to length one, largest first, (P,)
+    directions: Array  # right singular vectors, one a row, (P, P); silent columns have their own
 
     @property
     def rank(self) -> int:
         """Number of independent combinations that the rows see."""
-        return int(np.sum(self.singular > INVISIBLE * max(float(self.singular.max()), 1e-300)))
+        return int(
+            np.sum(self.singular > MIN_SINGULAR_RATIO * max(float(self.singular.max()), 1e-300))
+        )
 
     @property
     def condition(self) -> float:
@@ -58,15 +53,15 @@ class RankAnalysis:
     def null(self) -> Array:
         """Directions that no row sees, weights of the parameters as they stand in W, (G, P)."""
         rows = self.directions[self.rank :]
-        loud = self.length > SILENT * max(float(self.length.max(initial=0.0)), 1e-300)
+        loud = self.length > MIN_LENGTH_RATIO * max(float(self.length.max(initial=0.0)), 1e-300)
         return rows / np.where(loud, self.length, 1.0)
 
 
 def rank_analysis(W: Array) -> RankAnalysis:
-    """What rows (N, P) see of their parameters."""
+    """Rank, singular values and directions of rows (N, P)."""
     P = W.shape[1]
     length = np.linalg.norm(W, axis=0)
-    loud = np.flatnonzero(length > SILENT * max(float(length.max(initial=0.0)), 1e-300))
+    loud = np.flatnonzero(length > MIN_LENGTH_RATIO * max(float(length.max(initial=0.0)), 1e-300))
     silent = np.setdiff1d(np.arange(P), loud)
     singular, directions = np.zeros(P), np.zeros((P, P))
     if len(loud):
@@ -92,7 +87,7 @@ def groups(null: Array) -> list[list[int]]:
     if not len(null):
         return []
     basis = np.linalg.qr(_unit(null)[0].T)[0]
-    tied = np.abs(basis @ basis.T) > _NOTHING
+    tied = np.abs(basis @ basis.T) > _MIN_WEIGHT_RATIO
     left, out = set(np.flatnonzero(np.diag(tied)).tolist()), []
     while left:
         group, fresh = set(), {min(left)}
@@ -176,7 +171,7 @@ def _fewest(N: Array, have: list[Array], order: list[int]) -> list[Array]:
     pairs, gone = _pairs(N, order)
     rest = N
     if gone:
-        rest = np.linalg.svd(N[:, gone].T)[2][len(gone) :] @ N  # nothing of what was eliminated
+        rest = np.linalg.svd(N[:, gone].T)[2][len(gone) :] @ N  # without the eliminated parameters
     chosen = _independent([*have, *pairs], [], g)
     if len(chosen) < g:
         found = [z for lead in range(p) if (z := _smallest(rest, lead)) is not None]
@@ -194,8 +189,8 @@ def _independent(vectors: list[Array], chosen: list[Array], most: int) -> list[A
             break
         left = z - basis.T @ (basis @ z)
         left = left - basis.T @ (basis @ left)
-        if np.linalg.norm(left) > _NOTHING * np.linalg.norm(z):
-            chosen.append(np.where(np.abs(z) > _NOTHING * np.abs(z).max(), z, 0.0))
+        if np.linalg.norm(left) > _MIN_WEIGHT_RATIO * np.linalg.norm(z):
+            chosen.append(np.where(np.abs(z) > _MIN_WEIGHT_RATIO * np.abs(z).max(), z, 0.0))
             basis = np.vstack([basis, left / np.linalg.norm(left)])
     return chosen
 
@@ -240,7 +235,7 @@ def _smallest(N: Array, lead: int) -> Array | None:
     if found.status != 0:
         return None
     z = N.T @ found.x[:g]
-    support = np.abs(z) > _NOTHING * np.abs(z).max()
+    support = np.abs(z) > _MIN_WEIGHT_RATIO * np.abs(z).max()
     if not support[lead]:  # beside the others it is nothing but rounding
         return None
     # the same support again, exactly: what is outside it is made zero by least squares
@@ -248,7 +243,7 @@ def _smallest(N: Array, lead: int) -> Array | None:
     c = found.x[:g]
     if outside.size:
         U, s, _ = np.linalg.svd(outside, full_matrices=False)
-        U = U[:, s > _NOTHING]  # less than that is rounding of the readings, not a weight
+        U = U[:, s > _MIN_WEIGHT_RATIO]  # less than that is rounding of the readings, not a weight
         c = c - U @ (U.T @ c)
     z = np.where(support, N.T @ c, 0.0)
     return np.asarray(z / z[lead], dtype=np.float64)

@@ -1,6 +1,6 @@
-"""What touches can and cannot separate: rank, condition, gauge freedoms, confounded groups.
+"""Identifiability of touches: rank, condition, gauge freedoms, confounded groups.
 
-A gauge freedom is a direction of parameter space that no touch notices: the constants of an axis
+A gauge freedom is a direction of parameter space that changes no touch: the constants of an axis
 and the set-up of the standard, the tilt of a ram and its straightness at one tool length. They come
 from the null space of the rows, by `matstd.information.identifiability.nullspace`, and are checked,
 one by one, against richer touches that could have been made: another stylus length, another set-up,
@@ -21,7 +21,7 @@ from matstd.information.identifiability.freedoms import (
     reason,
 )
 from matstd.information.identifiability.nullspace import (
-    INVISIBLE,
+    MIN_SINGULAR_RATIO,
     condition,
     groups,
     rank_analysis,
@@ -32,44 +32,31 @@ from matstd.twin.machine import Chain, Family, Symbol
 from matstd.twin.model import traits
 from matstd.twin.units import UM, URAD
 
-_KEPT = 1e-6  # part of its length that a gauge direction must show in richer touches to be resolved
+_MIN_RESOLVED_SHARE = (
+    1e-6  # part of its length that a gauge direction must show in richer touches to be resolved
+)
 
 
 @dataclass(frozen=True)
 class Group:
-    """Parameters that are tied to one another by gauge freedoms, and to no others.
+    """Parameters that are tied to one another by gauge freedoms, and to no others."""
 
-    Attributes:
-        members: Names.
-        known: Number of their combinations that the touches see; the rest is gauge.
-    """
-
-    members: tuple[str, ...]
-    known: int
+    members: tuple[str, ...]  # names
+    known: int  # number of their combinations that the touches see; the rest is gauge
 
 
 @dataclass(frozen=True, eq=False)
 class Identifiability:
-    """What the touches can and cannot separate.
+    """Identifiability of the parameters by some touches."""
 
-    Attributes:
-        parameters: Their number.
-        rank: Number of independent combinations that move any touch.
-        condition: Largest over smallest visible singular value of the columns, each scaled to
-            length one.
-        condition_prior: The same with every column times its parameter's expected size.
-        condition_raw: The same unscaled, per µm and µrad.
-        freedoms: One for every parameter beyond the rank.
-        groups: Of parameters that are confounded with one another.
-    """
-
-    parameters: int
-    rank: int
+    parameters: int  # their number
+    rank: int  # number of independent combinations that move any touch
+    # largest over smallest visible singular value of the columns, each scaled to length one
     condition: float
-    condition_prior: float
-    condition_raw: float
-    freedoms: tuple[Freedom, ...]
-    groups: tuple[Group, ...]
+    condition_prior: float  # the same with every column times its parameter's expected size
+    condition_raw: float  # the same unscaled, per µm and µrad
+    freedoms: tuple[Freedom, ...]  # one for every parameter beyond the rank
+    groups: tuple[Group, ...]  # of parameters that are confounded with one another
 
 
 def identifiability(
@@ -82,16 +69,14 @@ def identifiability(
 ) -> Identifiability:
     """Rank, condition, gauge freedoms and confounded groups of some touches.
 
-    Freedoms have as few members as could be found. Where it is free which member is named as the
-    one to leave out, set-up, tool and zero positions go first, as conventions have it.
+    Freedoms have as few members as could be found. By convention set-up, tool and zero positions
+    are named first as the member to leave out.
 
     Args:
         W: Whitened rows, shape (N, P).
-        prior_sd: Shape (P,).
-        names: Of the parameters.
         parameters: The same with their effects (`Model.parameters`), for units, conventions and
             reasons.
-        chain: The machine, for reasons; None to do without.
+        chain: The machine, for reasons, or None.
         richer: Rows of touches that could be made instead, by what they are called, cheapest first;
             columns as those of W, and after them those of set-ups and tools of their own.
     """
@@ -104,6 +89,7 @@ def identifiability(
     freedoms = []
     for lead, z in sparse(null, order, never):
         size = np.abs(z).max()
+        # W is per prior standard deviation, a freedom is stated in base units
         base = -z * prior_sd / prior_sd[lead]
         others = [k for k in np.argsort(-np.abs(z), kind="stable").tolist() if k != lead and z[k]]
         why = reason([lead, *others], parameters, chain) if chain is not None else None
@@ -152,7 +138,7 @@ def _without_own(W: Array, P: int) -> Array:
     left = W[:, :P]
     if own.shape[1]:
         U, s, _ = np.linalg.svd(own, full_matrices=False)
-        U = U[:, s > INVISIBLE * s[0]]
+        U = U[:, s > MIN_SINGULAR_RATIO * s[0]]
         left = left - U @ (U.T @ left)
         left = left - U @ (U.T @ left)
     return left
@@ -163,7 +149,7 @@ def _resolved_by(
 ) -> tuple[Resolution, str]:
     """The first of the richer touches, freed of what is their own, in which a direction shows."""
     for name, W in richer.items():
-        if np.linalg.norm(W @ z) > _KEPT * np.linalg.norm(W, axis=0).max():
+        if np.linalg.norm(W @ z) > _MIN_RESOLVED_SHARE * np.linalg.norm(W, axis=0).max():
             return Resolution.TOUCHES, name
     if not richer:
         return Resolution.UNTRIED, ""

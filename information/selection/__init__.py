@@ -1,4 +1,4 @@
-"""Choosing touches: which rows, of all that could be measured, tell most.
+"""Choosing touches: the rows that determine most, among all that could be measured.
 
 Rows of candidates and a criterion go in, a choice comes out: greedy and mended by exchanges
 (`touch_selection`), of groups that belong together (`groups`), or by fractions that are nearly the

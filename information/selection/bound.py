@@ -1,4 +1,4 @@
-"""What no choice of touches can beat: a proven bound, at any information, for every criterion.
+"""Proven bound on the criterion of every choice of touches, from any information.
 
 Every touch may be made by a fraction, ``0 <= x_i <= 1``, ``sum x_i = n``, with the shares of poses
 and features that the choice itself has to keep: a convex problem, whose optimum no whole choice can
@@ -14,7 +14,7 @@ optimum or not,
 
 with ``g_i = sum_s w_i^T S_s w_i`` and ``S_s = M_s^-1 K_s M_s^-1`` (``w_s M_s^-1`` for D). That
 holds for every criterion of `DesignCriterion`, the largest of several and means over the worst
-machines included. It is a proof and needs no faith in the search that found F0.
+machines included. The bound does not depend on the search that found F0.
 
 Reference:
     Pukelsheim, Optimal Design of Experiments (1993), chapters 5 and 7 (information functions).
@@ -30,21 +30,13 @@ from matstd.twin.frames import Array
 
 @dataclass(frozen=True, eq=False)
 class Slope:
-    """Where a criterion falls most, seen from one information.
+    """Slope of a criterion at one information."""
 
-    Attributes:
-        inverse: ``M_s^-1``, (S, R, R).
-        S: Forms of the gains ``w^T S_s w``, (S, R, R).
-        constant: ``sum_s trace(S_s prior_s)``.
-        value: Of the tangent: the criterion itself, or below it.
-        degree: ``sum_s trace(S_s M_s)``.
-    """
-
-    inverse: Array
-    S: Array
-    constant: float
-    value: float
-    degree: float
+    inverse: Array  # ``M_s^-1``, (S, R, R)
+    S: Array  # forms of the gains ``w^T S_s w``, (S, R, R)
+    constant: float  # ``sum_s trace(S_s prior_s)``
+    value: float  # of the tangent: the criterion itself, or below it
+    degree: float  # ``sum_s trace(S_s M_s)``
 
     def gains(self, W: Array) -> Array:
         """Gain of every candidate, (N,)."""
@@ -52,7 +44,7 @@ class Slope:
         return np.asarray(np.einsum("nr,nr->n", W @ total, W), dtype=np.float64)
 
     def bound(self, largest: float) -> float:
-        """What no choice can beat whose gains sum up to `largest` at most."""
+        """Bound for choices whose gains sum up to at most `largest`."""
         return self.value * self.degree / (self.constant + largest)
 
 

@@ -1,4 +1,4 @@
-"""How near a choice of touches is to the best that any choice could be, certified.
+"""Certified efficiency of a choice of touches.
 
 The efficiency is the bound of `matstd.information.selection.bound` over the criterion of the
 choice; the fractions of `matstd.information.selection.relaxation` make the bound tight, their
@@ -16,25 +16,17 @@ from matstd.twin.frames import Array
 
 @dataclass(frozen=True)
 class Certificate:
-    """How near a choice is to the best that there can be.
+    """Bound on the distance of a choice from the best one."""
 
-    Attributes:
-        candidates: Touches that could have been chosen.
-        count: Touches that were.
-        value: Criterion of the choice.
-        bound: No other choice of as many of the candidates has a smaller one.
-        shares: Whether other choices have to keep the same shares of poses and features.
-    """
-
-    candidates: int
-    count: int
-    value: float
-    bound: float
-    shares: bool = False
+    candidates: int  # touches that could have been chosen
+    count: int  # touches that were
+    value: float  # criterion of the choice
+    bound: float  # no other choice of as many of the candidates has a smaller one
+    shares: bool = False  # whether other choices have to keep the same shares of poses and features
 
     @property
     def efficiency(self) -> float:
-        """At least so near to the best possible choice, 0 to 1."""
+        """Lower bound of the efficiency, 0 to 1."""
         return self.bound / self.value
 
     def __str__(self) -> str:
@@ -52,17 +44,12 @@ def certificate(
     tolerance: float = 2e-3,
     quotas: tuple[Quota, ...] = (),
 ) -> Certificate:
-    """Certified efficiency of a choice among candidates.
+    """Certified efficiency of a choice among candidates; raises DesignError.
 
     Args:
-        criterion: What the choice is for.
         W: Rows of all candidates, (N, R).
-        chosen: The choice, (N,).
         tolerance: Relative gap to which the relaxed problem is solved.
         quotas: Shares that the choice keeps and every other would have to keep.
-
-    Raises:
-        DesignError: The choice does not keep the shares.
     """
     count = int(chosen.sum())
     best = relaxed(criterion, W, count, chosen, tolerance, quotas)
@@ -87,12 +74,8 @@ def rounded(
     """A choice of whole touches from fractions: the heaviest, then exchanged until none helps.
 
     Args:
-        criterion: What the choice is for.
         W: Rows of all candidates, (N, R).
         weight: Fractions, (N,).
-        count: Number of touches.
-        most: Largest number of exchanges.
-        quotas: Shares to be kept.
 
     Raises:
         DesignError: No whole choice near the fractions keeps the shares.

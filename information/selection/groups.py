@@ -1,4 +1,4 @@
-"""Choosing what brings many touches at once: patches of a standard, table poses."""
+"""Choosing groups of touches: patches of a standard, table poses."""
 
 from collections.abc import Sequence
 
@@ -29,10 +29,8 @@ def best_groups(
     before it; greedy, then every chosen group is once weighed against all that are left out.
 
     Args:
-        criterion: What for.
         W: Rows in the directions that matter, (N, R).
         group: Of every row, (N,), from 0.
-        count: Number of groups.
         take: Rows that a group will contribute.
         start: W^T W of what is measured anyway, (R, R).
         apart: Which groups may stand beside each other, (groups, groups); None for all.
@@ -86,7 +84,7 @@ class _Groups:
         tangents = self.criterion.tangents(information)
         prior = self.criterion.prior
         unit = np.eye(self.criterion.size)
-        # a third of the time that solving for every row takes
+        # takes a third of the time of solving for every row
         reaches = [self.W @ np.linalg.solve(p + information, unit) for p in prior]
         gain = np.zeros(len(self.W))
         for reach, tangent in zip(reaches, tangents, strict=True):

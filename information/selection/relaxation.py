@@ -2,9 +2,9 @@
 
 Weight flows from the least useful touch that has some to the most useful one that has room, each
 time as much as is best for the pair (vertex exchange), within the shares that have to be kept.
-Where no single flow helps any more, a step towards the best corner of the shares is made (Frank and
-Wolfe). A criterion that is curved is followed along its tangent in short stretches, and the mean
-that stands for the largest of several is sharpened as the search comes to rest.
+Where no single flow helps, a step towards the best corner of the shares is made (Frank and Wolfe).
+A curved criterion is followed along its tangent in short steps, and the mean that replaces the
+largest of several is sharpened as the search converges.
 
 Reference:
     Boehning, Metrika 33 (1986) 337 (vertex exchange); Frank and Wolfe, Naval Research Logistics
@@ -26,30 +26,23 @@ from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
 _STEPS = 400  # vertex exchanges between two looks at all candidates
-_CURVED = 40  # the same along one tangent of a criterion that is curved
+_STEPS_CURVED = 40  # the same along one tangent of a criterion that is curved
 ROUNDS = 100
 _REFRESH = 50
 _HALVINGS = 8
 _PATIENCE = 3  # looks without progress before the mean is sharpened, or the search given up
 _SHARPEST = 1000.0
-_LEAST_FLOW = 1e-12
+_MIN_FLOW = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
 class Relaxed:
-    """Nearly optimal design weights, and what no choice can beat.
+    """Nearly optimal design weights, and a bound for every choice."""
 
-    Attributes:
-        weight: Fraction of every candidate, (N,), between 0 and 1.
-        value: Criterion of the fractions; smaller is better.
-        bound: No choice of as many whole touches has a smaller criterion.
-        steps: Vertex exchanges that were made.
-    """
-
-    weight: Array
-    value: float
-    bound: float
-    steps: int
+    weight: Array  # fraction of every candidate, (N,), between 0 and 1
+    value: float  # criterion of the fractions; smaller is better
+    bound: float  # no choice of as many whole touches has a smaller criterion
+    steps: int  # vertex exchanges that were made
 
     @property
     def gap(self) -> float:
@@ -72,9 +65,7 @@ def relaxed(
     kept; it is true however far the fractions are from the best.
 
     Args:
-        criterion: What the touches are for.
         W: Rows of all candidates, (N, R).
-        count: Number of touches.
         start: A choice of as many rows to start from, (N,).
         tolerance: Relative gap between value and bound that is close enough.
         quotas: Shares that fractions and whole choices have to keep.
@@ -104,11 +95,12 @@ def relaxed(
             lowest, best = value, x
         if bound >= (1.0 - tolerance) * lowest:
             break
+        # a sharper mean gets nearer to the largest, but is harder to follow: only at a standstill
         if stalled >= _PATIENCE:
             if criterion.sharpness > _SHARPEST:
                 break
             criterion, stalled = criterion.sharper(2.0), 0
-        few = _worth_looking_at(gain, there, count, cell)
+        few = _candidates_to_search(gain, there, count, cell)
         after, made = _exchanged(criterion, W[few], x[few], tuple(_of(q, few) for q in quotas))
         steps += made
         new = x.copy()
@@ -124,7 +116,7 @@ def _of(quota: Quota, rows: IntArray) -> Quota:
     return Quota(quota.kind[rows], quota.most, quota.least)
 
 
-def _worth_looking_at(gain: Array, there: IntArray, count: int, cell: IntArray) -> IntArray:
+def _candidates_to_search(gain: Array, there: IntArray, count: int, cell: IntArray) -> IntArray:
     """Candidates with weight, as many again of the largest gains, and the best of every cell."""
     size = min(len(gain), 2 * count)
     best = np.argpartition(-gain, size - 1)[:size]
@@ -205,7 +197,7 @@ def _exchanged(
     x = x.copy()
     board = _Board(quotas, len(x))
     tangents = criterion.tangents((W * x[:, None]).T @ W)
-    most_steps = _CURVED if criterion.is_curved else _STEPS
+    most_steps = _STEPS_CURVED if criterion.is_curved else _STEPS
     for step in range(most_steps):
         if step % _REFRESH == 0:
             here = slope(criterion, (W * x[:, None]).T @ W)
@@ -237,10 +229,8 @@ def _best_flow(tangents: Sequence[Tangent], h: Array, k: Array, most: float) -> 
     root of the slope of the sum is found.
 
     Args:
-        tangents: Of the machines, S.
         h: ``w M^-1 w`` of the pair, (S, 2, 2).
         k: ``w M^-1 K M^-1 w`` of the pair, (S, 2, 2).
-        most: Largest flow.
     """
     b = (h[:, 0, 0] - h[:, 1, 1]).tolist()
     d = (h[:, 0, 0] * h[:, 1, 1] - h[:, 0, 1] ** 2).tolist()
@@ -254,5 +244,5 @@ def _best_flow(tangents: Sequence[Tangent], h: Array, k: Array, most: float) -> 
     if falls(most) >= 0.0:
         return float(most)
     if falls(0.0) <= 0.0:
-        return _LEAST_FLOW
-    return max(float(brentq(falls, 0.0, most, xtol=_LEAST_FLOW * most)), _LEAST_FLOW)
+        return _MIN_FLOW
+    return max(float(brentq(falls, 0.0, most, xtol=_MIN_FLOW * most)), _MIN_FLOW)

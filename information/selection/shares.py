@@ -1,4 +1,4 @@
-"""Shares of poses and features: what a sum over touches can be at most when they are kept."""
+"""Largest sums over touches under quotas of poses and features."""
 
 from dataclasses import dataclass
 
@@ -14,15 +14,10 @@ from matstd.twin.record import IntArray
 
 @dataclass(frozen=True, eq=False)
 class Sum:
-    """Fractions of the largest sum, and what no fractions can exceed.
+    """Fractions of the largest sum, and what no fractions can exceed."""
 
-    Attributes:
-        most: No fractions have a larger sum: proven by its multipliers, not by a solver's word.
-        x: Fractions that come near it, (N,).
-    """
-
-    most: float
-    x: Array
+    most: float  # no fractions have a larger sum: proven by its multipliers, not by a solver's word
+    x: Array  # fractions that come near it, (N,)
 
 
 def cells(quotas: tuple[Quota, ...], count: int) -> IntArray:
@@ -48,6 +43,7 @@ def largest_sum(gain: Array, count: int, quotas: tuple[Quota, ...] = ()) -> Sum:
         top = np.argpartition(gain, len(gain) - count)[len(gain) - count :]
         x[top] = 1.0
         return Sum(float(gain[top].sum()), x)
+    # within a cell rows differ in gain alone, so only the best ones can enter the optimum
     few = _first_of_each_cell(gain, count, quotas)
     A, b = _constraints(quotas, few)
     scale = float(np.abs(gain).max()) or 1.0
@@ -99,11 +95,7 @@ def _constraints(quotas: tuple[Quota, ...], rows: IntArray) -> tuple[csr_array, 
 
 
 def heaviest(weight: Array, count: int, quotas: tuple[Quota, ...] = ()) -> Mask:
-    """The `count` rows of the largest weights that keep the shares, (N,).
-
-    Raises:
-        DesignError: None do.
-    """
+    """The `count` rows of the largest weights that keep the shares, (N,); raises DesignError."""
     chosen = np.zeros(len(weight), dtype=bool)
     if quotas:
         # the corners of the shares of poses and kinds are whole numbers; a tiny unevenness keeps

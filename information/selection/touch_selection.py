@@ -1,4 +1,4 @@
-"""Choosing touches: which rows, of all that could be measured, tell most.
+"""Choosing touches: the rows that determine most, among all that could be measured.
 
 The criterion is a `DesignCriterion`: Bayesian and, by default, I-optimal, the mean predicted
 variance of the tool point over the poses that the user cares about,
@@ -6,9 +6,8 @@ variance of the tool point over the poses that the user cares about,
     value = trace(K M^-1),   M = 1 + sum over the chosen rows of w w^T,   K = mean of G^T G,
 
 for parameters in units of their prior. The same row-by-row updates serve every criterion by its
-tangent. A greedy choice is mended by exchanges until none that is tried helps; that is a local
-optimum and is called nothing else. `matstd.information.selection.certificate` says how near it is
-to the best.
+tangent. A greedy choice is improved by exchanges until none that is tried helps: a local optimum.
+`matstd.information.selection.certificate` bounds its distance from the best choice.
 """
 
 from dataclasses import dataclass
@@ -24,11 +23,11 @@ from matstd.twin.record import IntArray
 Mask = NDArray[np.bool_]
 
 _REFRESH = 40  # updates after which rounding is swept out
-_WORTH = 1e-6  # relative gain below which an exchange is not made
+_MIN_RELATIVE_GAIN = 1e-6  # relative gain below which an exchange is not made
 _PATIENCE = 8  # chosen rows, the least useful first, that are tried before an exchange is given up
-_TURN = 20  # rows chosen greedily along one tangent of a criterion that is curved
-_SHARPER = (1.0, 4.0, 16.0)  # power means that stand for the largest, one after another
-_WHOLE = 1.0 - 1e-12  # largest leverage of a row that is in; beyond it is rounding
+_ROWS_PER_TANGENT = 20  # rows chosen greedily along one tangent of a criterion that is curved
+_SHARPNESS_FACTORS = (1.0, 4.0, 16.0)  # power means that stand for the largest, one after another
+_MAX_LEVERAGE = 1.0 - 1e-12  # largest leverage of a row that is in; beyond it is rounding
 _BATCH = 16  # exchanges along one tangent of a criterion that is curved
 
 
@@ -43,11 +42,7 @@ class _Machine:
         self.numerator = tangent.numerators(reach, self.leverage)
 
     def update(self, row: int, sign: float) -> float:
-        """Rank-one update of everything, sign 1 in and -1 out.
-
-        Returns:
-            By how much the tangent falls.
-        """
+        """Rank-one update of everything, sign 1 in and -1 out."""
         a = self.inverse @ self.W[row]
         signed = sign * float(self.leverage[row])
         c = sign / (1.0 + signed)
@@ -61,11 +56,7 @@ class _Machine:
 
 
 class Selection:
-    """Rows chosen so far, with what every other row would add; updated row by row.
-
-    Attributes:
-        chosen: Which rows are in, (N,).
-    """
+    """Rows chosen so far, with what every other row would add; updated row by row."""
 
     def __init__(self, criterion: DesignCriterion, W: Array, chosen: Mask | None = None) -> None:
         self.criterion, self.W = criterion, W
@@ -84,7 +75,7 @@ class Selection:
         return np.asarray(kept.T @ kept, dtype=np.float64)
 
     def refresh(self) -> None:
-        """Everything from scratch: sweeps out rounding, and turns the tangent."""
+        """Recompute everything, which removes rounding errors and updates the tangent."""
         information = self.information
         self._raw = self.criterion.raw(information)
         self._tangents = self.criterion.tangents(information)
@@ -100,17 +91,17 @@ class Selection:
 
     @property
     def gains(self) -> Array:
-        """By how much the tangent falls with each row in, (N,); for a row that is in: once more."""
+        """Fall of the tangent with each row added, (N,), those already chosen included."""
         falls = [m.tangent.fall(m.numerator, m.leverage) for m in self._machines]
         return np.sum(falls, axis=0)
 
     @property
     def losses(self) -> Array:
-        """By how much it grows with each chosen row out, (N,); inf for rows not chosen."""
+        """Growth of the tangent with each chosen row removed, (N,); inf for rows not chosen."""
         out, i = np.full(len(self.W), np.inf), self.chosen
         out[i] = -np.sum(
             [
-                m.tangent.fall(m.numerator[i], np.minimum(m.leverage[i], _WHOLE), sign=-1.0)
+                m.tangent.fall(m.numerator[i], np.minimum(m.leverage[i], _MAX_LEVERAGE), sign=-1.0)
                 for m in self._machines
             ],
             axis=0,
@@ -139,17 +130,12 @@ class Selection:
 
 @dataclass(frozen=True, eq=False)
 class Quota:
-    """How many rows of a kind may be chosen.
+    """How many rows of a kind may be chosen."""
 
-    Attributes:
-        kind: Of every row, (N,), from 0.
-        most: Of each kind.
-        least: Of each kind; None where there may be none. Exchanges and bounds keep to it; `fill`
-            does not, which is asked for one kind after another.
-    """
-
-    kind: IntArray
-    most: IntArray
+    kind: IntArray  # of every row, (N,), from 0
+    most: IntArray  # of each kind
+    # of each kind; None where there may be none. Exchanges and bounds keep to it; `fill` does not,
+    # which is asked for one kind after another
     least: IntArray | None = None
 
     def count(self, chosen: Mask) -> IntArray:
@@ -190,7 +176,7 @@ def fill(selection: Selection, count: int, quotas: tuple[Quota, ...] = ()) -> No
                 f"{chosen} of {count} touches can be chosen under the shares of each kind"
             )
         selection.add(int(np.argmax(np.where(free, selection.gains, -np.inf))))
-        if selection.criterion.is_curved and chosen % _TURN == 0:
+        if selection.criterion.is_curved and chosen % _ROWS_PER_TANGENT == 0:
             selection.refresh()
     selection.refresh()
 
@@ -207,10 +193,8 @@ def exchange(
     and fewer are tried where it grew.
 
     Args:
-        selection: Is changed.
         quotas: Hold after every exchange.
         kept: Rows that stay in, (N,).
-        most: Largest number of exchanges.
 
     Returns:
         Number of exchanges made; fewer than `most` means that no exchange that was tried helps.
@@ -222,7 +206,7 @@ def exchange(
     if not selection.criterion.is_curved:
         return _exchange(selection, quotas, stays, most)
     given, total = selection.criterion, 0
-    for factor in _SHARPER if np.isfinite(given.sharpness) else (1.0,):
+    for factor in _SHARPNESS_FACTORS if np.isfinite(given.sharpness) else (1.0,):
         selection.criterion = given.sharper(factor)
         total += _exchange_curved(selection, quotas, stays, most - total)
     selection.criterion = given
@@ -241,7 +225,7 @@ def _exchange_curved(
         before = selection.chosen.copy()
         made = _exchange(selection, quotas, stays, min(batch, most - total))
         now = selection.criterion.merit(selection.information)
-        if made and now < merit * (1.0 - _WORTH):
+        if made and now < merit * (1.0 - _MIN_RELATIVE_GAIN):
             merit, total = now, total + made
         else:
             selection.chosen, batch = before, (batch // 2 if made else 0)
@@ -264,7 +248,7 @@ def _exchange(selection: Selection, quotas: tuple[Quota, ...], stays: Mask, most
             free &= quota.needed(selection.chosen)
         best = int(np.argmax(np.where(free, selection.gains, -np.inf)))
         selection.add(best)
-        if best != worst and selection.value <= before * (1.0 - _WORTH):
+        if best != worst and selection.value <= before * (1.0 - _MIN_RELATIVE_GAIN):
             made, tired = made + 1, np.zeros(len(stays), dtype=bool)
             continue
         if best != worst:

@@ -80,9 +80,9 @@ class Comparison(answer.Comparison):
 
     def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
         """Write the page into a folder that is there."""
-        told = self.saved.told if self.saved else None
+        reported = self.saved.reported if self.saved else None
         with deviations_in(self.run.touches.deviation_unit):
-            write_compare_page(self, folder, self.title, np.random.default_rng(0), told)
+            write_compare_page(self, folder, self.title, np.random.default_rng(0), reported)
             if printed_by is not None:
                 write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 

@@ -9,7 +9,7 @@ from matstd.api.diagnosing import Diagnosis
 from matstd.api.effects import register_effects
 from matstd.api.known_errors import drives_stated, machine_errors, with_added, with_unknowns
 from matstd.compensation import field
-from matstd.compensation.field import Datum, MachineErrors, Share, State, datum_of, workspace
+from matstd.compensation.field import Datum, MachineErrors, Share, State, datum_of, sample_workspace
 from matstd.compensation.part_programs import Frame, Program, read_loads, read_part_program
 from matstd.compensation.programs import (
     TOLERANCE,
@@ -25,11 +25,11 @@ from matstd.compensation.tables import (
     FORMATS,
     Harmful,
     Header,
-    Played,
+    VerifiedTables,
     hashed,
     header_of,
-    play_tables,
     refuse_harmful,
+    verify_tables,
     write_table_results,
     write_tables,
 )
@@ -75,7 +75,7 @@ class TableResults:
         refused: Why tables of other controls were not written: they would make the machine worse.
     """
 
-    done: tuple[Played, ...]
+    done: tuple[VerifiedTables, ...]
     refused: tuple[Harmful, ...]
 
 
@@ -184,7 +184,7 @@ class Compensation(Displayed):
         """
         asked, turned = _controls("control", controls), _controls("opposite", opposite)
         names = asked or list(FORMATS)
-        done: list[Played] = []
+        done: list[VerifiedTables] = []
         refused: list[Harmful] = []
         with results_folder(folder, force, SOMETIMES) as place:
             for k, name in enumerate(names):
@@ -192,7 +192,7 @@ class Compensation(Displayed):
                 head = self.header(-1 if name in turned else 1)
                 words = FORMATS[name], place / name, self.errors, self.datum, head, self.poses
                 write_tables(*words)
-                played = play_tables(*words)
+                played = verify_tables(*words)
                 try:
                     refuse_harmful(played)
                     done.append(played)
@@ -318,7 +318,7 @@ def compensate(
     out = Compensation(
         errors=known,
         datum=datum_of(chain, _within_travel(chain, "datum", datum or {}), tool_length),
-        poses=workspace(chain, _limits(chain, within or {})),
+        poses=sample_workspace(chain, _limits(chain, within or {})),
         model=hashed(b"".join([content, *laws])),
         title=title,
         remarks=(*remarks, *beams),

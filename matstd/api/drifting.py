@@ -9,14 +9,14 @@ import numpy as np
 from matstd.diagnosis.drift import (
     DriftRecord,
     Judged,
-    Kept,
+    ProbedPrediction,
     check_alike,
     chosen,
     joined,
     judge,
-    kept,
     lead,
     offered,
+    predict_with_probings,
     read_law,
     read_log,
     read_probed,
@@ -245,7 +245,7 @@ def _probed(every: float, u: float, record: DriftRecord, held: IntArray, best: J
     if record.zeros is not None:  # the first probing in a log determines its zero
         firsts = rows[np.unique(record.zeros[rows], return_index=True)[1]]
         record = record.rezeroed(best.law.predicted(record), firsts)
-    result = kept(best, record, rows, u / UM)
+    result = predict_with_probings(best, record, rows, u / UM)
     return kept_line(result, record, held, rows_between * record.step)
 
 
@@ -324,10 +324,12 @@ def predict_drift(
     return DriftPrediction(record, law_title(saved.name), predicted, spread)
 
 
-def _with_probings(path: str | Path, record: DriftRecord, judged: Judged, u: float) -> Kept:
+def _with_probings(
+    path: str | Path, record: DriftRecord, judged: Judged, u: float
+) -> ProbedPrediction:
     """The prediction with the probings of a file."""
     rows, values, stated = read_probed(path, record)
     displacement = record.displacement.copy()
     displacement[rows] = values
     known = replace(record, displacement=displacement)
-    return kept(judged, known, rows, u / UM if stated is None else stated)
+    return predict_with_probings(judged, known, rows, u / UM if stated is None else stated)

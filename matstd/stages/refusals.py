@@ -65,6 +65,8 @@ def _left(picture: Path, there: Path, shows: str) -> str:
 
 def _what_helps(error: DesignError) -> str:
     """Changes that were tried and would do, or keys of the project file, the likeliest first."""
+    if "exit_code" in error.facts and error.facts["exit_code"] is None:
+        return "run it again when the machine is less busy"
     if error.facts.keys() & {"conformity", "exit_code"}:
         return "change seed: the fault is the tool's own, not the project's"
     fitting, binding = error.facts.get("fitting"), error.facts.get("binding")

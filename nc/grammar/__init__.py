@@ -4,7 +4,7 @@ Nothing here knows a machine. A reader that stands on it decides which blocks it
 """
 
 from matstd.nc.grammar.blocks import Block, Line, gcode_lines, klartext_blocks
-from matstd.nc.grammar.flow import DEEPEST, Flow, label_places
+from matstd.nc.grammar.flow import MAX_DEPTH, Flow, label_places
 from matstd.nc.grammar.formulas import COMPARISONS
 from matstd.nc.grammar.modal import DATUMS, MODAL, Modal
 from matstd.nc.grammar.order import run_order
@@ -13,7 +13,7 @@ from matstd.nc.grammar.words import NUMBER, SIGNED, split_words
 __all__ = [
     "COMPARISONS",
     "DATUMS",
-    "DEEPEST",
+    "MAX_DEPTH",
     "MODAL",
     "NUMBER",
     "SIGNED",

@@ -6,17 +6,11 @@ from typing import NamedTuple
 
 
 class Block(NamedTuple):
-    """One block of Klartext.
+    """One block of Klartext."""
 
-    Attributes:
-        line: Of the file, from 1; the first of a block that goes on.
-        number: Block number as it stands there; empty where the block has none.
-        text: Without the number; line ends stand where the block goes on.
-    """
-
-    line: int
-    number: str
-    text: str
+    line: int  # of the file, from 1; the first of a block that goes on
+    number: str  # block number as it stands there; empty where the block has none
+    text: str  # without the number; line ends stand where the block goes on
 
     @property
     def folded(self) -> str:
@@ -51,19 +45,12 @@ def klartext_blocks(lines: Sequence[str]) -> Iterator[Block]:
 
 
 class Line(NamedTuple):
-    """One line of G-code.
+    """One line of G-code."""
 
-    Attributes:
-        line: Of the file, from 1.
-        text: As it stands there, without spaces at its ends.
-        code: In capitals, without remarks.
-        remarks: Comments in brackets and behind a semicolon, with these, one after the other.
-    """
-
-    line: int
-    text: str
-    code: str
-    remarks: str
+    line: int  # of the file, from 1
+    text: str  # as it stands there, without spaces at its ends
+    code: str  # in capitals, without remarks
+    remarks: str  # comments in brackets and behind a semicolon, with these, one after the other
 
 
 _REMARK = re.compile(r"\([^)]*\)|;.*")

@@ -1,4 +1,4 @@
-"""Where a program goes on: labels, subprograms within one another, repeats.
+"""Flow of a program: labels, nested subprograms, repeats.
 
 The rules are those of Klartext; a reader of another language brings its subprograms as labels.
 """
@@ -8,19 +8,15 @@ from pathlib import Path
 
 from matstd.twin.errors import BadFile
 
-DEEPEST = 8
-"""Subprograms within one another, as Heidenhain's controls have them."""
+MAX_DEPTH = 8
+"""Nesting of subprograms on Heidenhain's controls."""
 
 
 def label_places(found: Iterable[tuple[int, int, str]], path: Path) -> dict[str, int]:
-    """Index of the block of every label.
+    """Index of the block of every label; raises BadFile.
 
     Args:
         found: Index of a block, its line and the name of its label; "0" ends a subprogram.
-        path: Of the program, for messages.
-
-    Raises:
-        BadFile: A label that stands twice.
     """
     places: dict[str, int] = {}
     lines: dict[str, int] = {}
@@ -37,8 +33,6 @@ class Flow:
     """One run of a program, by the indices of its blocks.
 
     Args:
-        path: Of the program, for messages.
-        places: Index of the block of every label.
         most: Blocks that a program may execute before it counts as one without an end.
     """
 
@@ -66,9 +60,9 @@ class Flow:
     def call(self, index: int, line: int, name: str) -> int:
         """Index of the first block of a subprogram that a block calls; raises BadFile."""
         start = self.behind(line, name)
-        if len(self.returns) >= DEEPEST:
+        if len(self.returns) >= MAX_DEPTH:
             found = f"subprograms {len(self.returns) + 1} deep"
-            raise BadFile(self.path, f"line {line}", found, f"{DEEPEST} at most")
+            raise BadFile(self.path, f"line {line}", found, f"{MAX_DEPTH} at most")
         self.returns.append(index + 1)
         return start
 

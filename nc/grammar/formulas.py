@@ -45,10 +45,7 @@ def function_value(number: str, text: str, value: str, read: Read) -> float | No
     """Value of FN 0 to FN 8 and FN 13; None for another function or other words.
 
     Args:
-        number: Behind FN.
-        text: Right of the equals sign.
         value: Pattern of a number or parameter.
-        read: Gives the value of one.
 
     Raises:
         ValueError, ZeroDivisionError: No such value exists.
@@ -83,7 +80,7 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
 
 
 class NotAFormulaError(Exception):
-    """What stands where a formula cannot go on."""
+    """The text at which a formula is invalid."""
 
 
 class Formula:

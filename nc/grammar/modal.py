@@ -1,4 +1,4 @@
-"""Modal groups of G-code: what a G word leaves in force until another of its group."""
+"""Modal groups of G-code: a G word stays in force until another of its group."""
 
 from dataclasses import dataclass
 
@@ -35,31 +35,19 @@ MODAL = frozenset({*MOVES, *CYCLES, 80.0, *_SETS})
 
 @dataclass
 class Modal:
-    """What stays in force; the values are those after `G17 G21 G40 G80 G90 G94`.
+    """What stays in force; the values are those after `G17 G21 G40 G80 G90 G94`."""
 
-    Attributes:
-        motion: Last of G0 to G3 and the canned cycles; None after G80.
-        before_cycle: G0 or G1 if one of them was the last before canned cycles; back after G80.
-        plane: Letters of its axes, in the order in which G3 turns.
-        unit: One unit of lengths, mm.
-        side: Of the contour on which the tool goes: 1 left, -1 right, 0 on it.
-        is_absolute: Words are coordinates, not steps.
-        has_absolute_centres: So are centres of arcs.
-        is_inverse_time: F is 1/min.
-        returns_to_start: A canned cycle ends at the height where it began.
-        datum: Last of the coordinate systems; None where the program names none.
-    """
-
-    motion: float | None = None
+    motion: float | None = None  # last of G0 to G3 and the canned cycles; None after G80
+    # G0 or G1 if one of them was the last before canned cycles; back after G80
     before_cycle: float | None = None
-    plane: str = "XY"
-    unit: float = 1.0
-    side: float = 0.0
-    is_absolute: bool = True
-    has_absolute_centres: bool = False
-    is_inverse_time: bool = False
-    returns_to_start: bool = True
-    datum: float | None = None
+    plane: str = "XY"  # letters of its axes, in the order in which G3 turns
+    unit: float = 1.0  # one unit of lengths, mm
+    side: float = 0.0  # of the contour on which the tool goes: 1 left, -1 right, 0 on it
+    is_absolute: bool = True  # words are coordinates, not steps
+    has_absolute_centres: bool = False  # so are centres of arcs
+    is_inverse_time: bool = False  # f is 1/min
+    returns_to_start: bool = True  # a canned cycle ends at the height where it began
+    datum: float | None = None  # last of the coordinate systems; None where the program names none
 
     @property
     def is_cycle(self) -> bool:

@@ -1,7 +1,7 @@
 """The order in which the blocks of a Klartext program run: labels, jumps, Q parameters.
 
-Labels, calls, jumps and assignments are done here, so that what follows is one straight program of
-plain numbers. A word that needs a parameter without a value is refused, with its line.
+Labels, calls, jumps and assignments are executed here; the result is one straight program of plain
+numbers. A parameter without a value is refused with its line.
 """
 
 import re
@@ -20,8 +20,8 @@ from matstd.nc.grammar.formulas import (
 from matstd.nc.grammar.words import NUMBER
 from matstd.twin.errors import BadFile
 
-MOST = 1_000_000
-"""Blocks that run: beyond it a program does not end."""
+MAX_BLOCKS = 1_000_000
+"""Largest number of executed blocks; beyond it a program does not end."""
 
 _VALUE = rf"[+-]?Q\d+|{NUMBER}"
 _NAME = r'\d+|"[^"]+"'
@@ -68,7 +68,7 @@ class _Run:
         self.q: dict[int, float] = {}
         labels = ((i, b, _LABEL.fullmatch(b.bare)) for i, b in enumerate(blocks))
         places = label_places(((i, b.line, m[1]) for i, b, m in labels if m), path)
-        self.flow = Flow(path, places, MOST)
+        self.flow = Flow(path, places, MAX_BLOCKS)
 
     def _refusal(self, block: Block, found: str, expected: str) -> BadFile:
         return BadFile(self.path, f"line {block.line}", found, expected)

@@ -1,4 +1,4 @@
-"""HAL files of LinuxCNC: which signal a pin is on, and the lines that connect pins."""
+"""HAL files of LinuxCNC: signals by pin, and lines that connect pins."""
 
 
 def signals(text: str) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""The INI file of a LinuxCNC: values by section and key, refused where they are not there."""
+"""The INI file of LinuxCNC: values by section and key; missing ones are refused."""
 
 import configparser
 import re
@@ -13,16 +13,11 @@ class Ini:
     """An INI file of LinuxCNC.
 
     Attributes:
-        path: Of it.
         letters: Axes of the control, in its order.
     """
 
     def __init__(self, path: Path) -> None:
-        """Read it.
-
-        Raises:
-            BadFile: No such file, no INI file, or one without the axes.
-        """
+        """Read it; raises BadFile."""
         self.path, self._text = path, read_text(path)
         self._ini = configparser.ConfigParser(
             strict=False, interpolation=None, inline_comment_prefixes=("#", ";")

@@ -2,8 +2,8 @@
 
 In: program files and a `VirtualMachine` (the machine as it really is), or the logs of a real one.
 Out: a `Run`. `simulate` checks every move for collisions before it runs the programs; `evaluate`
-never learns what the virtual machine knew. `visits` runs them again and again. `orders` and
-`probing_time` say what a plan costs.
+uses nothing that only the virtual machine knows. `visits` repeats the runs. `orders` and
+`probing_time` estimate the cost of a plan.
 """
 
 from matstd.probe_paths.campaign.as_programmed import check_as_programmed

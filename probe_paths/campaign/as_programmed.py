@@ -1,7 +1,7 @@
-"""Logs beside what they should be: a clock that runs, decimals, what the program itself says.
+"""Consistency of logs: a running clock, enough decimals, agreement with the program.
 
-A log is text that passes through many hands. What it says of sides, tool and preset is taken as
-true by everything behind it, and is known from the program that wrote it.
+A log is text that passes through many hands. The evaluation relies on its sides, tool and preset,
+and the program that wrote it states them too.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,34 +14,33 @@ from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
 from matstd.twin.units import DEG
 
-TOGETHER = timedelta(days=30)
-"""Between the first and the last log of one evaluation: a standard stays clamped for days."""
+LONGEST_CAMPAIGN = timedelta(days=30)
+"""Longest time between the logs of one evaluation: a standard stays clamped for days."""
 
-COARSE = 0.01
+COARSEST_STEP = 0.01
 """Step of positions that is too coarse for a measurement, mm; the masks print 0.000001."""
 
 FEWEST = 5
 """Touches from which a clock or a step is judged."""
 
 SAME_ANGLE = 0.05
-"""Degrees by which a rotary axis may stand beside where the program sent it: the programs' own
-limit."""
+"""Largest deviation of a rotary axis from its programmed position, degrees; as in the programs."""
 
 
 def check_numbers(parts: Sequence[LogPart]) -> None:
-    """Refuse logs whose clock stood, whose positions are rounded, and logs of other times.
+    """Refuse logs with a stopped clock or rounded positions, and logs of different campaigns.
 
     Raises:
         BadFile: File and line, what stood there, what was expected.
     """
     dated = sorted((p for p in parts if p.begin.year != UNDATED.year), key=lambda p: p.begin)
-    if dated and dated[-1].begin - dated[0].begin > TOGETHER:
+    if dated and dated[-1].begin - dated[0].begin > LONGEST_CAMPAIGN:
         raise BadFile(
             dated[0].path,
             "DATE",
             f"{dated[0].begin.date()}, where {dated[-1].path.name} has {dated[-1].begin.date()}",
-            f"logs of one campaign, within {TOGETHER.days} days; evaluate them apart, or put the "
-            f"clock of the control right",
+            f"logs of one campaign, within {LONGEST_CAMPAIGN.days} days; evaluate them apart, or "
+            "correct the clock of the control",
         )
     for part in (p for p in parts if len(p.number) >= FEWEST):
         _check_steps(part)
@@ -50,20 +49,20 @@ def check_numbers(parts: Sequence[LogPart]) -> None:
 
 
 def _check_steps(part: LogPart) -> None:
-    """A clock that runs, and positions with decimals."""
+    """Refuse a clock that stands still and positions that are rounded."""
     last = f"line {part.line[-1]}"
     if np.ptp(part.time) == 0.0:
         found = f"the same time at all {len(part.time)} touches"
         expected = "a clock that runs: one that stands hides every drift"
         raise BadFile(part.path, last, found, expected)
-    steps = part.xyz / COARSE
+    steps = part.xyz / COARSEST_STEP
     if np.allclose(steps, np.round(steps), rtol=0.0, atol=1e-4):
-        found = f"positions in steps of {COARSE:g} mm or more at all touches"
+        found = f"positions in steps of {COARSEST_STEP:g} mm or more at all touches"
         raise BadFile(part.path, last, found, "six decimals, as the program prints them")
 
 
 def _check_common(key: str, parts: Sequence[LogPart]) -> None:
-    """One preset for all logs, and one tool for all of one probe."""
+    """Refuse different presets in one campaign, or different tools of one probe."""
     for part in parts[1:]:
         first, own = getattr(parts[0], key), getattr(part, key)
         is_same_probe = part.heading.probe == parts[0].heading.probe
@@ -75,11 +74,11 @@ def _check_common(key: str, parts: Sequence[LogPart]) -> None:
 def check_as_programmed(
     parts: Sequence[LogPart], programs: Mapping[str, ReadProgram], chain: Chain
 ) -> None:
-    """Refuse logs that say something else than the programs that wrote them.
+    """Refuse logs that contradict the programs that wrote them.
 
     Args:
         parts: Of the logs.
-        programs: By name; a log of another program is not looked at.
+        programs: By name; logs of other programs are ignored.
 
     Raises:
         BadFile: File and line, what stood there, what the program has.
@@ -104,7 +103,7 @@ def check_as_programmed(
 def _check_touch(
     part: LogPart, i: int, touch: ProbeStep, program: ReadProgram, chain: Chain
 ) -> None:
-    """One touch of a log: counters, sides, and where the rotary axes stood."""
+    """Compare counters, sides and rotary positions of one touch with the program."""
     where, number = f"line {part.line[i]}", int(part.number[i])
     rows = [
         ("pose", int(part.pose[i]), touch.pose),

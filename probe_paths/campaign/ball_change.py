@@ -1,12 +1,11 @@
-"""Whether the probe is still what it was: the same touches on one ball, before and after.
+"""Changes of the probe, from the same touches on one ball before and after a campaign.
 
-The same touch is compared with itself, so that what the machine does wrong there drops out:
+Each touch is compared with itself, so that the errors of the machine there cancel:
 
     gap_after - gap_before = n . c + r
 
-with c how far the ball has moved and r by how much the effective radius of the probe has grown,
-four numbers of eight touches, by least squares. Not separated: the ball, the table and the spindle
-may all have moved by c.
+with c the displacement of the ball and r the growth of the probe's effective radius: four unknowns
+from eight touches, by least squares. Displacements of ball, table and spindle are not separated.
 """
 
 from collections.abc import Sequence
@@ -26,22 +25,20 @@ from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.machine import Chain
 from matstd.twin.units import HOUR, UM
 
-EXPANDED = 2.0
-"""Of a change in standard uncertainties, below which it is none."""
+COVERAGE = 2.0
+"""Coverage factor of a significant change."""
 
 _UNKNOWNS = 4
-_ODD = 3.0  # times the stated noise in what the four numbers leave over
+_EXCESS_SCATTER = 3.0  # times the stated noise in what the four numbers leave over
 
 
 @dataclass(frozen=True, eq=False)
 class BallChange:
-    """What a ball tells of the time between two looks at it.
+    """Changes between two measurements of a ball.
 
     Attributes:
-        ball: Its name.
-        before: When it was measured first.
-        after: And again.
-        touches: How many are compared.
+        before: Time of the first measurement.
+        after: Time of the second.
         centre: By how much its centre has moved, table frame, (3,), mm.
         radius: By how much the effective radius of the probe has grown, mm.
         u: Standard uncertainties of the four, (4,), mm.
@@ -68,7 +65,7 @@ class BallChange:
     @property
     def is_seen(self) -> bool:
         """Whether anything has changed by more than its expanded uncertainty."""
-        return bool(np.any(np.abs([*self.centre, self.radius]) > EXPANDED * self.u))
+        return bool(np.any(np.abs([*self.centre, self.radius]) > COVERAGE * self.u))
 
     @property
     def hours(self) -> float:
@@ -86,10 +83,7 @@ def ball_changes(
     """Changes from each measurement of a ball to the next one of the same program.
 
     Args:
-        parts: Of all logs; those of other programs are left alone.
-        standard: As calibrated.
         u: Standard uncertainty of one touch, mm; a larger scatter counts instead.
-        dialect: Of the control.
 
     Raises:
         BadFile: A ball that the standard does not have.
@@ -139,6 +133,7 @@ def _change(
             "touches all round it",
         )
     left = grown - A @ solved
+    # a difference of two touches has twice the variance of one
     scatter = float(np.sqrt(left @ left / (len(rows) - _UNKNOWNS) / 2.0))
     inverse = np.linalg.inv(A.T @ A)
     return BallChange(
@@ -150,22 +145,15 @@ def _change(
         radius=float(solved[3]),
         u=np.sqrt(2.0 * np.diag(inverse)) * max(u, scatter),
         scatter=scatter,
-        is_odd=scatter > _ODD * u,
+        is_odd=scatter > _EXCESS_SCATTER * u,
     )
 
 
 def read_heights(part: LogPart, standard: Standard, chain: Chain) -> dict[str, float]:
-    """How far the ball of a commissioning touch is beside the surface it met, mm.
+    """Gap of a commissioning touch by each meaning of Z (`Dialect.result_height`), mm.
 
-    One touch from above settles what Z a control returns: by the wrong meaning the ball is the
-    whole length of the probe beside.
-
-    Args:
-        part: Of its log.
-        standard: As calibrated.
-
-    Returns:
-        By each meaning that Z can have, as `Dialect.result_height` names them.
+    One touch from above settles which Z a control returns: with the wrong meaning the gap is the
+    whole length of the probe.
     """
     ball = list(standard.features.values())[int(part.feature[0]) - 1]
     beside = {}
@@ -179,11 +167,10 @@ def read_heights(part: LogPart, standard: Standard, chain: Chain) -> dict[str, f
 
 
 class EffectiveRadius(NamedTuple):
-    """What a calibrated ball tells of the probe's effective radius.
+    """Effective radius of the probe on a calibrated ball.
 
     Attributes:
-        begin: When it was measured.
-        excess: Beyond the radius that the control has calibrated, mm.
+        excess: Over the radius that the control has calibrated, mm.
         u: Its standard uncertainty, with that of the ball, mm.
     """
 
@@ -198,13 +185,10 @@ def effective_radii(
     """Effective radii of the probe by the ball of the workshop, in the order of time.
 
     A sphere is fitted to the ball centres of each log: its radius is that of the ball and the
-    effective one of the probe. What the machine does wrong over the ball stays in it.
+    effective one of the probe. The machine errors over the ball remain in it.
 
     Args:
-        parts: Of all logs; those of other programs are left alone.
-        chain: The machine.
         u: Standard uncertainty of one touch, mm.
-        dialect: Of the control.
     """
     out = []
     for part in sorted(parts, key=lambda part: part.begin):
@@ -225,7 +209,6 @@ def check_changes(changes: Sequence[BallChange], limit: float) -> None:
     """Refuse measurements between which the probe has changed.
 
     Args:
-        changes: Of one ball.
         limit: That the ball may have moved, or the radius have changed, mm.
 
     Raises:
@@ -236,5 +219,5 @@ def check_changes(changes: Sequence[BallChange], limit: float) -> None:
             raise DesignError(
                 f"ball {change.ball} between {change.before} and {change.after}: it has moved or "
                 f"the probe has changed by {change.size / UM:.1f} µm, expected {limit / UM:g} µm "
-                "at most: measure anew, or state a larger limit"
+                "at most: measure again, or state a larger limit"
             )

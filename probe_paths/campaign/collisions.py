@@ -1,4 +1,4 @@
-"""Looks at every move of a program, as read from its text, for something in its way."""
+"""Collision check of every move of a program, as read from its text."""
 
 import numpy as np
 
@@ -20,20 +20,15 @@ from matstd.twin.record import IntArray, Labels
 
 
 def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
-    """Refuse a program that would drive the probe into anything.
+    """Refuse a program that would drive the probe into an obstacle.
 
-    The machine and the set-up are taken as nominal; probe and workshop are those that the head
-    states. Moves of the linear axes that are not above everything are swept with ball and tool, and
-    so is every touch: to its contact, beyond it where the surface is not met, and up again after
-    that. Its ball has to meet the stated feature first. Turning moves are looked at over all
-    positions between.
-
-    Args:
-        program: As read from its text.
-        standard: What stands on the table.
+    Machine and set-up are nominal; probe and workshop are those stated in the head. Low moves of
+    the linear axes are swept with ball and tool, and so is every touch: to its contact, beyond it
+    if the surface is missed, and the retract. The ball must meet the stated feature first. Rotary
+    moves are checked at all intermediate positions.
 
     Raises:
-        BadFile: Line of the first move that comes too near, and what it comes near to.
+        BadFile: Line of the first move that comes too close, and the obstacle.
     """
     probe, setup = program.heading.probe, program.heading.setup
     workshop = program.heading.workshop
@@ -56,7 +51,7 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
     is_low = lowest < top_height(chain, after[:, rotary], solid, probe)
     low = np.flatnonzero(is_low & ~is_turning)
     ends = np.round(np.concatenate([before[low], after[low]], axis=1), 6)
-    # a way down and the same way up again count once
+    # a move down and the same move up are swept once
     back = np.concatenate([after[low], before[low]], axis=1)
     is_later = [tuple(a) > tuple(b) for a, b in zip(ends, np.round(back, 6), strict=True)]
     ends[is_later] = back[is_later]
@@ -89,7 +84,7 @@ def _moves(program: ReadProgram) -> tuple[IntArray, Array, Array]:
 
 
 def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
-    """Every touch, to its contact, beyond and up again; raises BadFile."""
+    """Check every touch, its over-travel and its retract; raises BadFile."""
     touches, chain = program.touches, clearance.chain
     line = np.array([touch.line for touch in touches], dtype=np.int64)
     start = np.array([touch.q for touch in touches]).reshape(-1, len(chain.axes))
@@ -105,6 +100,7 @@ def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
     way = turn(T_artefact_table, np.einsum("nij,nj->ni", along, direction[:, columns]))
     centre = apply(T_artefact_table, tip(chain, start, clearance.probe.length))
     met = contact(clearance.standard, centre, way, clearance.probe.radius, distance)
+    # the touches of a search may meet any feature
     if program.is_search:
         words = np.array(
             [f"{what} {name}".rstrip() for what, name in zip(met.meeting, met.feature, strict=True)]
@@ -128,7 +124,7 @@ def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
 def _check_search(
     program: ReadProgram, clearance: ToolClearance, end: Array, is_met: Mask, met: Labels
 ) -> None:
-    """Long touches from above: each meets something before the tool comes near; raises BadFile."""
+    """Long touches from above: the ball meets something before the tool does; raises BadFile."""
     line = np.array([touch.line for touch in program.touches], dtype=np.int64)
     for i in np.flatnonzero(~is_met)[:1]:
         expected = "something of the standard under it"

@@ -1,10 +1,10 @@
-"""Where each ball really met the surface: foot points of the balls where the machine had them.
+"""Foot points of the balls at their true places.
 
-A machine whose errors carry the ball a quarter of a millimetre along the surface touches it beside
-the foot point of where the ball was believed to be, and the curvature in between, some
-micrometres, would pass for a deviation. The ordinary model of the machine, fitted to the run
-itself, says where the ball was to some micrometres, poses with few touches included; what it does
-not know moves a foot point by as much as the error that it lacks, whose curvature is nothing.
+Machine errors of a quarter of a millimetre along the surface move the contact away from the foot
+point of the believed ball. The curvature in between, some micrometres, would appear as a deviation.
+The ordinary model of the machine, fitted to the run itself, gives the place of the ball to some
+micrometres, also at poses with few touches. An error that the model lacks moves a foot point by its
+own size, over which the curvature is negligible.
 """
 
 from dataclasses import replace
@@ -20,23 +20,23 @@ from matstd.twin.record import Labels, Run, computed_deviation
 from matstd.twin.units import UM
 
 _NOISE = 2.0 * UM
-"""How closely the model is asked to fit at most, mm: what it lacks is not noise, but as large."""
+"""Least uncertainty of a touch in the fit, mm: errors that the model lacks are of this size."""
 
 _HUBER = 3.0
-"""Residuals beyond so many times the median count with less than their full weight."""
+"""Multiple of the median residual beyond which Huber weights decrease."""
 
 _DISPLACED = 50.0 * UM
-"""A feature that stands so far beside its calibrated place has been moved or calibrated wrongly:
-no model of a machine leaves as much to all touches of one feature and to no others, mm."""
+"""Displacement of a feature that means it was moved or calibrated wrongly, mm: no machine model
+leaves residuals of this size at all touches of one feature alone."""
 
-_SURE = 4.0
-"""Times its standard error that such a displacement must be."""
+_SIGNIFICANT = 4.0
+"""Least ratio of such a displacement to its standard error."""
 
 _ROUNDS = 4
 """With errors of ordinary size and a standard 1 mm beside its place three were enough."""
 
-_STILL = 1e-5
-"""Deviations that change less than this in a round are settled, mm."""
+_CONVERGED = 1e-5
+"""Change of deviations in a round below which the iteration has converged, mm."""
 
 
 def foot_points(
@@ -47,8 +47,6 @@ def foot_points(
     nan where a ball is so far off that its surface has no foot point for it.
 
     Args:
-        standard: As calibrated.
-        feature: Names, (N,).
         ball: Centres, (N, 3), mm.
         moved: Displacements of the features from their calibrated places, (N, 3), mm.
     """
@@ -65,18 +63,14 @@ def foot_points(
 
 
 def at_true_contacts(run: Run, standard: Standard) -> Run:
-    """A run whose points and normals are those where the balls met the standard.
+    """A run with the points and normals at which the balls met the standard, where they exist.
 
-    ``p = foot point of (x + d)``, x the believed ball centre and d what the fitted model says of
-    its displacement relative to the standard. The deviations ``n . (x - p) - radius`` remain those
-    of the believed balls: only the point and the normal that they refer to are better.
+    ``p = foot point of (x + d)``, x the believed ball centre and d its displacement relative to the
+    standard by the fitted model. The deviations ``n . (x - p) - radius`` remain those
+    of the believed balls, referred to better points and normals.
 
     Args:
         run: With foot points of the believed balls.
-        standard: As calibrated.
-
-    Returns:
-        The run anew, with the old foot point where a moved ball has none.
     """
     weight, t = np.ones(len(run)), run.touches
     moved = standard.moved(t.chain, t.q, t.T_table_artefact, t.feature)
@@ -89,17 +83,17 @@ def at_true_contacts(run: Run, standard: Standard) -> Run:
             t, point=np.where(found, point, t.point), normal=np.where(found, normal, t.normal)
         )
         run = replace(run, touches=t, deviation=computed_deviation(t))
-        if np.abs(run.deviation - before).max() < _STILL:
+        if np.abs(run.deviation - before).max() < _CONVERGED:
             break
-    told = (*_displaced_feature(run, residual), *_stylus_lines(run))
-    return replace(run, remarks=(*run.remarks, *told))
+    remarks = (*_displaced_feature(run, residual), *_stylus_lines(run))
+    return replace(run, remarks=(*run.remarks, *remarks))
 
 
 def _displaced_feature(run: Run, residual: Array) -> list[str]:
-    """The feature that is farthest beside its place, in one line; none where all are in order.
+    """Remark on the feature that is displaced most; none where all are in place.
 
-    ``residual = n . e`` by least squares over the touches of each feature. The others seem
-    displaced too, as the set-up takes up a part of it, but less.
+    ``residual = n . e`` by least squares over the touches of each feature. The set-up absorbs a
+    part of e, so the other features seem displaced too, but less.
     """
     t, largest, out = run.touches, _DISPLACED, []
     for name in dict.fromkeys(t.feature.tolist()):
@@ -111,7 +105,7 @@ def _displaced_feature(run: Run, residual: Array) -> list[str]:
         left = np.sqrt(np.sum((r - n @ e) ** 2) / (len(rows) - n.shape[1]))
         error = left * np.sqrt(np.trace(np.linalg.inv(n.T @ n)))
         size = float(np.linalg.norm(e))
-        if size > max(largest, _SURE * error):
+        if size > max(largest, _SIGNIFICANT * error):
             largest, (x, y, z) = size, e
             out = [
                 f"{name} stands {size:.3f} mm beside its calibrated place on the standard, seen "
@@ -122,7 +116,7 @@ def _displaced_feature(run: Run, residual: Array) -> list[str]:
 
 
 def _stylus_lines(run: Run) -> list[str]:
-    """How every stylus but the first stands beside its calibration, by the same model."""
+    """Remarks on the offset of every further stylus from its calibration, by the same model."""
     t = run.touches
     styli = further_styli(t)
     free = (*(e for e in setup_errors(t) if e not in styli), *styli)
@@ -147,12 +141,12 @@ def _stylus_lines(run: Run) -> list[str]:
 
 
 def _displacement(run: Run, weight: Array) -> tuple[Array, Array, Array]:
-    """Of the balls relative to the standard by the ordinary model, artefact frame, (N, 3), mm.
+    """Displacements of the balls relative to the standard, artefact frame, (N, 3), mm.
 
     Least squares with the prior of the model as further rows: minimises
-    ``weight |A theta - dev|^2 / noise^2 + |theta / sd|^2``. What the touches do not tell stays
-    zero. Also returns the residuals (N,) and the weights (N,) of the next round: Huber's, so that a
-    chip pulls little.
+    ``weight |A theta - dev|^2 / noise^2 + |theta / sd|^2``. Undetermined parameters stay
+    zero. Also returns the residuals (N,) and Huber weights (N,) of the next round, which limit the
+    influence of a chip.
     """
     t = run.touches
     model = Model(t.chain, (*ordinary_model(t.chain).effects, *setup_errors(t)))

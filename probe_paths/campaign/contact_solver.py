@@ -1,4 +1,4 @@
-"""Where true balls meet true surfaces: all touches of a program at once, by Newton's method."""
+"""Contacts of true balls with true surfaces, all touches of a program at once: Newton's method."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -20,17 +20,17 @@ CONTACT_TOLERANCE = 1e-3 * NM
 """The ball touches when its gap is this small, mm."""
 
 _STEPS = 12
-"""Of Newton's method; with errors of ordinary size four were enough."""
+"""Limit for Newton's method; with errors of ordinary size four sufficed."""
 
-_LATE = 10.0  # mm beyond the end of a touch: far more than errors of a machine that runs
+_BEYOND_END = 10.0  # mm beyond the end of a touch: far more than the errors of a working machine
 
 FIRST_MORNING = datetime(2000, 1, 1, 8, 0, 0)
-"""When a simulated campaign begins; any date does, but it must not depend on today."""
+"""Start of a simulated campaign: a fixed date, so that results do not depend on today's."""
 
 
 @dataclass(frozen=True, eq=False)
 class VirtualMachine:
-    """The machine as it really is, for nobody but the simulator to know.
+    """The machine as it really is, known to the simulator only.
 
     Attributes:
         chain: Nominal kinematics.
@@ -40,9 +40,6 @@ class VirtualMachine:
         radius_error: Of the true ball beyond the calibrated one, mm.
         length_error: Of the true probe beyond the calibrated one, mm.
         noise: Standard deviation of the trigger along the normal, mm.
-        begin: What its clock says when the campaign begins.
-        clock: Speeds.
-        dialect: Of its control.
         temperature: Of a sensor by name at a time since the campaign began (s), degC.
     """
 
@@ -81,15 +78,15 @@ class ContactSolver:
         self.moved = self.standard.moved(machine.chain, self.start, stands, self.feature)
 
     def _nominal_contact(self) -> None:
-        """First contact of every ball with the standard where it stands, on a perfect machine."""
+        """First contact of every ball with the standard at its true place, on a perfect machine."""
         chain = self.machine.chain
         columns = [chain.axis_index(a) for a in chain.linear_axes]
         D = linear_directions(chain, self.start)
         motion = np.einsum("nij,nj->ni", D, self.direction[:, columns])
         self.motion = turn(self.T_artefact_table, motion)  # (N, 3) of the ball per mm of travel
         centre = apply(self.T_artefact_table, tip(chain, self.start, self.length))
-        # errors bring nearer what is met a little late; what is farther off is not looked at
-        latest = self.distance + _LATE
+        # errors may advance a contact a little; surfaces farther off are ignored
+        latest = self.distance + _BEYOND_END
         hit = contact(self.standard, centre, self.motion, self.radius, latest)
         self.meeting = hit.meeting
         self.feature = hit.feature.astype(str)
@@ -142,7 +139,7 @@ class ContactSolver:
                 break
 
     def _meet_sides(self, time: Array) -> None:
-        """Edges and sides that a search meets: marched again with the ball where errors take it."""
+        """Edges and sides that a search meets: marched again with the displaced ball."""
         rows = np.flatnonzero(self.is_contact & (self.meeting != Meeting.SURFACE))
         if not len(rows):
             return
@@ -154,7 +151,7 @@ class ContactSolver:
         self.travel[rows] = np.where(np.isfinite(hit.travel), hit.travel, self.travel[rows])
 
     def _true_balls(self, rows: IntArray, time: Array) -> tuple[Array, Array]:
-        """True ball centres (M, 3) seen from the features as they sag, and radii (M,)."""
+        """True ball centres (M, 3) relative to the sagging features, and radii (M,)."""
         chain = self.machine.chain
         touches = self.touches(time, rows)
         added = Contribution.zeros(len(rows), len(chain.links))
@@ -166,11 +163,10 @@ class ContactSolver:
         return apply(self.T_artefact_table, actual) - self.moved[rows], radius
 
     def touches(self, time: Array, rows: IntArray | None = None) -> Touches:
-        """The record that effects look at, of all touches or some.
+        """The record on which effects act, of all touches or some.
 
         Args:
             time: Of the trigger of all touches, (N,), s since the start of the campaign.
-            rows: Which of them.
         """
         rows = np.arange(len(self.start)) if rows is None else rows
         chain = self.machine.chain
@@ -192,7 +188,7 @@ class ContactSolver:
         )
 
     def classify(self) -> None:
-        """Tell contacts that the control would not report from the others."""
+        """Mark the touches that the control would not report as a contact."""
         failures = [
             (~(np.abs(self.gap) < 1e3 * CONTACT_TOLERANCE), Meeting.UNRESOLVED),
             (self.travel < 0.0, Meeting.INSIDE),
@@ -201,7 +197,7 @@ class ContactSolver:
         for name in dict.fromkeys(self.feature.tolist()):
             if name in self.standard.features:
                 surface = self.standard.features[name]
-                # what is planned keeps away from the stem; the machine as it is may come nearer
+                # the plan keeps away from the stem, the erroneous machine may come closer
                 if isinstance(surface, DatumSphere):
                     inside = surface.is_bare(self.uv)
                 else:

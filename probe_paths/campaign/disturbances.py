@@ -1,9 +1,8 @@
-"""What disturbs a simulated campaign: effects of known size, and the record of what drives them.
+"""Disturbances of a simulated campaign: effects of known size, and the record that drives them.
 
-Effects act by their own formulas on the touches of the whole campaign, as a lag has to know what
-was before and a slip of the standard which touches came after. What drives a lag (temperatures,
-spindle speed) is followed over the whole record, between the touches too; whoever analyses the run
-later knows it at the touches only.
+Effects act on the touches of the whole campaign: a lag depends on earlier touches, a slip of the
+standard on later ones. The drivers of a lag (temperatures, spindle speed) are followed over the
+whole record; the analysis of the run knows them at the touches only.
 """
 
 from collections.abc import Callable, Sequence
@@ -30,26 +29,24 @@ _PER_TOUCH = (
 def effects_over_record(
     effects: Sequence[tuple[Effect, Array]],
     record: SensorRecord | None = None,
-    begin: datetime | None = None,
 ) -> Disturbance:
     """Disturbance by effects of known size.
 
     Args:
         effects: Each with its parameters (P,), base units.
         record: Temperatures and spindle speeds by the clock; None where nothing is recorded.
-        begin: What the clock says when the campaign begins; None for the first reading.
 
     Raises:
         UnknownEffect: When it is used: an effect follows a sensor that the record lacks.
     """
     if record is None:
         return lambda touches: contribution(effects, touches)
-    start = begin or record.begin
+    start = record.begin
     driven = [pair for pair in effects if traits(pair[0]).needs_history]
     others = [pair for pair in effects if pair not in driven]
 
     def disturbance(touches: Touches) -> Contribution:
-        touches = record.seen_by(touches, start)
+        touches = record.at_touches(touches, start)
         total = contribution(others, touches)
         if driven:
             history = _history(touches[:1], record, start)
@@ -64,7 +61,7 @@ def _history(touch: Touches, record: SensorRecord, begin: datetime) -> Touches:
     """A touch repeated at every reading of the record."""
     time = record.since(begin)
     rows = touch[np.zeros(len(time), dtype=np.int64)]
-    return record.seen_by(replace(rows, time=time), begin)
+    return record.at_touches(replace(rows, time=time), begin)
 
 
 def joined_touches(parts: Sequence[Touches]) -> Touches:

@@ -1,4 +1,4 @@
-"""How long it takes to probe a body that somebody might have instead of the standard."""
+"""Time to probe a body that might be used instead of the standard."""
 
 from dataclasses import replace
 
@@ -21,19 +21,9 @@ def probing_time(
     requests: Requests,
     options: PlanOptions | None = None,
 ) -> float:
-    """Time on the machine by the programs that a plan of the same care would have.
+    """Time on the machine of a plan of the same care, s; nan where no plan can be made.
 
     Touches that this plan refuses are counted as if they took as long as the others.
-
-    Args:
-        body: What is touched.
-        probe: In the spindle.
-        setup: Where the body stands.
-        requests: Its touches.
-        options: How carefully; those of the standard's own plan.
-
-    Returns:
-        In s; nan where no plan at all can be made.
     """
     options = replace(options or PlanOptions(), tolerated=len(requests), is_swept=False)
     try:

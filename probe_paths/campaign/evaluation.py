@@ -10,7 +10,7 @@ from matstd.probe_paths.campaign.contact_points import at_true_contacts, foot_po
 from matstd.probe_paths.campaign.log_parts import (
     checked_parts,
     distinct_parts,
-    sensed,
+    logged_temperatures,
     without_rows,
 )
 from matstd.probe_paths.control import LogPart
@@ -30,14 +30,14 @@ from matstd.twin.record import (
 )
 from matstd.twin.units import DEG, GPA, NM
 
-BESIDE = 10.0
-"""Farthest that a ball can be from the surface it touched while the set-up is only believed, mm."""
+LARGEST_BELIEVED_GAP = 10.0
+"""Largest gap between a ball and its surface before the set-up is fitted, mm."""
 
-ABSURD = 3.0
-"""A ball still this far from its surface (mm) once the set-up is fitted touched something else."""
+LARGEST_FITTED_GAP = 3.0
+"""The same after the fit, mm: a ball that is farther off touched something else."""
 
-MOST_ABSURD = 0.1
-"""Share of touches so far from their surfaces that is left out; more have a common cause."""
+LARGEST_OUTLIER_SHARE = 0.1
+"""Share of such touches that may be left out; a larger share has a common cause."""
 
 _ROUNDS = 10
 _ARM = 100.0  # mm; scales rotations of the standard to lengths
@@ -50,21 +50,19 @@ def evaluate(
     u: float,
     dialect: Dialect | None = None,
 ) -> Run:
-    """Measurements from logs of one or several probes; the run's remarks tell what was left out.
+    """Measurements from logs of one or several probes; the run's remarks list what was left out.
 
     Every touch has the length and radius that its own probe was calibrated with.
 
-    The ball centre that a nominal machine would have is taken into the frame of the standard. The
-    set-up is fitted first (six parameters each, Gauss-Newton on the deviations, foot points anew
-    every round), then the machine's errors as far as the touches tell
-    (`matstd.probe_paths.campaign.contact_points`), as a
-    ball that met the surface beside its foot point would have the curvature in between pass for a
-    deviation. Then ``dev = n . (ball centre - p) - radius`` with the believed ball centre.
+    Ball centres of a nominal machine are transformed to the frame of the standard. The set-up is
+    fitted first (six parameters each, Gauss-Newton on the deviations, new foot points every round),
+    then the machine's errors as far as the touches determine them (`contact_points`): the curvature
+    between the true and the believed foot point would otherwise appear as a deviation. Finally
+    ``dev = n . (ball centre - p) - radius`` with the believed ball centre.
 
     Args:
         parts: Of one or several logs; those that measure nothing (`LogPart.is_measuring`) are left
             aside.
-        standard: As calibrated.
         u: Standard uncertainty of one touch, mm; that of the calibrated surface comes to it.
 
     Raises:
@@ -78,24 +76,24 @@ def evaluate(
         raise NotEnoughData("the logs hold no touch")
     _check_calibrations(parts)
     dialect = dialect or Dialect()
-    touches, gap = _placed(parts, standard, chain, dialect, is_fitted=False)
-    good, far = _near(parts, gap, BESIDE)
+    touches, gap = _touches_and_gaps(parts, standard, chain, dialect, is_fitted=False)
+    good, far = _split_by_gap(parts, gap, LARGEST_BELIEVED_GAP)
     while True:
         parts, remarks = without_rows(parts, good), [*remarks, *far]
-        touches, gap = _placed(parts, standard, chain, dialect, is_fitted=True)
-        good, far = _near(parts, gap, ABSURD)
+        touches, gap = _touches_and_gaps(parts, standard, chain, dialect, is_fitted=True)
+        good, far = _split_by_gap(parts, gap, LARGEST_FITTED_GAP)
         if not far:
             break
     u_touch = _uncertainty(standard, touches, u)
-    remarks += [*standard.remarks, *_told_of_sag(standard)]
-    remarks += sensed(parts)[1]
+    remarks += [*standard.remarks, *_sag_remarks(standard)]
+    remarks += logged_temperatures(parts)[1]
     run = Run(touches, computed_deviation(touches), u_touch, remarks=tuple(remarks))
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be
     return at_true_contacts(run, standard)
 
 
-def _told_of_sag(standard: Standard) -> list[str]:
-    """What of the standard's own weight is taken off, or why nothing is."""
+def _sag_remarks(standard: Standard) -> list[str]:
+    """How the sag of the standard is corrected, or why it is not."""
     sag, made_of = standard.usable_sag, standard.material
     if sag is not None:
         by = sag.source
@@ -111,7 +109,7 @@ def _told_of_sag(standard: Standard) -> list[str]:
 
 
 def _uncertainty(standard: Standard, t: Touches, u: float) -> Array:
-    """Of every touch, with what calibration and sag leave open at a point, (N,), mm."""
+    """Standard uncertainty of every touch with those of calibration and sag, (N,), mm."""
     known = {} if standard.known is None else standard.known.features
     form = np.array([known[name].u_form if name in known else 0.0 for name in t.feature.tolist()])
     moved = standard.moved(t.chain, t.q, t.T_table_artefact, t.feature)
@@ -120,14 +118,14 @@ def _uncertainty(standard: Standard, t: Touches, u: float) -> Array:
     return np.asarray(np.sqrt(u**2 + form**2 + sag**2))
 
 
-def _placed(
+def _touches_and_gaps(
     parts: Sequence[LogPart],
     standard: Standard,
     chain: Chain,
     dialect: Dialect,
     is_fitted: bool,
 ) -> tuple[Touches, Array]:
-    """Touches on the standard where it is believed to stand or fitted, and their gaps (N,), mm."""
+    """Touches on the standard at its believed or fitted place, and their gaps (N,), mm."""
     count = [len(part.number) for part in parts]
     radius = np.repeat([part.radius for part in parts], count)
     length = np.repeat([part.tool_length - part.radius for part in parts], count)
@@ -137,10 +135,11 @@ def _placed(
     setups, setup = _setups(parts)
     ball_table = tip(chain, q, length)
     stands = np.stack([s.T_table_artefact for s in setups])[setup]
+    # sag at the believed set-up: the fit hardly turns the direction of weight
     moved = standard.moved(chain, q, stands, feature)
     for i, believed in enumerate(setups if is_fitted else ()):
         rows = np.flatnonzero(setup == i)
-        setups[i] = _fitted(
+        setups[i] = _fitted_setup(
             believed, standard, feature[rows], ball_table[rows], radius[rows], moved[rows]
         )
     point, normal, gap = _gaps(standard, setups, setup, feature, ball_table, radius, moved)
@@ -165,11 +164,11 @@ def _gaps(
 
 
 def _check_calibrations(parts: Sequence[LogPart]) -> None:
-    """Refuse a probe that was calibrated anew between its programs."""
+    """Refuse a probe that was recalibrated between its programs."""
     first: dict[tuple[str, float, float], LogPart] = {}
     for part in parts:
         planned = part.heading.probe
-        known = first.setdefault((_family(part), planned.radius, planned.length), part)
+        known = first.setdefault((_probe_prefix(part), planned.radius, planned.length), part)
         radius, length = known.radius, known.tool_length
         if abs(part.radius - radius) > NM or abs(part.tool_length - length) > NM:
             raise BadFile(
@@ -179,8 +178,8 @@ def _check_calibrations(parts: Sequence[LogPart]) -> None:
             )  # fmt: skip
 
 
-def _family(part: LogPart) -> str:
-    """Name of a program without set-up and number: what all programs of one probe share."""
+def _probe_prefix(part: LogPart) -> str:
+    """Name of a program without set-up and number, common to all programs of one probe."""
     return part.program.rsplit("_", 2)[0]
 
 
@@ -191,7 +190,7 @@ def ball_centres(part: LogPart, chain: Chain, dialect: Dialect | None = None) ->
 
 
 def _readings(part: LogPart, chain: Chain, dialect: Dialect) -> Array:
-    """Axis readings (N, A) of a log's touches, from what cycle 4 returned."""
+    """Axis readings (N, A) of a log's touches from the results of cycle 4."""
     frame = ProgramFrame(chain, Probe(part.radius, part.tool_length - part.radius))
     q = np.zeros((len(part.number), len(chain.axes)))
     for letter, degrees in part.rotary.items():
@@ -209,7 +208,7 @@ def _readings(part: LogPart, chain: Chain, dialect: Dialect) -> Array:
 
 
 def _setups(parts: Sequence[LogPart]) -> tuple[list[Setup], IntArray]:
-    """Set-ups by name, and the one of every touch."""
+    """Set-ups, and the index of that of every touch."""
     setups: dict[str, Setup] = {}
     index: list[int] = []
     for part in parts:
@@ -224,7 +223,7 @@ def _setups(parts: Sequence[LogPart]) -> tuple[list[Setup], IntArray]:
     return list(setups.values()), np.array(index, dtype=np.int64)
 
 
-def _fitted(
+def _fitted_setup(
     setup: Setup,
     standard: Standard,
     feature: Labels,
@@ -232,10 +231,10 @@ def _fitted(
     radius: Array,
     moved: Array,
 ) -> Setup:
-    """The set-up that makes the deviations smallest.
+    """The set-up that minimises the deviations.
 
     Displacing the standard by (e, r) in its own frame changes a deviation by
-    ``-n . e - (c x n) . r``, c the ball centre. Directions that no touch sees stay as believed.
+    ``-n . e - (c x n) . r``, c the ball centre. Undetermined directions stay as believed.
     """
     T_table_artefact = setup.T_table_artefact
     for _ in range(_ROUNDS):
@@ -245,7 +244,7 @@ def _fitted(
             break
         deviation = np.einsum("ni,ni->n", normal, ball - point) - radius
         rows = np.concatenate([normal, np.cross(ball, normal) / _ARM], axis=1)
-        # not least_squares: its steps also move what no touch sees, this cut-off does not
+        # not least_squares: its steps also move undetermined directions, this cut-off none
         step = np.linalg.lstsq(rows, deviation, rcond=1e-6)[0]
         e, r = step[:3], step[3:] / _ARM
         T_table_artefact = T_table_artefact @ pose(rotation(r), e)
@@ -254,11 +253,13 @@ def _fitted(
     return Setup(setup.name, T_table_artefact)
 
 
-def _near(parts: Sequence[LogPart], gap: Array, limit: float) -> tuple[np.ndarray, list[str]]:
-    """Touches near the surface that they are said to touch, (N,), and remarks on the others.
+def _split_by_gap(
+    parts: Sequence[LogPart], gap: Array, limit: float
+) -> tuple[np.ndarray, list[str]]:
+    """Mask of touches near their stated surface, (N,), and remarks on the others.
 
     Raises:
-        BadFile: More far ones than single slips explain.
+        BadFile: More distant touches than occasional mistakes explain.
     """
     good = np.abs(gap) < limit
     where = [(part, i) for part in parts for i in range(len(part.number))]
@@ -267,7 +268,7 @@ def _near(parts: Sequence[LogPart], gap: Array, limit: float) -> tuple[np.ndarra
         part, i = where[row]
         found = f"{gap[row]:.3f} mm" if np.isfinite(gap[row]) else "no way"
         what = f"touch {part.number[i]} with {found} between ball and surface"
-        if np.mean(~good) > MOST_ABSURD:
+        if np.mean(~good) > LARGEST_OUTLIER_SHARE:
             raise BadFile(
                 part.path,
                 f"line {part.line[i]}",
@@ -290,7 +291,7 @@ def _touches(
 ) -> Touches:
     """The record of all touches without their probes; time counts from the first program's start.
 
-    A pose that two probes visit counts as two: what they have in common is the reading alone.
+    A pose that two probes visit counts as two: they share the readings only.
     """
     start = parts[0].begin
     T_table_artefact = np.stack([s.T_table_artefact for s in setups])[setup]
@@ -299,8 +300,11 @@ def _touches(
     for letter in chain.rotary_axes:
         approach[:, chain.axis_index(letter)] = np.concatenate([p.side[letter] for p in parts])
     number = np.concatenate([part.pose for part in parts])
-    families = list(dict.fromkeys(map(_family, parts)))
-    family = np.repeat([families.index(_family(p)) for p in parts], [len(p.number) for p in parts])
+    families = list(dict.fromkeys(map(_probe_prefix, parts)))
+    family = np.repeat(
+        [families.index(_probe_prefix(p)) for p in parts], [len(p.number) for p in parts]
+    )
+    # poses of different probes get different labels
     visited = np.column_stack([setup, family, number])
     pose_label = np.unique(visited, axis=0, return_inverse=True)[1]
     return Touches(
@@ -314,7 +318,7 @@ def _touches(
         setup=setup,
         time=np.concatenate([p.time + (p.begin - start).total_seconds() for p in parts]),
         approach=approach,
-        temperature=sensed(parts)[0],
+        temperature=logged_temperatures(parts)[0],
         feature=feature,
         pose=pose_label.reshape(-1).astype(np.int64),
     )

@@ -1,4 +1,4 @@
-"""Logs before they are evaluated: every touch once, and what they say that cannot be right."""
+"""Logs before evaluation: every touch once, and entries that cannot be right."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -17,7 +17,7 @@ from matstd.twin.record import IntArray
 from matstd.twin.units import NM
 
 LARGEST_OFFSET = 0.1
-"""Of a stylus that somebody has centred, mm: ten times what a dial gauge shows."""
+"""Largest offset of a centred stylus, mm: ten times the reading of a dial gauge."""
 
 _PER_TOUCH = ("line", "number", "pose", "feature", "xyz", "time")
 
@@ -32,7 +32,7 @@ def distinct_parts(parts: Sequence[LogPart]) -> list[LogPart]:
     """
     found: list[LogPart] = []
     for part in sorted(_dated(parts), key=lambda part: (part.begin, -len(part.number))):
-        twin = next((p for p in found if _is_same_run(p, part)), None)
+        twin = next((p for p in found if (p.program, p.begin) == (part.program, part.begin)), None)
         if twin is None:
             found.append(part)
             continue
@@ -48,7 +48,7 @@ def distinct_parts(parts: Sequence[LogPart]) -> list[LogPart]:
 
 
 def _dated(parts: Sequence[LogPart]) -> list[LogPart]:
-    """Parts without a date on the day of the earliest of the others."""
+    """Parts with missing dates set to the earliest day of the others."""
     days = [part.begin for part in parts if part.begin.year != UNDATED.year]
     if not days:
         return list(parts)
@@ -66,12 +66,7 @@ def _dated(parts: Sequence[LogPart]) -> list[LogPart]:
     ]
 
 
-def _is_same_run(one: LogPart, other: LogPart) -> bool:
-    return one.program == other.program and one.begin == other.begin
-
-
 def _rows(part: LogPart, rows: IntArray) -> LogPart:
-    """Some touches of a part."""
     return replace(
         part,
         rotary={a: v[rows] for a, v in part.rotary.items()},
@@ -82,7 +77,7 @@ def _rows(part: LogPart, rows: IntArray) -> LogPart:
 
 
 def _check_alike(one: LogPart, other: LogPart) -> None:
-    """Touches that both have are the same ones."""
+    """Refuse different numbers for the same touch."""
     numbers, i, k = np.intersect1d(one.number, other.number, return_indices=True)
     differ = np.any(np.abs(one.xyz[i] - other.xyz[k]) > NM, axis=1)
     if np.any(differ):
@@ -128,27 +123,27 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
         if offset > LARGEST_OFFSET:
             remarks.append(
                 f"{part.path}: {part.program}: the ball is calibrated {offset:.3f} mm off the "
-                "spindle axis: centre the stylus, or calibrate the probe anew"
+                "spindle axis: centre the stylus, or recalibrate the probe"
             )
         kept.append(_rows(part, np.flatnonzero(good)))
     return kept, remarks + _overlaps(kept)
 
 
 def _check_design(part: LogPart, standard: Standard) -> None:
-    """Refuse a log of another design of that name; a calibrated standard has other numbers."""
-    told = part.heading.calibration
-    if told and standard.known is None:
+    """Refuse a log of another design; a calibrated standard has other numbers by right."""
+    stated = part.heading.calibration
+    if stated and standard.known is None:
         balls = standard.spheres[:-1] if part.heading.ball else standard.spheres
         ours = calibration_hash(replace(standard, spheres=balls))
-        if told != ours:
+        if stated != ours:
             raise BadFile(
-                part.path, "CALIBRATION", told,
+                part.path, "CALIBRATION", stated,
                 f"{ours}, the hash of '{standard.name}': the log is of another design",
             )  # fmt: skip
 
 
 def _overlaps(parts: Sequence[LogPart]) -> list[str]:
-    """Programs that ran at the same time by the clock: it was set in between."""
+    """Remarks on programs that overlap in time: the clock was set in between."""
     remarks = []
     for one, other in pairwise(part for part in parts if len(part.number)):
         end = one.begin + timedelta(seconds=float(one.time[-1]))
@@ -169,11 +164,10 @@ def without_rows(parts: Sequence[LogPart], good: np.ndarray) -> list[LogPart]:
     ]
 
 
-def sensed(parts: Sequence[LogPart]) -> tuple[dict[str, Array], list[str]]:
+def logged_temperatures(parts: Sequence[LogPart]) -> tuple[dict[str, Array], list[str]]:
     """Temperatures that the control logged, each (N,) degC, and remarks on those left out.
 
-    A reading that is missing lies between its neighbours; what is no temperature of a machine is
-    for the reader of runs to judge.
+    A missing reading is interpolated; implausible temperatures are left to the reader of runs.
     """
     out: dict[str, Array] = {}
     remarks = []

@@ -1,9 +1,9 @@
-"""What the order of a plan costs in time on the machine, and what it lets the touches know.
+"""Time on the machine and separability of effects for different orders of the same touches.
 
 The same touches are put into quicker orders. For each, programs are made and read back, so that
 times and sides of approach are those of the programs' text; then a drift of the set-up and a
 reversal of each rotary axis, both of unknown size, are fitted together with every error of the
-machine, and their standard deviations tell how well the order separates them from geometry.
+machine. Their standard deviations measure how well the order separates them from geometry.
 """
 
 from dataclasses import dataclass, replace
@@ -26,8 +26,8 @@ from matstd.twin.library import parse_effect
 from matstd.twin.model import Effect, Model, columns
 from matstd.twin.record import IntArray, Setup, Touches
 
-_FREE = 1e3
-"""Prior of what is looked for, in units of its typical size: nearly none."""
+_PRIOR_FACTOR = 1e3
+"""Prior of the sought effects in units of their typical size: almost uninformative."""
 
 
 class Ordering(Enum):
@@ -44,7 +44,6 @@ class Order:
     """One order of the same touches.
 
     Attributes:
-        ordering: Which.
         touches: Number, anchor touches included.
         duration: Of all programs, s.
         drift: Standard deviation of the rate of a drift, its worst direction, mm/h.
@@ -62,27 +61,26 @@ def orders(plan: TouchPlan, model: Model, noise: float) -> tuple[Order, ...]:
     """The plan's own order first, then the same touches in ever quicker ones.
 
     Args:
-        plan: As it is to be probed.
         model: Geometric errors of the machine with their prior.
         noise: Standard deviation of one touch, mm.
     """
     bare = _rows(plan, np.flatnonzero(plan.request >= 0))
-    once = _once(bare)
+    once = _each_pose_once(bare)
     tried = (
         (Ordering.AS_PLANNED, plan),
         (Ordering.WITHOUT_ANCHORS, bare),
         (Ordering.ONCE, once),
         (Ordering.SHORTEST, _shortest(once)),
     )
-    return tuple(_judged(ordering, one, model, noise) for ordering, one in tried)
+    return tuple(_evaluated_order(ordering, one, model, noise) for ordering, one in tried)
 
 
-def _judged(ordering: Ordering, plan: TouchPlan, model: Model, noise: float) -> Order:
+def _evaluated_order(ordering: Ordering, plan: TouchPlan, model: Model, noise: float) -> Order:
     touches, duration = _timed(plan)
     rotary = plan.chain.rotary_axes
     sought: list[Effect] = [parse_effect("drift", plan.chain)]
     sought += [parse_effect(f"backlash({axis})", plan.chain) for axis in rotary]
-    size = np.array([p.sd for effect in sought for p in effect.parameters]) * _FREE
+    size = np.array([p.sd for effect in sought for p in effect.parameters]) * _PRIOR_FACTOR
     sd = size * _sd_beside(
         columns(sought, touches) * size / noise, model.columns(touches) * model.prior_sd / noise
     )
@@ -94,7 +92,7 @@ def _judged(ordering: Ordering, plan: TouchPlan, model: Model, noise: float) -> 
 
 
 def _sd_beside(C: Array, W: Array) -> Array:
-    """Standard deviations of C's parameters when W's are unknown too, all of prior one, (Q,)."""
+    """Standard deviations of C's parameters with W's unknown too, all with unit priors, (Q,)."""
     known = np.eye(W.shape[1]) + W.T @ W
     left = np.eye(C.shape[1]) + C.T @ C - C.T @ W @ np.linalg.solve(known, W.T @ C)
     sd: Array = np.sqrt(np.diag(np.linalg.solve(left, np.eye(len(left)))))
@@ -102,7 +100,7 @@ def _sd_beside(C: Array, W: Array) -> Array:
 
 
 def _timed(plan: TouchPlan) -> tuple[Touches, float]:
-    """Touches with times and sides of approach as the programs' text has them; duration, s."""
+    """Touches with times and sides of approach from the programs' text, and the duration, s."""
     # all in one program: an order shall not be judged by where its files begin
     programs = make_programs(plan, feeds=Feeds(touches_per_file=len(plan)))
     read = programs.programs[0].read
@@ -138,7 +136,7 @@ def _rows(plan: TouchPlan, rows: IntArray) -> TouchPlan:
 
 
 def _shortest(plan: TouchPlan) -> TouchPlan:
-    """Visits in a short order from home and back, every pose straight from the one before."""
+    """Visits in a short order from home and back, every pose approached from the one before."""
     way = _short_way(np.array([v.rotary for v in plan.visits]), home_readings(plan.chain))
     here, last = home_readings(plan.chain), np.zeros(len(plan.chain.rotary_axes))
     visits = []
@@ -149,11 +147,11 @@ def _shortest(plan: TouchPlan) -> TouchPlan:
         side = np.where(side == 0.0, stop.side, side)
         visits.append(replace(stop, before=before, side=side))
         here, last = stop.rotary, side
-    return _once(plan, tuple(visits))
+    return _each_pose_once(plan, tuple(visits))
 
 
 def _short_way(poses: Array, home: Array) -> list[int]:
-    """Order of poses (V, R) with little turning, by nearest neighbours and reversals of parts."""
+    """Short order of poses (V, R), by nearest neighbours and 2-opt."""
     places = np.concatenate([home[None], poses])
     cost = np.abs(places[:, None] - places).max(axis=-1, initial=0.0)  # the slowest decides
     tour = [0, *(1 + nearest_neighbours(poses, home)).tolist()]
@@ -169,7 +167,7 @@ def _short_way(poses: Array, home: Array) -> list[int]:
     return [int(k) - 1 for k in tour[1:]]
 
 
-def _once(plan: TouchPlan, visits: tuple[Visit, ...] = ()) -> TouchPlan:
+def _each_pose_once(plan: TouchPlan, visits: tuple[Visit, ...] = ()) -> TouchPlan:
     """Every pose visited once, in the order of some visits or that of the plan."""
     first: dict[int, Visit] = {}
     for visit in visits or plan.visits:

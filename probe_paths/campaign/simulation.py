@@ -26,7 +26,6 @@ class Campaign:
     """All programs of one set-up or several, run one after the other.
 
     Attributes:
-        runs: What each program did.
         parts: Of their logs, as read back.
         begin: What the clock said at the run's time zero.
     """
@@ -55,7 +54,7 @@ def simulate_search(
     """What a search or a commissioning program does on the twin, with the log that it leaves.
 
     Raises:
-        BadFile: A touch that meets nothing, or a tool that comes too near to something, where the
+        BadFile: A touch without contact, or a tool too close to an obstacle, where the
             standard is believed to stand.
         NotReachable: A touch that meets nothing where it stands.
         DesignError: A program made for another standard.
@@ -79,11 +78,8 @@ def simulate(
 
     Args:
         programs: Files, masks of `.H` files beside them, in the order in which they are run.
-        standard: The true one.
         machine: As it really is; the evaluation knows only its nominal chain.
-        rng: For the noise of the trigger.
         probe: In the spindle; None takes the one that each program states.
-        progress: Told what is going on.
         calibrated: What is believed of the standard; None for the truth.
 
     Raises:
@@ -107,7 +103,7 @@ def visits(
 
     Args:
         programs: Files; one that is read already is taken for checked.
-        machines: As they really are at every visit: with another noise, the standard clamped anew.
+        machines: As they really are at every visit: with other noise, the standard clamped again.
 
     Other arguments and errors as of `simulate`.
     """
@@ -134,7 +130,7 @@ def _campaign(
     rng: np.random.Generator,
     believed: Standard,
 ) -> Campaign:
-    """All programs on one machine, and what their logs tell."""
+    """All programs on one machine, and the run evaluated from their logs."""
     runs = run_programs(texts, standard, machine, rng)
     runs[-1].check_done()
     parts = [

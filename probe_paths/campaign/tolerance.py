@@ -1,4 +1,4 @@
-"""How far from its stated place a standard may stand before a touch is lost."""
+"""Largest misplacement of a standard at which no touch is lost."""
 
 from collections.abc import Callable, Sequence
 
@@ -22,8 +22,8 @@ _TOUCHES = 60  # of the plan, evenly: each takes 3 ms, and there are twelve dire
 def setup_tolerance(plan: TouchPlan) -> dict[str, float]:
     """Largest displacement, either way, by which no touch of a plan is lost.
 
-    The standard is displaced on the perfect twin, and every looked-at touch has to meet the
-    feature it was planned for within its path.
+    The standard is displaced on the perfect twin, and every sampled touch has to meet its
+    planned feature within its path.
 
     Returns:
         By X Y Z, mm, and A B C, degrees, about the standard's own axes; zero where the smallest
@@ -53,15 +53,15 @@ def setup_tolerance(plan: TouchPlan) -> dict[str, float]:
         vector = size * np.eye(3)[i % 3]
         return pose(t=vector) if i < 3 else pose(fixed_xyz(vector * DEG))
 
-    steps = (STEPS_MM,) * 3 + (STEPS_DEG,) * 3
-    return {
-        letter: _largest(steps[i], lambda size, i=i: is_met(moved(i, size)))  # type: ignore[misc]
-        for i, letter in enumerate("XYZABC")
-    }
+    def largest(i: int) -> float:
+        steps = STEPS_MM if i < 3 else STEPS_DEG
+        return _largest(steps, lambda size: is_met(moved(i, size)))
+
+    return {letter: largest(i) for i, letter in enumerate("XYZABC")}
 
 
 def _largest(steps: Sequence[float], is_good: Callable[[float], bool]) -> float:
-    """Largest step up to which all are good either way; halving what is left."""
+    """Largest step that is good in both directions, by bisection."""
     low, high = 0, len(steps)
     while low < high:
         middle = (low + high + 1) // 2

@@ -2,7 +2,7 @@
 
 The axes go where the text sends them. At every touch the ball, displaced by all errors at the
 actual readings, travels along the probing vector until it touches the B-spline or the sphere; what
-the control then knows are the readings, and they go through the masks into the log.
+the control then knows are the readings, which it prints through the masks into the log.
 """
 
 from collections.abc import Mapping, Sequence
@@ -48,14 +48,11 @@ class VirtualRun:
     """What a program brought about.
 
     Attributes:
-        program: As read.
         q: Readings at the trigger, (N, A); nan for touches without contact.
         time: Of the trigger, s since the start of the campaign, (N,).
         feature: What was touched, (N,).
         meeting: What the ball ran into, (N,), values of `Meeting`; a contact is one with a surface.
-        reached: How many touches were tried before the program ended.
-        log: Text of every log file by name.
-        outcome: How it ended.
+        reached: Number of touches tried before the program ended.
         end: s since the start of the campaign.
     """
 
@@ -97,17 +94,11 @@ def run_programs(
 ) -> list[VirtualRun]:
     """Run programs one after the other; a stopped one ends the campaign.
 
-    Args:
-        programs: As read from their texts.
-        standard: The true one.
-        machine: As it really is.
-        rng: For the noise of the trigger.
-
     Raises:
         DesignError: A program made for another standard.
     """
     solvers = [_solver(program, standard, machine, rng) for program in programs]
-    # what a disturbance has to know of the other programs; who has none asks nothing
+    # a disturbance may depend on the touches of other programs
     planned = [] if machine.disturbance is None else _planned_touches(solvers)
     runs: list[VirtualRun] = []
     begin = 0.0
@@ -123,7 +114,7 @@ def run_programs(
 
 
 def _planned_touches(solvers: Sequence[ContactSolver]) -> list[Touches]:
-    """Touches of every program as a perfect machine would make them."""
+    """Touches of every program on a perfect machine."""
     planned: list[Touches] = []
     begin = 0.0
     for solver in solvers:
@@ -131,28 +122,6 @@ def _planned_touches(solvers: Sequence[ContactSolver]) -> list[Touches]:
         planned.append(solver.touches(times[_rows(solver.program)]))
         begin = float(times[-1]) + CHANGEOVER
     return planned
-
-
-def run_program(
-    program: ReadProgram,
-    standard: Standard,
-    machine: VirtualMachine,
-    rng: np.random.Generator,
-    begin: float = 0.0,
-) -> VirtualRun:
-    """Run one program.
-
-    Args:
-        program: As read from its text.
-        standard: The true one.
-        machine: As it really is.
-        rng: For the noise of the trigger.
-        begin: When it is started, s since the start of the campaign.
-
-    Raises:
-        DesignError: A program made for another standard.
-    """
-    return _run(_solver(program, standard, machine, rng), begin)
 
 
 def _solver(
@@ -174,7 +143,7 @@ def _rows(program: ReadProgram) -> list[int]:
 
 
 def _run(contacts: ContactSolver, begin: float) -> VirtualRun:
-    """Touch, and print what the program prints."""
+    """Solve the contacts, then execute the printing of the program."""
     program = contacts.program
     rows = _rows(program)
     contacts.solve((begin + _step_times(contacts))[rows])

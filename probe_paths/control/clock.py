@@ -31,7 +31,7 @@ class Clock:
     probing: float = 0.8
 
     def durations(self, chain: Chain, steps: Array, feed: Array) -> Array:
-        """Duration of moves from standstill to standstill.
+        """Duration of moves from standstill to standstill, (M,), s.
 
         An axis that travels s needs ``s/v + v/a``, or ``2 sqrt(s/a)`` where it does not come up to
         speed; the slowest axis decides. A fed move runs at its feed along the path (along the
@@ -40,9 +40,6 @@ class Clock:
         Args:
             steps: Change of the readings, shape (M, A), mm and rad; nan counts as no motion.
             feed: mm/s or rad/s, shape (M,); nan is rapid.
-
-        Returns:
-            Shape (M,), s.
         """
         linear = [chain.axis_index(name) for name in chain.linear_axes]
         rotary = [chain.axis_index(name) for name in chain.rotary_axes]
@@ -70,17 +67,12 @@ def _rapid(travel: Array, speed: float, acceleration: float) -> Array:
 def step_times(
     chain: Chain, steps: Sequence[Step], clock: Clock, travel: Array | None = None
 ) -> Array:
-    """Time at which each step of a program has been done.
+    """Time at the end of each step of a program, (M,), s; zero at the end of the first moves.
 
     A touch counts until its contact; its retract belongs to the move that follows.
 
     Args:
-        steps: Of the program, in order.
-        clock: Speeds.
         travel: Of each touch until its contact, (N,), mm; None takes the longest path.
-
-    Returns:
-        Shape (M,), s since the program was started; the start is where the first moves end.
     """
     count = len(steps)
     change = np.zeros((count, len(chain.axes)))
@@ -98,6 +90,7 @@ def step_times(
             length = step.distance if travel is None else travel[step.index]
             change[i] = length * step.direction
             feed[i], is_motion[i], extra[i] = step.feed, True, clock.probing
+            # the second stroke: back at the feed, forward at the slow feed
             if step.slow_feed:
                 extra[i] += step.step_back * (1.0 / step.feed + 1.0 / step.slow_feed)
             back = min(step.back, length) / clock.rapid + clock.block

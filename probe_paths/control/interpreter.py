@@ -1,8 +1,8 @@
 """Reads an emitted program and its masks, and executes the text: moves, touches, printed lines.
 
-Only the text is believed. What the plan meant is not known here, so a slip between plan and text
-shows. A touch is assumed to find its surface; what the program does when it does not is read too
-and stands with the touch.
+Only the text counts: the plan is not known here, so a discrepancy between plan and text shows. A
+touch is assumed to find its surface; the branch of the program for a miss is executed too and
+stored with the touch.
 """
 
 from collections.abc import Sequence
@@ -36,7 +36,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
 
 _BEYOND = 1.05
-"""Of its limit, what is off where it is tried whether a program stops."""
+"""Multiple of its limit by which a value is off when the program has to stop."""
 
 
 def read_program(
@@ -47,7 +47,6 @@ def read_program(
     Args:
         path: The program; masks (`.A`) of an `.H` file stand in the same folder.
         probe: In the spindle; None takes the one that the program's head states.
-        dialect: Of the control, where it has words of its own.
 
     Raises:
         BadFile: Whatever the control, or a cautious operator, would not run.
@@ -66,7 +65,7 @@ def read_program(
 def stated_probe(
     path: str | Path, radius: float | None, length: float | None, dialect: Dialect | None = None
 ) -> Probe | None:
-    """The probe that a user states, mm; what is left open comes from the program's head."""
+    """The probe that a user states, mm; unstated values come from the program's head."""
     if radius is None and length is None:
         return None
     head, _ = heading(read_blocks(_content(Path(path)), path, dialect), Path(path))
@@ -94,11 +93,9 @@ def interpret(
     """Execute the text of a program.
 
     Args:
-        data: Content of the program file.
         path: Its name: it must agree with the program's.
         masks: Where FN 16 finds its masks.
         probe: In the spindle; None takes the one that the program's head states.
-        dialect: Of the control, where it has words of its own.
 
     Raises:
         BadFile: Whatever the control, or a cautious operator, would not run.
@@ -111,14 +108,17 @@ def interpret(
     frame = ProgramFrame(chain, _probe(head, probe, path))
     stated = promise(blocks, head, path)
     runner = Runner(blocks, places, frame, path, name, masks, head)
-    state = _begun(path, frame, stated, head.is_tilted)
+    state = _initial_state(path, frame, stated, head.is_tilted)
     steps = runner.run(0, state)
     runner.check_logged()
     _check_promise(stated, state, runner.touches, path)
     language = language_of(path)
+    # the program must stop in every run in which one tested value is off its limit
     for test in (*interlocks(language, frame, stated.is_first), *turn_tests(language, frame)):
         for off in (-_BEYOND * test.limit, _BEYOND * test.limit):
-            runner.run(0, replace(_begun(path, frame, stated, head.is_tilted), fault=test, off=off))
+            runner.run(
+                0, replace(_initial_state(path, frame, stated, head.is_tilted), fault=test, off=off)
+            )
     for touch in steps:
         if not isinstance(touch, ProbeStep) or touch.is_air:
             continue
@@ -142,8 +142,8 @@ def interpret(
     )
 
 
-def _begun(path: Path, frame: ProgramFrame, stated: Promise, is_tilted: bool) -> State:
-    """The control when a program is started: where its axes stand is not known."""
+def _initial_state(path: Path, frame: ProgramFrame, stated: Promise, is_tilted: bool) -> State:
+    """State of the control at the start of a program, with unknown axis positions."""
     axes = len(frame.chain.axes)
     return State(
         path,
@@ -157,7 +157,7 @@ def _begun(path: Path, frame: ProgramFrame, stated: Promise, is_tilted: bool) ->
 
 
 def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], path: Path) -> None:
-    """The program does what its head says; raises BadFile."""
+    """Refuse a program that differs from the statements of its head."""
     for what, said, done in (
         ("tool", stated.tool, state.tool),
         ("preset", stated.preset, state.preset),

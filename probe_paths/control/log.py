@@ -1,8 +1,8 @@
 """Reads the log that our programs write, on a control or in the simulator.
 
-A log is half an hour of a machine's time. A line that cannot be read, is cut off or comes from
-elsewhere costs the touch that it belongs to and no other, with a remark. Only set-up, probe and
-calibration in the head of a part must be there: without them no touch has a meaning.
+A log costs half an hour of machine time. A line that is unreadable, truncated or foreign therefore
+loses only the touch that it belongs to, with a remark. Only set-up, probe and calibration in the
+head of a part are indispensable, as no touch can be evaluated without them.
 """
 
 import re
@@ -50,18 +50,12 @@ class LogPart:
     """What one run of one program logged.
 
     Attributes:
-        path: Of the log file.
-        program: Name of the program.
         heading: Standard, set-up and probe as planned.
         begin: When the program was started; `UNDATED` where its date cannot be read.
         radius: Of the ball as calibrated, mm.
         tool_length: As calibrated, mm; that of the tool table where the control keeps none.
         offset: Of the ball from the spindle axis as calibrated, (2,), mm; the control has already
             corrected X and Y by it.
-        line: Of each touch in the file, (N,).
-        number: Of each touch, (N,).
-        pose: Number of the table pose, (N,).
-        feature: Number of the feature, (N,).
         xyz: As the cycle returned them, (N, 3), mm.
         rotary: Rotary positions by letter, degrees, each (N,).
         side: Side that each rotary axis came from, by letter, each (N,).
@@ -69,7 +63,6 @@ class LogPart:
         tool: Number of the tool as the control had it; None where the line was lost.
         preset: Number of the preset that the program selected; None where the line was lost.
         temperature: degC by sensor, each (N,); nan where a line could not be read.
-        is_complete: The program ran to its end.
         remarks: What was left out or mended, one line each.
     """
 
@@ -114,9 +107,7 @@ def read_log(path: str | Path, rotary: Sequence[str], text: str | None = None) -
     """Parts of a log file; a program that was run again appends a further part.
 
     Args:
-        path: The log file.
-        rotary: Letters of the machine's rotary axes.
-        text: Its text where it is already at hand.
+        text: Its text, if already read.
 
     Raises:
         BadFile: No part of the log has a head that can be read, or it is a log of another kind.
@@ -145,13 +136,13 @@ def read_log(path: str | Path, rotary: Sequence[str], text: str | None = None) -
 
 
 def _lines(path: Path, text: str | None) -> list[Line]:
-    """Lines that are not blank, decimal commas as points; a last line that is cut off says so."""
+    """Non-blank lines with decimal points; a truncated last line is marked."""
     if text is None:
         try:
             data = path.read_bytes()
         except OSError as error:
             raise BadFile(path, "file", error.strerror or "nothing", "a log") from None
-        # an editor may have saved it in its own encoding; what is no ASCII spoils its line alone
+        # an editor may have changed the encoding; a non-ASCII character corrupts its line only
         encoding = "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8-sig"
         text = data.decode(encoding, errors="replace")
     lines = [_COMMA.sub(".", line) for line in re.split(r"\r\n|\n|\r", text)]
@@ -162,7 +153,7 @@ def _lines(path: Path, text: str | None) -> list[Line]:
 
 
 def _begins_part(lines: Sequence[Line], i: int, text: str) -> bool:
-    """The head line, or the program's name where the head line is spoilt."""
+    """Whether a line begins a part: the head line, or the program's name if that is corrupted."""
     if _VERSION.match(text):
         return True
     return text.startswith("PGM ") and (i == 0 or not _VERSION.match(lines[i - 1][1]))
@@ -197,6 +188,7 @@ class _PartReader:
         tool, preset = self._pairs(("TOOL", "PRESET"), is_needed=False) or (None, None)
         calibration = self._pairs(("R", "L"))
         assert calibration is not None
+        # a control that keeps no calibrated length logs that of the tool table
         offset = self._pairs(("EX", "EY", "TL"), is_needed=False) or [0.0, 0.0, 0.0]
         clock = LogClock(start)
         rows, is_complete = self._touches(clock)
@@ -230,7 +222,7 @@ class _PartReader:
         )
 
     def _peek(self, expected: str) -> str:
-        """The line to be read next; refuses the end of the part."""
+        """The next line; refuses the end of the part."""
         if self.place >= len(self.lines):
             raise BadFile(
                 self.path, f"line {self.lines[-1][0]}", "the end of the part after it", expected
@@ -255,7 +247,7 @@ class _PartReader:
         return day
 
     def _head_clock(self) -> int | None:
-        """Time of day of the head; None, and a remark, where the first touch stands for it."""
+        """Time of day of the head; None, and a remark, where that of the first touch is taken."""
         now = _time_of_day(self._peek("T <h>:<m>:<s>"))
         if now is None:
             line, text = self.lines[self.place]
@@ -276,7 +268,7 @@ class _PartReader:
         return values
 
     def _touches(self, clock: LogClock) -> tuple[list[tuple[int, list[float]]], bool]:
-        """Whole touches with their lines, and whether the program came to its end."""
+        """Complete touches with their lines, and whether the program ran to its end."""
         rows: list[tuple[int, list[float]]] = []
         known: dict[float, list[float]] = {}
         is_complete = False
@@ -296,6 +288,7 @@ class _PartReader:
                 if row is None:
                     continue
                 now, same = int(row.pop()), known.get(row[0])
+                # of a touch that is logged twice the first counts
                 if same is None:
                     known[row[0]] = row
                     rows.append((line, [*row, clock.elapsed(now, line)]))
@@ -307,7 +300,7 @@ class _PartReader:
         return rows, is_complete
 
     def _touch(self) -> list[float] | None:
-        """Numbers of one touch and its time of day; None, and a remark, where a line is spoilt."""
+        """Numbers of one touch and its time of day; None, and a remark, for a corrupted line."""
         row: list[float] = []
         first = self.place
         for names in [*self.names, None]:
@@ -341,12 +334,12 @@ class _PartReader:
         return row
 
     def _to_next(self) -> None:
-        """Go on to the next line that begins something."""
+        """Skip to the next line that begins a touch, an end or a missed touch."""
         while self.place < len(self.lines) and not _begins(self.lines[self.place][1]):
             self.place += 1
 
     def _skip(self) -> None:
-        """Lines that belong to nothing, in one remark."""
+        """Skip unrecognised lines with one remark."""
         line, text = self.lines[self.place]
         self.place += 1
         self._to_next()
@@ -360,7 +353,7 @@ def _begins(text: str) -> bool:
 
 
 def _numbers(text: str, names: Sequence[str]) -> list[float] | None:
-    """A line of names and numbers, exactly these names; None for another line."""
+    """Numbers of a line with exactly these names; None for another line."""
     found = _PAIR.findall(text)
     if _PAIR.sub("", text).strip() or [n for n, _ in found] != list(names):
         return None
@@ -369,7 +362,7 @@ def _numbers(text: str, names: Sequence[str]) -> list[float] | None:
 
 
 def _are_counters(values: Sequence[float]) -> bool:
-    """Whole and positive: number of the touch, of its pose and of its feature."""
+    """Whether the numbers of touch, pose and feature are whole and positive."""
     return all(0.0 < v < 1e6 and v == int(v) for v in values)
 
 

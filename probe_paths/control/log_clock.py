@@ -3,10 +3,11 @@
 from matstd.twin.units import DAY, HOUR
 
 _BACK = 0.5 * DAY
-"""A time of day that seems to be later by more than this is an earlier one of the same day."""
+"""A step of more than this, s, is a step back within the same day."""
 
 _PAUSE = 600.0
-"""A pause between two touches is rarely longer, s: an hour and less than this is a set clock."""
+"""Usual limit of a pause between two touches, s: a step of an hour and less than this is a clock
+that was set."""
 
 
 class LogClock:
@@ -14,7 +15,6 @@ class LogClock:
 
     Attributes:
         start: Time of day of the head, s; that of the first touch where the head has none.
-        remarks: Where the clock was set.
     """
 
     def __init__(self, start: int | None) -> None:
@@ -24,10 +24,10 @@ class LogClock:
         self._elapsed = 0.0
 
     def elapsed(self, now: int, line: int) -> float:
-        """Seconds since the begin at a time of day, s, that stands at a line; never falling.
+        """Seconds since the beginning at a time of day, s, read from a line; never decreasing.
 
         A clock that goes back by an hour (summer time ends) or on by one (it begins) has been set;
-        the time between the touches is then what is left of the hour.
+        the time between the touches is then the remainder of the hour.
         """
         if self._last is None or self.start is None:
             self.start = self._last = now

@@ -12,7 +12,6 @@ from matstd.twin.units import DEG
 MAX_PROBING_FEED = 1000.0
 """Above this a cycle 4 is refused, mm/min: the trigger delay and the overtravel grow with it."""
 
-
 SHORTEST_BACK = 1.0
 """Retract after a contact, mm: with less the ball still lies on the surface when it moves off."""
 
@@ -46,7 +45,7 @@ def system_datum(block: Block, state: State) -> float:
         available = ", ".join(text for d, text in system.items() if d in known)
         raise state.refusal(block, block.word("datum"), f"one of {available}")
     if datum in places and not state.is_synchronous:
-        raise state.refusal(block, "a position read ahead", f"{state.says.sync} before it")
+        raise state.refusal(block, "a position read ahead", f"{state.terms.sync} before it")
     fault = state.fault
     is_off = fault is not None and datum == (fault.work or fault.datum)
     if fault is not None and fault.label == Label.TURNED:  # the first move goes to zero
@@ -66,7 +65,7 @@ def read_datum(block: Block, state: State) -> None:
 
 
 def _place(datum: Datum, places: Mapping[Datum, str], state: State) -> float:
-    """Number of the tool, or where an axis stands: by its reading or from the preset."""
+    """Number of the tool, or position of an axis: its reading, or relative to the preset."""
     if datum not in places:
         return float(state.tool or 0)
     letter, frame = places[datum], state.frame
@@ -87,13 +86,13 @@ def check_cycle(state: State, block: Block, vector: Block, length: float) -> Non
     back, distance = block.number("back"), block.number("distance")
     if not SHORTEST_BACK <= back <= distance:
         raise state.refusal(
-            block, repr(block.text), f"{state.says.back} between {SHORTEST_BACK:g} mm and the path"
+            block, repr(block.text), f"{state.terms.back} between {SHORTEST_BACK:g} mm and the path"
         )
     is_down = state.is_search and vector.number("z") == -1.0
     if distance - back > LONGEST_SEARCH and not is_down:
         raise state.refusal(
             block,
-            f"a path of {distance:g} mm with {state.says.back} {back:g}",
+            f"a path of {distance:g} mm with {state.terms.back} {back:g}",
             f"at most {LONGEST_SEARCH:g} mm beyond the surface that is expected",
         )
 
@@ -114,12 +113,12 @@ def _plane_off(block: Block, state: State) -> None:
 
 
 def _plane(block: Block, state: State) -> None:
-    """A tilted plane: square to the tool, where the head says so, above everything."""
+    """A tilted plane: announced in the head, square to the tool, activated at the retract."""
     rotary = state.q[state.frame.rotary]
     if not state.is_tilted:
         raise state.refusal(block, repr(block.text), "a head that says FRAME SPATIAL")
     if not state.is_retracted or not np.all(np.isfinite(rotary)):
-        retract = state.says.retract
+        retract = state.terms.retract
         raise state.refusal(block, repr(block.text), f"a retract ({retract}) and the turn before")
     angles = np.array([block.number(a) for a in "abc"])
     if not state.frame.is_plane(angles, rotary):
@@ -148,8 +147,8 @@ def _tool_call(block: Block, state: State) -> None:
     if block.words["speed"] is not None:
         raise state.refusal(block, repr(block.text), "no speed: there is a probe in the spindle")
     if not state.is_tcpm_off or not state.is_retracted:
-        says = state.says
-        expected = f"{says.reset} and a retract with {says.machine} before it"
+        terms = state.terms
+        expected = f"{terms.reset} and a retract with {terms.machine} before it"
         raise state.refusal(block, repr(block.text), expected)
     state.tool = int(block.word("tool"))
     is_other = state.fault is not None and state.fault.datum is None
@@ -164,7 +163,7 @@ def _assign(block: Block, state: State) -> None:
 
 
 def _subtract(block: Block, state: State) -> None:
-    """FN 2: a parameter less a number, or less another parameter."""
+    """FN 2: a parameter minus a number or another parameter."""
     value, is_number = state.value(block, int(block.word("from"))), block.words["other"] is None
     other = block.number("value") if is_number else state.value(block, int(block.word("other")))
     if not isinstance(value, float) or not isinstance(other, float):

@@ -83,10 +83,10 @@ def _feed(state: State, block: Block) -> float | None:
     if word is not None:
         state.feed = float(word)
     if not state.feed:
-        raise state.refusal(block, repr(block.text), f"a feed above zero, or {state.says.rapid}")
+        raise state.refusal(block, repr(block.text), f"a feed above zero, or {state.terms.rapid}")
     if state.feed > MAX_FEED:
         raise state.refusal(
-            block, f"F{state.feed:.0f}", f"F{MAX_FEED:.0f} at most, or {state.says.rapid}"
+            block, f"F{state.feed:.0f}", f"F{MAX_FEED:.0f} at most, or {state.terms.rapid}"
         )
     return state.feed
 
@@ -96,9 +96,9 @@ def _turn(state: State, block: Block, target: Array, letters: list[str], rotary:
     if len(rotary) != len(letters):
         raise state.refusal(block, repr(block.text), "rotary axes in a block of their own")
     if not state.is_retracted:
-        raise state.refusal(block, repr(block.text), f"a retract ({state.says.retract}) before it")
+        raise state.refusal(block, repr(block.text), f"a retract ({state.terms.retract}) before it")
     if state.plane is not None:
-        raise state.refusal(block, repr(block.text), f"{state.says.plane} before it")
+        raise state.refusal(block, repr(block.text), f"{state.terms.plane} before it")
     state.stale |= {Q.POSE, Q.SIDE_1, Q.SIDE_2}
     state.turns, state.turn_tested = state.turns + 1, set()
     for letter in rotary:
@@ -118,15 +118,15 @@ def _retract(state: State, block: Block, target: Array, letters: list[str]) -> N
     """Rules for a block with M91: Z alone, up, to the top of its travel."""
     if not state.is_tcpm_off:
         raise state.refusal(
-            block, repr(block.text), f"{state.says.reset} before {state.says.machine}"
+            block, repr(block.text), f"{state.terms.reset} before {state.terms.machine}"
         )
     if letters != ["Z"]:
-        raise state.refusal(block, repr(block.text), f"Z alone with {state.says.machine}")
+        raise state.refusal(block, repr(block.text), f"Z alone with {state.terms.machine}")
     column = state.frame.chain.axis_index("Z")
     top = state.frame.chain.link("Z").range[1]
     if target[column] < top - TOP:
         raise state.refusal(
-            block, f"Z{target[column]:+.4f} {state.says.machine}", f"at least Z{top - TOP:+.4f}"
+            block, f"Z{target[column]:+.4f} {state.terms.machine}", f"at least Z{top - TOP:+.4f}"
         )
     if target[column] < state.q[column] - SAME:
         raise state.refusal(block, repr(block.text), "a retract that does not go down")
@@ -136,11 +136,11 @@ def _retract(state: State, block: Block, target: Array, letters: list[str]) -> N
 def _check_height(
     state: State, block: Block, target: Array, letters: list[str], is_rapid: bool
 ) -> None:
-    """Rules for X, Y, Z blocks: high up anything, below the clearance height slowly along Z."""
+    """Rules for X, Y, Z blocks: free above the clearance height, fed and along Z below it."""
     column = state.frame.chain.axis_index("Z")
     before, after = state.q[column], target[column]
     if not np.isfinite(before):
-        raise state.refusal(block, repr(block.text), f"a retract ({state.says.retract}) first")
+        raise state.refusal(block, repr(block.text), f"a retract ({state.terms.retract}) first")
     if state.is_retracted:
         if "Z" not in letters:
             return
@@ -150,6 +150,7 @@ def _check_height(
         state.is_retracted, state.clearance = False, after
         return
     assert state.clearance is not None
+    # straight up leads away from everything and may be rapid
     is_up = letters == ["Z"] and after >= before
     if is_rapid and not is_up and min(before, after) < state.clearance - SAME:
         raise state.refusal(
@@ -167,7 +168,7 @@ def _check_height(
 
 
 def _arrive(state: State, block: Block, target: Array) -> None:
-    """The machine stands at the target."""
+    """Move the state to the target."""
     if state.way_back is not None:
         if not np.allclose(target, state.way_back, rtol=0.0, atol=SAME, equal_nan=True):
             raise state.refusal(
@@ -187,7 +188,7 @@ def retract_max(state: State, block: Block) -> Move:
     state.check_status_was_tested(block)
     if not state.is_tcpm_off:
         raise state.refusal(
-            block, repr(block.text), f"{state.says.reset} before {state.says.retract_max}"
+            block, repr(block.text), f"{state.terms.reset} before {state.terms.retract_max}"
         )
     target = state.q.copy()
     column = state.frame.chain.axis_index("Z")

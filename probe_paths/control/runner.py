@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.nc.grammar import COMPARISONS, DEEPEST, Flow
+from matstd.nc.grammar import COMPARISONS, MAX_DEPTH, Flow
 from matstd.probe_paths.control.modes import check_cycle, read_datum, set_mode
 from matstd.probe_paths.control.motion import retract_max, straight_line
 from matstd.probe_paths.control.state import State
@@ -51,7 +51,6 @@ _SILENT = {
     Kind.PROBE_RESULT,
     Kind.PROBE_VECTOR,
 }
-
 
 _DECIMALS = 6
 _FORMAT = re.compile(r"%[\d.]+(?=LF|d)")
@@ -112,7 +111,7 @@ class Runner:
             i = self._next(i, block, state, flow, steps)
 
     def _next(self, i: int, block: Block, state: State, flow: Flow, steps: list[Step]) -> int:
-        """Execute one block; the index of the following one."""
+        """Execute one block; returns the index of the following one."""
         if block.kind is Kind.CALL:
             return flow.call(i, block.line, block.word("label"))
         if block.kind is Kind.LABEL and block.word("label") == "0":
@@ -132,7 +131,7 @@ class Runner:
         return i + 1
 
     def _jump(self, i: int, block: Block, state: State) -> int:
-        """FN 11, 12: a number decides at once; a touch's status is taken as good, and as missed."""
+        """FN 11, 12: a number decides at once; for the status of a touch both branches are run."""
         than, q, label = block.word("than"), int(block.word("q")), block.word("label")
         value, is_less = state.value(block, q), than == "LT"
         if q == Q.START or Label.is_behind(int(label)):
@@ -148,15 +147,15 @@ class Runner:
         touch = self.touches[value.touch]
         state.untested = None
         missed = state.copied()
-        # what has met something in the air ends the program, what has not goes on
+        # a contact in the air ends the program, no contact continues it
         wrong, right = (i + 1, target) if touch.is_air else (target, i + 1)
         self.branches += 1
-        if self.branches > DEEPEST:  # a branch that comes back to its own touch
+        if self.branches > MAX_DEPTH:  # a branch that comes back to its own touch
             raise state.refusal(block, "a loop without end", "a program that comes to M30")
         touch.on_miss.extend(self.run(wrong, missed, is_branch=True))
         self.branches -= 1
         if touch.is_air and not isinstance(touch.on_miss[-1], Halt):
-            raise state.refusal(block, "a contact in the air that goes on", state.says.halt)
+            raise state.refusal(block, "a contact in the air that does not stop", state.terms.halt)
         return right
 
     def _check_skip(self, i: int, block: Block, state: State) -> None:
@@ -172,12 +171,12 @@ class Runner:
             raise state.refusal(
                 block,
                 repr(block.text),
-                f"Q{Q.START:d} GT, a label behind the visit, a retract ({state.says.retract}) "
+                f"Q{Q.START:d} GT, a label behind the visit, a retract ({state.terms.retract}) "
                 "before it and there",
             )
 
     def _execute(self, i: int, block: Block, state: State) -> Step | None:
-        """Every block that changes the state or does something."""
+        """Execute a block that changes the state or makes a step."""
         if block.kind is Kind.LINE:
             return straight_line(state, block)
         if block.kind is Kind.RETRACT_MAX:
@@ -193,7 +192,7 @@ class Runner:
         return None
 
     def _probing(self, i: int, state: State) -> ProbeStep:
-        """Cycle 4, whose other three blocks stand before this one."""
+        """Execute cycle 4, whose other three blocks precede this one."""
         block, vector = self.blocks[i], self.blocks[i - 1]
         result = int(self.blocks[i - 2].word("q"))
         state.check_status_was_tested(block)
@@ -236,9 +235,9 @@ class Runner:
         left_over = state.parameters.get(result + STATUS)
         for part in range(4):
             state.write(block, result + part, Result(touch.index, part))
-        # the control has to write what is hoped for
+        # before a touch its status must be set to the opposite of the expected one
         if not isinstance(left_over, float) or (left_over >= 0.0) is not is_air:
-            unset = state.says.unset.format(q=result + STATUS)
+            unset = state.terms.unset.format(q=result + STATUS)
             raise state.refusal(
                 block,
                 "the status of the touch before",
@@ -255,7 +254,7 @@ class Runner:
         return block.kind is Kind.JUMP and block.word("label") == str(int(label))
 
     def _check_sides(self, block: Block, state: State, touch: ProbeStep) -> None:
-        """The sides that the log will state are those that the axes really came from."""
+        """Refuse stated sides that differ from those that the axes came from."""
         if any(other.number == touch.number for other in self.touches):
             raise state.refusal(block, f"touch number {touch.number} again", "a number of its own")
         names = state.frame.chain.rotary_axes
@@ -269,10 +268,10 @@ class Runner:
                 )
 
     def _print(self, block: Block, state: State) -> Print:
-        """FN 16 with the values of this moment."""
+        """FN 16 with the present values."""
         state.check_status_was_tested(block)
         if not state.is_synchronous:
-            raise state.refusal(block, "a line printed ahead", f"{state.says.sync} before it")
+            raise state.refusal(block, "a line printed ahead", f"{state.terms.sync} before it")
         self._check_place(block, state)
         lines = self._mask(block, state)
         wanted = {a for line in lines for a in line.arguments if isinstance(a, int)}
@@ -283,7 +282,7 @@ class Runner:
         return Print(block.line, lines, block.word("target").split("\\")[-1], values)
 
     def _check_place(self, block: Block, state: State) -> None:
-        """One log of the program's name, in the folder of its masks."""
+        """Refuse a log of another name than the program's or in another folder than the masks."""
         target, mask = block.word("target"), block.word("mask")
         folder = target.rpartition("\\")[0]
         self.folder = self.folder or folder
@@ -308,7 +307,7 @@ class Runner:
     def _readable(
         self, lines: tuple[MaskLine, ...], block: Block, state: State
     ) -> tuple[MaskLine, ...]:
-        """Lines that the reader of logs will know: a head, a touch, a missed one or an end."""
+        """Refuse lines that the reader of logs does not know."""
         if _shape(lines) not in self.readable:
             raise state.refusal(
                 block,
@@ -322,10 +321,10 @@ class Runner:
         if flow.returns:
             raise state.refusal(block, "M30 inside a subprogram", "LBL 0 at its end")
         if not state.is_retracted:
-            raise state.refusal(block, "M30", f"a retract ({state.says.retract}) at the end")
+            raise state.refusal(block, "M30", f"a retract ({state.terms.retract}) at the end")
 
     def _check_alarm(self, i: int, state: State, fault: Interlock) -> None:
-        """A stop says what is wrong by the label that it stands behind."""
+        """Refuse a stop behind another label than that of its alarm."""
         label = next(b for b in reversed(self.blocks[:i]) if b.kind is Kind.LABEL)
         if label.word("label") != str(int(fault.label)):
             raise state.refusal(
@@ -335,14 +334,14 @@ class Runner:
             )
 
     def _check_halt(self, block: Block, steps: list[Step], is_branch: bool) -> None:
-        """Only a touch without contact may end a program early, and only after a retract."""
+        """Refuse an early end other than after a touch without contact and a retract."""
         up = [step for step in steps if isinstance(step, Move)]
         if not is_branch or len(up) != 1 or up[0].checked:
             raise BadFile(
                 self.path,
                 f"line {block.line}",
                 repr(block.text),
-                f"{language_of(self.path).says.retract_max}, and no other move, after a touch "
+                f"{language_of(self.path).terms.retract_max}, and no other move, after a touch "
                 "without contact",
             )
 
@@ -354,5 +353,5 @@ class Runner:
                     self.path,
                     f"line {touch.line}",
                     f"touch {touch.number} without a log line",
-                    f"{language_of(self.path).says.printed} with its results",
+                    f"{language_of(self.path).terms.printed} with its results",
                 )

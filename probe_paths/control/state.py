@@ -1,4 +1,4 @@
-"""The control while it runs one of our programs: positions, modes, parameters, and what forbids."""
+"""State of the control during one of our programs: positions, modes, parameters, and refusals."""
 
 import copy
 from dataclasses import dataclass, field
@@ -7,7 +7,15 @@ from pathlib import Path
 import numpy as np
 
 from matstd.probe_paths.control.steps import Value
-from matstd.probe_paths.language import FREE, Block, Interlock, Label, Says, language_of, turn_tests
+from matstd.probe_paths.language import (
+    FREE,
+    Block,
+    Interlock,
+    Label,
+    Terms,
+    language_of,
+    turn_tests,
+)
 from matstd.probe_paths.plan import ProgramFrame
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
@@ -28,11 +36,9 @@ class State:
     """Everything that one block can change.
 
     Attributes:
-        path: Program file, for messages.
         frame: Conversion of words to readings.
         q: Readings, (A,); nan where an axis has not been positioned.
         side: Sign of the last motion of every axis, (A,).
-        parameters: Q parameters that have been set.
         feed: Modal feed, mm/min.
         is_tcpm_off: None until the program says.
         is_radius_off: R0 has been read.
@@ -41,15 +47,13 @@ class State:
         is_tilted: The head says that coordinates are those of tilted planes.
         plane: Of the plane that is active; None where none is.
         shift_off: Axes whose datum shift was set to zero.
-        preset: Active row.
-        tool: Called tool.
         is_retracted: Z stands where M91 or M140 put it.
         clearance: Reading of Z that the first move down from the retract went to.
-        untested: Touch whose status was not looked at yet.
+        untested: Touch whose status has not been tested.
         way_back: Readings that the next move must return to after a touch.
         is_synchronous: FN 20 was read since the last motion.
         is_spindle_off: M5 has been read.
-        fault: What is not as planned while it is tried whether the program stops.
+        fault: Planted deviation at which the program has to stop.
         stale: Counters that belong to the touch or the visit before.
         off: By how much, mm or degrees.
         is_search: Touches may be long where they come from above.
@@ -99,25 +103,25 @@ class State:
         return other
 
     @property
-    def says(self) -> Says:
+    def terms(self) -> Terms:
         """How the program's language says what a refusal asks for."""
-        return language_of(self.path).says
+        return language_of(self.path).terms
 
     def refusal(self, block: Block, found: str, expected: str) -> BadFile:
         """The one clear line about a block."""
         return BadFile(self.path, f"line {block.line}", found, expected)
 
     def check_ready(self, block: Block, what: str) -> None:
-        """Preset, tool and a reset frame are there before a coordinate is believed."""
+        """Refuse a coordinate before preset, tool and a reset frame."""
         missing = [
             name
             for name, there in (
                 ("M5", self.is_spindle_off or "M5" not in language_of(self.path).reset),
-                (self.says.reset, self.is_tcpm_off),
-                (self.says.plane, self.is_plane_off),
-                (self.says.shift, self.shift_off == set("XYZ")),
-                (self.says.tool, self.tool is not None),
-                (self.says.preset, self.preset is not None),
+                (self.terms.reset, self.is_tcpm_off),
+                (self.terms.plane, self.is_plane_off),
+                (self.terms.shift, self.shift_off == set("XYZ")),
+                (self.terms.tool, self.tool is not None),
+                (self.terms.preset, self.preset is not None),
             )
             if not there
         ]
@@ -125,7 +129,7 @@ class State:
             raise self.refusal(block, what, f"{missing[0]} before it")
 
     def check_is_as_planned(self, block: Block) -> None:
-        """No probe goes down where something is not as planned and could have been tested."""
+        """Refuse a move down while a fault has not been tested."""
         if self.fault is not None:
             raise self.refusal(
                 block,
@@ -134,7 +138,7 @@ class State:
             )
 
     def check_turn_was_tested(self, block: Block) -> None:
-        """Rotary axes stand where they were sent, where a control may understand a turn otherwise.
+        """Refuse a touch before a test of the rotary axes, where a control may turn otherwise.
 
         A test takes the planned reading off the one that was read, and has both limits.
         """
@@ -157,12 +161,12 @@ class State:
             self.turn_tested.add((letter, is_less))
 
     def check_status_was_tested(self, block: Block) -> None:
-        """Nothing may happen between a touch and the look at its status."""
+        """Refuse a block between a touch and the test of its status."""
         if self.untested is not None:
             raise self.refusal(
                 block,
                 f"{block.text!r} after touch {self.untested + 1}",
-                f"{self.says.status} first",
+                f"{self.terms.status} first",
             )
 
     def write(self, block: Block, q: int, value: Value) -> None:
@@ -174,7 +178,7 @@ class State:
         self.reached.pop(q, None)
 
     def value(self, block: Block, q: int) -> Value:
-        """A Q parameter that has been set in this run; nothing left over from others counts."""
+        """A Q parameter that this run has set; values left by other programs do not count."""
         if q not in self.parameters:
             raise self.refusal(block, f"Q{q} without a value", "a parameter set by this program")
         return self.parameters[q]

@@ -28,7 +28,6 @@ class Move:
     """Positioning to a target.
 
     Attributes:
-        line: In the program file.
         q: Readings at the end, (A,), mm and rad; nan where an axis has not been positioned yet.
         feed: mm/s or rad/s; None is rapid.
         checked: False for a move that ends in mid-air by definition (M140), not at a position.
@@ -84,9 +83,6 @@ class Print:
     """Lines that FN 16 writes.
 
     Attributes:
-        line: In the program file.
-        lines: Of the mask.
-        target: Name of the log file.
         values: Of the Q parameters in the mask; a sensor for one that it is read from then.
     """
 
@@ -112,11 +108,8 @@ class ReadProgram:
     """A program as its text alone states it.
 
     Attributes:
-        path: Of the file.
-        name: Of the program.
         heading: Standard, set-up and probe that it was made for.
         features: Name of every feature number.
-        steps: In order of execution.
         is_search: Its touches come down from above on whatever is there.
         is_first: It is one that a control is tried with, and measures nothing.
         tool: Number of the tool that it calls.

@@ -26,7 +26,6 @@ _NAMES = {
     Kind.PROBE_PATH: "4.3",
 }
 
-
 _DIGITS = 1e-4
 """Of a coordinate in a program, mm."""
 
@@ -138,7 +137,7 @@ def heading(blocks: Sequence[Block], path: Path) -> tuple[Heading, Mapping[int, 
     head, _ = parse_heading(remarks[starts[0] :], path)
     if head.workshop is None:
         found = "no comments ';STACK ...' and ';BODY ...'"
-        raise BadFile(path, "head", found, "what must be kept clear: emit the program anew")
+        raise BadFile(path, "head", found, "what must be kept clear: emit the program again")
     features: dict[int, str] = {}
     for line, text in remarks:
         match = _FEATURE.fullmatch(text)
@@ -151,7 +150,6 @@ def heading(blocks: Sequence[Block], path: Path) -> tuple[Heading, Mapping[int, 
 
 
 def _remarks(blocks: Sequence[Block]) -> list[tuple[int, str]]:
-    """Comments with their lines."""
     return [(b.line, b.word("text").strip()) for b in blocks if b.kind is Kind.COMMENT]
 
 
@@ -162,6 +160,7 @@ def promise(blocks: Sequence[Block], head: Heading, path: Path) -> Promise:
         BadFile: One of the three remarks is missing, or states another probe than the heading.
     """
     remarks = _remarks(blocks)
+    # a dry run makes no touches
     if any(_DRY.fullmatch(text) for _, text in remarks):
         made = range(0)
     else:
@@ -192,7 +191,7 @@ def promise(blocks: Sequence[Block], head: Heading, path: Path) -> Promise:
 def _remark(
     pattern: re.Pattern[str], form: str, remarks: Sequence[tuple[int, str]], path: Path
 ) -> tuple[tuple[str, ...], int]:
-    """Parts of the first remark of a form, and its line."""
+    """Groups of the first remark that matches, and its line."""
     for line, text in remarks:
         match = pattern.fullmatch(text)
         if match is not None:

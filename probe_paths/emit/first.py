@@ -1,7 +1,7 @@
-"""The commissioning program: everything that the others rely on, once, in as few blocks as can be.
+"""The commissioning program: everything that the others rely on, once, in few blocks.
 
-A programming station without a licence keeps a hundred blocks. So it tests what decides where the
-ball comes down and nothing else, goes to one alarm, and prints its whole log at once.
+A programming station without a licence keeps a hundred blocks. The program therefore tests only
+what decides where the ball comes down, has one alarm, and prints its whole log at once.
 """
 
 import numpy as np
@@ -23,6 +23,7 @@ class FirstWriter(Writer):
     def text(self, name: str, title: str, part: list[int], duration: float) -> str:
         """Whole text: the touch from above, and one in the air where the way down begins."""
         k = self.language
+        # one alarm for all tests: each label would cost blocks of the hundred
         row, visit = self._touch_from_above(), self.plan.visits[0]
         tests = interlocks(k, self.frame, is_first=True)
         blocks = [
@@ -34,7 +35,7 @@ class FirstWriter(Writer):
             k.preset(self.dialect.preset),
             self.retract,
             *self._home(),
-            *self._read(),
+            *self._probe_data(),
             *(block for test in tests for block in self._tested(test)),
             *self._in_air(row, visit.height),
             *self._on_ball(row, visit.pose),
@@ -61,31 +62,16 @@ class FirstWriter(Writer):
         return row
 
     def _first_remarks(self, row: int, duration: float) -> list[str]:
-        assert self.special is not None
-        k, probe, feature = self.language, self.plan.probe, str(self.plan.feature[row])
-        table = f"L{probe.tool_length:+.4f} R{probe.radius:+.4f}"
+        assert self.purpose is not None
+        k, feature = self.language, str(self.plan.feature[row])
         remarks = [
             *self.heading.lines,
             f"FEATURE {self.number[feature]} IS {feature}",
             f"TOUCHES 1 TO 1, ABOUT {max(duration / MINUTE, 1.0):.0f} MIN",
-            *self.special.remarks,
-            f"PRESET {self.dialect.preset}: TABLE CENTRE WITH ROTARY AXES AT ZERO, NO ROT",
-            f"TOOL {self.dialect.tool} IS THE PROBE: {table}, SPINDLE MUST NOT TURN",
+            *self.purpose.remarks,
+            *self._tool_remarks(),
         ]
         return [k.comment(text) for text in remarks]
-
-    def _read(self) -> list[str]:
-        """Calibration of the probe, tool and preset."""
-        k = self.language
-        return [
-            k.wait,
-            k.read(Q.PROBE_RADIUS, Datum.RADIUS),
-            k.read(Q.PROBE_LENGTH, Datum.LENGTH),
-            k.read(Q.OFFSET_X, Datum.OFFSET_X),
-            k.read(Q.OFFSET_Y, Datum.OFFSET_Y),
-            k.read(Q.TOOL, Datum.TOOL),
-            k.assign(Q.PRESET, self.dialect.preset),
-        ]
 
     def _places(self) -> list[tuple[Q, str]]:
         return list(zip((Q.ROTARY_1, Q.ROTARY_2), self.rotary, strict=False))
@@ -97,7 +83,7 @@ class FirstWriter(Writer):
         return self.language.probe_vector(self.dialect, Q.RESULT_X, touch)
 
     def _in_air(self, row: int, height: float) -> list[str]:
-        """The same cycle high above the ball: its status must say that it met nothing."""
+        """The same cycle high above the ball: its status must report no contact."""
         k = self.language
         start = self.frame.coordinates(self.plan.start[row], "XY")
         back = {**start, "Z": self.frame.coordinate("Z", height)}

@@ -1,8 +1,8 @@
 """A plan as programs: rotary axes by moves of their own, X Y Z from our own kinematics.
 
 Every program starts from any state, sets what it reads, touches only after a retract and a pre-move
-from the stated side, looks at the status of every touch, and is read back by the strict interpreter
-before it is handed out.
+from the stated side, tests the status of every touch, and is read back by the strict interpreter
+before it is returned.
 """
 
 from dataclasses import dataclass, field, replace
@@ -12,7 +12,7 @@ import numpy as np
 
 from matstd.probe_paths.control import BALL, FIRST, Clock, ReadProgram, interpret, step_times
 from matstd.probe_paths.emit.first import FirstWriter
-from matstd.probe_paths.emit.writer import Feeds, Special, Writer
+from matstd.probe_paths.emit.writer import Feeds, Purpose, Writer
 from matstd.probe_paths.language import LANGUAGES, Dialect, checked_name, head_mask, shared_masks
 from matstd.probe_paths.plan import TouchPlan
 from matstd.twin.errors import DesignError
@@ -24,7 +24,7 @@ DRY_RUN, SEARCH = "DRY", "LOC"
 """Last letters of the names of these programs; others have `BALL` and `FIRST`."""
 
 SEARCH_FEED = 800.0
-"""Of a search, mm/min: what is found needs 0.3 mm, and its touches are 100 mm long."""
+"""Of a search, mm/min: its touches are 100 mm long, and the place is needed to 0.3 mm only."""
 
 
 @dataclass(frozen=True)
@@ -32,10 +32,6 @@ class Program:
     """One program file.
 
     Attributes:
-        name: Without its ending.
-        ending: Of its file.
-        text: Whole file.
-        touches: How many it makes.
         duration: By the clock, s.
         read: What the interpreter understood of it.
     """
@@ -60,12 +56,7 @@ class Program:
 
 @dataclass(frozen=True)
 class ProgramSet:
-    """Programs of one plan.
-
-    Attributes:
-        programs: In order.
-        masks: That they print through, by file name.
-    """
+    """Programs of one plan."""
 
     programs: tuple[Program, ...]
     masks: dict[str, str]
@@ -93,17 +84,11 @@ def make_programs(
 ) -> ProgramSet:
     """Programs of a plan; they do not depend on when or where they are made.
 
-    Args:
-        plan: Of one set-up.
-        dialect: Words of the control.
-        feeds: Feeds, and the length of a file.
-        clock: For the duration that the head states.
-
     Raises:
         BadFile: The strict interpreter does not accept what was written.
         DesignError: A name or number that cannot stand in a program.
     """
-    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock())
+    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock=clock)
     limits, sizes = made.writer.feeds, np.bincount(plan.visit, minlength=len(plan.visits))
     count = max(int(np.ceil(sizes.sum() / limits.touches_per_file)), 1)
     while True:
@@ -123,19 +108,14 @@ def make_dry_run(
     raised: float,
     dialect: Dialect | None = None,
     feeds: Feeds | None = None,
-    clock: Clock | None = None,
 ) -> ProgramSet:
     """One program that goes where a plan's programs go, higher, and touches nothing.
 
     Args:
-        plan: Of one set-up.
         raised: By how much, mm; moves that would end above the retract end there.
-        dialect: Words of the control.
-        feeds: Feeds.
-        clock: For its duration.
     """
-    special = Special(DRY_RUN, raised=raised)
-    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), special)
+    purpose = Purpose(DRY_RUN, raised=raised)
+    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), purpose)
     return ProgramSet(made.programs([list(range(len(plan.visits)))]), {})
 
 
@@ -144,57 +124,39 @@ def make_search(
     within: tuple[float, float],
     dialect: Dialect | None = None,
     feeds: Feeds | None = None,
-    clock: Clock | None = None,
 ) -> ProgramSet:
     """One program that comes down on a standard from above wherever it stands.
 
     Args:
-        plan: Of the search.
         within: How far beside its place the standard may stand, mm and rad.
-        dialect: Words of the control.
         feeds: Feeds; it touches at `SEARCH_FEED`.
-        clock: For its duration.
     """
     feeds = replace(feeds or Feeds(), probing=SEARCH_FEED)
     mm, angle = within
     stands = f"SEARCH FROM ABOVE, STANDS WITHIN {mm:.1f} MM AND {angle / DEG:.2f} DEG"
-    special = Special(SEARCH, (stands,))
-    made = _Maker(plan, dialect or Dialect(), feeds, clock or Clock(), special)
-    return ProgramSet(made.programs([list(range(len(plan.visits)))]), made.printed_masks)
+    purpose = Purpose(SEARCH, (stands,))
+    return _one_program(plan, purpose, dialect, feeds)
 
 
 def make_ball(
     plan: TouchPlan,
     dialect: Dialect | None = None,
     feeds: Feeds | None = None,
-    clock: Clock | None = None,
 ) -> ProgramSet:
-    """One program that measures a ball of the standard, before the others and after them.
-
-    Args:
-        plan: Of touches on one ball.
-        dialect: Words of the control.
-        feeds: Feeds.
-        clock: For its duration.
-    """
-    special = Special(BALL, (f"PROBE ON BALL {plan.feature[0]}, BEFORE AND AFTER THE OTHERS",))
-    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock or Clock(), special)
-    return ProgramSet(made.programs([list(range(len(plan.visits)))]), made.printed_masks)
+    """One program that measures a ball of the standard, before the others and after them."""
+    purpose = Purpose(BALL, (f"PROBE ON BALL {plan.feature[0]}, BEFORE AND AFTER THE OTHERS",))
+    return _one_program(plan, purpose, dialect, feeds)
 
 
 def make_first(
     plan: TouchPlan,
     dialect: Dialect | None = None,
     feeds: Feeds | None = None,
-    clock: Clock | None = None,
 ) -> ProgramSet:
     """The program that a control is tried with: one touch in the air and one on a ball.
 
     Args:
         plan: Of touches on one ball, with the rotary axes at home.
-        dialect: Words of the control, in Klartext.
-        feeds: Feeds.
-        clock: For its duration.
 
     Raises:
         NotReachable: The ball is touched at another pose than home, or not from above.
@@ -204,31 +166,39 @@ def make_first(
     if not LANGUAGES[dialect.language].has_masks:
         raise DesignError(f"a commissioning program in {dialect.language}: expected klartext")
     remark = f"COMMISSIONING: ONE TOUCH IN AIR, ONE ON BALL {plan.feature[0]}"
-    special = Special(FIRST, (remark,), is_first=True)
-    made = _Maker(plan, dialect, feeds or Feeds(), clock or Clock(), special)
+    purpose = Purpose(FIRST, (remark,), is_first=True)
+    made = _Maker(plan, dialect, feeds or Feeds(), purpose)
     return ProgramSet(made.programs([[0]]), made.printed_masks)
 
 
+def _one_program(
+    plan: TouchPlan, purpose: Purpose, dialect: Dialect | None, feeds: Feeds | None
+) -> ProgramSet:
+    """All visits of a plan in one program."""
+    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), purpose)
+    return ProgramSet(made.programs([list(range(len(plan.visits)))]), made.printed_masks)
+
+
 class _Maker:
-    """Makes programs of parts of a plan, each read back before it is handed out."""
+    """Makes programs of parts of a plan, each read back before it is returned."""
 
     def __init__(
         self,
         plan: TouchPlan,
         dialect: Dialect,
         feeds: Feeds,
-        clock: Clock,
-        special: Special | None = None,
+        purpose: Purpose | None = None,
+        clock: Clock | None = None,
     ) -> None:
-        self.plan, self.dialect, self.clock = plan, dialect, clock
+        self.plan, self.dialect, self.clock = plan, dialect, clock or Clock()
         self.language = LANGUAGES[dialect.language]
         form, rotary = self.language.log, plan.chain.rotary_axes
         self.shared = shared_masks(form, dialect.log_decimals, rotary, dialect.sensors)
         self.masks = dict(self.shared)
-        self.is_first = special is not None and special.is_first
+        self.is_first = purpose is not None and purpose.is_first
         written_by = FirstWriter if self.is_first else Writer
-        self.writer = written_by(plan, dialect, feeds, self.masks, special)
-        self.only = special.ending if special else ""
+        self.writer = written_by(plan, dialect, feeds, self.masks, purpose)
+        self.only = purpose.ending if purpose else ""
 
     @property
     def printed_masks(self) -> dict[str, str]:
@@ -271,22 +241,20 @@ class _Maker:
         )
 
     def _read(self, name: str, text: str) -> ReadProgram:
-        """A program, read back from its text."""
         plan, path = self.plan, Path(f"{name}{self.language.ending}")
         data, masks = text.encode("ascii"), self.masks.get
         return interpret(data, path, masks, plan.chain, plan.probe, self.dialect)
 
     def _duration(self, read: ReadProgram) -> float:
-        """Duration of a program, s."""
         plan = self.plan
-        # what a search meets nobody knows: as long as it can take
+        # the contacts of a search are unknown: every touch takes its longest path
         travel = np.full(len(read.touches), plan.options.standoff)
         travel = np.full(len(travel), plan.distance) if read.is_search else travel
         return float(step_times(plan.chain, read.steps, self.clock, travel)[-1])
 
 
 def _is_same_but_for_a_remark(text: str, other: str) -> bool:
-    """Whether at most one line of two programs differs, in its remark: they do the same."""
+    """Whether two programs differ at most in the remark of one line."""
     lines, others = text.splitlines(), other.splitlines()
     changed = [pair for pair in zip(lines, others, strict=False) if pair[0] != pair[1]]
     before = [{line.partition(";")[0] for line in pair} for pair in changed]
@@ -294,7 +262,7 @@ def _is_same_but_for_a_remark(text: str, other: str) -> bool:
 
 
 def _parts(sizes: IntArray, count: int) -> list[list[int]]:
-    """Visits of each of `count` files: whole visits, as evenly as their sizes allow."""
+    """Whole visits for each of `count` files, distributed evenly."""
     before = np.cumsum(sizes) - sizes
     part = np.minimum(before * count // max(int(sizes.sum()), 1), count - 1)
     return [list(np.flatnonzero(part == i)) for i in range(count) if np.any(part == i)]

@@ -1,4 +1,4 @@
-"""The blocks of a plan's programs, in the order in which a cautious operator would have them."""
+"""The blocks of a plan's programs, in the order that a cautious operator would choose."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -62,12 +62,11 @@ class Feeds:
 
 
 @dataclass(frozen=True)
-class Special:
+class Purpose:
     """What a program beside those that measure is for.
 
     Attributes:
         ending: Last letters of its name.
-        remarks: That its head has of it.
         raised: By how much a dry run is raised, which goes where the programs go and touches
             nothing, mm; None for a program that touches.
         is_first: It is written by `first`: one touch in the air and one on a ball.
@@ -80,15 +79,7 @@ class Special:
 
 
 class Writer:
-    """Writes the text of one plan's programs.
-
-    Args:
-        plan: Of one set-up.
-        dialect: Of the control.
-        feeds: Feeds.
-        masks: By file name.
-        special: What they are for; None where they measure.
-    """
+    """Writes the text of one plan's programs."""
 
     def __init__(
         self,
@@ -96,13 +87,14 @@ class Writer:
         dialect: Dialect,
         feeds: Feeds,
         masks: Mapping[str, str],
-        special: Special | None = None,
+        purpose: Purpose | None = None,
     ) -> None:
         self.plan, self.dialect, self.feeds, self.masks = plan, dialect, feeds, masks
-        self.special = special
-        self.raised = special.raised if special else None
+        self.purpose = purpose
+        self.raised = purpose.raised if purpose else None
         self.language = LANGUAGES[dialect.language]
-        is_first = special is not None and special.is_first
+        is_first = purpose is not None and purpose.is_first
+        # the commissioning program touches at home only, where no plane is tilted
         tilted = dialect.is_tilted and not is_first
         self.tilting = self.language.tilting if tilted and dialect.has_planes else None
         if tilted and self.tilting is None:
@@ -117,7 +109,7 @@ class Writer:
             probe=plan.probe,
             workshop=plan.options.workshop,
             serial=stated_serial(plan.standard.serial),
-            calibration=calibration_hash(self._alone(plan)),
+            calibration=calibration_hash(self._without_workshop_ball(plan)),
             ball=plan.options.ball,
             is_tilted=self.tilting is not None,
             sensors=() if is_first else dialect.sensors,
@@ -127,8 +119,8 @@ class Writer:
         self.retract = self.language.retract(self.top)
 
     @staticmethod
-    def _alone(plan: TouchPlan) -> Standard:
-        """The standard without the ball of the workshop, which has no calibration of its own."""
+    def _without_workshop_ball(plan: TouchPlan) -> Standard:
+        """The standard without the workshop's ball, which is not part of its calibration."""
         standard = plan.standard
         if plan.options.ball is None:
             return standard
@@ -157,9 +149,8 @@ class Writer:
         return k.listed([*head, *body, k.end(name)])
 
     def _remarks(self, rows: IntArray, duration: float) -> list[str]:
-        """What the operator must know, and what a reader of the text must."""
-        k, probe = self.language, self.plan.probe
-        table = f"L{probe.tool_length:+.4f} R{probe.radius:+.4f}"
+        """Facts for the operator and for the reader of the text."""
+        k = self.language
         used = dict.fromkeys(self.plan.feature[rows].tolist())
         features = sorted(used, key=self.number.__getitem__)
         return [
@@ -170,12 +161,18 @@ class Writer:
                 if self.raised is None
                 else f"DRY RUN, RAISED BY {self.raised:+.1f} MM, NO TOUCH"
             ),
-            *(k.comment(text) for text in (self.special.remarks if self.special else ())),
-            k.comment(
-                f"PRESET {self.dialect.preset}: TABLE CENTRE WITH ROTARY AXES AT ZERO, NO ROT"
-            ),
-            k.comment(f"TOOL {self.dialect.tool} IS THE PROBE: {table}, SPINDLE MUST NOT TURN"),
+            *(k.comment(text) for text in (self.purpose.remarks if self.purpose else ())),
+            *(k.comment(text) for text in self._tool_remarks()),
             k.comment("TABLE MUST BE FREE TO TURN WITH Z RETRACTED"),
+        ]
+
+    def _tool_remarks(self) -> list[str]:
+        """Preset and tool that the operator must provide."""
+        probe, dialect = self.plan.probe, self.dialect
+        table = f"L{probe.tool_length:+.4f} R{probe.radius:+.4f}"
+        return [
+            f"PRESET {dialect.preset}: TABLE CENTRE WITH ROTARY AXES AT ZERO, NO ROT",
+            f"TOOL {dialect.tool} IS THE PROBE: {table}, SPINDLE MUST NOT TURN",
         ]
 
     def _stock(self) -> list[str]:
@@ -195,7 +192,7 @@ class Writer:
         return [*first, k.preset(dialect.preset), self.retract, *self._home()]
 
     def _home(self) -> list[str]:
-        """Rotary axes to where every program begins and ends, the way that unwinds them."""
+        """Rotary axes to the position where programs begin and end, unwinding them."""
         k, home = self.language, home_readings(self.plan.chain)
         return [*k.unwind, *([k.line(self._words(home), None)] if self.rotary else [])]
 
@@ -206,18 +203,8 @@ class Writer:
 
     def _calibration(self, name: str) -> list[str]:
         """Log of the probe's calibration, the tool and the preset."""
-        k = self.language
-        log = [
-            k.structure("LOG THE PROBE"),
-            k.wait,
-            k.read(Q.PROBE_RADIUS, Datum.RADIUS),
-            k.read(Q.PROBE_LENGTH, Datum.LENGTH),
-            k.read(Q.OFFSET_X, Datum.OFFSET_X),
-            k.read(Q.OFFSET_Y, Datum.OFFSET_Y),
-            k.read(Q.TOOL, Datum.TOOL),
-            k.assign(Q.PRESET, self.dialect.preset),
-            self._print(f"{name}.A", name),
-        ]
+        k, printed = self.language, self._print(f"{name}.A", name)
+        log = [k.structure("LOG THE PROBE"), *self._probe_data(), printed]
         return [
             *(log if self.raised is None else []),
             k.structure("TEST PROBE, PRESET AND MACHINE"),
@@ -225,8 +212,21 @@ class Writer:
             *(block for test in self.tests for block in self._tested(test)),
         ]
 
+    def _probe_data(self) -> list[str]:
+        """Read the calibration of the probe and the tool; note the preset."""
+        k = self.language
+        return [
+            k.wait,
+            k.read(Q.PROBE_RADIUS, Datum.RADIUS),
+            k.read(Q.PROBE_LENGTH, Datum.LENGTH),
+            k.read(Q.OFFSET_X, Datum.OFFSET_X),
+            k.read(Q.OFFSET_Y, Datum.OFFSET_Y),
+            k.read(Q.TOOL, Datum.TOOL),
+            k.assign(Q.PRESET, self.dialect.preset),
+        ]
+
     def _tested(self, test: Interlock) -> list[str]:
-        """Read, take off what is planned, and stop where too much is left."""
+        """Read, subtract the planned value, and stop where the rest exceeds its limit."""
         k = self.language
         if test.datum is None:
             rest = [k.difference(Q.CHECK, TOOL_LENGTH, test.planned)]
@@ -242,7 +242,7 @@ class Writer:
         ]
 
     def _alarms(self) -> list[str]:
-        """What stops the program where a test fails; the number of the label is the alarm."""
+        """Stops for failed tests; the number of the label is that of the alarm."""
         k = self.language
         alarms = {test.label: test.what for test in reversed(self.tests)}
         if self.rotary and k.tests_turns:
@@ -263,24 +263,24 @@ class Writer:
         return self.language.printed(control(mask), lines, control(f"{name}.TXT"))
 
     def _turn(self, here: Array, visit: Visit) -> list[str]:
-        """Retract, turn past the position, then to it from the stated side."""
-        k, out = self.language, [self.retract, *self._flat()]
+        """Retract, turn past the position, and approach it from the stated side."""
+        k, out = self.language, [self.retract, *self._end_plane()]
         if self.rotary:
             out += [k.turn(self._words(place)) for place in waypoints(here, visit.before)]
             out.append(k.line(self._words(visit.rotary), self.feeds.turning))
-            out += self._reached(visit.rotary) if k.tests_turns else []
+            out += self._turn_checks(visit.rotary) if k.tests_turns else []
         out += self._plane(visit)
         sides = zip((Q.SIDE_1, Q.SIDE_2), visit.side, strict=False)
         return [*out, k.assign(Q.POSE, visit.pose + 1), *(k.assign(q, s) for q, s in sides)]
 
-    def _reached(self, rotary: Array) -> list[str]:
-        """Test that the rotary axes stand where they were sent."""
+    def _turn_checks(self, rotary: Array) -> list[str]:
+        """Tests that the rotary axes have reached their programmed position."""
         words = self._words(rotary)
         tests = turn_tests(self.language, self.frame)
         planned = (test._replace(planned=words[str(test.datum)]) for test in tests)
         return [self.language.wait, *(block for test in planned for block in self._tested(test))]
 
-    def _flat(self) -> list[str]:
+    def _end_plane(self) -> list[str]:
         """End of a tilted plane, before the table turns."""
         return [self.tilting.off] if self.tilting else []
 
@@ -292,7 +292,6 @@ class Writer:
         return [self.tilting.on(list(self.frame.plane(visit.rotary)), master)]
 
     def _frame(self, visit: Visit) -> ProgramFrame:
-        """Coordinates of a visit."""
         return self.frame.tilted(visit.rotary) if self.tilting else self.frame
 
     def _touches(self, visit: Visit, rows: IntArray) -> list[str]:
@@ -314,7 +313,7 @@ class Writer:
                 k.assign(Q.FEATURE, self.number[feature]),
                 k.assign(Q.STATUS, -1),
                 k.line({a: start[a] for a in "XY"}, None),
-                *([up] if count == 0 else []),
+                *([up] if count == 0 else []),  # each touch ends at this height
                 k.line({"Z": start["Z"]}, feeds.approach),
                 *k.probe_vector(self.dialect, Q.RESULT_X, touch),
                 k.call(Label.LOG),
@@ -324,7 +323,7 @@ class Writer:
         return out
 
     def _dry(self, visit: Visit, rows: IntArray) -> list[str]:
-        """The same places, higher, without a touch."""
+        """Moves to the same places at a greater height, without touches."""
         assert self.raised is not None
         k, z = self.language, self.plan.chain.axis_index("Z")
         high, frame = min(visit.height + self.raised, self.top), self._frame(visit)
@@ -345,10 +344,10 @@ class Writer:
         k, printed = self.language, self._print(f"{SharedMask.END}.A", name)
         logged = [k.wait, printed] if self.raised is None else []
         end = [k.structure("END"), self.retract, *logged]
-        return [*end, *self._flat(), *self._home(), k.program_stop]
+        return [*end, *self._end_plane(), *self._home(), k.program_stop]
 
     def _subprograms(self, name: str) -> list[str]:
-        """Look at the status and log; retract and stop where there was no contact."""
+        """Test the status and log the touch; retract and stop where there was no contact."""
         k, places = self.language, zip((Q.ROTARY_1, Q.ROTARY_2), self.rotary, strict=False)
         missed = [
             k.label(Label.NO_CONTACT, "NOTRIGGER: NO CONTACT"),
@@ -376,10 +375,7 @@ def visit_title(rotary: Sequence[str], count: int, total: int, visit: Visit) -> 
     """Which visit it is, where, and from which side its rotary readings are reached.
 
     Args:
-        rotary: Names of the rotary axes.
         count: Number of the visit in its program, from 1.
-        total: Number of visits of its program.
-        visit: The visit.
     """
     words = [
         f"{a}{v / DEG:+.2f} FROM {'BELOW' if s > 0 else 'ABOVE'}"

@@ -18,7 +18,7 @@ from matstd.probe_paths.language.dialect import (
 )
 from matstd.probe_paths.language.dialect_file import read_dialect
 from matstd.probe_paths.language.interlock import Interlock, interlocks, turn_tests
-from matstd.probe_paths.language.language import Datum, Says, Touch
+from matstd.probe_paths.language.language import Datum, Terms, Touch
 from matstd.probe_paths.language.languages import LANGUAGES, language_of, read_blocks
 from matstd.probe_paths.language.masks import (
     LOG_HEAD,
@@ -45,8 +45,8 @@ __all__ = [
     "Label",
     "MaskLine",
     "Q",
-    "Says",
     "SharedMask",
+    "Terms",
     "Touch",
     "checked_name",
     "head_mask",

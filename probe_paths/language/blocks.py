@@ -13,7 +13,6 @@ from matstd.twin.errors import BadFile
 _XYZ = rf"X({SIGNED}) Y({SIGNED}) Z({SIGNED})"
 _PATH = r"[A-Z0-9_:\\.-]+"
 
-
 LONGEST = 1000
 """Characters of a block; the longest of our programs has 71."""
 
@@ -111,7 +110,6 @@ class Block:
 
     Attributes:
         line: Number of its first line in the file, from 1.
-        kind: Which of the closed list.
         words: Named parts of its pattern; None where an optional part is absent.
         text: As it stands in the file, blanks folded.
     """
@@ -139,8 +137,6 @@ def read_klartext(data: bytes, path: str | Path, dialect: Dialect) -> list[Block
     tilde continues on the next one.
 
     Args:
-        data: Content of the file.
-        path: Its name, for messages.
         dialect: Whose spelling of cycle 4 is known besides the usual ones.
 
     Raises:

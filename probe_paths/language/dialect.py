@@ -38,18 +38,15 @@ TOOL_LENGTH = 114
 FREE = range(1600, 2000)
 """Parameters that a program may write."""
 
-
 _ENDS_OF_VISITS = range(111, 255)  # up to the last label that the oldest software has
 
 
 class Label(IntEnum):
     """Subprograms of our programs; from `OTHER_PROBE` on alarms, which docs/alarms.md explains.
 
-    `NOT_AS_PLANNED` is the alarm of all tests of a commissioning program, and `AIR` where that goes
-    on after a touch in the air met nothing.
-
-    Labels in the program itself stand behind the visits: a program that is started at a later one
-    goes there past the touches.
+    `NOT_AS_PLANNED` is the alarm of all tests of a commissioning program, `AIR` its continuation
+    after a touch in the air without contact. Labels within the program follow the visits: a program
+    that starts at a later visit jumps there.
     """
 
     LOG = 90
@@ -93,7 +90,6 @@ class ErrorText(IntEnum):
 
 LENGTH_LIMIT = 1
 """By how much the probe's length may differ from the planned one, mm: the gap that is planned."""
-
 
 CYCLE_NAMES = ("MEASURING IN 3D", "MEASURING IN 3-D")
 DISTANCE_WORDS = ("SET UP", "ABST", "DIST")

@@ -63,7 +63,7 @@ def read_dialect(control: str, folder: str | Path = ".") -> Dialect:
 
 
 def _check(table: DialectTable, path: Path) -> None:
-    """Keys that need each other; raises BadFile."""
+    """Refuse keys that contradict each other; raises BadFile."""
     if table.language == "klartext":
         for key in ("slow_feed", "step_back"):
             if getattr(table, key):

@@ -11,7 +11,7 @@ import re
 from collections.abc import Mapping, Sequence
 
 from matstd.probe_paths.language.dialect import Label, Q
-from matstd.probe_paths.language.language import Datum, Language, Says
+from matstd.probe_paths.language.language import Datum, Language, Terms
 from matstd.probe_paths.language.masks import LogForm, MaskLine
 
 ENDING = ".ngc"
@@ -45,7 +45,7 @@ SYSTEM: Mapping[Datum, str] = {
 }
 """Offsets are those of the coordinate system in use, #5220 (1 is G54), whatever selected it."""
 
-SAYS = Says(
+TERMS = Terms(
     reset=MODES,
     plane="G61",
     shift="G92.1",
@@ -57,7 +57,6 @@ SAYS = Says(
     rapid="G0",
     sync=WAIT,
     status="O.. IF on the status of the touch",
-    length=f"O.. IF .. LT and GT on {LENGTH}",
     unset="#{q} = -1",
     printed="(LOG,..)",
     halt="M0 and (ABORT,..)",
@@ -123,7 +122,7 @@ _FORMAT = re.compile(r"%[\d.]+LF")
 
 
 def _printed(mask: str, lines: Sequence[MaskLine], target: str) -> str:
-    """Append lines to a log that is closed again: it is whole whenever the control dies."""
+    """Append lines to a log and close it, so that it is complete if the control fails."""
     out = [f"(LOGAPPEND,{target})"]
     for one in lines:
         out += [_CLOCKS[a] for a in one.arguments if isinstance(a, str)]
@@ -161,7 +160,7 @@ GCODE = Language(
     sign="#",
     tool_length=LENGTH,
     system=SYSTEM,
-    says=SAYS,
+    terms=TERMS,
     log=LogForm(
         clock=("T%1.6LF", ("SECONDS",)),
         date=(("DATE%1.6LF", ("CALENDAR",)), ("T%1.6LF", ("SECONDS",))),

@@ -69,10 +69,6 @@ _ANYTHING = "a line of the closed list: ( ; G T M # O and a touch"
 def read_gcode(data: bytes, path: str | Path) -> list[Block]:
     """Blocks of a program file, subprograms after the program's end as other languages have them.
 
-    Args:
-        data: Content of the file.
-        path: Its name, for messages.
-
     Raises:
         BadFile: A byte outside ASCII, mixed line ends, a last line cut off or one that is too long,
             another touch than ours, a line that is not in the closed list.
@@ -123,7 +119,7 @@ class _Reader:
                 yield from self._single(text)
 
     def _take(self, expected: str) -> str:
-        """The next line, which must be there."""
+        """The next line; refuses the end of the file."""
         if self.i == len(self.lines):
             raise BadFile(self.path, f"line {self.i}", "the end of the file after it", expected)
         self.i += 1
@@ -135,7 +131,7 @@ class _Reader:
             raise BadFile(self.path, f"line {self.i}", repr(found), expected)
 
     def _touch_body(self) -> None:
-        """The touch, word for word: whatever differs is another measurement."""
+        """Read the subprogram of a touch, which must agree word for word."""
         for expected in g.TOUCH_BODY.split(g.LINE_END):
             self._must(expected)
         self.has_touch = True

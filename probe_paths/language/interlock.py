@@ -31,7 +31,6 @@ class Interlock(NamedTuple):
     """One test.
 
     Attributes:
-        label: Where it stops the program.
         what: Is tested.
         datum: That is read; None for the length in the tool table.
         work: That is subtracted from it, or None.
@@ -71,8 +70,6 @@ def interlocks(language: Language, frame: ProgramFrame, is_first: bool = False) 
     """Tests of a program, in their order.
 
     Args:
-        language: Of the control.
-        frame: With the probe as planned.
         is_first: Of a commissioning program, which has blocks for few, and one alarm for all.
     """
     probe, chain = frame.probe, frame.chain

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from matstd.probe_paths.language.dialect import TOOL_LENGTH
-from matstd.probe_paths.language.language import Datum, Language, Says, Tilting
+from matstd.probe_paths.language.language import Datum, Language, Terms, Tilting
 from matstd.probe_paths.language.masks import LogForm
 from matstd.probe_paths.language.text import MAX_LINE, signed
 
@@ -83,7 +83,7 @@ SYSTEM: Mapping[Datum, str] = {
     **{Datum(f"preset {a}"): f"ID270 NR1 IDX{i}" for i, a in enumerate("XYZABC", start=1)},
 }
 
-SAYS = Says(
+TERMS = Terms(
     reset="M129",
     plane="PLANE RESET STAY",
     shift="CYCL DEF 7 with zeros in X, Y and Z",
@@ -95,7 +95,6 @@ SAYS = Says(
     rapid="FMAX",
     sync="FN 20: WAIT FOR SYNC",
     status="FN 12 on the status of the touch",
-    length=f"FN 12 and FN 11 on Q{TOOL_LENGTH}",
     unset="FN 0: Q{q} = -1",
     printed="FN 16",
     halt="STOP and FN 14",
@@ -112,7 +111,7 @@ KLARTEXT = Language(
     sign="Q",
     tool_length=f"Q{TOOL_LENGTH}",
     system=SYSTEM,
-    says=SAYS,
+    terms=TERMS,
     log=LogForm(
         clock=_CLOCK,
         date=(("DATE%5d-%3d-%3d", ("YEAR4", "MONTH", "DAY")), _CLOCK),

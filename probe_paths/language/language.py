@@ -73,7 +73,6 @@ class Tilting(NamedTuple):
     Attributes:
         on: Block that begins one, of its spatial angles (degrees) and the reading of the rotary
             axis nearest the foundation.
-        off: Block that ends it.
     """
 
     on: Callable[[Sequence[float], float], str]
@@ -81,8 +80,8 @@ class Tilting(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Says:
-    """How a language says what a refusal asks for.
+class Terms:
+    """How a language names what a refusal asks for.
 
     Attributes:
         reset: Block that ends tool-point control, with which a reset begins.
@@ -96,7 +95,6 @@ class Says:
         rapid: Word for rapid.
         sync: Wait until the machine stands.
         status: Test of the status of a touch.
-        length: Tests of the length of the called tool.
         unset: Assignment of a status; `{q}` is its parameter.
         printed: Line that goes to the log.
         halt: What ends a program early.
@@ -114,7 +112,6 @@ class Says:
     rapid: str
     sync: str
     status: str
-    length: str
     unset: str
     printed: str
     halt: str
@@ -125,19 +122,17 @@ class Says:
 class Language:
     """Spelling of every block.
 
-    Coordinates carry a sign and four decimals always, which is the resolution of the controls, so
-    that what is planned, printed and read back is the same number.
+    Coordinates always carry a sign and four decimals, the resolution of the controls, so that the
+    planned, printed and re-read numbers agree.
 
     Attributes:
         ending: Of the name of a program file.
-        line_end: Of its lines.
         longest: Characters of a line that is emitted.
         forms: Text of every block by the name of its method, with places in braces.
         stock_forms: Of the blocks of the raw part, which the control draws.
         sign: Letter before the number of a parameter.
         tool_length: Parameter with the length of the called tool, as in the tool table.
         system: How each system datum is addressed.
-        says: How refusals name what they ask for.
         log: How the control prints clock and counters.
         printed: Block that appends lines to a log, from the mask file, its lines, and the target.
         lines: Lines of the file from all blocks.
@@ -145,9 +140,7 @@ class Language:
         wait: Block that stops the look-ahead: system data are read where the machine stands.
         unwind: Blocks before rotary axes go home the way that the numbers state.
         tilting: Of planes square to the tool; None where the language has none.
-        label_end: End of a subprogram.
         operator_stop: Waits for the operator.
-        program_stop: Ends the program.
         has_masks: The lines of the log stand in mask files, not in the program.
         subprograms_first: They stand before the program itself.
         tests_turns: The control may take another way or end of a turn than its word states.
@@ -160,7 +153,7 @@ class Language:
     sign: str
     tool_length: str
     system: Mapping[Datum, str]
-    says: Says
+    terms: Terms
     log: LogForm
     printed: Callable[[str, Sequence[MaskLine], str], str]
     lines: Callable[[Sequence[str]], list[str]]
@@ -284,7 +277,6 @@ class Language:
         Args:
             dialect: Its spelling, and the second touch of a control without a latch.
             result: First of four consecutive parameters: X, Y, Z and status.
-            touch: Its numbers.
         """
         x, y, z = map(signed, touch.direction)
         back, distance, feed = signed(touch.back), signed(touch.distance), f"{touch.feed:.0f}"

@@ -24,11 +24,6 @@ def language_of(path: str | Path) -> Language:
 def read_blocks(data: bytes, path: str | Path, dialect: Dialect | None = None) -> list[Block]:
     """Blocks of a program file in the language of its name.
 
-    Args:
-        data: Content of the file.
-        path: Its name.
-        dialect: Of the control, where it has words of its own.
-
     Raises:
         BadFile: Whatever is not in the closed list of the language, or not a whole text.
     """

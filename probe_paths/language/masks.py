@@ -112,6 +112,7 @@ def parse_mask(text: str, path: str | Path) -> tuple[MaskLine, ...]:
     lines = []
     for number, raw in enumerate(text.splitlines(), start=1):
         where = f"line {number}"
+        # keywords stand without quotes: M_CLOSE;
         if (word := raw.strip().removesuffix(";")) in KEYWORDS and raw.strip() != word:
             lines.append(MaskLine(word, ()))
             continue
@@ -157,19 +158,12 @@ def _mask(lines: Sequence[Fields]) -> str:
     return LINE_END.join(out) + LINE_END
 
 
-def _q(parameter: int) -> str:
-    return f"Q{int(parameter)}"
-
-
 def shared_masks(
     form: LogForm, decimals: int, rotary: Sequence[str], sensors: Sequence[Sensor] = ()
 ) -> dict[str, str]:
     """Masks that every program of a campaign uses, by file name.
 
     Args:
-        form: Of the control.
-        decimals: Of coordinates.
-        rotary: Letters of the machine's rotary axes.
         sensors: Temperatures that are logged with every touch.
     """
     clock = form.clock
@@ -189,7 +183,6 @@ def _keyword(word: str) -> list[Fields]:
 def _point_lines(
     form: LogForm, decimals: int, rotary: Sequence[str], sensors: Sequence[Sensor] = ()
 ) -> list[Fields]:
-    """Lines of one touch."""
     number = _number(form, decimals)
     side = "%5.1LF" if form.is_wide else form.counter
     sides = [Q.SIDE_1, Q.SIDE_2][: len(rotary)]
@@ -212,7 +205,7 @@ def _number(form: LogForm, decimals: int) -> str:
 
 
 def _fields(named: Sequence[tuple[str, int]], form: str) -> tuple[str, list[str]]:
-    return " ".join(name + form for name, _ in named), [_q(q) for _, q in named]
+    return " ".join(name + form for name, _ in named), [f"Q{int(q)}" for _, q in named]
 
 
 def head_mask(
@@ -225,8 +218,6 @@ def head_mask(
     """Mask of one program's head: what was planned, then the calibration of the probe.
 
     Args:
-        form: Of the control.
-        name: Of the program.
         remarks: Lines of the program's own head (standard, set-up), printed as they are.
         rotary: Letters of the machine's rotary axes: then one touch and the end follow, which is
             the whole log of a commissioning program.

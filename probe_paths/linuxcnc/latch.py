@@ -1,7 +1,7 @@
-"""What a control without a hardware latch adds to every touch.
+"""Error of every touch on a control without a hardware latch.
 
-LinuxCNC looks at the probe once in every period of its servo thread and keeps the position that it
-then has: between the contact and that moment the axes go on.
+LinuxCNC samples the probe once in every period of its servo thread and stores the position at that
+moment: the axes move on between the contact and the sample.
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ PERIOD = 1e-3
 
 
 def latch_error(feed: float, period: float = PERIOD, latency: float = 0.0) -> float:
-    """Farthest that a latched position lies beyond the contact, along the stroke, mm.
+    """Largest distance of a latched position beyond the contact, along the stroke, mm.
 
     ``feed (period + latency)``: the contact falls anywhere into a period, so that the error is
     uniform between ``feed latency`` and this.
@@ -28,8 +28,8 @@ def latch_u(feed: float, period: float = PERIOD, latency: float = 0.0) -> float:
     """Standard uncertainty of a touch by the latch, mm, about the contact itself.
 
     The root of the mean square of an error that is uniform between ``a = feed latency`` and
-    ``b = feed (period + latency)``: ``sqrt((a^2 + a b + b^2) / 3)``. Nothing is corrected: a part
-    that all touches share is a larger ball, which the calibration of the probe takes up.
+    ``b = feed (period + latency)``: ``sqrt((a^2 + a b + b^2) / 3)``. Nothing is corrected: the
+    common part acts as a larger ball, which the calibration of the probe absorbs.
 
     Args:
         feed: Of the touch that measures, mm/s.

@@ -15,8 +15,7 @@ SPEED, ACCELERATION = 500.0, 5000.0
 PROBER = "prober.py"
 HEADLESS = "headless.py"
 PROGRAMS = "programs.txt"
-SAID = "headless.txt"
-
+MESSAGES = "headless.txt"
 
 BESIDE = Path(__file__).parent / "beside"
 """Files that go to LinuxCNC: templates, and scripts for the Python of the system."""
@@ -30,9 +29,7 @@ def machine_files(chain: Chain, probe: Probe, dialect: Dialect, socket: str) -> 
     The preset stands where `ProgramFrame` wants it, the probe in the tool table.
 
     Args:
-        probe: In the spindle.
         dialect: Numbers of tool and preset.
-        socket: Where the twin answers.
     """
     frame = ProgramFrame(chain, probe)
     letters = sorted(frame.letters, key="XYZABC".index)
@@ -58,12 +55,11 @@ def machine_files(chain: Chain, probe: Probe, dialect: Dialect, socket: str) -> 
 
 
 def _text(name: str) -> str:
-    """A template of a file of the machine."""
     return (BESIDE / name).read_text(encoding="utf-8")
 
 
 def _axis(chain: Chain, letter: str, joint: int) -> str:
-    """Tables of one axis; a rotary one is not wrapped, so that readings are what they are."""
+    """Tables of one axis; a rotary axis is not wrapped, so that its readings are unchanged."""
     is_linear = letter in "XYZ"
     low, high = (v if is_linear else v / DEG for v in chain.link(letter).range)
     return _text("axis.ini").format(
@@ -79,7 +75,7 @@ def _axis(chain: Chain, letter: str, joint: int) -> str:
 
 
 def _positions(joints: int) -> str:
-    """Every joint is where it is commanded to be, at once."""
+    """Position feedback of every joint, equal to its command."""
     return "\n".join(
         net(
             f"position-{i}",

@@ -27,7 +27,6 @@ class Rehearsal:
     """What LinuxCNC measured.
 
     Attributes:
-        run: Evaluated from its own logs.
         u: Standard uncertainty of every touch, noise and latch, mm.
         latched: How far each logged position lies beyond the twin's contact, (N,), mm.
         modelled: How far it may at most, mm.
@@ -53,12 +52,8 @@ def rehearse(
 
     Args:
         files: Programs of a design, for any control.
-        standard: The true one.
         machine: As it really is; its dialect is that of LinuxCNC.
-        rng: For the noise of the trigger.
-        out: Folder for programs, logs and what LinuxCNC said.
         count: Touches that are made; None for all.
-        user: Who runs LinuxCNC, as `installed` gives it.
         announce: Called with the programs before they run.
 
     Raises:

@@ -20,8 +20,6 @@ def shortened(
     """The plan that programs of one set-up carry out, or every so many-th touch of it.
 
     Args:
-        programs: As read, in order.
-        standard: For which they were made.
         count: How many touches are kept, spread evenly over all; None for all.
 
     Raises:
@@ -68,6 +66,7 @@ def _plan(
     point, normal = foot_points(standard, feature, ball)
     top = chain.link("Z").range[1]
     z = chain.axis_index("Z")
+    # programs retract to their highest Z
     heights = [float(step.q[z]) for step in program.steps if isinstance(step, Move)]
     retracted = max(height for height in heights if np.isfinite(height))
     options = PlanOptions(

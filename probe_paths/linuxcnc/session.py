@@ -14,10 +14,10 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 from matstd.probe_paths.emit import Program
-from matstd.probe_paths.linuxcnc.machine_config import BESIDE, HEADLESS, PROBER, PROGRAMS, SAID
+from matstd.probe_paths.linuxcnc.machine_config import BESIDE, HEADLESS, MESSAGES, PROBER, PROGRAMS
 from matstd.probe_paths.linuxcnc.twin_contact import TwinContact
 from matstd.twin.errors import DesignError
 
@@ -26,6 +26,9 @@ LOCK = Path("/tmp/linuxcnc.lock")
 """LinuxCNC's own: one runs on a computer at a time."""
 
 _TROUBLE = re.compile(r"error|failed|exited|abort|killed", re.IGNORECASE)
+
+_PATIENCE = 3.0
+"""Multiple of its planned duration, beside a minute, after which a program is stopped."""
 
 _SHUTDOWN = 30.0
 """How long LinuxCNC may take to end, s; it took 3 s."""
@@ -38,7 +41,6 @@ class Session:
     Attributes:
         logs: Text of every log file by name, whole or as far as it came.
         outcome: Empty where every program came to its end; else what stopped it, in one line.
-        said: All that LinuxCNC printed.
     """
 
     logs: Mapping[str, str]
@@ -52,28 +54,24 @@ def run_on_linuxcnc(
     contact: TwinContact,
     socket_path: Path,
     user: str = "",
-    patience: float = 3.0,
 ) -> Session:
     """Run programs one after the other.
 
     Args:
-        programs: For LinuxCNC.
-        files: Of the machine.
-        contact: Decides every touch.
         socket_path: Where the component of the probe asks; its folder is the machine's.
         user: Who runs LinuxCNC; needed where we are root, as LinuxCNC refuses that.
-        patience: A program is stopped after so many times its planned duration and a minute.
 
     Raises:
         DesignError: LinuxCNC is not installed, runs already, or there is no user for it.
     """
     folder = socket_path.parent
-    _write(folder, files, programs, patience)
-    server = _listening(socket_path)
+    _write(folder, files, programs)
+    server = _listen(socket_path)
     answering = threading.Thread(target=_answer, args=(server, contact), daemon=True)
     answering.start()
-    longest = sum(60.0 + patience * p.duration for p in programs) + _SHUTDOWN
+    longest = sum(map(_longest, programs)) + _SHUTDOWN
     with (folder / "linuxcnc.txt").open("w") as said:
+        # a session of its own, so that everything LinuxCNC starts can be ended with it
         process = subprocess.Popen(
             ["linuxcnc", "-r", "machine.ini"],
             cwd=folder,
@@ -85,9 +83,9 @@ def run_on_linuxcnc(
             user=user or None,
         )
         try:
-            failed = _watched(process, contact, longest)
+            failed = _wait(process, contact, longest)
         finally:
-            _ended(process, folder, user)
+            _stop(process, folder, user)
             server.close()
     text = (folder / "linuxcnc.txt").read_text(encoding="utf-8", errors="replace")
     logs = {p.name: p.read_text(errors="replace") for p in sorted(folder.glob("*_*.TXT"))}
@@ -98,7 +96,7 @@ def installed(user: str) -> str:
     """User who can run LinuxCNC here, empty for ourselves.
 
     Raises:
-        DesignError: It is not installed, it runs already, or we are root and nobody else is named.
+        DesignError: It is not installed, already runs, or we are root and no other user is named.
     """
     missing = [name for name in NEEDED if shutil.which(name) is None]
     if missing:
@@ -131,11 +129,14 @@ def machine_folder(user: str) -> Path:
     return folder
 
 
-def _write(
-    folder: Path, files: Mapping[str, str], programs: Sequence[Program], patience: float
-) -> None:
-    """All files that LinuxCNC reads; it only appends logs and saves its variables."""
-    queue = [f"{p.file} {60.0 + patience * p.duration:.0f}\n" for p in programs]
+def _longest(program: Program) -> float:
+    """Time after which a program is stopped, s."""
+    return 60.0 + _PATIENCE * program.duration
+
+
+def _write(folder: Path, files: Mapping[str, str], programs: Sequence[Program]) -> None:
+    """Write all files that LinuxCNC reads."""
+    queue = [f"{p.file} {_longest(p):.0f}\n" for p in programs]
     written = {p.file: p.text for p in programs} | dict(files) | {PROGRAMS: "".join(queue)}
     for name, text in written.items():
         (folder / name).write_text(text)
@@ -148,12 +149,12 @@ def _write(
 
 
 def _environment(folder: Path) -> dict[str, str]:
-    """No screen, and a home in which LinuxCNC may leave what it likes."""
+    """No screen, and a home directory that LinuxCNC may write to."""
     keep = {k: v for k, v in os.environ.items() if k in ("PATH", "LANG", "LC_ALL", "TMPDIR")}
     return keep | {"HOME": str(folder)}
 
 
-def _listening(path: Path) -> socket.socket:
+def _listen(path: Path) -> socket.socket:
     server = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     server.bind(str(path))
     path.chmod(0o777)
@@ -162,7 +163,7 @@ def _listening(path: Path) -> socket.socket:
 
 
 def _answer(server: socket.socket, contact: TwinContact) -> None:
-    """Answer the one component that asks, until it goes."""
+    """Answer the component of the probe until it disconnects."""
     try:
         link, _ = server.accept()
     except OSError:  # LinuxCNC ended before it asked
@@ -172,10 +173,10 @@ def _answer(server: socket.socket, contact: TwinContact) -> None:
             _reply(stream, json.loads(line), contact)
 
 
-def _reply(stream: TextIO, question: dict[str, list[float]], contact: TwinContact) -> None:
+def _reply(stream: TextIO, question: dict[str, Any], contact: TwinContact) -> None:
     answer = None
     if "late" in question:
-        contact.arrived_late(float(question["late"]))  # type: ignore[arg-type]
+        contact.arrived_late(float(question["late"]))
     else:
         try:
             answer = contact.travel(question["joints"], question["direction"])
@@ -185,8 +186,8 @@ def _reply(stream: TextIO, question: dict[str, list[float]], contact: TwinContac
     stream.flush()
 
 
-def _watched(process: subprocess.Popen[bytes], contact: TwinContact, longest: float) -> str:
-    """Wait for the end; why it is not waited for, or nothing."""
+def _wait(process: subprocess.Popen[bytes], contact: TwinContact, longest: float) -> str:
+    """Wait for the end; the reason where waiting is given up, or nothing."""
     end = time.monotonic() + longest
     while process.poll() is None:
         if contact.failure:
@@ -197,8 +198,8 @@ def _watched(process: subprocess.Popen[bytes], contact: TwinContact, longest: fl
     return ""
 
 
-def _ended(process: subprocess.Popen[bytes], folder: Path, user: str) -> None:
-    """LinuxCNC and all that it started are gone, its lock with them."""
+def _stop(process: subprocess.Popen[bytes], folder: Path, user: str) -> None:
+    """End LinuxCNC and all that it started, and remove its lock."""
     if process.poll() is None:
         os.killpg(process.pid, signal.SIGTERM)
         try:
@@ -220,8 +221,8 @@ def _ended(process: subprocess.Popen[bytes], folder: Path, user: str) -> None:
 
 
 def _outcome(folder: Path, programs: Sequence[Program], said: str, logs: Mapping[str, str]) -> str:
-    """Why not all programs are done, as far as anybody knows; empty where they are."""
-    file = folder / SAID
+    """Why not all programs are done, as far as known; empty where they are."""
+    file = folder / MESSAGES
     lines = file.read_text().splitlines() if file.exists() else []
     stopped = [line for line in lines if line.startswith("stopped ")]
     if stopped:

@@ -25,7 +25,6 @@ class Stroke:
     """One stroke that the twin was asked about.
 
     Attributes:
-        number: Of the touch.
         contact: Readings where the true ball meets the true surface, (A,); nan where it does not.
         direction: Of the motion in readings, (A,).
     """
@@ -61,14 +60,10 @@ class TwinContact:
         self.planned = [t for program in programs for t in _planned(program, standard, machine)]
 
     def travel(self, joints: Sequence[float], direction: Sequence[float]) -> float | None:
-        """Way from joint positions to the contact along a direction of X, Y, Z, mm.
+        """Way from joint positions to the contact along a direction, mm; None for no contact.
 
         Args:
             joints: Positions of the control's joints, mm and degrees.
-            direction: Unit vector.
-
-        Returns:
-            The way; None where nothing is met within the path of the programmed touch.
 
         Raises:
             DesignError: No programmed touch goes along this line.
@@ -84,7 +79,7 @@ class TwinContact:
         solver = ContactSolver(
             replace(program, steps=(touch,)),
             self.standard,
-            self._within(row),
+            self._machine_at(row),
             self.noise[row : row + 1],
         )
         now = np.array([time.monotonic() - self.begin])
@@ -150,8 +145,8 @@ class TwinContact:
             )
         return row, float(along[row])
 
-    def _within(self, row: int) -> VirtualMachine:
-        """The machine at this touch, with what was touched before and will be after."""
+    def _machine_at(self, row: int) -> VirtualMachine:
+        """The machine at this touch, between the touches already made and those planned."""
         disturbance = self.machine.disturbance
         if disturbance is None:
             return self.machine
@@ -162,7 +157,7 @@ class TwinContact:
 
 
 def _planned(program: ReadProgram, standard: Standard, machine: VirtualMachine) -> list[Touches]:
-    """Touches of a program one by one, as a perfect machine would make them."""
+    """Touches of a program on a perfect machine, one by one."""
     solver = ContactSolver(program, standard, machine, np.zeros(len(program.touches)))
     times = step_times(machine.chain, program.steps, machine.clock, solver.travel)
     rows = [i for i, step in enumerate(program.steps) if isinstance(step, ProbeStep)]

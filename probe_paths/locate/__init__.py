@@ -1,4 +1,4 @@
-"""Where a standard really stands: a search from above, and programs planned anew for that place.
+"""True place of a standard: a search from above, and programs planned again for that place.
 
 In: a standard that stands roughly where it is believed to. Out: a plan of long touches from above
 (`plan_search`), from the log of its program the place with its uncertainty (`find_standard`), and

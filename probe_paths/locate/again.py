@@ -27,18 +27,17 @@ def planned_again(
     """Plan of the touches that programs make, for another place of the standard.
 
     Poses, places on the standard, probe and workshop are those of the programs; anchor touches,
-    heights, ways and order are found anew.
+    heights, ways and order are planned again.
 
     Args:
         programs: Of one set-up, as read.
-        standard: For which they were made.
-        setup: Where the standard stands.
         ball: On the table, by which the probe is watched; programs state it as cylinders.
 
     Raises:
         NotReachable: More touches cannot be made there than may be dropped.
     """
     old = shortened(programs, standard, chain)
+    # a ball at the beginning of a visit is an anchor, which the new plan adds itself
     first = np.concatenate([[True], np.diff(old.visit) > 0])
     balls = [sphere.name for sphere in standard.spheres]
     rows = np.flatnonzero(~(first & np.isin(old.feature, balls)))

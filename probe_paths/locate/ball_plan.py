@@ -1,4 +1,4 @@
-"""Touches on one ball, of the standard or beside it, by which the probe is compared with itself."""
+"""Touches on one ball, of the standard or beside it, that show changes of the probe."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -15,13 +15,13 @@ from matstd.twin.machine import table_to_tool
 from matstd.twin.units import DEG
 
 _TILTS = (75.0 * DEG, 60.0 * DEG, 45.0 * DEG)
-"""Of the ring from the tool axis, rad, the steepest first: 75 degrees tell radius from height five
-times as well as 45, and leave a stem the room of its own thickness."""
+"""Of the ring from the tool axis, rad, the steepest first: 75 degrees separate radius from height
+five times as well as 45, and leave a stem the room of its own thickness."""
 
 _RING = 6
 
-_DEEP = -3.0
-"""Room of a probe that certainly hits, mm: the quick look is from below by less."""
+_CERTAIN_COLLISION = -3.0
+"""Room below which a collision is certain, mm: the quick check underestimates room by less."""
 
 
 def plan_ball(plan: TouchPlan, is_beside: bool = False) -> TouchPlan:
@@ -31,7 +31,6 @@ def plan_ball(plan: TouchPlan, is_beside: bool = False) -> TouchPlan:
     them: rotary axes at home, then the poses of the plan.
 
     Args:
-        plan: Of the programs that the ball is measured before and after.
         is_beside: The ball is that of the workshop, on the table beside the standard.
 
     Raises:
@@ -76,12 +75,13 @@ def _without_deep_collisions(
         shape=plan.probe.shape,
         length=plan.probe.length,
         steepest=options.steepest,
-        room=_DEEP,
+        room=_CERTAIN_COLLISION,
         standoff=options.standoff,
         search=options.search,
         workshop=options.workshop,
     )
     for tilt, rotary in product(_TILTS, poses if balls else []):
+        # one static check for the rings of all balls
         rings = [_ring(plan, ball, rotary, tilt) for ball in balls]
         every = joined(rings)
         good = np.asarray(reach.is_reachable(every))

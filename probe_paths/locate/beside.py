@@ -31,9 +31,7 @@ class Companions:
         raised: By how much, mm.
         spread: Within which a search finds the standard.
         search: For the standard; None where there can be none.
-        no_search: Why there is no search.
         ball: Touches on one ball, before the programs and after them; None where there can be none.
-        no_ball: Why there is none.
         first: One touch that a control is tried with; None where there is none.
     """
 
@@ -64,9 +62,6 @@ def companions(
     """Dry run, search, ball and commissioning program of a plan.
 
     Args:
-        plan: Of the programs.
-        dialect: Of the control.
-        feeds: Of the programs.
         raised: By how much the dry run is raised, mm.
         spread: Within which the search finds the standard; None for the widest of `SPREADS` for
             which there is a search.
@@ -86,6 +81,7 @@ def companions(
         made = replace(made, no_ball=str(error))
     if is_further:
         return replace(made, no_search="the first probe of this set-up has found it")
+    # the widest spread comes first, a narrower one where it allows no search
     for chosen in SPREADS if spread is None else (spread,):
         try:
             search = plan_search(

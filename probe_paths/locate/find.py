@@ -1,8 +1,9 @@
 """From the log of a search the place where the standard stands.
 
-The touches do not say what they met, so the place is sought, not fitted: balls come down on a
-picture of the standard (`Relief`) at very many places within the spread, the best are improved on
-it, and the best of these on the exact surfaces, edges and sides.
+The touches do not identify the features they met, so the place is searched for: the touches are
+compared with a height map of the standard (`Relief`) at thousands of placements within the spread.
+The best are improved on it by Gauss-Newton, and the best of these on the exact surfaces, edges and
+sides.
 """
 
 from collections.abc import Callable
@@ -22,28 +23,28 @@ _TRIED, _FEWEST_TRIED = 40_000, 2_000
 """Places in the first round for a spread of 20 mm and 5 degrees, and for a small one."""
 
 _KEPT = 60
-"""That are improved on the picture."""
+"""Number improved on the relief."""
 
 _EXACT = 3
-"""That are improved on the exact surfaces."""
+"""Number improved on the exact surfaces."""
 
 _ROUNDS, _EXACT_ROUNDS, _LAST_ROUNDS = 25, 15, 15
-_SHAKES, _SHAKEN = 6, 24
-_SHAKE = np.array([1.5, 1.5, 0.5, 0.01, 0.01, 0.01])  # mm and rad, round what does not fit yet
+_RESTARTS, _RESTART_PLACES = 6, 24
+_RESTART_SPREAD = np.array([1.5, 1.5, 0.5, 0.01, 0.01, 0.01])  # mm and rad, of random restarts
 _STEP = np.array([0.5, 0.5, 0.5, 0.005, 0.005, 0.005])  # mm and rad, of differences on the picture
 _FINE = np.array([1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-5])  # the same on the surfaces
-_ROBUST = 2.0  # mm: a touch beside an edge of the picture shall not pull more than this
-_SAME = 4.0  # mm: two places within this at every touch are the same
+_ROBUST = 2.0  # mm: residual from which a touch near an edge counts linearly
+_SAME = 4.0  # mm: two placements closer than this at every touch are one
 GOOD = 0.1
-"""Root mean square of the touches beyond which nothing has been found, mm: what a machine bends
-within the 100 mm of a search leaves 0.03 mm."""
+"""Largest rms of the touches at an accepted place, mm: machine errors over the 100 mm of a search
+leave 0.03 mm."""
 
 KNOWN, KNOWN_ANGLE = 0.3, 0.1 * DEG
 """Largest standard uncertainties of a place that programs are planned for, mm and rad."""
 
 _CLEAR, _ROUGH = 3.0, 0.03
-"""Times as well as the next place must the found one fit, and how well any may fit by the errors of
-a machine alone, mm."""
+"""Least ratio of the rms at the next place to that of the best, and the rms that errors of a
+machine alone may cause, mm."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +52,6 @@ class Found:
     """Where a standard stands.
 
     Attributes:
-        setup: With the place.
         shift: Of the standard from its believed place, in its own frame, (3,), mm.
         angles: About x, y and z of it, (3,), rad.
         u: Standard uncertainties of both, (6,), mm and rad.
@@ -78,13 +78,10 @@ def find_standard(
     """Place of a standard from balls that came down on it.
 
     Args:
-        standard: As calibrated.
-        believed: Where it was believed to stand.
         ball_table: Centres of the balls at their contacts, table frame, (N, 3), mm; they came along
             -z of the believed standard.
         radius: Of the ball, mm.
         rng: For the places of the first round.
-        spread: How far from the believed place is looked.
 
     Raises:
         NotEnoughData: Fewer than nine touches, no place that fits, or two that fit alike.
@@ -96,25 +93,27 @@ def find_standard(
     limit = np.repeat([spread.distance, spread.angle], 3)
     relief = Relief.of(standard, radius)
 
-    def on_picture(theta: Array) -> Array:
+    def on_relief(theta: Array) -> Array:
         return lifted(relief, ball, theta)
 
     def on_surfaces(theta: Array) -> Array:
         return _lifted_exactly(standard, ball, theta, radius)
 
+    # fewer places for a smaller spread
     share = (spread.distance / Spread.distance) * (spread.angle / Spread.angle)
     count = max(int(min(share, 1.0) * _TRIED), _FEWEST_TRIED)
     tried = rng.uniform(-limit, limit, (count, 6))
+    # the believed place is always among them
     tried[0] = 0.0
-    best = _settled(_best(tried, on_picture, _KEPT), on_picture, _STEP, _ROUNDS)
-    few = _distinct(best, on_picture, ball)[:_EXACT]
-    few = _settled(few, on_surfaces, _FINE, _EXACT_ROUNDS)
+    best = _converged(_best(tried, on_relief, _KEPT), on_relief, _STEP, _ROUNDS)
+    few = _distinct(best, on_relief, ball)[:_EXACT]
+    few = _converged(few, on_surfaces, _FINE, _EXACT_ROUNDS)
     few = _distinct(few, on_surfaces, ball)
-    few[:1] = _shaken(few[0], on_surfaces, rng)
+    few[:1] = _restarted(few[0], on_surfaces, rng)
     rms = np.sqrt(np.mean(on_surfaces(few) ** 2, axis=1))
     theta = few[0]
     u = _uncertainty(theta, on_surfaces)
-    _check(rms, u)
+    _refuse_ambiguous_place(rms, u)
     return Found(
         setup=Setup(believed.name, believed.T_table_artefact @ _pose(theta)),
         shift=theta[:3],
@@ -125,8 +124,8 @@ def find_standard(
     )
 
 
-def _check(rms: Array, u: Array) -> None:
-    """One place and no other fits, and it is known well enough to plan touches there."""
+def _refuse_ambiguous_place(rms: Array, u: Array) -> None:
+    """Refuse a place that does not fit, is not the only one, or is too uncertain to plan for."""
     if rms[0] > GOOD:
         raise NotEnoughData(
             f"no place within the spread fits the touches: the best leaves {rms[0]:.2f} mm; "
@@ -155,7 +154,7 @@ Lift = Callable[[Array], Array]
 
 
 def lifted(relief: Relief, ball: Array, theta: Array) -> Array:
-    """On the picture: the ball's height over it, along its own way down."""
+    """On the relief: height of each ball over it, along its own way down."""
     out = []
     for some in np.array_split(theta, max(len(theta) // 2000, 1)):
         back = inverse(_pose(some))
@@ -171,7 +170,7 @@ def lifted(relief: Relief, ball: Array, theta: Array) -> Array:
 
 
 def _lifted_exactly(standard: Standard, ball: Array, theta: Array, radius: float) -> Array:
-    """On the surfaces: first contact of balls that come down the same ways."""
+    """The same on the exact surfaces, by first contacts."""
     above = 80.0  # mm; farther than any place of the few is from where it shall be
     back = inverse(_pose(theta))
     up = back[:, None, :3, 2]
@@ -183,7 +182,7 @@ def _lifted_exactly(standard: Standard, ball: Array, theta: Array, radius: float
 
 
 def _cost(lifted: Array) -> Array:
-    """Robust: a touch counts quadratically up to `_ROBUST` and linearly beyond."""
+    """Huber's cost: quadratic up to `_ROBUST`, linear beyond."""
     size = np.abs(lifted)
     cost = np.where(size < _ROBUST, 0.5 * size**2, _ROBUST * (size - 0.5 * _ROBUST))
     total: Array = cost.sum(axis=1)
@@ -191,43 +190,43 @@ def _cost(lifted: Array) -> Array:
 
 
 def _best(tried: Array, lift: Lift, count: int) -> Array:
-    """The places that fit best, each at its best height."""
+    """The best-fitting places, each at its best height."""
     lifted = lift(tried)
     middle = np.median(lifted, axis=1, keepdims=True)
     tried = tried - middle * np.eye(6)[2]
     some = np.argsort(_cost(lifted - middle))[: 20 * count]
     for _ in range(2):
-        tried = _improved(tried[some], lift, _STEP)
+        tried = _gauss_newton_step(tried[some], lift, _STEP)
         some = np.argsort(_cost(lift(tried)))[: len(some) // 4]
     return tried[some[:count]]
 
 
-def _settled(theta: Array, lift: Lift, step: Array, rounds: int) -> Array:
-    """Places improved until none moves by a hundredth of a step any more."""
+def _converged(theta: Array, lift: Lift, step: Array, rounds: int) -> Array:
+    """Places improved until none moves by more than a hundredth of a step."""
     for _ in range(rounds):
-        better = _improved(theta, lift, step)
+        better = _gauss_newton_step(theta, lift, step)
         if np.all(np.abs(better - theta) < 0.01 * step):
             return better
         theta = better
     return theta
 
 
-def _shaken(theta: Array, lift: Lift, rng: np.random.Generator) -> Array:
-    """The best place round one at which edges may have held the steps, (1, 6)."""
-    best = _settled(theta[None], lift, _FINE, _LAST_ROUNDS)
-    for _ in range(_SHAKES):
+def _restarted(theta: Array, lift: Lift, rng: np.random.Generator) -> Array:
+    """The best place, restarted near it where edges may have stopped the steps, (1, 6)."""
+    best = _converged(theta[None], lift, _FINE, _LAST_ROUNDS)
+    for _ in range(_RESTARTS):
         if np.sqrt(np.mean(lift(best) ** 2)) < _ROUGH:
             break
-        round_it = best + rng.normal(0.0, 1.0, (_SHAKEN, 6)) * _SHAKE
-        near = _settled(round_it, lift, _FINE, 4)
+        round_it = best + rng.normal(0.0, 1.0, (_RESTART_PLACES, 6)) * _RESTART_SPREAD
+        near = _converged(round_it, lift, _FINE, 4)
         near = near[np.argsort(_cost(lift(near)))[:4]]
-        both = np.concatenate([best, _settled(near, lift, _FINE, _EXACT_ROUNDS)])
+        both = np.concatenate([best, _converged(near, lift, _FINE, _EXACT_ROUNDS)])
         best = both[[np.argmin(_cost(lift(both)))]]
     return best
 
 
-def _improved(theta: Array, lift: Lift, step: Array) -> Array:
-    """One step of Gauss and Newton with damping each, taken where it makes the fit better."""
+def _gauss_newton_step(theta: Array, lift: Lift, step: Array) -> Array:
+    """One damped Gauss-Newton step of every place, taken where it improves the fit."""
     moved = theta[:, None] + np.concatenate([np.diag(step), -np.diag(step)])
     both = lift(np.concatenate([theta[:, None], moved], axis=1).reshape(-1, 6))
     both = both.reshape(len(theta), 13, -1)
@@ -251,7 +250,7 @@ def _improved(theta: Array, lift: Lift, step: Array) -> Array:
 
 
 def _distinct(theta: Array, lift: Lift, ball: Array) -> Array:
-    """Places that differ by more than `_SAME` at some touch, the best first."""
+    """Places that differ by more than `_SAME` at one touch or more, the best first."""
     ranked = theta[np.argsort(_cost(lift(theta)))]
     kept: list[Array] = []
     for one in ranked:
@@ -262,7 +261,7 @@ def _distinct(theta: Array, lift: Lift, ball: Array) -> Array:
 
 
 def _uncertainty(theta: Array, lift: Lift) -> Array:
-    """Standard uncertainties by the scatter of the touches and their slopes, (6,)."""
+    """Standard uncertainties from the scatter and the Jacobian of the touches, (6,)."""
     moved = theta + np.concatenate([np.diag(_FINE), -np.diag(_FINE)])
     both = lift(moved)
     J = (both[:6] - both[6:]).T / (2.0 * _FINE)

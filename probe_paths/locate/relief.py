@@ -1,4 +1,7 @@
-"""A standard seen from above: how far down a ball comes at every place."""
+"""A standard seen from above: heights on a grid, and the height at which a ball stops.
+
+The height map dilated by the lower half of a ball gives the centres of balls that come down on it.
+"""
 
 from dataclasses import dataclass
 
@@ -67,6 +70,7 @@ class Relief:
         under = beside <= radius**2
         lift = np.sqrt(np.maximum(radius**2 - beside, 0.0))
         picture = top.reshape(shape)
+        # the centre of a ball over heights is their dilation by its lower half
         ball = ndimage.grey_dilation(picture, footprint=under, structure=lift)
         return cls(-half, picture, ball)
 
@@ -84,7 +88,7 @@ class Relief:
 
 
 def _face_and_walls(patch: FreeformPatch) -> Array:
-    """Points of a face and of the walls of its column, which lean as the face does, (N, 3), mm."""
+    """Points of a face and of the walls of its column, (N, 3), mm."""
     half = patch.half_size
     u, v = (np.arange(-h, h + _FINE, _FINE).clip(-h, h) for h in half)
     uv = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)

@@ -1,9 +1,8 @@
 """The program that finds a standard: long touches from above, wherever it may stand.
 
-Every touch comes straight down on a place under which there is always something of the standard,
-and beside which nothing is so high that the body of the probe could meet it before the ball meets
-the surface, wherever the standard stands within what is stated. So no touch misses, and none of
-them needs to know what it touches.
+Every touch comes straight down on a place that is above the standard, and beside which nothing is
+high enough to meet the body of the probe first, wherever the standard stands within the stated
+spread. No touch misses, and none depends on which feature it meets.
 """
 
 import numpy as np
@@ -30,15 +29,15 @@ from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
 TOUCHES = 20
-"""Of the search: as many as five minutes have room for."""
+"""Touches of the search; about five minutes of machine time."""
 
 _FEWEST = 9
-"""Fewer could not tell a false place from the true one: six numbers are sought."""
+"""Fewer touches cannot distinguish a false place from the true one: six numbers are sought."""
 
-_DRAWN, _TOLD = 60, 0.6
-"""Placements that are tried, and the share of them that the touches must tell by slopes alone:
-edges, which tell more, are left out. Of the example's touches for 15 mm and 4 degrees 18 of 20 meet
-the flat base, and tell 0.5; for 10 mm and 3 degrees, 1.0."""
+_TRIED, _DETERMINED = 60, 0.6
+"""Placements that are tried, and the share that the touches must determine by slopes alone, without
+the more informative edges. For 15 mm and 4 degrees 18 of the example's 20 touches meet the flat
+base, and determine 0.5; for 10 mm and 3 degrees, 1.0."""
 
 _NOISE = 0.03
 """Of a touch of a search with the errors of a machine in it, mm."""
@@ -63,28 +62,24 @@ def plan_search(
     """Touches from above, at the readings at which programs begin and end.
 
     Args:
-        probe: In the spindle.
-        setup: Where the standard is believed to stand.
-        spread: How far from there it may stand.
-        workshop: What stands beside it.
         retract: Below the upper end of Z's travel, mm.
 
     Raises:
         NotReachable: The table is not level there, the stylus is too short for the steps of the
             standard, travel does not suffice, a clamp stands under the tool, or the touches would
-            not tell the place.
+            not determine the place.
     """
     spread, workshop = spread or Spread(), workshop or Workshop()
     home = home_readings(chain)
     relief = Relief.of(standard, probe.radius)
     place, high, low = _places(relief, standard, probe, spread)
-    _check_told(relief, place, spread)
+    _refuse_undetermined_place(relief, place, spread)
     T = setup.T_table_artefact
     q = readings_at(chain, home[None])
     down = -linear_directions(chain, q)[0][:, chain.linear_axes.index("Z")]
     if -down @ T[:3, 2] < _UPRIGHT:
         raise NotReachable("the standard does not stand upright where programs begin and end")
-    # so far may any place be lifted or lowered
+    # largest rise or drop of each place within the spread
     lift = spread.distance + np.linalg.norm(place, axis=1) * np.sin(spread.angle)
     top = high + lift + probe.radius + _MARGIN
     path = float((top - low + lift).max()) + _MARGIN
@@ -97,14 +92,14 @@ def plan_search(
     height = float(np.ceil(q[-1, chain.axis_index("Z")]))
     options = PlanOptions(standoff=BACK, search=path - BACK, retract=retract, workshop=workshop)
     plan = _plan(standard, chain, probe, setup, options, q[:-1], height)
-    _check(plan, path)
+    _refuse_out_of_travel_or_collision(plan, path)
     return plan
 
 
 def _places(
     relief: Relief, standard: Standard, probe: Probe, spread: Spread
 ) -> tuple[Array, Array, Array]:
-    """Places (N, 2) that are always good, and the highest and lowest that may be under each, mm."""
+    """Places (N, 2) that are safe within the spread, and the surface heights under each, mm."""
     sin, base = np.sin(spread.angle), standard.base.thickness
     # where the standard leans, what is high moves sideways from what is low
     beside = _MARGIN + (float(relief.top.max()) - base) * sin
@@ -131,37 +126,37 @@ def _places(
     return place[rows], high, np.full(len(rows), base)
 
 
-def _check_told(relief: Relief, place: Array, spread: Spread) -> None:
-    """Touches on places (N, 2) tell where the standard stands, for most of where it may stand."""
+def _refuse_undetermined_place(relief: Relief, place: Array, spread: Spread) -> None:
+    """Refuse touches at places (N, 2) that leave most placements undetermined."""
     limit = np.repeat([spread.distance, spread.angle], 3)
     step = np.array([0.5, 0.5, 0.5, 0.005, 0.005, 0.005])
-    drawn = np.random.default_rng(0).uniform(-limit, limit, (_DRAWN, 6))
+    drawn = np.random.default_rng(0).uniform(-limit, limit, (_TRIED, 6))
     level = np.column_stack([place, np.zeros(len(place))])
-    told = 0
+    determined = 0
     for theta, height in zip(drawn, lifted(relief, level, drawn), strict=True):
         ball = level + height[:, None] * np.array([0.0, 0.0, 1.0])
         both = lifted(relief, ball, theta + np.concatenate([np.diag(step), -np.diag(step)]))
-        # a touch that an edge of the picture moves a long way tells no more than one on a slope
+        # a jump over an edge of the relief is not counted as more informative than a slope
         slope = np.clip(both[:6] - both[6:], -5.0, 5.0).T / (2.0 * step)
         H = slope.T @ slope / _NOISE**2 + np.diag(limit**-2)
         u = np.sqrt(np.diag(np.linalg.inv(H)))
-        told += bool(u[:3].max() < KNOWN and u[3:].max() < KNOWN_ANGLE)
-    if told < _TOLD * _DRAWN:
+        determined += bool(u[:3].max() < KNOWN and u[3:].max() < KNOWN_ANGLE)
+    if determined < _DETERMINED * _TRIED:
         raise NotReachable(
-            f"a search from above comes down to flat places: it would determine {told} of {_DRAWN} "
+            f"a search from above meets flat places: it would determine {determined} of {_TRIED} "
             f"places within {spread.distance:g} mm and {spread.angle / DEG:g} degrees"
         )
 
 
 def _most(values: Array, half: float) -> Array:
-    """Largest within a square of half sides, mm."""
+    """Largest value within a square of the given half side, mm."""
     size = 2 * int(np.ceil(half / PITCH)) + 1
     largest: Array = ndimage.maximum_filter(values, size=size, mode="nearest")
     return largest
 
 
 def _far_apart(place: Array, count: int) -> list[int]:
-    """Rows of places (N, 2), each as far as can be from those before it."""
+    """Rows of places (N, 2), each as far as possible from those before it."""
     rows = [int(np.argmax(np.linalg.norm(place - place.mean(axis=0), axis=1)))]
     far = np.full(len(place), np.inf)
     while len(rows) < min(count, len(place)):
@@ -179,9 +174,10 @@ def _plan(
     start: Array,
     height: float,
 ) -> TouchPlan:
-    """The touches as a plan; which feature they name means nothing."""
+    """The touches as a plan; their features are placeholders."""
     n, z, home = len(start), chain.axis_index("Z"), home_readings(chain)
     lows = np.array([chain.link(name).range[0] for name in chain.rotary_axes])
+    # home is approached from within the travel
     side = np.where(lows < home, 1.0, -1.0)
     before = home - side * options.overshoot
     contact = start.copy()
@@ -213,8 +209,8 @@ def _plan(
     )
 
 
-def _check(plan: TouchPlan, path: float) -> None:
-    """Travel, and room between the tool and what does not move with the standard."""
+def _refuse_out_of_travel_or_collision(plan: TouchPlan, path: float) -> None:
+    """Refuse a search that exceeds the travel or brings the tool to what stands on the table."""
     chain = plan.chain
     z = chain.axis_index("Z")
     low, high = np.array([chain.link(a).range for a in chain.axes]).T
@@ -233,6 +229,7 @@ def _check(plan: TouchPlan, path: float) -> None:
         probe=plan.probe,
         workshop=plan.options.workshop,
     )
+    # the standard is spared, as the touches are to meet it
     ours = np.isin(room.bodies.name, [solid.name for solid in plan.options.workshop.solids[1:]])
     spared = np.broadcast_to(~ours, (len(end), len(ours)))
     gap, nearest = room.swept_gap(plan.start, end, spared=spared)

@@ -1,8 +1,7 @@
-"""Other ways to a touch: along a line that leans from the surface's normal.
+"""Alternative approaches to a touch, inclined to the surface normal.
 
-Where the ball ends is the same, and so is what is measured: a deviation is one along the normal
-whatever way the ball came. What changes is where the touch starts and where the ball goes on if it
-meets nothing.
+The contact and the measured deviation along the normal stay the same. Only the start of the touch
+and the path beyond a missed surface change.
 """
 
 from collections.abc import Iterator
@@ -31,14 +30,12 @@ class Approaches:
     """Ways to N touches of one table pose each.
 
     Attributes:
-        setup: Where the standard stands.
         length: Gauge point to ball centre, mm.
         radius: Of the ball, mm.
         contact: Readings at the expected contact, (N, A).
         normal: Outward unit normals, artefact frame, (N, 3).
-        feature: Names, (N,).
         back: From the contact to the start, mm.
-        beyond: From the contact to where the probe gives up, mm.
+        beyond: From the contact to the end of the longest travel, mm.
     """
 
     chain: Chain
@@ -55,9 +52,9 @@ class Approaches:
     def others(self) -> Iterator[tuple[Array, Array, Mask]]:
         """Starts (N, A), motions of X Y Z (N, A) and which are possible, the least leaning first.
 
-        Possible is what stays within travel, meets its feature first, and moves X, Y and Z in the
-        senses that the normal has: whoever evaluates a log knows the normal alone and takes the
-        sides of all reversals from it.
+        A way is possible if it stays within travel, meets its feature first, and moves X, Y and Z
+        in the senses of the normal: the evaluation of a log takes the sides of all reversals from
+        the normal.
         """
         place = self.setup.T_table_artefact
         normal = turn(place, self.normal)
@@ -74,7 +71,7 @@ class Approaches:
                 yield self._along(np.cos(lean) * normal + np.sin(lean) * beside, normal)
 
     def _along(self, away: Array, normal: Array) -> tuple[Array, Array, Mask]:
-        """One way each, along directions in the table frame."""
+        """Ways along given directions in the table frame."""
         chain = self.chain
         columns = [chain.axis_index(a) for a in chain.linear_axes]
         per_axis = np.linalg.inv(linear_directions(chain, self.contact))

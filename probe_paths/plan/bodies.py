@@ -10,10 +10,8 @@ from matstd.probe_paths.plan.separation import CORNERS, Hulls
 from matstd.twin.frames import Array, apply, pose, turn
 from matstd.twin.record import IntArray, Labels
 
-_CELL = (
-    4.0  # mm of a face that one prism is the lid of: its corners are 0.2 mm off at a radius of 12
-)
-_FINE = 4  # places a side in a cell where the face is held against its corners
+_CELL = 4.0  # mm: side of a prism's lid; its corners are 0.2 mm off at a radius of 12 mm
+_FINE = 4  # intervals along a side of a cell at which the face is compared with its corners
 _OVER = 0.02  # mm: what a face of 12 mm radius may rise above these places in between
 
 
@@ -23,7 +21,6 @@ class Bodies:
 
     Attributes:
         hulls: One of every owner that holds all of it, table frame.
-        name: Of the owners, (B,).
         on: Axis that carries each, empty for the table, (B,).
         parts: What an owner really consists of, by its row; it is its hull where none is listed.
     """
@@ -34,7 +31,7 @@ class Bodies:
     parts: dict[int, Hulls]
 
     def rows_of(self, feature: str) -> IntArray:
-        """Bodies that somebody means to touch who touches a feature: its own, and its stem."""
+        """Bodies that a touch of a feature may come close to: its own and its stem."""
         own = {feature, f"{feature} stem", *(["BASE"] if feature == "DATUM_A" else [])}
         return np.flatnonzero(np.isin(self.name, list(own)))
 
@@ -70,6 +67,7 @@ def standing_bodies(standard: Standard, T_table_artefact: Array, workshop: Works
             prisms = _joined([prisms, _chamfer(patch, base.thickness)])
         parts[len(lots)] = _moved(prisms, T_table_artefact)
         lots.append((patch.name, "", _plate(box, patch.T_artefact_patch)))
+    # hulls of owners are tested first, their parts only where a hull is near
     lots = [(name, on, _moved(hull, T_table_artefact)) for name, on, hull in lots]
     T_table_face = table_face(T_table_artefact)
     for solid in workshop.solids:
@@ -84,7 +82,7 @@ def standing_bodies(standard: Standard, T_table_artefact: Array, workshop: Works
 
 
 def _chamfer(patch: FreeformPatch, foot: float) -> Hulls:
-    """What holds the blend round the foot of an upright pillar: it is hollow, so a chamfer."""
+    """Chamfer that contains the concave blend round the foot of an upright pillar."""
     x, y = patch.T_artefact_patch[:2, 3]
     corners = [
         [x + s * (patch.half_size[0] + more), y + t * (patch.half_size[1] + more), foot + up]
@@ -96,7 +94,7 @@ def _chamfer(patch: FreeformPatch, foot: float) -> Hulls:
 
 
 def _hull(corners: Array, discs: list[float], ball: float = 0.0) -> Hulls:
-    """One upright body; corners that it does not have are repeated."""
+    """One upright body; its last corner is repeated up to `CORNERS`."""
     some = np.minimum(np.arange(CORNERS), len(corners) - 1)
     return Hulls(
         corner=corners[some][None],
@@ -133,7 +131,7 @@ def _prisms(patch: FreeformPatch) -> Hulls:
 
 
 def _cell(i: int, j: int, uv: Array, height: Array, floor: float) -> Hulls:
-    """The prism under one cell of a face, whose corners are raised until it holds the face."""
+    """The prism under one cell of a face, raised until it contains the face."""
     mine = np.s_[i : i + _FINE + 1, j : j + _FINE + 1]
     lid, share = height[mine], np.linspace(0.0, 1.0, _FINE + 1)
     s, t = share[:, None], share[None]

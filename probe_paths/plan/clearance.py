@@ -1,4 +1,8 @@
-"""Gaps between the tool and everything solid, at a touch and along a move."""
+"""Gaps between the tool and everything solid, at a touch and along a move.
+
+Each cylinder of the tool sweeps a convex body along a straight move, whose gap from the hull of
+every obstacle is found directly (`separation`). Where a hull is near, its parts decide.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,20 +20,14 @@ from matstd.twin.machine import Chain, table_to_tool, tip
 from matstd.twin.record import IntArray, Labels, Setup
 
 SMALLEST_GAP = 0.5
-"""Least gap between the probe and anything solid while it is positioned, mm."""
+"""Least gap between the probe and any obstacle while it is positioned, mm."""
 
-_BLOCK = 200  # moves that are looked at together, against every body and with every piece
+_BLOCK = 200  # moves per block, to bound memory: each meets every body with every piece
 
 
 @dataclass(frozen=True, eq=False)
 class ToolClearance:
-    """How near ball, stylus, body and spindle come to anything solid.
-
-    Attributes:
-        setup: Where the standard is believed to stand.
-        probe: In the spindle.
-        workshop: What stands there beside it.
-    """
+    """Gaps between ball, stylus, body and spindle and everything solid."""
 
     chain: Chain
     standard: Standard
@@ -44,7 +42,7 @@ class ToolClearance:
 
     @cached_property
     def _tool(self) -> Array:
-        """Begin, end, radius and ball of every piece of the tool, (P, 4), mm; the ball first."""
+        """Start, end, radius and ball of every piece of the tool, (P, 4), mm; the ball first."""
         ball = self.probe.radius
         ends = [end for end, _ in self.probe.shape.cylinders]
         radii = [radius for _, radius in self.probe.shape.cylinders]
@@ -56,11 +54,7 @@ class ToolClearance:
         return np.array([(0.0, 0.0, 0.0, ball), *rows])
 
     def gap(self, q: Array) -> tuple[Array, Labels]:
-        """Gap between the probe above its ball and anything solid at readings (N, A).
-
-        Returns:
-            Smallest gap (N,), mm, and the name of what is nearest (N,).
-        """
+        """Gap (N,), mm, of the tool above its ball at readings (N, A), and the nearest body."""
         return self.swept_gap(q, q, with_ball=False, enough=np.inf)
 
     def swept_gap(
@@ -72,24 +66,21 @@ class ToolClearance:
         spared: NDArray[np.bool_] | None = None,
         enough: float = SMALLEST_GAP,
     ) -> tuple[Array, Labels]:
-        """Smallest gap of the tool along straight moves of the linear axes.
+        """Smallest gap (M,), mm, of the tool along straight linear moves, and the nearest body.
 
         Args:
             before: Readings at the beginning, (M, A).
             after: Readings at the end, (M, A).
-            with_ball: Whether the ball is looked at.
             with_tool: Whether what is above the ball is.
             spared: Bodies that a move is meant to come near to, (M, B).
             enough: A gap that is larger need not be known better than that, mm.
-
-        Returns:
-            The gap (M,), mm, from below, and the name of what is nearest (M,).
         """
         tool = self._tool[0 if with_ball else 1 : None if with_tool else 1]
         bodies = self.bodies
         best = np.full((len(before), len(bodies.name)), np.inf)
         frames = [still_frames(bodies.on.tolist(), self.chain, q) for q in (before, after)]
         T_table_tool = table_to_tool(self.chain, before)
+        # bodies on one axis stand still in its frame
         for on in frames[0]:
             T = frames[0][on]
             begin, end = (

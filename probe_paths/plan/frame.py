@@ -32,7 +32,6 @@ class ProgramFrame:
     """Converts between axis readings and the words of a program.
 
     Attributes:
-        probe: In the spindle; its length in the tool table.
         shift: Of a tilted plane, mm.
 
     Raises:

@@ -1,8 +1,8 @@
-"""What a program and its log say of themselves: standard, set-up, probe, workshop, features.
+"""Head of a program and of its log: standard, set-up, probe, workshop, features.
 
-The operator needs these lines to mount the standard, and whoever reads the text back needs them to
-know where it was believed to stand and what stands round it. They are comments of the program; the
-first of them are literal lines of its log, which names the workshop by a hash alone.
+The operator needs these lines to mount the standard, the reader of the text to know its believed
+place and the obstacles. They are comments of the program; the first of them are literal lines of
+its log, which identifies the workshop by a hash only.
 """
 
 import hashlib
@@ -39,7 +39,6 @@ _BALL = re.compile(rf"DATUM BALL X{_NUMBER} Y{_NUMBER} Z{_NUMBER}")
 _BALL_SIZE = re.compile(rf"DATUM R{_NUMBER} S{_NUMBER} F{_NUMBER} U{_NUMBER}")
 _EARLIER = re.compile(r"(STYLUS L.* BODY R.*|NOSE R.* TABLE R.*)")
 _TABLE_WORD, _HASH = "TABLE", 12
-
 
 _FIRST_PARAMETER = 100
 """In which a PLC hands values to programs; there are eight."""
@@ -78,15 +77,13 @@ class Heading:
 
     Attributes:
         standard: Name of the standard, as its file has it.
-        setup: Where it is believed to stand.
         probe: In the spindle; in a log its ball and length alone.
         workshop: What stands beside the standard; None in a log.
         serial: Number of the standard, as far as a program can state it; empty where it has none.
         calibration: Hash of the faces and places of the standard; empty in logs of earlier
             programs.
-        stated: Hash of probe and workshop; likewise.
+        stated: Hash of probe and workshop; empty in logs of earlier programs.
         is_tilted: Coordinates are those of planes that are tilted with the table.
-        sensors: That are logged with every touch.
         ball: On the table beside the standard, where that is what is touched.
     """
 
@@ -105,7 +102,6 @@ class Heading:
         """What a program has before it: the standard, and the ball if that is touched.
 
         Args:
-            standard: By itself.
             T_table_artefact: Where it stands; None for where it is believed to.
         """
         if self.ball is None:
@@ -156,7 +152,7 @@ class Heading:
 
     @property
     def _workshop_lines(self) -> list[str]:
-        """The probe above its ball, and what it is kept clear of."""
+        """The probe above its ball, and the obstacles."""
         if self.workshop is None:
             return []
         return [
@@ -220,7 +216,7 @@ def rounded_setup(setup: Setup) -> Setup:
 
 
 def rounded_workshop(workshop: Workshop) -> Workshop:
-    """The workshop as a program can state it, likewise."""
+    """The workshop as a program can state it."""
     ball = workshop.ball
     if ball is not None:
         ball = DatumBall(*(round(getattr(ball, field.name), 6) for field in fields(ball)))
@@ -235,10 +231,7 @@ def _rounded(solid: Solid) -> Solid:
 
 
 def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> tuple[Heading, int]:
-    """Heading from its lines, each with its line number in the file; further ones may follow.
-
-    Returns:
-        The heading, and how many lines it has.
+    """Heading from its lines, each with its line number, and how many lines it has.
 
     Raises:
         BadFile: A line missing or spelt otherwise, a workshop that is not the one of its hash.
@@ -283,7 +276,7 @@ def parse_heading(lines: Sequence[tuple[int, str]], path: str | Path) -> tuple[H
 def _stated_lines(
     lines: Sequence[tuple[int, str]], path: str | Path
 ) -> tuple[dict[str, str], tuple[Sensor, ...], int]:
-    """What lines after the first four state, by their first word; sensors; where others begin."""
+    """Statements of the lines after the first four by first word; sensors; lines read."""
     stated: dict[str, str] = {}
     sensors: list[Sensor] = []
     count = 4
@@ -310,6 +303,7 @@ def _with_workshop(
         end, radius = _numbers(_STACK, lines[count], path, "STACK TO.. R..").tolist()
         stack.append((end, radius))
         count += 1
+    # ends the loops below at a head that breaks off
     lines.append((lines[-1][0], "the end of the head"))
     nose = _numbers(_NOSE, lines[count], path, "NOSE R..")
     probe = Probe(head.probe.radius, head.probe.length, tuple(stack), float(nose[0]))
@@ -327,7 +321,7 @@ def _with_workshop(
             path,
             f"line {first}",
             f"a probe and bodies of hash {whole.workshop_hash}",
-            f"WORKSHOP {head.stated or '<hash>'}, as stated: emit the program anew",
+            f"WORKSHOP {head.stated or '<hash>'}, as stated: emit the program again",
         )
     return whole, count
 

@@ -1,4 +1,8 @@
-"""Order of poses and touches: mixed, from both sides, and short ways within a pose."""
+"""Order of poses and touches: mixed, from both sides, and short ways within a pose.
+
+The order of the golden ratio's fractional parts spreads axis positions evenly over time.
+Touches within a pose follow a short way by 2-opt and Or-opt.
+"""
 
 from dataclasses import dataclass
 
@@ -74,7 +78,7 @@ def visits(chain: Chain, rotary: Array, overshoot: float, shortest_visit: int) -
 def _visit(
     chain: Chain, pose: int, rotary: Array, side: Array, overshoot: float, rows: IntArray
 ) -> Visit:
-    """A visit from the wanted sides, or from the other one where the travel ends."""
+    """A visit from the wanted sides, or from the opposite one where the travel ends."""
     side = side.copy()
     for i, name in enumerate(chain.rotary_axes):
         low, high = chain.link(name).range
@@ -112,22 +116,22 @@ def rotary_path(start: Array, stops: list[Visit], end: Array) -> Array:
 def short_order(places: Array, first: Array) -> IntArray:
     """Order of places (N, 2) that goes from `first` (2,) a short way, as rapid moves take time.
 
-    The axis that has farthest to go decides how long a move takes. From nearest neighbours, parts
-    are turned round (2-opt) and parts of up to three are put elsewhere (Or-opt) while that helps.
+    The axis with the longest way decides the time of a move. From nearest neighbours, parts are
+    reversed (2-opt) and parts of up to three moved (Or-opt) while that shortens the way.
     """
     cost = np.abs(places[:, None] - places).max(axis=-1)
     away = np.abs(places - first).max(axis=-1)
     order = nearest_neighbours(places, first)
     while True:
-        tried = [_turned_round(order, cost, away), _put_elsewhere(order, cost, away)]
+        tried = [_best_two_opt(order, cost, away), _best_or_opt(order, cost, away)]
         gain, better = max(tried, key=lambda one: one[0])
         if gain <= _NO_GAIN:
             return order
         order = better
 
 
-def _turned_round(order: IntArray, cost: Array, away: Array) -> tuple[float, IntArray]:
-    """The part whose other direction saves most: what it saves, and the order with it."""
+def _best_two_opt(order: IntArray, cost: Array, away: Array) -> tuple[float, IntArray]:
+    """The best reversal of a part (2-opt): its saving, and the new order."""
     n = len(order)
     into = np.concatenate([[away[order]], cost[order[:-1][:, None], order]])  # from before i to j
     on = np.concatenate([cost[order[:, None], order[1:]], np.zeros((n, 1))], axis=1)
@@ -138,7 +142,7 @@ def _turned_round(order: IntArray, cost: Array, away: Array) -> tuple[float, Int
     return float(gain[i, j]), np.concatenate([order[:i], order[i : j + 1][::-1], order[j + 1 :]])
 
 
-def _put_elsewhere(order: IntArray, cost: Array, away: Array) -> tuple[float, IntArray]:
+def _best_or_opt(order: IntArray, cost: Array, away: Array) -> tuple[float, IntArray]:
     """The part of up to three places that saves most elsewhere, in either direction.
 
     Gap k is before the place k of the order, the last one behind all of them.

@@ -1,4 +1,8 @@
-"""Makes a plan: works out every touch, refuses what cannot be made, puts the rest in order."""
+"""Makes a plan: computes every touch, refuses impossible ones, puts the rest in order.
+
+Touches are computed in readings, checked for reach, and swept with the whole tool. One that the
+sweep refuses is tried from inclined directions.
+"""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -63,7 +67,7 @@ class _Task:
             shape=self.probe.shape,
             length=self.probe.length,
             steepest=o.steepest,
-            room=-np.inf,  # exact gaps are looked at below, with the whole way
+            room=-np.inf,  # exact gaps are computed later, with the whole approach
             standoff=o.standoff,
             search=o.search,
             workshop=o.workshop,
@@ -96,12 +100,6 @@ def plan_touches(
 ) -> TouchPlan:
     """Plan of all touches of one set-up.
 
-    Args:
-        probe: In the spindle.
-        setup: Where the standard is believed to stand.
-        requests: Wanted touches, at any poses, in any order.
-        options: How carefully.
-
     Raises:
         NotReachable: More requests refused than tolerated, a pose without room for the probe above
             or for the table to turn.
@@ -112,6 +110,7 @@ def plan_touches(
     setup = rounded_setup(setup)
     ProgramFrame(chain, probe)
     _check_requests(standard, chain, requests)
+    # rounded first, so that plan and program state the same readings
     rotary = np.round(requests.rotary / GRID) * GRID
     task = _Task(standard=standard, chain=chain, probe=probe, setup=setup, options=options)
     stops = visits(chain, rotary, options.overshoot, options.shortest_visit)
@@ -167,7 +166,7 @@ def _with_heights(task: _Task, stops: list[Visit]) -> list[Visit]:
 
 
 def _raised(task: _Task, stops: list[Visit], wanted: Requests) -> list[Visit]:
-    """Visits above every start of theirs, as far as Z retracts."""
+    """Visits raised above all starts of their touches, as far as Z retracts."""
     frame, z = ProgramFrame(task.chain, task.probe), task.chain.axis_index("Z")
     retract = task.chain.link("Z").range[1] - task.options.retract
     start = task.probing.readings(wanted, task.options.standoff)[:, z]
@@ -203,8 +202,8 @@ def _examined(task: _Task, wanted: Requests) -> _Touches:
 def _cleared(task: _Task, wanted: Requests, height: Array) -> _Touches:
     """Touches in readings, some of them by another approach than along the normal.
 
-    Those that can be reached, and have room where the ball meets the surface, are tried from other
-    sides before they are refused; the reason that stays is that of the approach along the normal.
+    Reachable touches with room at the contact are tried from other sides before they are refused;
+    the reported reason is that of the approach along the normal.
     """
     touches = _examined(task, wanted)
     if not task.options.is_swept:
@@ -212,6 +211,7 @@ def _cleared(task: _Task, wanted: Requests, height: Array) -> _Touches:
     touches = _swept(task, touches, height)
     is_open = (touches.reason != "") & task.probing.is_reachable(wanted)
     rows = np.flatnonzero(is_open)
+    # without room at the contact no other approach helps
     room, _ = task.clearance.gap(touches.contact[rows])
     rows = rows[room >= task.options.smallest_gap]
     linear = [task.chain.axis_index(name) for name in LINEAR]
@@ -243,7 +243,7 @@ def _cleared(task: _Task, wanted: Requests, height: Array) -> _Touches:
 
 
 def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
-    """Touches with a reason against those that bring the tool too near to something."""
+    """Touches with reasons added where the tool comes too close to an obstacle."""
     if not task.options.is_swept:
         return touches
     o, z, reason = task.options, task.chain.axis_index("Z"), touches.reason.copy()
@@ -269,6 +269,7 @@ def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
         least = stage.least_gap(task.probe.radius) + _MARGIN
         least = max(least, o.smallest_gap) if stage is Stage.TOUCH else least
         for i in np.flatnonzero(gap < least):
+            # the first reason stands
             words = f"{gap[i]:.2f} mm between probe and {nearest[i]} {stage}"
             reason[rows[i]] = reason[rows[i]] or words
     return replace(touches, reason=reason)
@@ -281,7 +282,7 @@ def _refusal(task: _Task, touches: _Touches, row: int, request: int) -> Refusal:
 
 
 def _anchors(task: _Task, stops: list[Visit]) -> dict[int, tuple[_Touches, Refusal | None]]:
-    """The best anchor touch that can be made at every pose, or none and what is against it."""
+    """The best possible anchor touch at every pose, or none and the reason."""
     poses = list({stop.pose: stop for stop in stops}.values())
     if not task.standard.spheres or not poses:
         return {}
@@ -290,7 +291,7 @@ def _anchors(task: _Task, stops: list[Visit]) -> dict[int, tuple[_Touches, Refus
     examined = _examined(task, joined(lots))
     ends = np.cumsum([len(lot) for lot in lots])
     lot = np.repeat(np.arange(len(lots)), [len(one) for one in lots])
-    # marching costs a hundred times as much as a look: only what would be chosen is marched
+    # a sweep costs a hundred times a static check: only candidates of choice are swept
     is_swept = np.zeros(len(lot), dtype=bool)
     while True:
         good = np.flatnonzero(examined.reason == "")
@@ -332,7 +333,7 @@ def _anchor_requests(task: _Task, stop: Visit) -> Requests:
 def _assembled(
     task: _Task, stops: list[Visit], wanted: _Touches
 ) -> tuple[TouchPlan, list[Refusal]]:
-    """The plan in order of execution, and anchors that no pose could be given."""
+    """The plan in order of execution, and refused anchors."""
     parts: list[_Touches] = []
     visit: list[int] = []
     request: list[int] = []
@@ -374,6 +375,6 @@ def _assembled(
 
 
 def _first_good(task: _Task, candidates: _Touches) -> tuple[_Touches, Refusal | None]:
-    """The first candidate that nothing is against, or none and the refusal of the first."""
+    """The first possible candidate, or none and the refusal of the first."""
     good = np.flatnonzero(candidates.reason == "")
     return candidates[good[:1]], None if len(good) else _refusal(task, candidates, 0, -1)

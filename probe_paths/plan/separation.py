@@ -113,7 +113,7 @@ class Sweeps:
 
 
 def _inverted(size: Array) -> Array:
-    """1 / size; zero for what is no direction but the rounding of one."""
+    """1 / size; zero for a size within rounding."""
     return np.where(size > _NOISE, 1.0 / np.maximum(size, _NOISE), 0.0)
 
 
@@ -121,8 +121,6 @@ def gaps(sweeps: Sweeps, hulls: Hulls, enough: float) -> Array:
     """Gap of each sweep from the body of the same row, (M,), mm.
 
     Args:
-        sweeps: Of the tool.
-        hulls: As many bodies.
         enough: A gap that is larger need not be known better than that.
 
     Returns:

@@ -35,14 +35,13 @@ def stroke_gaps(
 
     To the expected contact the tool above its ball keeps clear of everything, and the ball of all
     but the touched feature. Beyond it, and on the way up after a miss, both keep clear of all but
-    the feature, and but the core: faces are the ends of columns that come out of it.
+    the feature and the core, from which the columns of the faces rise.
 
     Args:
-        clearance: Tool and bodies.
         start: Readings at the start, (N, A).
         direction: Of the motion in readings, unit vectors, (N, A).
         back: To the expected contact, (N,), mm.
-        distance: To where the probe gives up, (N,), mm.
+        distance: Longest travel, (N,), mm.
         feature: That is touched, (N,).
         enough: A gap that is larger need not be known better than that, mm.
     """
@@ -50,6 +49,7 @@ def stroke_gaps(
     own = np.zeros((len(start), len(bodies.name)), dtype=bool)
     for name in dict.fromkeys(feature.tolist()):
         own[np.ix_(np.flatnonzero(feature == name), bodies.rows_of(name))] = True
+    # beyond the contact the core is spared, as columns come out of it
     core = np.broadcast_to(bodies.name == "CORE", own.shape)
     contact = start + back[:, None] * direction
     end = start + distance[:, None] * direction

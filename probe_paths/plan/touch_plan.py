@@ -25,11 +25,11 @@ GRID = 1e-4 * DEG
 
 @dataclass(frozen=True)
 class PlanOptions:
-    """How carefully and how thoroughly, base units.
+    """Margins and thoroughness of a plan, base units.
 
-    Angle and gap are wider than those that touches are chosen with (`ProbeReach`: 75 degrees and
-    2 mm), so that what was chosen is not refused by the digits of a program; everything else that
-    both must agree on is taken from there.
+    Angle and gap are wider than in the choice of touches (`ProbeReach`: 75 degrees and 2 mm), so
+    that no chosen touch is refused because of rounding in a program; all other shared values are
+    taken from there.
 
     Attributes:
         standoff: Gap between ball and surface at the start of a touch.
@@ -78,7 +78,6 @@ class Refusal:
 
     Attributes:
         request: Row of the requests; -1 for an anchor touch.
-        feature: That it should touch.
         rotary: Readings of the rotary axes by letter, rad.
         reason: What is against it, as `ProbeReach.reasons` has it.
     """
@@ -98,15 +97,10 @@ class TouchPlan:
     """Touches in the order of execution; rows of one visit stand together.
 
     Attributes:
-        probe: In the spindle.
-        setup: Where it is believed to stand.
-        options: As planned.
         visits: Table poses in order, each with its side of approach and clearance height.
         visit: Index into `visits`, (N,).
         request: Row of the requests, -1 for an anchor touch, (N,).
-        feature: Names, (N,).
         point: Contact points, artefact frame, (N, 3), mm.
-        normal: Outward unit normals, (N, 3).
         start: Readings at the start of the touch, (N, A).
         contact: Readings at the expected contact, (N, A).
         direction: Unit vector of the probing motion in X, Y, Z readings, (N, 3).

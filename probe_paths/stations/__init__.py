@@ -8,7 +8,7 @@ Their logs are evaluated together (`matstd.probe_paths.campaign.evaluate`).
 
 from matstd.probe_paths.stations.from_brief import dialects_of, feeds_of, plan_options_of
 from matstd.probe_paths.stations.planned import plan_campaign
-from matstd.probe_paths.stations.programmed import Station, all_programs, make_stations, with_tool
+from matstd.probe_paths.stations.programmed import Station, all_programs, make_stations
 
 __all__ = [
     "Station",
@@ -18,5 +18,4 @@ __all__ = [
     "make_stations",
     "plan_campaign",
     "plan_options_of",
-    "with_tool",
 ]

@@ -10,8 +10,8 @@ from matstd.probe_paths.stations.programmed import with_tool
 from matstd.twin.errors import BadFile
 
 _DROPPED = 0.1
-"""Of the touches that a plan may drop, each with its reason: the choice knows of room at touches,
-the plan of every move."""
+"""Share of touches that a plan may drop, each with its reason: the choice checks touches only,
+the plan every move."""
 
 
 def dialects_of(brief: Brief) -> list[Dialect]:
@@ -47,7 +47,7 @@ def dialects_of(brief: Brief) -> list[Dialect]:
 
 
 def _is_tilted(brief: Brief, words: Dialect) -> bool:
-    """Whether programs use planes, which control and machine must be made for."""
+    """Whether programs use planes; refuses a control or machine without them."""
     if not brief.programs.planes:
         return False
     chain = brief.chain

@@ -1,9 +1,9 @@
-"""Several probes and several clampings of one standard: who makes which touch.
+"""Assignment of touches to several probes and clampings of one standard.
 
-Everything is wanted of the first probe in the first clamping, for which the standard was designed.
-What a probe cannot touch is left to the next one, which repeats some touches on balls, as nobody
-knows to a micrometre how its ball stands against that of the first. A further clamping is given the
-same places on the standard, at table poses of the first at which they can be touched there.
+The first probe in the first clamping, for which the standard was designed, makes every touch that
+it can. The next probe makes the others, and repeats some touches on balls because the offset of its
+stylus from the first is not known to a micrometre. A further clamping gets the same places on the
+standard, at table poses of the first at which they can be touched there.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,6 @@ from matstd.twin.record import IntArray, Setup
 _POSES_TRIED = 6
 """Table poses at which a place of a further clamping is looked for, the best inclined first."""
 
-
 _LINKS = 8
 """Touches on balls that a further probe repeats, at every pose that it visits or else at others:
 twice the four numbers of a stylus."""
@@ -35,19 +34,16 @@ def plan_campaign(
     requests: Requests,
     options: PlanOptions,
 ) -> list[tuple[int, TouchPlan]]:
-    """Plans of all probes in all clampings, in the order in which they are run.
+    """Plans of all probes (numbered from 0) in all clampings, in the order of execution.
 
     Refusals stand with the first probe of a clamping, where no probe makes the touch; places that a
     further clamping does not reach are not counted as refused.
 
     Args:
-        probes: The one that the standard was designed for, then those that make what is left.
+        probes: The one that the standard was designed for, then those for the remaining touches.
         clampings: The one that it was designed for, then others.
         requests: Wanted touches, at table poses of the first clamping.
         options: How carefully; its workshop is that of each clamping.
-
-    Returns:
-        Of every plan the number of its probe, from 0, and the plan.
 
     Raises:
         NotReachable: More requests of the first clamping refused by all probes than tolerated; a
@@ -56,7 +52,11 @@ def plan_campaign(
     out: list[tuple[int, TouchPlan]] = []
     for number, clamping in enumerate(clampings):
         here = replace(options, workshop=clamping.workshop)
-        wanted = requests if number == 0 else _reposed(standard, chain, probes, clamping, requests)
+        wanted = (
+            requests
+            if number == 0
+            else _in_other_clamping(standard, chain, probes, clamping, requests)
+        )
         tolerated = options.tolerated if number == 0 else len(wanted)
         out += _plans(standard, chain, probes, clamping.setup, wanted, here, tolerated)
     return out
@@ -79,13 +79,17 @@ def _plans(
         if not len(left):
             break
         here = replace(options, tolerated=most)
-        rows = np.concatenate([left, _links(standard, wanted, left)]) if number else left
+        rows = (
+            np.concatenate([left, _repeated_ball_touches(standard, wanted, left)])
+            if number
+            else left
+        )
         try:
             plan = plan_touches(standard, chain, probe, setup, wanted[rows], here)
         except NotReachable:
             if not out:  # the first is the one that everything was designed for
                 raise
-            continue  # what is against the touches is what was against the first
+            continue  # the reasons of the first probe stand
         refused = [r for r in plan.refused if 0 <= r.request < len(left)]
         anchors = tuple(r for r in plan.refused if r.request < 0)
         plan = replace(plan, request=_numbered(plan.request, rows), refused=anchors)
@@ -104,8 +108,8 @@ def _plans(
     return [(number, replace(first, refused=(*lost, *first.refused))), *out[1:]]
 
 
-def _links(standard: Standard, wanted: Requests, left: IntArray) -> IntArray:
-    """Touches on balls that others make: at the poses of those that are left, or elsewhere."""
+def _repeated_ball_touches(standard: Standard, wanted: Requests, left: IntArray) -> IntArray:
+    """Touches on balls to repeat: at the poses of the remaining touches, or elsewhere."""
     is_ball = np.isin(wanted.feature, [sphere.name for sphere in standard.spheres])
     is_ball[left] = False
     pose = wanted.pose
@@ -116,11 +120,11 @@ def _links(standard: Standard, wanted: Requests, left: IntArray) -> IntArray:
 
 
 def _numbered(request: IntArray, rows: IntArray) -> IntArray:
-    """Rows of all requests for rows of those that were left; -1 stays."""
+    """Rows among all requests from rows among the remaining ones; -1 stays."""
     return np.where(request >= 0, rows[np.maximum(request, 0)], request)
 
 
-def _reposed(
+def _in_other_clamping(
     standard: Standard,
     chain: Chain,
     probes: Sequence[Probe],
@@ -129,8 +133,8 @@ def _reposed(
 ) -> Requests:
     """The same places in another clamping, each at a table pose at which it can be touched there.
 
-    That is its own pose, or else of all poses that occur the one at which the probe is inclined
-    least to the surface. Places that no probe touches at any of them are left out.
+    That is its own pose, or else the one of all occurring poses at which the probe is inclined
+    least. Places that no probe reaches at any pose are left out.
 
     Raises:
         NotReachable: Nothing is left.
@@ -142,6 +146,7 @@ def _reposed(
             chain, clamping.setup, probe.shape, probe.length, workshop=clamping.workshop
         )
         lean, best = _by_lean(reach, requests, poses)
+        # attempt -1 is the pose of the first clamping
         for attempt in range(-1, min(_POSES_TRIED, len(poses))):
             rows = np.flatnonzero(~found)
             if attempt >= 0:
@@ -159,6 +164,6 @@ def _reposed(
 
 
 def _by_lean(reach: ProbeReach, requests: Requests, poses: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Angle between normal and tool at every pose (N, K), and the poses from least to most."""
+    """Angle between normal and tool at every pose (N, K), and the poses in increasing order."""
     _, lean = reach.everywhere(requests.point, requests.normal, poses)
     return lean, np.argsort(lean, axis=1, kind="stable")

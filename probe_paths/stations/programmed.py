@@ -13,9 +13,7 @@ class Station:
     """What one probe does in one clamping.
 
     Attributes:
-        plan: Its touches.
         dialect: Of the control, with the probe's tool.
-        programs: That make them.
     """
 
     plan: TouchPlan
@@ -41,7 +39,6 @@ def make_stations(
     Args:
         plans: As of `plan_campaign`, with the number of the probe.
         words: Of the control, for every probe.
-        feeds: Feeds, and the length of a file.
     """
     return tuple(
         Station(plan, words[probe], make_programs(plan, words[probe], feeds))

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from matstd.compensation.field import MachineErrors, Result
-from matstd.compensation.tables import Header, Played
+from matstd.compensation.tables import Header, VerifiedTables
 from matstd.report.compensation.table_pictures import draw_errors_left, draw_shares
 from matstd.report.compensation.table_words import control_title, extent_of, result_sentence, small
 from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
@@ -38,7 +38,11 @@ _TEST = (
 
 
 def write_compensation_page(
-    folder: str | Path, errors: MachineErrors, head: Header, done: Sequence[Played], title: str
+    folder: str | Path,
+    errors: MachineErrors,
+    head: Header,
+    done: Sequence[VerifiedTables],
+    title: str,
 ) -> None:
     """Write `report.html` and its pictures into a folder.
 
@@ -71,7 +75,7 @@ def write_compensation_page(
     write_page(Path(folder) / PAGE, page)
 
 
-def _key(first: Result, done: Sequence[Played]) -> list[KeyFigure]:
+def _key(first: Result, done: Sequence[VerifiedTables]) -> list[KeyFigure]:
     before = f"error of the tool point before, rms of {len(first.q)} poses"
     u = first.u_rms / UM
     known = (
@@ -90,7 +94,7 @@ def _key(first: Result, done: Sequence[Played]) -> list[KeyFigure]:
     return [KeyFigure(f"{digits(rms_length(first.before) / UM)} µm", before), known, *after]
 
 
-def _control(played: Played, chain: Chain) -> list[Section]:
+def _control(played: VerifiedTables, chain: Chain) -> list[Section]:
     """One control: its figures, what it cannot represent, its one-point test."""
     result, least = played.result, max(played.interpolation, FEEBLE)
     rows = [
@@ -120,7 +124,7 @@ def _control(played: Played, chain: Chain) -> list[Section]:
     ]
 
 
-def _one_point_test(played: Played, chain: Chain) -> Section:
+def _one_point_test(played: VerifiedTables, chain: Chain) -> Section:
     """Readings of an indicator that prove the sign of a table."""
     test = played.acceptance
     place = []

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from matstd.compensation.field import Left, Result
+from matstd.compensation.field import Result, UncorrectedError
 from matstd.report.style import INK, NEUTRAL, SOFT, figure, nothing, plain, series
 from matstd.twin.units import UM
 
@@ -47,7 +47,7 @@ def _curve(ax: object, size: np.ndarray, label: str | None, colour: str, style: 
     ax.plot(x, y, style, color=colour, lw=1.4, label=label)  # type: ignore[attr-defined]
 
 
-def draw_shares(left: Sequence[Left]) -> Figure:
+def draw_shares(left: Sequence[UncorrectedError]) -> Figure:
     """Every error before and after one compensation."""
     shown = [item for item in left[:BARS] if item.before > 0.0]
     if not shown:

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from matstd.compensation.field import Left, Result
-from matstd.compensation.tables import Played
+from matstd.compensation.field import Result, UncorrectedError
+from matstd.compensation.tables import VerifiedTables
 from matstd.report.numbers import digits
 from matstd.twin.numbers import rms_length
 from matstd.twin.units import NM, UM
@@ -44,17 +44,17 @@ def small(value: float, significant: int = 3) -> str:
     return digits(value, significant) if value >= 1e-3 else "< 0.001"
 
 
-def extent_of(played: Played) -> str:
+def extent_of(played: VerifiedTables) -> str:
     """Where a bound on interpolation holds."""
     return "over the workspace" if played.by_name else "along the axes through the datum"
 
 
-def held_words(left: Left) -> str:
+def held_words(left: UncorrectedError) -> str:
     """`EX0C (20.1 of 21.0 µm remain)`: an error that a control cannot represent."""
     return f"{left.name} ({digits(left.rms / UM)} of {digits(left.before / UM)} µm remain)"
 
 
-def table_lines(played: Played) -> Iterator[tuple[str, bool]]:
+def table_lines(played: VerifiedTables) -> Iterator[tuple[str, bool]]:
     """Lines on the console, and whether each is the first of its control."""
     yield f"{control_title(played.format)}: {result_sentence(played.result)}", True
     bound = small(played.interpolation / UM)

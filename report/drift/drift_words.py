@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from matstd.diagnosis.drift import DriftRecord, IntArray, Judged, Kept
+from matstd.diagnosis.drift import DriftRecord, IntArray, Judged, ProbedPrediction
 from matstd.report.numbers import digits, span
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
@@ -74,7 +74,7 @@ def clock_line(lead: float) -> str:
     )
 
 
-def kept_line(result: Kept, record: DriftRecord, rows: IntArray, every: float) -> str:
+def kept_line(result: ProbedPrediction, record: DriftRecord, rows: IntArray, every: float) -> str:
     """Error with occasional probing, with a law and without.
 
     Args:

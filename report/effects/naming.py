@@ -75,7 +75,7 @@ def rival_words(step: Step) -> str:
 def plan_words(plan: Plan) -> str:
     """What a plan distinguishes: `reversal of X [backlash(X)] from reversal of Y [backlash(Y)]`."""
     chain = plan.touches.chain
-    one, other = plan.tells_apart
+    one, other = plan.distinguishes
     if plan.periods_of:
         periods = ", ".join((one.rpartition("@")[2], *other.rpartition("@")[2].split(",")))
         effect = parse_effect(plan.periods_of, chain)

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from matstd.diagnosis.geometry import (
-    CLEAR,
+    MIN_CLEAR_EXCESS,
     Correction,
     Estimate,
     GeometryRow,
@@ -210,7 +210,7 @@ def _is_of_arm(row: GeometryRow) -> bool:
 
     All of these are entered in the control of an arm, whatever their size.
     """
-    is_clear = abs(row.estimate.value) > CLEAR * row.estimate.u
+    is_clear = abs(row.estimate.value) > MIN_CLEAR_EXCESS * row.estimate.u
     return row.quantity in ARM and row.is_determined and is_clear
 
 

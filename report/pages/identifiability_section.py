@@ -4,7 +4,13 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from matstd.artefact.compare import IdentifiabilityReport
-from matstd.information.identifiability import STRONG, Degree, FreedomFamily, Resolution, ties
+from matstd.information.identifiability import (
+    STRONG_CORRELATION,
+    Degree,
+    FreedomFamily,
+    Resolution,
+    ties,
+)
 from matstd.report.identifiability import (
     combination_words,
     family_words,
@@ -223,9 +229,9 @@ def _ties(design: Design) -> list[Section]:
     found = ties(fit.covariance, [short(name) for name in fit.names])
     words = [pair_words(pair, found.names) for pair in found.pairs]
     intro = (
-        f"{len(found.pairs)} pairs of parameters remain correlated beyond {STRONG} after the fit, "
-        f"in {len(found.groups)} groups. Difference and sum are in units of the standard "
-        "deviations of the parameters."
+        f"{len(found.pairs)} pairs of parameters remain correlated beyond "
+        f"{STRONG_CORRELATION} after the fit, in {len(found.groups)} groups. "
+        "Difference and sum are in units of the standard deviations of the parameters."
     )
     more = len(words) - _TIES
     return [

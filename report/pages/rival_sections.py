@@ -111,7 +111,7 @@ def _rivals(step: Step, i: int) -> list[Section]:
     assert step.effect is not None
     confusion = step.confusion
     alike = confusion.rivals if confusion else ()
-    apart = confusion.told_apart if confusion else ()
+    apart = confusion.distinguished if confusion else ()
     # signatures that coincide make a picture of nothing
     has_picture = any(abs(r.log_odds) >= SAME for r in (*alike, *apart))
     pictures = []
@@ -147,7 +147,7 @@ def _rivals(step: Step, i: int) -> list[Section]:
 def _single(step: Step) -> str:
     """An effect that no other one can replace."""
     assert step.effect is not None
-    apart = step.confusion.told_apart if step.confusion else ()
+    apart = step.confusion.distinguished if step.confusion else ()
     if not apart:
         return f"{named(step.effect)} has no rival."
     first = apart[0]

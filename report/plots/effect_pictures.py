@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from matstd.diagnosis.answer import CONFUSED, Candidate, ConfusionClass, Diagnosis, Step
+from matstd.diagnosis.answer import (
+    MAX_LOG_ODDS_CONFUSED,
+    Candidate,
+    ConfusionClass,
+    Diagnosis,
+    Step,
+)
 from matstd.diagnosis.fit import MIN_POSES, Fit
 from matstd.diagnosis.regression import BoolArray
 from matstd.diagnosis.residual import Partial, Seen, binned, partial
@@ -201,15 +207,17 @@ def _class_legend(drawn: Any, diagnosis: Diagnosis) -> None:
 
 def draw_rivals(confusion: ConfusionClass, colour: str = BLUE) -> Figure:
     """A found effect against everything that explains the same touches, by its odds."""
-    apart = confusion.told_apart[: max(2, MOST_BARS - len(confusion.rivals))]
+    apart = confusion.distinguished[: max(2, MOST_BARS - len(confusion.rivals))]
     rows = [*confusion.rivals[:MOST_BARS], *apart]
     names = [_named(e) for e in (confusion.effect, *(r.effect for r in rows))]
-    behind = np.array([0.0, *(max(r.log_odds, -CONFUSED) for r in rows)]) / TEN
+    behind = np.array([0.0, *(max(r.log_odds, -MAX_LOG_ODDS_CONFUSED) for r in rows)]) / TEN
     alike = 1 + min(len(confusion.rivals), MOST_BARS)
     drawn = figure(1.1 + ROW * len(names))
     ax = drawn.subplots()
     y = np.arange(len(names))[::-1]
-    ax.axvspan(-CONFUSED / TEN, CONFUSED / TEN, color=LINE, alpha=0.45, lw=0)
+    ax.axvspan(
+        -MAX_LOG_ODDS_CONFUSED / TEN, MAX_LOG_ODDS_CONFUSED / TEN, color=LINE, alpha=0.45, lw=0
+    )
     ax.axvline(0.0, color=INK, lw=0.9)
     colours = np.array([colour] * alike + [SOFT] * (len(names) - alike))
     ax.scatter(behind, y, s=48, c=colours, zorder=3)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.residual import SEES, Structure, binned, directions, groups, variables
+from matstd.diagnosis.residual import MIN_VIEW, Structure, binned, directions, groups, variables
 from matstd.report.numbers import span, time_unit
 from matstd.report.plots.residual_pictures import kept
 from matstd.report.style import (
@@ -89,7 +89,7 @@ def _seen(fit: Fit, direction: str) -> tuple[IntArray, Array, Array]:
     rows = np.flatnonzero(fit.used)
     along = directions(fit.run.touches)
     seen = along.get(direction, along["normal"])[rows]
-    clear = np.abs(seen) >= SEES * float(np.quantile(np.abs(seen), 0.99))
+    clear = np.abs(seen) >= MIN_VIEW * float(np.quantile(np.abs(seen), 0.99))
     rows, seen = rows[clear], seen[clear]
     return rows, fit.residual[rows] / (seen * UM), (seen / fit.run.u[rows]) ** 2
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from matstd.diagnosis.answer import Comparison, Detectable, Step
-from matstd.diagnosis.fit import SINE, Fit, Reported, Role
-from matstd.diagnosis.remarks import OfAnotherRun
+from matstd.diagnosis.fit import SINE_PREFIX, Fit, Reported, Role
+from matstd.diagnosis.remarks import EffectOfOtherRun
 from matstd.diagnosis.residual import Condition, Shape, Side, Structure
 from matstd.report.effects import words_of_name
 from matstd.report.numbers import (
@@ -81,7 +81,7 @@ def values(step: Step) -> list[tuple[str, str]]:
 
 def number_words(reported: Sequence[Reported]) -> list[tuple[str, str]]:
     """The same from the numbers that a model file keeps."""
-    sines = [r for r in reported if r.quantity.startswith(SINE)]
+    sines = [r for r in reported if r.quantity.startswith(SINE_PREFIX)]
     shown = sorted(reported, key=lambda r: _ORDER.index(r.role))
     is_curve = any(r.quantity == "peak_to_valley" for r in shown)
     if is_curve or sines or len(shown) > ALL_NUMBERS:
@@ -197,7 +197,7 @@ scatter by a few per cent."""
 
 
 def promise_sentence(
-    found: Comparison, promised: float, others: Sequence[OfAnotherRun] = ()
+    found: Comparison, promised: float, others: Sequence[EffectOfOtherRun] = ()
 ) -> str:
     """The error of a prediction beside the one that its model promised.
 

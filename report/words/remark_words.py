@@ -68,7 +68,7 @@ def _noise_remembers(r: noticed.NoiseRemembers) -> str:
     return f"the residual varies slowly ({words}): in probabilities and uncertainties, {count}"
 
 
-def _of_another_run(r: noticed.OfAnotherRun) -> str:
+def _of_another_run(r: noticed.EffectOfOtherRun) -> str:
     inner = []
     for key, value in r.inner.items():
         name, _, unit = key.partition("_")
@@ -220,7 +220,7 @@ _SENTENCES: dict[type, str | Callable[[Any], str]] = {
     noticed.NoiseRemembers: _noise_remembers,
     noticed.ChosenByPrediction: _chosen,
     noticed.FieldShares: _field_shares,
-    noticed.OfAnotherRun: _of_another_run,
+    noticed.EffectOfOtherRun: _of_another_run,
     noticed.ReaderRemark: "{r.text}",
     noticed.FewTouches: "{r.touches} touches for {r.parameters} possible errors of the machine: "
     "the expected sizes determine the rest; not the single errors are known, but their sum where "

@@ -3,9 +3,8 @@
 One walk along the chain from the table to the tool. A workpiece-carrying axis moves its body by
 minus its reading, so seen from the table every axis turns by plus its reading, and both sides of
 the foundation are one product. With R the rotation of a body in the table frame, p the tip and c
-the lever point of an axis, a component error e or r of it moves the tip by ``R e`` and
-``(R r) x (p - c)``. `matstd.twin.machine.kinematics.reach` says the same in 4x4 matrices and shares
-nothing with this file.
+the lever point of an axis, a component error e or r of it moves the tip by ``R e`` and ``(R r) x (p
+- c)``. `matstd.twin.machine.kinematics.reach` computes the same with 4x4 matrices, sharing no code.
 
 A vector is kept as its components x y z x y, (5, n): what follows one another in a cross product is
 then a view, and three calls of numpy make three columns. Whatever does not depend on the pose has
@@ -28,36 +27,23 @@ _XYZXY = [0, 1, 2, 0, 1]
 
 
 class PoseCache(NamedTuple):
-    """A link of the chain at n poses, table frame.
+    """A link of the chain at n poses, table frame."""
 
-    Attributes:
-        before: Axes of the body on the table's side of the link, (3, 5, n).
-        after: Axes of the body on the tool's side, (3, 5, n).
-        carrier: Axes of the body that the link sits on, one of the two.
-        arm: From the lever point of the link to the tip, (5, n), mm.
-        reading: Shape (n,), mm or rad.
-    """
-
-    before: Array
-    after: Array
-    carrier: Array
-    arm: Array
-    reading: Array
+    before: Array  # axes of the body on the table's side of the link, (3, 5, n)
+    after: Array  # axes of the body on the tool's side, (3, 5, n)
+    carrier: Array  # axes of the body that the link sits on, one of the two
+    arm: Array  # from the lever point of the link to the tip, (5, n), mm
+    reading: Array  # shape (n,), mm or rad
 
 
 class _Run(NamedTuple):
-    """Consecutive parameters of one link that are alike but for their direction.
-
-    Attributes:
-        columns: Of the Jacobian.
-        directions: As many of x, y, z.
-    """
+    """Consecutive parameters of one link that are alike but for their direction."""
 
     link: int
     family: Family
     is_angular: bool
-    columns: slice
-    directions: slice
+    columns: slice  # of the Jacobian
+    directions: slice  # as many of x, y, z
 
 
 def jacobian_by_parameter(
@@ -65,8 +51,7 @@ def jacobian_by_parameter(
 ) -> Array:
     """First-order deviation of the tool point per unit of every error parameter, parameter first.
 
-    The same numbers as `matstd.sensitivity.first_order.jacobians.jacobian`, in the order of memory
-    that fills fastest.
+    As `matstd.sensitivity.first_order.jacobians.jacobian`, in the fastest order of memory.
 
     Args:
         q: Readings, shape (N, A), mm and rad.
@@ -92,7 +77,7 @@ def jacobian_by_parameter(
 def jacobian_blocks(
     chain: Chain, q: Array, length: Array | float, symbols: Sequence[Symbol]
 ) -> Iterator[tuple[slice, Array]]:
-    """The same, some poses at a time, for whatever needs each column only once.
+    """The same in blocks of poses, for callers that need each column only once.
 
     Yields:
         Which poses, and their columns (P, 3, n); the array is used again for the next block.
@@ -209,7 +194,7 @@ def _turned(axes: Array, direction: Array, angle: Array) -> Array:
 
 
 def _displaced(link: Link, stand: PoseCache, directions: slice, is_angular: bool) -> Array:
-    """What a displaced line does along machine directions, (., 5, n).
+    """Effect of a displaced line along machine directions, (., 5, n).
 
     Displacement, or of a tilted line of a rotary axis rotation about the lever point. See
     `matstd.twin.machine.kinematics.place_as_twist`.

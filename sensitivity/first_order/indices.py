@@ -1,4 +1,4 @@
-"""Which error makes how much of the volumetric deviation: exact to first order."""
+"""Share of every error in the volumetric deviation, exact to first order."""
 
 from collections.abc import Iterator
 from itertools import combinations, groupby
@@ -22,7 +22,6 @@ def mean_squares(population: Population, q: Array) -> Array:
     drawn evenly.
 
     Args:
-        population: The machines that may be drawn.
         q: Readings, shape (N, A).
 
     Returns:
@@ -62,7 +61,6 @@ def mixed_moments(population: Population, q: Array) -> Iterator[tuple[int, int, 
     sines of the same phase at the arguments x and y.
 
     Args:
-        population: The machines that may be drawn.
         q: Readings, shape (N, A).
 
     Yields:
@@ -121,8 +119,8 @@ def variance_parts(population: Population, q: Array, length: Array | float) -> A
     """Part of every error in the mean square of the deviation, (N, P), mm^2, first order.
 
     ``E|d|^2 = sum_p |dp/dE_p|^2 E[e_p^2]`` for independent errors of mean zero. Of the mixed term
-    of two errors that depend on each other each gets a half, so a part may be negative: an error
-    that takes away from what another one makes.
+    of two errors that depend on each other each gets a half, so a part may be negative, where an
+    error compensates another one.
 
     Reference:
         Li et al., Anal. Chem. 82 (2010) 2417: shares of covariance for correlated inputs.
@@ -165,6 +163,7 @@ def covariance(population: Population, q: Array, length: Array | float) -> Array
     """
     chain = population.chain
     q = checked_readings(chain, q)
+    # errors with one mean square follow each other, so a slice of the columns is one sum
     order = sorted(chain.symbols, key=lambda s: (s.link, str(population.mix_of(s))))
     weight = np.array([population.ranges.sd(chain, s) ** 2 for s in order])
     over = [_over(population, symbol) for symbol in order]

@@ -38,9 +38,9 @@ def sensitivity(
 ) -> Array:
     """``S = |dp/dE|`` of every error parameter at every pose.
 
-    It is one for every translational component error everywhere, and the distance from the axis of
-    the rotation for an angular one: a map of it says how far from the axis a pose is, and the
-    signed ``n . dp/dE`` of touches (`matstd.information.criteria.posterior`) what a touch can tell.
+    It is one for every translational component error, and the distance from the axis of rotation
+    for an angular one. What a touch can determine follows from the signed ``n . dp/dE``
+    (`matstd.information.criteria.posterior`).
 
     Args:
         q: Readings, shape (N, A), mm and rad.

@@ -28,19 +28,12 @@ _NODES = 32  # of the quadrature, in each of two angles
 
 @dataclass(frozen=True, eq=False)
 class NormalLength:
-    """Length |d| of a normal vector at N poses, mm.
+    """Length |d| of a normal vector at N poses, mm."""
 
-    Attributes:
-        rms: Shape (N,).
-        mean: Shape (N,).
-        levels: Probabilities of the quantiles, (Q,).
-        quantile: Shape (Q, N).
-    """
-
-    rms: Array
-    mean: Array
-    levels: tuple[float, ...]
-    quantile: Array
+    rms: Array  # shape (N,)
+    mean: Array  # shape (N,)
+    levels: tuple[float, ...]  # probabilities of the quantiles, (Q,)
+    quantile: Array  # shape (Q, N)
 
     @property
     def sd(self) -> Array:

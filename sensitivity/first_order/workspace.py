@@ -1,9 +1,10 @@
-"""Poses over which sensitivities are looked at: grids, Latin hypercubes and sections."""
+"""Poses of a workspace: grids, Latin hypercubes and sections."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from matstd.twin.errors import DesignError, NotReachable, OutsideTravel, UnknownAxis
 from matstd.twin.frames import Array
@@ -18,14 +19,14 @@ _MOST_POSES = 2_000_000  # Jacobians of more, with 60 errors, take over 3 GiB
 
 @dataclass(frozen=True, eq=False)
 class Workspace:
-    """Where a user works.
+    """Limits of the readings and of the tool point that a user needs.
 
     Attributes:
         limits: Smallest and largest reading by axis, mm or rad; an axis left out has its whole
             range, a spindle that is not programmed stands at zero.
         length: Tool length, mm.
         volume: Lowest and highest corner of a box of the table frame in which the tool point has to
-            stay, mm; None where the readings alone say what is meant.
+            stay, mm, or None.
     """
 
     chain: Chain
@@ -64,23 +65,27 @@ class Workspace:
         """Programmed axes whose limits leave them room to move."""
         return tuple(a for a in self.chain.programmed_axes if np.ptp(self.limit(a)) > 0.0)
 
+    def in_volume(self, q: Array) -> NDArray[np.bool_]:
+        """Whether the tool point at readings (N, A) is in the volume, (N,)."""
+        if self.volume is None:
+            return np.ones(len(q), dtype=bool)
+        p, (low, high) = tip(self.chain, q, self.length), np.array(self.volume)
+        is_in: NDArray[np.bool_] = np.all((p >= low) & (p <= high), axis=1)
+        return is_in
+
 
 def _inside(workspace: Workspace, q: Array) -> Array:
     """Rows of readings within limits and volume."""
-    keep = np.ones(len(q), dtype=bool)
+    keep = workspace.in_volume(q)
     for i, name in enumerate(workspace.chain.axes):
         low, high = workspace.limit(name)
         slack = 1e-9 * max(high - low, 1.0)
         keep &= (q[:, i] >= low - slack) & (q[:, i] <= high + slack)
-    if workspace.volume is not None:
-        p = tip(workspace.chain, q, workspace.length)
-        low_corner, high_corner = np.array(workspace.volume)
-        keep &= np.all((p >= low_corner) & (p <= high_corner), axis=1)
     return q[keep]
 
 
 def grid(workspace: Workspace, counts: Mapping[str, int] | int) -> Array:
-    """Regular grid of readings, those outside the volume left out.
+    """Regular grid of readings, those outside the volume left out; raises NotReachable.
 
     Args:
         counts: Values of each axis, or one number for all; an axis without room, or not named, has
@@ -88,9 +93,6 @@ def grid(workspace: Workspace, counts: Mapping[str, int] | int) -> Array:
 
     Returns:
         Shape (N, A); the axes run in chain order, the last one fastest.
-
-    Raises:
-        NotReachable: No pose lies in the volume.
     """
     chain = workspace.chain
     each = []
@@ -114,21 +116,11 @@ def grid(workspace: Workspace, counts: Mapping[str, int] | int) -> Array:
 
 
 def latin_hypercube(workspace: Workspace, count: int, rng: np.random.Generator) -> Array:
-    """Poses that fill a workspace evenly.
+    """Poses that fill a workspace evenly, (N, A); raises NotReachable.
 
     Without a volume it is a Latin hypercube of the readings. With one, tool points and rotary
     readings are drawn so, the linear readings follow, and what lies beyond the limits is drawn
     again.
-
-    Args:
-        workspace: Limits and volume.
-        count: N.
-
-    Returns:
-        Readings, shape (N, A).
-
-    Raises:
-        NotReachable: Hardly any pose is within limits and volume at once.
     """
     chain = workspace.chain
     low, high = np.array([workspace.limit(name) for name in chain.axes]).T
@@ -165,7 +157,6 @@ def section(
     Args:
         first: Axis along the rows.
         second: Axis along the columns.
-        count: Values of each.
         base: Readings of the other axes, (A,); None for the middle of their limits.
 
     Returns:

@@ -18,7 +18,7 @@ MACHINES_A_BATCH = 20 * DRAWS_A_CHILD
 _SPAN = 5.0
 """The histogram of |d| at a pose reaches to this multiple of its root mean square. A sum of many
 independent errors exceeds it in less than one case of a million, and then sits in the last bin."""
-_NOTHING = 1e-12  # mm: scale of the histogram where no machine has an error
+_MIN_SCALE = 1e-12  # mm: scale of the histogram where no machine has an error
 
 
 class Batch(NamedTuple):
@@ -29,23 +29,15 @@ class Batch(NamedTuple):
 
 
 class SharedArrays(NamedTuple):
-    """What all batches share; made once, by whoever counts.
+    """Data that all batches share; made once per process."""
 
-    Attributes:
-        population: What to draw from.
-        G: Deviation of the tip per unit of every parameter, (N, 3, K), mm.
-        width: Of a bin of the histogram at every pose, (N,), mm.
-        tolerance: mm.
-        worst: Among how many of the first poses the worst are looked for, and how many they are.
-        threads: Of one batch; None for one a core.
-    """
-
-    population: Population
-    G: Array
-    width: Array
-    tolerance: float
+    population: Population  # what to draw from
+    G: Array  # deviation of the tip per unit of every parameter, (N, 3, K), mm
+    width: Array  # of a bin of the histogram at every pose, (N,), mm
+    tolerance: float  # mm
+    # number of first poses among which the worst are searched, and how many count as worst
     worst: tuple[int, int]
-    threads: int | None
+    threads: int | None  # of one batch; None for one a core
 
 
 def shared_arrays(
@@ -66,7 +58,7 @@ def shared_arrays(
 
 def bin_width(rms: Array) -> Array:
     """Width of a bin of the histogram for a root mean square of |d|, (N,), mm."""
-    return np.maximum(rms, _NOTHING) * (_SPAN / BINS)
+    return np.maximum(rms, _MIN_SCALE) * (_SPAN / BINS)
 
 
 def batches(count: int, rng: np.random.Generator) -> Iterator[Batch]:

@@ -1,4 +1,4 @@
-"""A Dask cluster as workers: reaching its scheduler, waiting for results that may never come."""
+"""A Dask cluster as workers: connect to its scheduler, wait for results, report lost workers."""
 
 import logging
 import time
@@ -8,24 +8,20 @@ from typing import Any
 
 from matstd.twin.errors import DesignError, MissingLibrary
 
-ANSWER = 5.0
+ANSWER_TIME = 5.0
 """Seconds in which a scheduler has to answer and to have a worker."""
 
-_LOOK = 1.0  # s between looks whether anybody is still there
-_NOBODY = 20.0  # s without any worker after which the work is given up
+_POLL_INTERVAL = 1.0  # s between checks that workers are alive
+_NO_WORKER_TIMEOUT = 20.0  # s without any worker after which the work is given up
 
 
 @contextmanager
-def cluster(address: str, answer: float = ANSWER) -> Iterator[Any]:
+def cluster(address: str, answer: float = ANSWER_TIME) -> Iterator[Any]:
     """Client of the Dask scheduler at an address, such as `tcp://10.0.0.7:8786`.
-
-    Args:
-        address: Of the scheduler.
-        answer: Seconds in which it has to answer.
 
     Raises:
         MissingLibrary: Dask is not installed.
-        DesignError: Nobody answers there, or the scheduler has no worker.
+        DesignError: The address does not answer, or the scheduler has no worker.
     """
     try:
         from distributed import Client
@@ -51,7 +47,7 @@ def cluster(address: str, answer: float = ANSWER) -> Iterator[Any]:
 
 @contextmanager
 def _quiet(*families: str) -> Iterator[None]:
-    """No words from some loggers and their children: what goes wrong is said in one line, by us."""
+    """Silence some loggers and their children; faults are reported in one line of our own."""
     loggers = [
         logging.getLogger(name)
         for name in logging.root.manager.loggerDict
@@ -84,24 +80,20 @@ def is_cluster(workers: object) -> bool:
 
 
 def awaited(client: Any, future: Any) -> Any:
-    """Result of a future, or the reason why there will be none.
-
-    Raises:
-        DesignError: The scheduler or all workers are gone, or a worker cannot do the work.
-    """
+    """Result of a future, or the reason why there will be none; raises DesignError."""
     from distributed import KilledWorker
 
     alone_since = None
     while True:
         try:
-            return future.result(timeout=_LOOK)
+            return future.result(timeout=_POLL_INTERVAL)
         except TimeoutError:
             if client.status != "running":
                 raise _lost(client, "the scheduler is gone") from None
             somebody = bool(client.scheduler_info(n_workers=-1)["workers"])
             alone_since = None if somebody else alone_since or time.monotonic()
-            if alone_since and time.monotonic() - alone_since > _NOBODY:
-                raise _lost(client, f"no worker for {_NOBODY:g} s") from None
+            if alone_since and time.monotonic() - alone_since > _NO_WORKER_TIMEOUT:
+                raise _lost(client, f"no worker for {_NO_WORKER_TIMEOUT:g} s") from None
         except KilledWorker as error:
             raise _lost(client, f"workers die over this work ({error})") from error
         except ImportError as error:

@@ -1,4 +1,4 @@
-"""How far the first order is from the exact product, on some machines and poses."""
+"""First-order deviations against the exact product, for some machines and poses."""
 
 from dataclasses import dataclass
 
@@ -12,21 +12,13 @@ from matstd.twin.record import at_poses
 
 @dataclass(frozen=True, eq=False)
 class ExactCheck:
-    """How far first order is from the exact product, on some machines and poses.
-
-    Attributes:
-        machines: Number of machines looked at.
-        poses: Number of poses looked at.
-        rms: Root mean square of the difference between the deviation vectors, mm.
-        worst: Largest difference, mm.
-        rms_deviation: Root mean square of the deviations themselves, mm.
-    """
+    """Differences of first order from the exact product, for some machines and poses."""
 
     machines: int
     poses: int
-    rms: float
-    worst: float
-    rms_deviation: float
+    rms: float  # root mean square of the difference between the deviation vectors, mm
+    worst: float  # largest difference, mm
+    rms_deviation: float  # root mean square of the deviations themselves, mm
 
 
 def exact_check(
@@ -39,10 +31,8 @@ def exact_check(
     """Compare first-order deviations of a few random machines with the exact product.
 
     Args:
-        population: What to draw from.
         q: Readings of the poses to look at, shape (N, A).
         length: Tool length, mm.
-        machines: Number of random machines.
     """
     model = population.model
     touches = at_poses(population.chain, q, length)

@@ -17,15 +17,10 @@ MACHINES_A_BLOCK = 64
 
 
 class Kernels(NamedTuple):
-    """The compiled functions.
+    """The compiled functions."""
 
-    Attributes:
-        tally: Lengths of a block of deviations into sums and histogram.
-        worst: Machines for which a pose is among the worst ones.
-    """
-
-    tally: Callable[..., None]
-    worst: Callable[..., None]
+    tally: Callable[..., None]  # lengths of a block of deviations into sums and histogram
+    worst: Callable[..., None]  # machines for which a pose is among the worst ones
 
 
 @lru_cache(maxsize=1)

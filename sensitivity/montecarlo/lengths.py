@@ -1,8 +1,9 @@
 """Lengths |d| of many machines' deviations at many poses: one product of matrices, counted at once.
 
-The product is cut into blocks of poses and machines that stay in the cache; of each only sums and
-a histogram are kept. One BLAS thread each, and own threads over the blocks: idle BLAS threads would
-spin. With numba installed (the extra `fast`) the counting is compiled; numpy is the reference.
+The product is cut into blocks of poses and machines that stay in the cache; of each only sums and a
+histogram are kept. Own threads run over the blocks, with one BLAS thread each: idle BLAS threads
+would spin. With numba installed (the extra `fast`) the counting is compiled; numpy is the
+reference.
 """
 
 from concurrent.futures import ThreadPoolExecutor
@@ -66,9 +67,8 @@ def count_lengths(
         theta: Machines, (K, S).
         width: Of a bin of the histogram at every pose, (N,), mm.
         tolerance: Longer ones are counted, mm.
-        worst: Among how many of the first poses the worst ones are looked for, and how many they
-            are; the lengths are then held in single precision, a lot of machines at a time.
-        use_compiled: Count with numba where it is installed.
+        worst: Number of first poses among which the worst are searched, and how many count as
+            worst; lengths are then held in single precision, in blocks of machines.
         threads: Number of threads; None for one a core.
     """
     n, draws = len(G), theta.shape[1]

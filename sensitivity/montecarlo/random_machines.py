@@ -42,11 +42,10 @@ def volumetric(
 ) -> Volumetric:
     """Statistics of the volumetric error over random machines, at every pose.
 
-    The deviations of all machines at all poses are one product of matrices, taken in blocks; of
-    each block only sums and a histogram are kept. Memory: 24 K + 14 000 bytes a pose, K the
-    parameters of `Population.model`, and 128 MiB for the recurrence. Quantiles are read from 2048
-    bins up to five times the root mean square, so they are off by a quarter of a percent of it at
-    most. It ends before all draws are taken
+    The deviations are one product of matrices, taken in blocks; only sums and a histogram are kept.
+    Memory: 24 K + 14 000 bytes a pose, K the parameters of `Population.model`, and 128 MiB for the
+    recurrence. Quantiles are read from 2048 bins up to five times the root mean square, so they are
+    off by a quarter of a percent of it at most. It ends before all draws are taken
 
     - with `digits`, as soon as mean, standard deviation and quantiles are stable to so many
       significant digits of the standard deviation at every pose (JCGM 101:2008, 7.9.4);
@@ -54,18 +53,16 @@ def volumetric(
       at every pose.
 
     Args:
-        population: What to draw from.
         q: Readings, shape (N, A).
         length: Tool length, scalar or (N,), mm.
         draws: S, or at most S.
-        progress: Told how many machines are done.
-        reference: The worst 5 % are those of the first so many poses, and a later pose counts as
-            affected where it reaches their limit; None for all poses.
+        reference: Number of first poses that define the worst 5 %; a later pose counts where it
+            reaches their limit. None for all poses.
         tolerance: For the exceedance, mm.
         precision: Half width of mean and 95 % quantile at a coverage of 95 %, mm; 0 for none.
         digits: Significant digits that have to be stable; 0 for none.
-        recurrence: Whether to look for the worst poses of every machine; not a number otherwise.
-        workers: Who does the work: None for this process, an executor of `concurrent.futures`, or
+        recurrence: Whether to search the worst poses of every machine; NaN otherwise.
+        workers: Workers: None for this process, an executor of `concurrent.futures`, or
             the client of a Dask cluster (`matstd.sensitivity.montecarlo.dask_cluster`). The result
             for a seed is the same to the last bit wherever numpy and processor are the same.
 

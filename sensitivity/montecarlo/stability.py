@@ -1,7 +1,7 @@
-"""When are there enough random machines? The adaptive procedure of JCGM 101:2008, 7.9.
+"""Number of random machines by the adaptive procedure of JCGM 101:2008, 7.9.
 
 Batches of equal size are drawn; every statistic is an average over batches, and its standard
-deviation says how far it may still move. Enough is drawn as soon as twice that standard deviation
+deviation says how far it may still move. Drawing ends as soon as twice that standard deviation
 is below the numerical tolerance of the standard uncertainty, for every statistic at every pose.
 """
 
@@ -38,17 +38,12 @@ def numerical_tolerance(u: Array, digits: int) -> Array:
 
 @dataclass(frozen=True)
 class Stability:
-    """What the adaptive procedure found.
+    """Result of the adaptive procedure."""
 
-    Attributes:
-        digits: Significant digits of the standard deviation that were asked for.
-        batches: Batches drawn.
-        ratio: Largest of twice the standard deviation of any statistic over its tolerance, at any
-            pose; at most one when everything is stable.
-    """
-
-    digits: int
-    batches: int
+    digits: int  # significant digits of the standard deviation that were asked for
+    batches: int  # batches drawn
+    # largest of twice the standard deviation of any statistic over its tolerance, at any pose; at
+    # most one when everything is stable
     ratio: float
 
     @property
@@ -77,7 +72,7 @@ class Stabiliser:
         self._spread += off * (statistics - self._mean)
 
     def stability(self, u: Array) -> Stability:
-        """Where it stands.
+        """State after the batches so far.
 
         Args:
             u: Standard deviation of |d| from all machines so far, (N,), mm.

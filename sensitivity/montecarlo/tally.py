@@ -16,38 +16,22 @@ _ROWS = 1000  # poses whose histograms are summed at once
 
 @dataclass(frozen=True, eq=False)
 class Volumetric:
-    """Volumetric error |d| of S random machines at N poses, first order, mm.
+    """Volumetric error |d| of S random machines at N poses, first order, mm."""
 
-    Attributes:
-        draws: S.
-        seed: Where the random numbers came from: the seed, and the path of its children.
-        mean: Shape (N,).
-        sd: Shape (N,).
-        levels: Probabilities of the quantiles, (Q,).
-        quantile: Shape (Q, N).
-        recurrence: Share of the machines for which the pose is among the worst 5 %, (N,).
-        mean_u: Standard error of the mean by sampling, (N,).
-        quantile_u: Standard error of the quantiles by sampling, (Q, N).
-        recurrence_u: Standard error of the recurrence by sampling, (N,).
-        tolerance: Volumetric error that users allow, mm; infinite where they said nothing.
-        exceedance: Share of the machines beyond the tolerance, (N,).
-        exceedance_u: Standard error of the exceedance by sampling, (N,).
-        stability: Whether the digits that were asked for are stable; None if none were.
-    """
-
-    draws: int
-    seed: str
-    mean: Array
-    sd: Array
-    levels: tuple[float, ...]
-    quantile: Array
-    recurrence: Array
-    mean_u: Array
-    quantile_u: Array
-    recurrence_u: Array
-    tolerance: float
-    exceedance: Array
-    exceedance_u: Array
+    draws: int  # S
+    seed: str  # where the random numbers came from: the seed, and the path of its children
+    mean: Array  # shape (N,)
+    sd: Array  # shape (N,)
+    levels: tuple[float, ...]  # probabilities of the quantiles, (Q,)
+    quantile: Array  # shape (Q, N)
+    recurrence: Array  # share of the machines for which the pose is among the worst 5 %, (N,)
+    mean_u: Array  # standard error of the mean by sampling, (N,)
+    quantile_u: Array  # standard error of the quantiles by sampling, (Q, N)
+    recurrence_u: Array  # standard error of the recurrence by sampling, (N,)
+    tolerance: float  # volumetric error that users allow, mm; infinite where they said nothing
+    exceedance: Array  # share of the machines beyond the tolerance, (N,)
+    exceedance_u: Array  # standard error of the exceedance by sampling, (N,)
+    # whether the digits that were asked for are stable; None if none were
     stability: Stability | None
 
     def __getitem__(self, rows: slice) -> "Volumetric":
@@ -147,7 +131,6 @@ def quantiles(
     Args:
         histogram: Counts from zero up, (N, BINS).
         width: Of a bin in each row, (N,), mm.
-        levels: Q probabilities.
     """
     out = np.empty((len(levels), len(histogram)))
     for rows in blocks(len(histogram), _ROWS):

@@ -1,7 +1,7 @@
-"""Who does the work: this process, the workers of an executor, or those of a Dask cluster.
+"""Workers of a Monte Carlo: this process, an executor, or a Dask cluster.
 
-One interface for all three. What is shared is made where it is used, jobs go out a few at a time,
-and results come back in the order of the jobs, so that sums are the same whoever counted.
+All three have one interface. Shared data are made where they are used, jobs go out a few at a time,
+and results come back in the order of the jobs, so sums do not depend on the kind of workers.
 """
 
 from collections import deque
@@ -40,18 +40,13 @@ def in_order(
 ) -> Iterator[Result]:
     """Results of ``work(prepare(), job)`` for every job, in the order of the jobs.
 
-    Only a few jobs are under way at once, so jobs may be an endless iterator; those that nobody
-    wants any more are cancelled when the iterator is closed. A Dask cluster repeats the work of a
-    worker that is lost, what it shared included.
+    Only a few jobs are under way at once, so jobs may be an endless iterator; pending jobs are
+    cancelled when the iterator is closed. A Dask cluster repeats the work of a lost worker, its
+    shared data included.
 
     Args:
-        workers: Who does it.
         prepare: Makes what all jobs share; called once in this process, or once on a cluster.
         work: A function of a module, so that other processes find it.
-        jobs: What there is to do.
-
-    Raises:
-        DesignError: The workers are gone.
     """
     if workers is None:
         shared = prepare()

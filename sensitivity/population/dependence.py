@@ -1,4 +1,4 @@
-"""Errors that come from one cause: correlated amplitudes, and shapes that are drawn together.
+"""Errors with a common cause: correlated amplitudes, and shapes drawn together.
 
 Every amplitude is drawn evenly from its range with a random sign. Where amplitudes depend on each
 other, normal scores z of the right correlation are drawn and mapped to that distribution,
@@ -33,7 +33,6 @@ class Dependence:
     """Correlated errors.
 
     Attributes:
-        names: Of the n errors.
         correlation: Of their signed amplitudes, (n, n).
         alike: Groups of names whose members also have shape, periods and phase in common.
 
@@ -69,17 +68,11 @@ class Dependence:
 
 @dataclass(frozen=True)
 class Group:
-    """Errors of one cause, every two of them equally correlated.
+    """Errors of one cause, every two of them equally correlated."""
 
-    Attributes:
-        names: Of the errors; a minus before a name turns its sign.
-        correlation: Of every two amplitudes, 0 to 1.
-        alike: Whether they also have shape, periods and phase in common.
-    """
-
-    names: tuple[str, ...]
-    correlation: float = 1.0
-    alike: bool = False
+    names: tuple[str, ...]  # of the errors; a minus before a name turns its sign
+    correlation: float = 1.0  # of every two amplitudes, 0 to 1
+    alike: bool = False  # whether they also have shape, periods and phase in common
 
     def __post_init__(self) -> None:
         if len(self.names) < 2 or not 0.0 <= self.correlation <= 1.0:
@@ -111,13 +104,7 @@ def grouped(groups: Sequence[Group]) -> Dependence:
 
 
 def amplitude(z: Array, low: Array, high: Array) -> Array:
-    """Signed amplitudes for normal scores, shape of z.
-
-    Args:
-        z: Scores.
-        low: Smallest amplitude.
-        high: Largest amplitude.
-    """
+    """Signed amplitudes for normal scores, shape of z."""
     from scipy.special import ndtr
 
     return np.sign(z) * low + (high - low) * (2.0 * ndtr(z) - 1.0)
@@ -143,13 +130,8 @@ def product_moment(rho: Array, low: Array, high: Array) -> Array:
 def score_factor(dependence: Dependence, low: Array, high: Array) -> Array:
     """Factor F of the scores' correlations, ``z = F w`` with independent normal w, (n, n).
 
-    Args:
-        dependence: What is asked for.
-        low: Smallest amplitudes, (n,).
-        high: Largest amplitudes, (n,).
-
     Raises:
-        DesignError: These ranges cannot have these correlations; says how much of them they can.
+        DesignError: These ranges cannot have these correlations.
     """
     rho, reachable = _scores(dependence.correlation, low, high)
     if not reachable or _smallest(rho) < -1e-7:

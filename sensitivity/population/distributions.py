@@ -1,4 +1,4 @@
-"""What the errors of random machines look like over the readings of their axes."""
+"""Shapes of the errors of random machines over the readings of their axes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -12,18 +12,13 @@ CLASSES = ("linear_translation", "linear_rotation", "rotary_translation", "rotar
 
 @dataclass(frozen=True)
 class Mix:
-    """Shapes that one error may have; every machine has one of them.
-
-    Attributes:
-        shapes: Drawn from.
-        periods: Numbers of periods of a sinusoidal error, drawn with equal chance; over the range
-            of a linear axis, over a turn of a rotary one.
-        weights: Chance of each shape, in any unit; none for equal chances.
-    """
+    """Shapes that one error may have; every machine has one of them."""
 
     shapes: tuple[ShapeName, ...]
+    # numbers of periods of a sinusoidal error, drawn with equal chance; over the range of a linear
+    # axis, over a turn of a rotary one
     periods: tuple[int, ...] = (1,)
-    weights: tuple[float, ...] = ()
+    weights: tuple[float, ...] = ()  # chance of each shape, in any unit; none for equal chances
 
     def __post_init__(self) -> None:
         if not self.shapes or any(s not in SHAPES for s in self.shapes):
@@ -54,21 +49,17 @@ CONSTANT = Mix(("constant",))
 
 @dataclass(frozen=True)
 class Distributions:
-    """Shapes of all errors: by name before by class before by kind of axis.
+    """Shapes of all errors: by name before by class before by kind of axis."""
 
-    Attributes:
-        shapes: Drawn with equal chance for every component error of a linear axis.
-        rotary_shapes: The same for a rotary axis, whose errors repeat every turn.
-        periods: Numbers of periods of a sinusoidal error, where no mix says otherwise.
-        by_class: Mixes of whole classes, keys as in `CLASSES`.
-        by_name: Mixes of single component errors.
-    """
-
+    # drawn with equal chance for every component error of a linear axis
     shapes: tuple[ShapeName, ...] = ("linear", "parabolic", "sinusoidal")
+    # the same for a rotary axis, whose errors repeat every turn
     rotary_shapes: tuple[ShapeName, ...] = ("sinusoidal",)
+    # numbers of periods of a sinusoidal error, where no mix says otherwise
     periods: tuple[int, ...] = (1,)
+    # mixes of whole classes, keys as in `CLASSES`
     by_class: Mapping[str, Mix] = field(default_factory=dict)
-    by_name: Mapping[str, Mix] = field(default_factory=dict)
+    by_name: Mapping[str, Mix] = field(default_factory=dict)  # mixes of single component errors
 
     def __post_init__(self) -> None:
         for shapes in (self.shapes, self.rotary_shapes):

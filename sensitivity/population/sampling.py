@@ -26,11 +26,6 @@ _QUARTER = 0.5 * np.pi
 class Population:
     """All machines that may be drawn.
 
-    Attributes:
-        ranges: Smallest and largest peak amplitude of every error.
-        distributions: Shapes over the readings.
-        dependence: Which errors depend on each other; None for independent ones.
-
     Raises:
         UnknownSymbol: A name that the machine does not have.
         DesignError: Shapes of a constant, correlations that the ranges do not allow, or errors with
@@ -38,8 +33,10 @@ class Population:
     """
 
     chain: Chain
+    # smallest and largest peak amplitude of every error
     ranges: Ranges = field(default_factory=Ranges)
-    distributions: Distributions = field(default_factory=Distributions)
+    distributions: Distributions = field(default_factory=Distributions)  # shapes over the readings
+    # which errors depend on each other; None for independent ones
     dependence: Dependence | None = None
 
     def __post_init__(self) -> None:
@@ -105,21 +102,16 @@ class Population:
                 if shape != "sinusoidal":
                     effects.append(ComponentError(symbol, shape, sd=sd))
                     continue
-                for n in mix.periods:
-                    effects.append(
-                        ComponentError(
-                            symbol=symbol, shape=shape, periods=float(n), phase=0.0, sd=sd
-                        )
-                    )
-                    effects.append(
-                        ComponentError(
-                            symbol=symbol, shape=shape, periods=float(n), phase=_QUARTER, sd=sd
-                        )
-                    )
+                # sine and cosine together are a sine of any phase
+                effects += [
+                    ComponentError(symbol, shape, periods=float(n), phase=phase, sd=sd)
+                    for n in mix.periods
+                    for phase in (0.0, _QUARTER)
+                ]
         return Model(self.chain, tuple(effects))
 
     def expected(self, free: str = "") -> Model:
-        """The same without errors that are stated to be zero: nothing is to be found out of them.
+        """The same without errors that are stated to be zero.
 
         Args:
             free: Letters of the links whose set-up stays all the same: "w", "t" or both.
@@ -140,19 +132,12 @@ class Population:
 
 @dataclass(frozen=True, eq=False)
 class Draws:
-    """S drawn machines; every array is (S, P) over the symbols of the chain.
+    """S drawn machines; every array is (S, P) over the symbols of the chain."""
 
-    Attributes:
-        amplitude: Peak amplitude with its sign, mm or rad.
-        shape: Index into the shapes that the error may have.
-        periods: Of a sinusoidal error.
-        phase: Of a sinusoidal error, rad.
-    """
-
-    amplitude: Array
-    shape: NDArray[np.int64]
-    periods: NDArray[np.int64]
-    phase: Array
+    amplitude: Array  # peak amplitude with its sign, mm or rad
+    shape: NDArray[np.int64]  # index into the shapes that the error may have
+    periods: NDArray[np.int64]  # of a sinusoidal error
+    phase: Array  # of a sinusoidal error, rad
 
     def __len__(self) -> int:
         return len(self.amplitude)
@@ -162,10 +147,6 @@ def draw(population: Population, count: int, rng: np.random.Generator) -> Draws:
     """Machines with random errors: amplitude even over its range, random sign, shape and phase.
 
     Errors are independent of each other where `Population.dependence` does not say otherwise.
-
-    Args:
-        population: What to draw from.
-        count: S.
     """
     symbols = population.chain.symbols
     mixes = [population.mix_of(s) for s in symbols]
@@ -228,12 +209,11 @@ def coefficients(population: Population, draws: Draws) -> Array:
 
 
 def shape_columns(population: Population, q: Array) -> list[Array]:
-    """What turns the coefficients of each error into its value at every pose, (N, K_p) each.
+    """Shape functions of each error at every pose, (N, K_p) each.
 
     The value of error p at a pose is its row here times its part of `coefficients`.
 
     Args:
-        population: The machines.
         q: Readings, shape (N, A).
     """
     chain, out = population.chain, []

@@ -1,4 +1,4 @@
-"""How large the errors of drawn machines are against what is expected of them."""
+"""Size of the errors of drawn machines relative to the expected size."""
 
 import numpy as np
 
@@ -7,8 +7,8 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Symbol
 from matstd.twin.model import Model, traits
 
-LEAST = 1e-3
-"""A drawn error is taken to be at least this part of its expected size: none is known to be nil."""
+SMALLEST_SCALE = 1e-3
+"""Smallest size of a drawn error, as a share of the expected one: no error is known to be zero."""
 
 
 def drawn_scales(
@@ -21,8 +21,6 @@ def drawn_scales(
     squares over many machines is one.
 
     Args:
-        population: What to draw from.
-        count: S.
         model: Whose parameters the columns are; None for those of `Population.model`.
     """
     chain = population.chain
@@ -34,5 +32,5 @@ def drawn_scales(
         column.append(place[symbol])
     expected = np.array([population.ranges.sd(chain, symbol) for symbol in chain.symbols])
     size = np.abs(draw(population, count, rng).amplitude) / np.where(expected > 0.0, expected, 1.0)
-    scale: Array = np.maximum(size, LEAST)[:, column]
+    scale: Array = np.maximum(size, SMALLEST_SCALE)[:, column]
     return scale

@@ -1,4 +1,4 @@
-"""Total-effect indices of the length |d| at many poses: which error matters, interactions included.
+"""Total-effect indices of the length |d| at many poses, interactions included.
 
 Jansen's estimator, ``T_p = mean (f(a) - f(a with p from b))^2 / (2 Var f)``. The deviation is
 linear in the errors, so the change of one error is a rank-one update of d: six operations in place
@@ -30,19 +30,12 @@ Values = Callable[[slice], tuple[Array, Array]]
 
 
 class TotalEffects(NamedTuple):
-    """Total-effect indices of |d|.
+    """Total-effect indices of |d|."""
 
-    Attributes:
-        total: Index of every error at every pose, (P, N); zero where |d| does not vary.
-        u: Its standard error by sampling, (P, N).
-        machines: Pairs of random machines.
-        seed: Where they came from; empty where they were given.
-    """
-
-    total: Array
-    u: Array
-    machines: int
-    seed: str = ""
+    total: Array  # index of every error at every pose, (P, N); zero where |d| does not vary
+    u: Array  # its standard error by sampling, (P, N)
+    machines: int  # pairs of random machines
+    seed: str = ""  # where they came from; empty where they were given
 
 
 def total_effects(J: Array, a: Array, b: Array, compiled: bool = True) -> TotalEffects:
@@ -81,15 +74,11 @@ def norm_shares(
     An error changes as a whole: amplitude, sign, shape, periods and phase.
 
     Args:
-        population: What to draw from.
         q: Readings, shape (N, A).
         length: Tool length, scalar or (N,), mm.
-        machines: S, pairs of machines.
-        compiled: Use numba where it is installed.
 
     Raises:
-        DesignError: The errors depend on each other: an index by changing one error alone then
-            means nothing.
+        DesignError: The errors depend on each other, so changing one alone is meaningless.
     """
     if population.dependence is not None:
         raise DesignError("total effects want independent errors; these are correlated")
@@ -118,8 +107,6 @@ def _estimated(J: Array, values: Values, machines: int, compiled: bool) -> Total
     Args:
         J: Shape (P, 3, N).
         values: Errors of some poses and their changes, (n or 1, P, S) each.
-        machines: S.
-        compiled: Use numba where it is installed.
     """
     kernel: Kernel = (_compiled() if compiled else None) or _squares
     kind = np.float64 if kernel is _squares else np.float32

@@ -1,9 +1,8 @@
-"""Parts of a workspace, and which errors make the deviation in each.
+"""Parts of a workspace, and the shares of errors in the deviation of each.
 
 The shares are those of `matstd.sensitivity.first_order.indices`: exact for the deviation to first
-order. What is sampled are only the poses of a region, evenly and without chance; the range of the
-shares over them is real and no uncertainty. What an error does to the length |d|, interactions
-included, is another matter and takes random machines.
+order. Only the poses of a region are sampled, evenly and without chance; the range of the shares
+over them is no uncertainty. Effects on the length |d|, interactions included, need random machines.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,17 +16,16 @@ from matstd.sensitivity.first_order import Workspace, variance_parts
 from matstd.sensitivity.population import Population
 from matstd.sensitivity.shares.total_effect_indices import MACHINES, norm_shares
 from matstd.twin.frames import Array
-from matstd.twin.machine import tip
 from matstd.twin.sampling import even_points
 from matstd.twin.units import DEG
 
 POSES = 256
 """Poses that stand for a region."""
 
-_TOTAL_POSES = 16  # of a region, at which random machines are looked at
+_TOTAL_POSES = 16  # of a region, for random machines
 _OUTER = 1.0 / 6.0  # of a travel at either end that counts as its end
-_MIDDLE = (1.0 / 3.0, 2.0 / 3.0)  # of a travel: what counts as its middle
-_TURN = 350.0 * DEG  # travel of a rotary axis that has no ends: they meet
+_MIDDLE = (1.0 / 3.0, 2.0 / 3.0)  # of a travel that counts as its middle
+_TURN = 350.0 * DEG  # from this travel the ends of a rotary axis meet
 _AROUND = 15.0 * DEG  # on either side of an angle: a region
 _TRIES = 20  # draws of a region before it counts as out of reach
 
@@ -45,36 +43,22 @@ class Part(Enum):
 
 
 class Place(NamedTuple):
-    """Where a region is.
+    """Where a region is."""
 
-    Attributes:
-        part: Which part of the workspace.
-        axes: Whose readings are restricted.
-        limits: Of the one rotary axis of an end or an angle, rad.
-    """
-
-    part: Part
-    axes: tuple[str, ...] = ()
-    limits: tuple[float, float] = (0.0, 0.0)
+    part: Part  # which part of the workspace
+    axes: tuple[str, ...] = ()  # whose readings are restricted
+    limits: tuple[float, float] = (0.0, 0.0)  # of the one rotary axis of an end or an angle, rad
 
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """Part of a workspace.
-
-    Attributes:
-        place: Where it is.
-        q: Poses in it, (N, A).
-        shares: Share of every error parameter in the variance of the deviation, (N, P).
-        mean_shares: The same in the variance summed over the region, (P,).
-        rms: Root mean square of the volumetric error over machines and poses, mm.
-    """
+    """Part of a workspace."""
 
     place: Place
-    q: Array
-    shares: Array
-    mean_shares: Array
-    rms: float
+    q: Array  # poses in it, (N, A)
+    shares: Array  # share of every error parameter in the variance of the deviation, (N, P)
+    mean_shares: Array  # the same in the variance summed over the region, (P,)
+    rms: float  # root mean square of the volumetric error over machines and poses, mm
 
     def largest(self, count: int) -> list[int]:
         """Indices of the parameters with the largest shares, largest first."""
@@ -85,11 +69,7 @@ class Region:
 def regions(population: Population, workspace: Workspace) -> tuple[Region, ...]:
     """The whole workspace, middle and corners of its linear axes, ends of its rotary ones.
 
-    A rotary axis that turns all round has no ends; two quarters and the opposite side are looked
-    at instead.
-
-    Args:
-        population: Errors that are expected.
+    A rotary axis that turns all round has no ends; it has regions at 0, 90 and 180 degrees instead.
     """
     out = []
     for place, readings in _places(workspace):
@@ -115,21 +95,13 @@ def regions(population: Population, workspace: Workspace) -> tuple[Region, ...]:
 
 @dataclass(frozen=True, eq=False)
 class RegionTotals:
-    """Total effect of every error on the length |d|, region by region.
+    """Total effect of every error on the length |d|, region by region."""
 
-    Attributes:
-        total: Index of every error, mean over poses of the region, (R, P).
-        u: Its standard error by sampling, (R, P).
-        machines: Pairs of random machines.
-        poses: Of each region.
-        seed: Where the machines came from.
-    """
-
-    total: Array
-    u: Array
-    machines: int
-    poses: int
-    seed: str
+    total: Array  # index of every error, mean over poses of the region, (R, P)
+    u: Array  # its standard error by sampling, (R, P)
+    machines: int  # pairs of random machines
+    poses: int  # of each region
+    seed: str  # where the machines came from
 
 
 def region_totals(
@@ -139,22 +111,13 @@ def region_totals(
     rng: np.random.Generator,
     machines: int = MACHINES,
 ) -> RegionTotals:
-    """What the errors do to the length |d| in each region, by Monte Carlo.
+    """What the errors do to the length |d| in each region, by Monte Carlo; raises DesignError.
 
-    The same machines stand at all poses, so the standard error of a mean over poses is taken as the
-    mean of theirs, which errs to the safe side.
-
-    Args:
-        population: Errors that are expected, independent ones.
-        workspace: Limits, tool length.
-        found: The regions.
-        machines: Pairs of random machines.
-
-    Raises:
-        DesignError: The errors depend on each other.
+    All poses share the machines, so the standard error of a mean over poses is taken as the mean of
+    theirs, which is conservative.
     """
     some = [r.q[:_TOTAL_POSES] for r in found]
-    # so few poses are done before a compiler has begun
+    # compiling would take longer than so few poses
     each = norm_shares(
         population, np.concatenate(some), workspace.length, rng, machines, compiled=False
     )
@@ -230,11 +193,7 @@ def _poses(workspace: Workspace, readings: dict[str, Squeeze]) -> Array:
         for i, name in enumerate(chain.axes):
             low, high = workspace.limit(name)
             q[:, i] = readings.get(name, _interval(low, high))(unit[:, i])
-        if workspace.volume is not None:
-            p = tip(chain, q, workspace.length)
-            box = np.array(workspace.volume)
-            q = q[np.all((p >= box[0]) & (p <= box[1]), axis=1)]
-        found = np.concatenate([found, q])[:POSES]
+        found = np.concatenate([found, q[workspace.in_volume(q)]])[:POSES]
         if len(found) == POSES:
             break
     return found

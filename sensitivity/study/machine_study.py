@@ -46,69 +46,42 @@ class _Streams(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """Volumetric error over two readings, the others as in the worst pose of the study.
+    """Volumetric error over two readings, the others as in the worst pose of the study."""
 
-    Attributes:
-        axes: Names of the two axes.
-        first: Values of the first reading, (n,), mm or rad.
-        second: Values of the second one, (n,).
-        q: Readings, (n n, A), the second reading fastest.
-        volumetric: Statistics at these poses.
-    """
-
-    axes: tuple[str, str]
-    first: Array
-    second: Array
-    q: Array
-    volumetric: Volumetric
+    axes: tuple[str, str]  # names of the two axes
+    first: Array  # values of the first reading, (n,), mm or rad
+    second: Array  # values of the second one, (n,)
+    q: Array  # readings, (n n, A), the second reading fastest
+    volumetric: Volumetric  # statistics at these poses
 
 
 @dataclass(frozen=True, eq=False)
 class PathStudy:
-    """Volumetric error along a trajectory.
-
-    Attributes:
-        volumetric: Statistics at its poses; the worst ones are those of the workspace.
-        closed: The same without sampling, as if every error were normally distributed.
-        effects: What the error motions of single axes do on the way.
-    """
+    """Volumetric error along a trajectory."""
 
     trajectory: Trajectory
-    volumetric: Volumetric
-    closed: NormalLength
-    effects: tuple[AlongPath, ...]
+    volumetric: Volumetric  # statistics at its poses; the worst ones are those of the workspace
+    closed: NormalLength  # the same without sampling, as if every error were normally distributed
+    effects: tuple[AlongPath, ...]  # what the error motions of single axes do on the way
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Study(Tabular):
-    """Where errors show on a machine.
+    """Where errors show on a machine."""
 
-    Attributes:
-        population: Machines that were drawn from.
-        workspace: Where was looked.
-        q: Poses, (N, A), a Latin hypercube of the workspace.
-        sensitivity: S of every error parameter, (N, P), mm/mm and mm/rad.
-        shares: Share of every parameter in the variance of the deviation, (N, P).
-        rms: Root mean square of the volumetric error without sampling, (N,), mm.
-        volumetric: Its statistics over random machines.
-        sections: The same over pairs of readings.
-        exact: How far first order is from the exact product.
-        total: Total effects of the errors on the length |d| at the first poses; None for errors
-            that depend on each other.
-        path: Volumetric error along a trajectory; None where nothing moves.
-    """
-
-    population: Population
+    population: Population  # machines that were drawn from
     workspace: Workspace
-    q: Array
-    sensitivity: Array
-    shares: Array
-    rms: Array
-    volumetric: Volumetric
-    sections: tuple[Section, ...]
-    exact: ExactCheck
+    q: Array  # poses, (N, A), a Latin hypercube of the workspace
+    sensitivity: Array  # s of every error parameter, (N, P), mm/mm and mm/rad
+    shares: Array  # share of every parameter in the variance of the deviation, (N, P)
+    rms: Array  # root mean square of the volumetric error without sampling, (N,), mm
+    volumetric: Volumetric  # its statistics over random machines
+    sections: tuple[Section, ...]  # the same over pairs of readings
+    exact: ExactCheck  # how far first order is from the exact product
+    # total effects of the errors on the length |d| at the first poses; None for errors that depend
+    # on each other
     total: TotalEffects | None
-    path: PathStudy | None
+    path: PathStudy | None  # volumetric error along a trajectory; None where nothing moves
 
     @property
     def chain(self) -> Chain:
@@ -165,11 +138,8 @@ def run_study(
     """Sensitivities, shares of variance and Monte Carlo over a workspace and along a trajectory.
 
     Args:
-        population: Machines to draw from.
-        workspace: Where to look.
         poses: Number of poses, or their readings, shape (N, A).
         draws: Number of random machines, at most so many with digits.
-        progress: Told what is being done.
         tolerance: For the exceedance, mm.
         digits: Significant digits that have to be stable (JCGM 101); 0 for none.
         workers: Who draws the machines (`matstd.sensitivity.montecarlo.workers`).
@@ -187,6 +157,7 @@ def run_study(
         (pair, *section(workspace, *pair, SECTION, worst)) for pair in section_pairs(workspace)
     ]
     way = paper_trajectory(workspace) if workspace.open_axes else None
+    # one Monte Carlo for all: sections and path share its machines and the limits of the worst 5 %
     everywhere = np.concatenate([q, *(plane[3] for plane in planes), *([way.q] if way else [])])
     found = volumetric(
         population,

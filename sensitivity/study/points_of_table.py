@@ -19,21 +19,14 @@ _SLACK = 1e-9  # mm
 
 @dataclass(frozen=True, eq=False)
 class PointOverRotary:
-    """One point of the workpiece while the table turns.
+    """One point of the workpiece while the table turns."""
 
-    Attributes:
-        linear: Where it is: linear readings by axis with the rotary axes next to zero, mm.
-        axes: Names of the rotary axes shown, one or two.
-        readings: Their values, an array each, rad.
-        q: Readings with the tool point there, (N, A), the second rotary reading fastest.
-        reached: Whether the travels of the linear axes allow it, (N,).
-    """
-
+    # where it is: linear readings by axis with the rotary axes next to zero, mm
     linear: dict[str, float]
-    axes: tuple[str, ...]
-    readings: tuple[Array, ...]
-    q: Array
-    reached: Array
+    axes: tuple[str, ...]  # names of the rotary axes shown, one or two
+    readings: tuple[Array, ...]  # their values, an array each, rad
+    q: Array  # readings with the tool point there, (N, A), the second rotary reading fastest
+    reached: Array  # whether the travels of the linear axes allow it, (N,)
 
     def shown(self, values: Array) -> Array:
         """Values (N,) on the grid of readings, not a number where out of reach."""
@@ -53,8 +46,7 @@ def points_over_rotary(workspace: Workspace) -> tuple[PointOverRotary, ...]:
     Args:
         workspace: Limits; the points are those of its linear readings with the table level.
 
-    Returns:
-        None where no rotary axis moves, or there are not three linear axes with room.
+    Returns: Empty where no rotary axis moves, or fewer than three linear axes can move.
     """
     chain = workspace.chain
     turning = sorted(a for a in workspace.open_axes if a in chain.rotary_axes)[:2]
@@ -67,6 +59,7 @@ def points_over_rotary(workspace: Workspace) -> tuple[PointOverRotary, ...]:
     each = tuple(np.linspace(*workspace.limit(a), _VALUES) for a in turning)
     mesh = [m.ravel() for m in np.meshgrid(*each, indexing="ij")]
     out = []
+    # ends of the linear travels: middle, top, one side, a lower corner
     for ends in ((0, 0, 0), (0, 0, 1), (1, 0, 0), (1, 1, -1)):
         start, place = base.copy(), {}
         for name, end in zip(linear, ends, strict=True):

@@ -74,6 +74,7 @@ def _summary(study: Study, statement: str) -> dict[str, Any]:
     out["share_of_variance"] = dict(study.ranking())
     if study.total:
         names = [symbol.name for symbol in study.chain.symbols]
+        # poses share the machines, so averaging over them does not reduce this uncertainty
         u = np.sqrt((study.total.u**2).mean(axis=1))
         out["total_effect_on_length"] = {
             "machines": study.total.machines,

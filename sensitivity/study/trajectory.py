@@ -1,4 +1,4 @@
-"""Poses in the order in which a machine passes them, and what errors do to the tool on its way.
+"""Poses along a path of the machine, and the deviations that errors cause on it.
 
 The D-MT paper shows the effect of the error motions of one axis along a path on which X and C run
 linearly and B swings (its figures 2 and 3). Everything that takes poses takes the readings of a
@@ -25,18 +25,12 @@ _QUARTER = 0.5 * np.pi
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """A path through readings.
-
-    Attributes:
-        q: Readings, (N, A), mm and rad.
-        length: Tool length, mm.
-        name: What it is, in words.
-    """
+    """A path through readings."""
 
     chain: Chain
-    q: Array
-    length: float
-    name: str
+    q: Array  # readings, (N, A), mm and rad
+    length: float  # tool length, mm
+    name: str  # what it is, in words
 
     @property
     def along(self) -> Array:
@@ -63,13 +57,10 @@ def paper_trajectory(
     ``q = low + s (high - low)`` and ``q = middle + half sin(2 pi n s)`` with s from 0 to 1.
 
     Args:
-        workspace: Limits of the readings, and the tool length.
         linear: Axes that run linearly; None for the first linear axis and the rotary axis with the
             widest limits, X and C on the machine of the paper.
         swinging: Axis that swings; None for the other rotary axis, B there, or else a second
             linear one.
-        periods: Of the swing.
-        count: N.
         held: Readings of other axes; those left out stay in the middle of their limits.
 
     Raises:
@@ -92,6 +83,7 @@ def paper_trajectory(
         raise DesignError(f"a path of {', '.join(named)}: expected every axis in one role")
     if count < 2:
         raise DesignError(f"a path of {count} poses: expected two at least")
+    # equal steps of s, not of time: no feed is implied
     s = np.linspace(0.0, 1.0, count)
     q = np.tile(workspace.centre, (count, 1))
     for name, value in held.items():
@@ -118,7 +110,7 @@ def _name(linear: Sequence[str], swinging: str | None) -> str:
 
 
 def _roles(workspace: Workspace) -> tuple[tuple[str, ...], str | None]:
-    """Axes that run and the one that swings, where nobody says."""
+    """Default axes that run, and the one that swings."""
     chain = workspace.chain
     moves = [a for a in chain.programmed_axes if np.ptp(workspace.limit(a)) > 0.0]
     linear = sorted(a for a in moves if a in chain.linear_axes)
@@ -133,20 +125,14 @@ def _roles(workspace: Workspace) -> tuple[tuple[str, ...], str | None]:
 
 @dataclass(frozen=True, eq=False)
 class AlongPath:
-    """What some errors do to the tool point along a trajectory.
-
-    Attributes:
-        errors: Effects with their amplitudes, mm and rad.
-        deviation: Exact deviation of the tool point in the table frame, (N, 3), mm.
-        each: Length of the deviation that each error makes alone, by its name, (N,) each, mm.
-        axis: Whose error motions they are; empty for any others.
-    """
+    """Deviations of the tool point along a trajectory by some errors."""
 
     trajectory: Trajectory
-    errors: tuple[tuple[Effect, Array], ...]
-    deviation: Array
+    errors: tuple[tuple[Effect, Array], ...]  # effects with their amplitudes, mm and rad
+    deviation: Array  # exact deviation of the tool point in the table frame, (N, 3), mm
+    # length of the deviation that each error makes alone, by its name, (N,) each, mm
     each: Mapping[str, Array] = field(default_factory=dict)
-    axis: str = ""
+    axis: str = ""  # whose error motions they are; empty for any others
 
     @property
     def size(self) -> Array:
@@ -187,15 +173,12 @@ def _short(effect: Effect) -> str:
 
 
 def axis_errors(chain: Chain, axis: str) -> list[tuple[ComponentError, Array]]:
-    """Error motions of one axis as the D-MT paper draws them.
+    """Error motions of one axis as the D-MT paper draws them; raises UnknownAxis.
 
     A linear axis (figure 2): all six linear, translations of 50, 75 and 100 µm, rotations of as
     many µrad, over which the paper is silent. A rotary axis (figure 3): all six sinusoidal; the two
     radial ones of 10 µm, a quarter turn apart, the others at the lower end of what random machines
     have, so that the radial ones dominate as in the paper.
-
-    Raises:
-        UnknownAxis: An axis that the machine does not have, or that is not programmed.
     """
     if axis not in chain.programmed_axes:
         raise UnknownAxis(axis, chain.programmed_axes)

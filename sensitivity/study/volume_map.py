@@ -1,8 +1,7 @@
-"""The box of the linear readings at fixed rotary readings: what a map in three dimensions shows.
+"""Maps in three dimensions: the box of the linear readings at fixed rotary readings.
 
-The map is drawn over readings, because these are what a user sets. At fixed rotary readings the
-tool point is an affine function of them, so whatever stands on the table, and every rotary axis,
-has its place in the map: where the readings bring the tool point to it.
+Maps are drawn over readings, because a user sets these. At fixed rotary readings the tool point is
+an affine function of them, so objects on the table and rotary axes have a place in the map.
 """
 
 from collections.abc import Mapping
@@ -22,21 +21,14 @@ POINTS = (19, 19, 17)
 
 @dataclass(frozen=True, eq=False)
 class Volume:
-    """Poses that fill the box of three linear readings.
+    """Poses that fill the box of three linear readings."""
 
-    Attributes:
-        workspace: Limits, tool length.
-        axes: Names of the three linear axes, in alphabetical order.
-        readings: Their values, three arrays, mm.
-        q: Readings of all axes at every point, (N, A); the last of the three runs fastest.
-        T_readings_table: Takes a point of the table frame to the linear readings that bring the
-            tool point there, (4, 4).
-    """
-
-    workspace: Workspace
-    axes: tuple[str, ...]
-    readings: tuple[Array, ...]
-    q: Array
+    workspace: Workspace  # limits, tool length
+    axes: tuple[str, ...]  # names of the three linear axes, in alphabetical order
+    readings: tuple[Array, ...]  # their values, three arrays, mm
+    q: Array  # readings of all axes at every point, (N, A); the last of the three runs fastest
+    # takes a point of the table frame to the linear readings that bring the tool point there, (4,
+    # 4)
     T_readings_table: Array
 
     @property
@@ -67,12 +59,7 @@ class Volume:
 
     def _shown(self, values: Array) -> Array:
         """Values on the grid, without the points that are no poses of the workspace."""
-        box = self.workspace.volume
-        if box is not None:
-            p = tip(self.workspace.chain, self.q, self.workspace.length)
-            inside = np.all((p >= np.array(box[0])) & (p <= np.array(box[1])), axis=1)
-            values = np.where(inside, values, np.nan)
-        return values.reshape(self.shape)
+        return np.where(self.workspace.in_volume(self.q), values, np.nan).reshape(self.shape)
 
     def lines(self) -> dict[str, Array]:
         """Lines of the rotary axes in the map: a point and a unit direction each, (2, 3).
@@ -104,14 +91,11 @@ def has_volume(workspace: Workspace) -> bool:
 def volume(
     workspace: Workspace, rotary: Mapping[str, float], points: tuple[int, int, int] = POINTS
 ) -> Volume:
-    """Poses that fill the box of the linear readings.
+    """Poses that fill the box of the linear readings; raises NotReachable.
 
     Args:
         rotary: Readings of the rotary axes, rad; an axis left out stands in the middle.
         points: Values of each linear reading.
-
-    Raises:
-        NotReachable: There are not three linear axes with room to move.
     """
     chain = workspace.chain
     if not has_volume(workspace):

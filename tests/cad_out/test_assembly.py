@@ -199,7 +199,7 @@ def test_signs_are_drawn_in_planes_beside_the_plate_and_point_at_their_faces(upr
         assert all((np.maximum(low - b, a - high) > 2.0).any() for a, b in frames[:k])
 
 
-def test_a_sign_that_is_lost_is_told(upright, built):
+def test_a_sign_that_is_lost_is_reported(upright, built):
     entities = read_entities(built[0] / "standard.step")
     details = details_of(upright)
     kernel = {name: _length_and_middle(s) for name, s in read_signs(entities).items()}

@@ -218,10 +218,10 @@ def test_same_standard_gives_the_same_bytes(upright, built, tmp_path, monkeypatc
     cad_out.verify.export_standard(upright, tmp_path, chord=0.02)
     for name in FILES:
         assert (tmp_path / name).read_bytes() == (built[0] / name).read_bytes()
-    told = json.loads((tmp_path / "conformity.json").read_text())
-    assert told["faults"] == []
-    assert told["measured"]["mass"] == built[1].mass
-    assert told["limits"]["face_deviation_mm"] == FACE_LIMIT
+    reported = json.loads((tmp_path / "conformity.json").read_text())
+    assert reported["faults"] == []
+    assert reported["measured"]["mass"] == built[1].mass
+    assert reported["limits"]["face_deviation_mm"] == FACE_LIMIT
 
 
 @pytest.mark.parametrize(
@@ -279,11 +279,11 @@ def test_a_crash_of_the_kernel_is_one_clear_error(upright, tmp_path, monkeypatch
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_full_disk_is_told_by_the_folder_that_is_full(upright, tmp_path, monkeypatch):
+def test_a_full_disk_is_reported_with_the_folder(upright, tmp_path, monkeypatch):
     ending = Ending(1, "", "OSError: [Errno 28] No space left on device")
     monkeypatch.setattr(process, "run_apart", lambda *_, **__: ending)
-    told = rf"^{tmp_path}: cannot be written \(\[Errno 28\] No space left on device\)$"
-    with pytest.raises(DesignError, match=told):
+    expected = rf"^{tmp_path}: cannot be written \(\[Errno 28\] No space left on device\)$"
+    with pytest.raises(DesignError, match=expected):
         cad_out.verify.export_standard(upright, tmp_path)
     assert list(tmp_path.iterdir()) == []
 

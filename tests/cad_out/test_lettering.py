@@ -1,4 +1,4 @@
-"""Letters of dots: told apart, spotted into plane faces, exact."""
+"""Letters of dots: distinct, spotted into plane faces, exact."""
 
 import numpy as np
 import pytest

@@ -84,10 +84,10 @@ def test_without_a_modulus_stiffness_and_sag_stay_unknown(upright, tmp_path):
     own = replace(upright, material=Material("1.2379", 7.7e-6, 11e-6).with_usual_modulus())
     assert stiffness_of(own, details_of(own), 25.0) is None
     write_making(tmp_path / "making.json", making_of(own, None))
-    told = json.loads((tmp_path / "making.json").read_text())
+    written = json.loads((tmp_path / "making.json").read_text())
     unknown = ("modulus_MPa", "first_mode_Hz", "ball_N_um", "sag_um", "sag_worst")
-    assert {key: told[key] for key in unknown} == dict.fromkeys(unknown)
-    assert told["material"] == "1.2379"
+    assert {key: written[key] for key in unknown} == dict.fromkeys(unknown)
+    assert written["material"] == "1.2379"
 
 
 def test_the_uncertainty_of_a_usual_modulus_is_in_that_of_the_sag(mast):
@@ -168,14 +168,14 @@ def test_the_file_has_every_figure_with_its_limit(upright, tmp_path):
     stiffness, hints = stiffness_of(upright, details, 25.0), hints_of(upright)
     made = Making(cutting_of(upright, details), stiffness, hints, upright.material)
     write_making(tmp_path / "making.json", made)
-    told = json.loads((tmp_path / "making.json").read_text())
-    assert told["first_mode_Hz"] == pytest.approx(made.stiffness.first_mode)
-    assert told["sag_limit_um"] == 0.1
-    assert (told["modulus_MPa"], told["poisson"]) == (200e3, 0.3)
-    assert told["modulus_source"].startswith("usual value of x40cr14: ")
-    assert told["ball_N_um"]["SPH3"] == pytest.approx(stiffness.at_balls["SPH3"] / 1e3)
-    assert set(told["sag_um"]) == {"FF1", "FF2", "SPH1", "SPH2", "SPH3"}
-    face = told["faces"]["FF1"]
+    written = json.loads((tmp_path / "making.json").read_text())
+    assert written["first_mode_Hz"] == pytest.approx(made.stiffness.first_mode)
+    assert written["sag_limit_um"] == 0.1
+    assert (written["modulus_MPa"], written["poisson"]) == (200e3, 0.3)
+    assert written["modulus_source"].startswith("usual value of x40cr14: ")
+    assert written["ball_N_um"]["SPH3"] == pytest.approx(stiffness.at_balls["SPH3"] / 1e3)
+    assert set(written["sag_um"]) == {"FF1", "FF2", "SPH1", "SPH2", "SPH3"}
+    face = written["faces"]["FF1"]
     assert face["step_over_mm"]["Ra 0.8 um"] == pytest.approx(
         2.0 * face["step_over_mm"]["Ra 0.2 um"]
     )

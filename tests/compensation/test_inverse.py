@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from bench import LENGTH, oracle_tip
 
-from matstd.compensation.field.inverse import correction, played
+from matstd.compensation.field.inverse import correction, deviation_after
 from matstd.compensation.field.machine_errors import MachineErrors
 from matstd.compensation.field.over_workspace import (
     aligned,
     relative_columns,
     result_of,
-    workspace,
+    sample_workspace,
 )
 from matstd.compensation.field.state import State
 from matstd.diagnosis.files.model_file import SavedModel, SourceEntry
@@ -42,7 +42,7 @@ def test_at_the_datum_nothing_moves(known, datum):
 
 
 def test_the_workspace_is_covered_evenly(bench_chain):
-    q = workspace(bench_chain, {"X": (-50.0, 50.0)}, 400)
+    q = sample_workspace(bench_chain, {"X": (-50.0, 50.0)}, 400)
     x = q[:, bench_chain.axis_index("X")]
     assert np.all(np.abs(x) <= 50.0)
     assert np.abs(np.histogram(x, 10, (-50.0, 50.0))[0] - 40).max() <= 4
@@ -53,7 +53,7 @@ def test_errors_too_large_do_not_close(bench_chain):
     wild = [(parse_effect("geometric(EXX,sinusoidal,100)", bench_chain), np.array([20.0]))]
     errors = MachineErrors.of_errors(bench_chain, wild)
     with pytest.raises(NotReachable, match="does not close"):
-        correction(errors, errors.touches(workspace(bench_chain, {}, 5), LENGTH))
+        correction(errors, errors.touches(sample_workspace(bench_chain, {}, 5), LENGTH))
 
 
 def test_alignment_takes_off_rigid_motions_and_no_more():
@@ -73,7 +73,7 @@ def saved(chain, effects, mean, covariance):
         estimates=Prior.of_estimates(np.array(mean), np.array(covariance)),
         source=SourceEntry(run="r.csv", touches=10, noise_um=0.5),
         from_inner=np.zeros((len(mean), 0)),
-        told={},
+        reported={},
     )
 
 
@@ -105,7 +105,7 @@ def test_uncertainty_of_the_result_is_that_of_drawn_machines(bench_chain, datum)
     sd = np.array([2 * UM, 5 * URAD, 4 * URAD])
     mean = np.array([20 * UM, 40 * URAD, 30 * URAD])
     errors = MachineErrors.of_model(saved(bench_chain, effects, mean, np.diag(sd**2)))
-    q = workspace(bench_chain, {}, 30)
+    q = sample_workspace(bench_chain, {}, 30)
     found = result_of(errors, lambda t: correction(errors, t), q, datum)
     assert rms_length(found.after) < 1 * NM
     touches = errors.touches(q, LENGTH)
@@ -116,7 +116,7 @@ def test_uncertainty_of_the_result_is_that_of_drawn_machines(bench_chain, datum)
         true = MachineErrors.of_errors(
             bench_chain, [(e, theta[[k]]) for k, e in enumerate(effects)]
         )
-        drawn.append(rms_length(aligned(touches.point, played(true, touches, added))) ** 2)
+        drawn.append(rms_length(aligned(touches.point, deviation_after(true, touches, added))) ** 2)
     np.testing.assert_allclose(np.sqrt(np.mean(drawn)), found.u_rms, rtol=0.15)
 
 

@@ -8,7 +8,7 @@ from bench import LENGTH, oracle_tip
 
 from matstd.compensation.field.inverse import correction
 from matstd.compensation.field.machine_errors import MachineErrors
-from matstd.compensation.field.over_workspace import workspace
+from matstd.compensation.field.over_workspace import sample_workspace
 from matstd.compensation.service.point_correction import PointCorrection
 from matstd.compensation.service.tabulated import error_tables
 from matstd.twin.errors import DesignError, OutsideTravel
@@ -50,7 +50,7 @@ def test_every_chain_is_corrected_as_by_arrays(name):
     ]
     errors = MachineErrors.of_errors(chain, known)
     quick = PointCorrection(errors, 120.0)
-    q = workspace(chain, {}, 40)
+    q = sample_workspace(chain, {}, 40)
     exact = correction(errors, errors.touches(q, 120.0))
     columns = [chain.axis_index(axis) for axis in quick.linear_axes]
     found = np.array([quick.at(row) for row in q.tolist()])
@@ -65,7 +65,7 @@ def test_reversal_and_errors_of_two_readings(bench_chain):
     ]
     errors = MachineErrors.of_errors(bench_chain, known)
     quick = PointCorrection(errors, LENGTH)
-    q = workspace(bench_chain, {}, 30)
+    q = sample_workspace(bench_chain, {}, 30)
     signs = np.random.default_rng(2).integers(-1, 2, q.shape)
     exact = correction(errors, errors.touches(q, LENGTH, signs.astype(float)))
     columns = [bench_chain.axis_index(axis) for axis in quick.linear_axes]

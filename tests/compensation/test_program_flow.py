@@ -113,7 +113,7 @@ def test_formulas(frame, tmp_path, formula, value):
     ],
 )
 def test_what_does_not_run_is_named_with_its_line(frame, tmp_path, blocks, said, monkeypatch):
-    monkeypatch.setattr("matstd.nc.grammar.order.MOST", 1000)
+    monkeypatch.setattr("matstd.nc.grammar.order.MAX_BLOCKS", 1000)
     with pytest.raises(BadFile) as refused:
         program(f"{START}{blocks}\nEND PGM A MM\n", frame, tmp_path)
     assert said in str(refused.value)

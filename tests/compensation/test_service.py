@@ -13,7 +13,7 @@ from bench import LENGTH
 from matstd.compensation.field.inverse import correction
 from matstd.compensation.field.machine_errors import MachineErrors
 from matstd.compensation.field.state import State
-from matstd.compensation.service.history import MOST, History
+from matstd.compensation.service.history import MAX_MOMENTS, History
 from matstd.compensation.service.latency import prompt
 from matstd.compensation.service.opcua_server import NAMESPACE, serve
 from matstd.compensation.service.output import Output, OutputLimits, Quality
@@ -141,10 +141,10 @@ def test_a_history_goes_forward_with_its_sensors():
         history.then(State(temperature={"a": 21.0}))
     with pytest.raises(DesignError, match="sensors none, expected a"):
         history.then(State(time=1.0))
-    for k in range(1, MOST + 10):
+    for k in range(1, MAX_MOMENTS + 10):
         history = history.then(State(time=float(k), temperature={"a": 20.0}))
-    assert len(history) <= MOST
-    assert history.now.time == MOST + 9
+    assert len(history) <= MAX_MOMENTS
+    assert history.now.time == MAX_MOMENTS + 9
     assert history.states[0].time == 0.0
 
 

@@ -7,17 +7,17 @@ import pytest
 from bench import LENGTH, oracle_tip
 
 from matstd.cli import main
-from matstd.compensation.field.inverse import datum_of, played
+from matstd.compensation.field.inverse import datum_of, deviation_after
 from matstd.compensation.field.machine_errors import MachineErrors, deviation
-from matstd.compensation.field.over_workspace import aligned, workspace
+from matstd.compensation.field.over_workspace import aligned, sample_workspace
 from matstd.compensation.field.state import State
 from matstd.compensation.tables.along_axes import along_axes
 from matstd.compensation.tables.by_name import line
 from matstd.compensation.tables.formats import (
     FORMATS,
     Harmful,
-    play_tables,
     refuse_harmful,
+    verify_tables,
     write_tables,
 )
 from matstd.compensation.tables.header import Header, header_of
@@ -46,7 +46,7 @@ def written(known, datum, head, poses, tmp_path_factory):
 @pytest.fixture(scope="module")
 def results(known, datum, head, written, poses):
     return {
-        name: play_tables(form, written / name, known, datum, head, poses)
+        name: verify_tables(form, written / name, known, datum, head, poses)
         for name, form in FORMATS.items()
     }
 
@@ -113,7 +113,7 @@ def test_com_tables_are_credited_with_positioning_alone(bench_chain, datum, head
         theta = np.full(len(effect.parameters), size)
         errors = MachineErrors.of_errors(bench_chain, [(effect, theta)])
         write_tables(FORMATS["heidenhain"], tmp_path, errors, datum, head, poses)
-        found = play_tables(FORMATS["heidenhain"], tmp_path, errors, datum, head, poses).result
+        found = verify_tables(FORMATS["heidenhain"], tmp_path, errors, datum, head, poses).result
         np.testing.assert_allclose(rms(found.after), share * rms(found.before), atol=0.2 * UM)
 
 
@@ -162,21 +162,21 @@ def test_unaligned_too(known, written, bench_chain, poses, results):
     """The rigid motion that alignment takes off hides nothing."""
     tables, _ = FORMATS["iso230"].read(written / "iso230", bench_chain)
     touches = known.touches(poses, LENGTH)
-    left = played(known, touches, tables.correction(touches))
+    left = deviation_after(known, touches, tables.correction(touches))
     assert np.linalg.norm(left, axis=1).max() <= results["iso230"].interpolation
 
 
 def test_cec_is_exact_along_the_axes(known, datum, head, poses, bench_chain, tmp_path):
     linear = known.switched({"B": 0.0, "C": 0.0})
     write_tables(FORMATS["sinumerik"], tmp_path, linear, datum, head, poses)
-    found = play_tables(FORMATS["sinumerik"], tmp_path, linear, datum, head, poses)
+    found = verify_tables(FORMATS["sinumerik"], tmp_path, linear, datum, head, poses)
     tables, _ = FORMATS["sinumerik"].read(tmp_path, bench_chain)
     there = linear.touches(datum.q[None], LENGTH)
     for axis in ("X", "Y", "Z"):
         at = np.linspace(*bench_chain.link(axis).range, 173)
         touches = line(linear, datum, axis, at)
-        left = played(linear, touches, tables.correction(touches))
-        left -= played(linear, there, tables.correction(there))
+        left = deviation_after(linear, touches, tables.correction(touches))
+        left -= deviation_after(linear, there, tables.correction(there))
         # tables that help by less than 50 nm are not written
         assert np.linalg.norm(left, axis=1).max() <= found.interpolation + 100 * NM
 
@@ -203,7 +203,7 @@ def test_what_is_left_of_one_error_is_what_is_played(
     theta = np.full(len(effect.parameters), size)
     errors = MachineErrors.of_errors(bench_chain, [(effect, theta)])
     write_tables(FORMATS[name], tmp_path, errors, datum, head, poses)
-    found = play_tables(FORMATS[name], tmp_path, errors, datum, head, poses)
+    found = verify_tables(FORMATS[name], tmp_path, errors, datum, head, poses)
     (left,) = found.result.left
     np.testing.assert_allclose(left.rms, rms(found.result.after), atol=0.15 * UM)
     np.testing.assert_allclose(left.before, rms(found.result.before), rtol=1e-3)
@@ -277,7 +277,7 @@ def test_a_fork_head_is_never_made_worse(tmp_path, capsys):
     path.write_text(FORK)
     chain = read_machine(path)
     datum = datum_of(chain, {"X": 500.0, "Y": 400.0, "Z": -300.0}, 250.0)
-    q = workspace(chain, {}, 200)
+    q = sample_workspace(chain, {}, 200)
     head = header_of(chain, "0123456789ab", datum, State())
     # beside their datum these two are levers times angles that no joint's own table can hold
     rotary = ["geometric(ECC,sinusoidal@90)", "geometric(EAA,sinusoidal@90)"]
@@ -287,10 +287,10 @@ def test_a_fork_head_is_never_made_worse(tmp_path, capsys):
     plain = along_axes(errors, datum, 256, False)
     touches = errors.touches(q, datum.length)
     bare = aligned(touches.point, deviation(errors, touches))
-    with_plain = aligned(touches.point, played(errors, touches, plain.correction(touches)))
+    with_plain = aligned(touches.point, deviation_after(errors, touches, plain.correction(touches)))
     assert rms(with_plain) > 1.1 * rms(bare)
     write_tables(FORMATS["linuxcnc"], tmp_path / "comp", errors, datum, head, q)
-    found = play_tables(FORMATS["linuxcnc"], tmp_path / "comp", errors, datum, head, q)
+    found = verify_tables(FORMATS["linuxcnc"], tmp_path / "comp", errors, datum, head, q)
     assert rms(found.result.after) < rms(found.result.before) - 5 * UM  # X is still corrected
     refuse_harmful(found)
     harmful = replace(found, result=replace(found.result, after=with_plain))
@@ -338,7 +338,7 @@ def test_a_table_of_another_machine_or_datum_is_refused(known, head, written, be
     other_datum = datum_of(bench_chain, {"X": 9.0}, LENGTH)
     other = header_of(bench_chain, head.model, other_datum, State())
     with pytest.raises(BadFile, match=r"matstd datum: found C0 B0 X0 Y0 Z-200 L160.*X9"):
-        play_tables(FORMATS["iso230"], written / "iso230", known, other_datum, other, poses)
+        verify_tables(FORMATS["iso230"], written / "iso230", known, other_datum, other, poses)
     short = make_chain("bench", "[w f X t]", {"X": Axis(range=(0.0, 1.0))})
     elsewhere = header_of(short, head.model, datum_of(short, {}, LENGTH), State())
     with pytest.raises(BadFile, match="matstd machine: found bench, "):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from matstd.diagnosis.drift.judged import chosen, judge, offered
-from matstd.diagnosis.drift.lags import Lagged, at_once, followed
+from matstd.diagnosis.drift.lags import Lagged, at_once, first_order_lag
 from matstd.diagnosis.drift.linear import WEIGHTS, fitted, ridge
-from matstd.diagnosis.drift.probing import RENEWED, kept
+from matstd.diagnosis.drift.probing import RENEWAL_TIME, predict_with_probings
 from matstd.diagnosis.drift.record import DriftRecord, blocks, joined
 from matstd.twin.compute import silent
 from matstd.twin.units import UM
@@ -96,9 +96,9 @@ def test_a_lag_is_the_exact_solution_of_a_body_that_warms_up():
     drive = np.column_stack([np.full(100, 25.0), np.where(np.arange(100) < 10, 0.0, 2000.0)])
     record = record_of(drive, np.zeros((100, 1)))
     t = np.maximum(np.arange(100) - 9, 0) * STEP
-    speed = followed(record, "spindle_rpm", 3000.0)
+    speed = first_order_lag(record, "spindle_rpm", 3000.0)
     np.testing.assert_allclose(speed, 2000.0 * -np.expm1(-t / 3000.0), atol=1e-9)
-    np.testing.assert_allclose(followed(record, "t0", 3000.0), 25.0)
+    np.testing.assert_allclose(first_order_lag(record, "t0", 3000.0), 25.0)
 
 
 def test_a_log_of_another_day_begins_anew(planted):
@@ -121,12 +121,12 @@ def test_probing_is_what_conditioning_a_gaussian_process_gives(planted):
     laws = {"static-ridge": offered(planted)["static-ridge"]}
     (judged,) = judge(planted, np.arange(280), np.arange(280, 400), laws, silent)
     at = np.array([20, 60, 61, 150])
-    result = kept(judged, planted, at, 2.0)
+    result = predict_with_probings(judged, planted, at, 2.0)
     law, n = judged.law, 180
     X, t = law.basis(planted)[:n], np.arange(n) * STEP
     variance = float(judged.factor[0] * law.residual[0]) ** 2
     forgets = variance * np.exp(-np.abs(t[:, None] - t) / law.memory)
-    drifts = 1.0 + np.minimum(t[:, None], t) / RENEWED
+    drifts = 1.0 + np.minimum(t[:, None], t) / RENEWAL_TIME
     K = forgets + variance * drifts * (X @ law.covariance @ X.T)
     free = law.predicted(planted)[:n, 0]
     misses = planted.displacement[:n, 0] - free

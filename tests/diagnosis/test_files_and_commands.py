@@ -312,7 +312,7 @@ def test_plans_stand_beside_the_diagnosis(warmed, table) -> None:
     """Where effects are confused, a table of touches that has the columns of a run file."""
     out = warmed / "out"
     lines = (out / "next_measurement_1.csv").read_text(encoding="utf-8").splitlines()
-    assert lines[0].startswith("# to tell thermal-lag(")
+    assert lines[0].startswith("# to distinguish thermal-lag(")
     wanted = (warmed / "run.csv").read_text(encoding="utf-8").splitlines()
     header = next(line for line in wanted if not line.startswith("#")).split(",")
     assert set(lines[1].split(",")) <= set(header)

@@ -8,7 +8,7 @@ import pytest
 from matstd.diagnosis.answer.collinear import weakest
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.verdict import Step, Verdict
-from matstd.diagnosis.choice.long_runs import CHOSEN, chosen_rows
+from matstd.diagnosis.choice.long_runs import CHOSEN_ROWS, chosen_rows
 from matstd.diagnosis.fit.describe import Reported, Role
 from matstd.twin.frames import Array
 from matstd.twin.machine import Axis, make_chain
@@ -47,10 +47,10 @@ def log_of(rows: int, error: Array | None = None, seed: int = 0, memory: float =
 
 
 def test_a_choice_takes_one_row_of_every_stretch() -> None:
-    run = log_of(3 * CHOSEN)
+    run = log_of(3 * CHOSEN_ROWS)
     some = chosen_rows(run)
-    assert len(some) == CHOSEN
-    np.testing.assert_array_equal(np.floor(some.touches.time / 1.5), np.arange(CHOSEN))
+    assert len(some) == CHOSEN_ROWS
+    np.testing.assert_array_equal(np.floor(some.touches.time / 1.5), np.arange(CHOSEN_ROWS))
     assert len(np.unique(np.diff(some.touches.time))) > 2  # even steps would alias
 
 

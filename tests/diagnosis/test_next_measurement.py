@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from matstd.diagnosis.answer.next_measurement import CONE, candidate_touches
+from matstd.diagnosis.answer.next_measurement import APPROACH_CONE, candidate_touches
 from matstd.twin.machine.kinematics import tip
 from matstd.twin.units import NM
 
@@ -31,7 +31,7 @@ def test_offers_reach_known_points_from_known_sides(case, key) -> None:
     for feature in np.unique(offers.feature):
         own = now[offers.feature == feature]
         nearest = (own @ before[t.feature == feature].T).max(axis=1)
-        assert nearest.min() > np.cos(CONE) - 1e-6
+        assert nearest.min() > np.cos(APPROACH_CONE) - 1e-6
     # and they are more than the run itself: other points of a feature in a pose
     made = {tuple(row) for row in np.round(np.column_stack([t.q, t.point]), 6)}
     new = [tuple(row) not in made for row in np.round(np.column_stack([offers.q, offers.point]), 6)]

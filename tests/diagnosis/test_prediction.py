@@ -15,10 +15,10 @@ from matstd.diagnosis.answer.verdict import Diagnosis
 from matstd.diagnosis.choice import prediction
 from matstd.diagnosis.choice.blocks import blocks
 from matstd.diagnosis.choice.bodies import bodies
-from matstd.diagnosis.choice.field import SIZES, sized_field
-from matstd.diagnosis.choice.following import followed
-from matstd.diagnosis.choice.needed import needed
+from matstd.diagnosis.choice.chosen_set import with_chosen_set
+from matstd.diagnosis.choice.field import PRIOR_SIZES, sized_field
 from matstd.diagnosis.choice.prediction import Choice, candidate_effects, without
+from matstd.diagnosis.choice.prune import prune_by_held_out_error
 from matstd.diagnosis.evidence.effect_signatures import ResidualSpace, ScaledEffect, projected
 from matstd.diagnosis.evidence.evidence import EffectSet
 from matstd.diagnosis.fit.identification import fit_run
@@ -155,12 +155,12 @@ def test_the_size_of_a_field_is_that_of_ridge_regression_by_blocks() -> None:
         return float(np.sqrt(np.mean(np.concatenate(out) ** 2)))
 
     errors = {f: error(f) for f in (1.0 / 16.0, 1.0, 16.0)}
-    assert len(SIZES) == 13
+    assert len(PRIOR_SIZES) == 13
     assert errors[1.0] < 1.02 * min(errors.values())
 
 
 def test_a_long_run_is_judged_by_an_even_choice_of_its_instants(monkeypatch) -> None:
-    monkeypatch.setattr(prediction, "MOST_ROWS", N // 2)
+    monkeypatch.setattr(prediction, "MAX_ROWS", N // 2)
     run = record()
     twice = run[np.repeat(np.arange(N), 2)]  # two gauges that read together
     task = task_of(twice)
@@ -179,7 +179,7 @@ def test_an_effect_that_predicts_nothing_is_not_needed() -> None:
     frame = ScaledEffect(parse_effect("thermal-static(EZZ,frame)", run.touches.chain), 4.0)
     idle = ScaledEffect(parse_effect("thermal-lag(EZZ,bed)#2", run.touches.chain).tuned(1e7), 16.0)
     groups = np.array_split(np.arange(N), 5)
-    kept = needed(complement, [frame, idle], groups)
+    kept = prune_by_held_out_error(complement, [frame, idle], groups)
     assert [s.effect.name for s in kept] == ["thermal-static(EZZ,frame)"]
 
 
@@ -191,7 +191,7 @@ def test_a_second_effect_without_a_first_takes_its_name() -> None:
     alone = ScaledEffect(
         parse_effect("thermal-lag(EZZ,frame)#2", run.touches.chain).tuned(120.0), 4.0
     )
-    (kept,) = needed(complement, [alone], np.array_split(np.arange(N), 5))
+    (kept,) = prune_by_held_out_error(complement, [alone], np.array_split(np.arange(N), 5))
     assert kept.effect.name == "thermal-lag(EZZ,frame)"
 
 
@@ -250,7 +250,7 @@ def test_a_way_that_is_followed_counts_independent_observations(chosen) -> None:
     single = single_of(task.run)
     way = next(w for w in choice.rules if w.name == "two time constants")
     other = Choice(choice.rules, way, choice.blocks, Memory(0.9))
-    slow, final = followed(task, (), search_until_stable(task, (), single), other, single)
+    slow, final = with_chosen_set(task, (), search_until_stable(task, (), single), other, single)
     assert slow.memory is not None
     assert not slow.memory.is_filtered
     complement = final.search.complement

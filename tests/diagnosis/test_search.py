@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.answer.ambiguity import CONFUSED, confusion_class, plausibility
+from matstd.diagnosis.answer.ambiguity import MAX_LOG_ODDS_CONFUSED, confusion_class, plausibility
 from matstd.diagnosis.evidence.effect_signatures import (
     Grid,
     ResidualSpace,
@@ -177,8 +177,8 @@ def test_look_alikes_are_a_class(planted) -> None:
     made = confusion_class(pool, found, ())
     everything = {made.effect.name, *(r.effect.name for r in made.rivals)}
     assert {"thermal-lag(EZZ)", "thermal-lag(EZX)"} <= everything
-    assert all(r.log_odds < CONFUSED for r in made.rivals)
-    assert all(r.log_odds >= CONFUSED for r in made.told_apart)
+    assert all(r.log_odds < MAX_LOG_ODDS_CONFUSED for r in made.rivals)
+    assert all(r.log_odds >= MAX_LOG_ODDS_CONFUSED for r in made.distinguished)
     assert "thermal-lag(EXX)" not in everything
     assert "backlash(X)" not in everything
 

@@ -5,7 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.information.identifiability.degrees import HIGHEST, SUPPORTED, supported_degrees
+from matstd.information.identifiability.degrees import (
+    MAX_DEGREE,
+    MAX_POSTERIOR_SHARE,
+    supported_degrees,
+)
 from matstd.report.identifiability.identifiability_words import degree_words
 from matstd.sensitivity.population.sampling import Population
 from matstd.twin.machine.chain import Axis, make_chain
@@ -64,9 +68,9 @@ def test_one_error_alone_is_a_polynomial_fit(model, reach):
     alone, q_x = only(model, "EXX"), reach * np.linspace(-HALF, HALF, 40)
     sd = float(alone.prior_sd.max())
     degree = found(alone, along_x(alone, q_x))["EXX"]
-    left = [by_hand(q_x, n, sd) for n in range(1, HIGHEST + 1)]
+    left = [by_hand(q_x, n, sd) for n in range(1, MAX_DEGREE + 1)]
     largest = 0
-    while largest < HIGHEST and (left[largest] < SUPPORTED).all():
+    while largest < MAX_DEGREE and (left[largest] < MAX_POSTERIOR_SHARE).all():
         largest += 1
     assert degree.largest == largest
     assert degree.supported == tuple(range(1, largest + 1))
@@ -79,8 +83,8 @@ def test_a_part_of_the_travel_supports_less(model):
         found(alone, along_x(alone, reach * np.linspace(-HALF, HALF, 40)))["EXX"].largest
         for reach in (1.0, 0.1)
     )
-    assert whole == HIGHEST
-    assert 1 <= part < HIGHEST
+    assert whole == MAX_DEGREE
+    assert 1 <= part < MAX_DEGREE
 
 
 def test_what_no_touch_moves_has_no_degree(model):

@@ -24,7 +24,8 @@ range = [-180.0, 180.0]
 """
 POSES = "X_mm,Y_mm,Z_mm,B_deg,C_deg,tool_length_mm\n10,20,-100,0,30,160\n"
 LINE = (
-    "- axis C has no point in the machine file: it is taken to turn about a line through the origin"
+    "- axis C has no point in the machine file: it is assumed to turn about a line through the "
+    "origin"
 )
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from matstd.nc.grammar.blocks import gcode_lines, klartext_blocks
-from matstd.nc.grammar.flow import DEEPEST, Flow, label_places
+from matstd.nc.grammar.flow import MAX_DEPTH, Flow, label_places
 from matstd.nc.grammar.formulas import Formula, function_value
 from matstd.nc.grammar.modal import MODAL, Modal
 from matstd.nc.grammar.order import run_order
@@ -89,7 +89,7 @@ def test_subprograms_and_labels():
     flow = Flow(PATH, places, most=3)
     assert [flow.call(0, 1, "1"), flow.end(), flow.end()] == [4, 1, None]
     assert [flow.repeat(9, 1, "1", 2) for _ in range(4)] == [4, 4, 10, 4]
-    for _ in range(DEEPEST):
+    for _ in range(MAX_DEPTH):
         flow.call(0, 1, "1")
     with pytest.raises(BadFile, match="line 7: found subprograms 9 deep, expected 8 at most"):
         flow.call(0, 7, "1")

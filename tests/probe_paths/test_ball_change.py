@@ -13,7 +13,7 @@ from matstd.cli import main
 from matstd.probe_paths.campaign.ball_change import ball_changes, check_changes
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.emit.program import make_ball
@@ -43,7 +43,7 @@ def logged(program, small, chain):
     def log(hours=0.0, **machine):
         virtual = VirtualMachine(chain, **machine)
         virtual = replace(virtual, begin=virtual.begin + timedelta(hours=hours))
-        run = run_program(program, small, virtual, np.random.default_rng(0))
+        run = run_programs([program], small, virtual, np.random.default_rng(0))[0]
         run.check_done()
         return "".join(run.log.values())
 
@@ -67,9 +67,7 @@ def test_it_goes_all_round_one_ball_in_one_visit_and_hits_nothing(
     check_moves(program, small, chain)
 
 
-def test_a_ball_that_moved_and_a_radius_that_grew_are_told_apart(
-    logged, part, small, golden, chain
-):
+def test_a_ball_that_moved_and_a_radius_that_grew_are_separated(logged, part, small, golden, chain):
     moved = np.array([5.0, -3.0, 8.0]) * UM
     text = logged(2.0, setup_error=pose(np.eye(3), moved), radius_error=2.0 * UM)
     (after,) = read_log("MS_A_CAL.TXT", chain.rotary_axes, text)
@@ -109,11 +107,11 @@ def _normals(part, small, chain):
     return way / np.linalg.norm(way, axis=1, keepdims=True)
 
 
-def test_a_change_beyond_the_limit_is_refused_and_dirt_is_told(part, small, chain):
+def test_a_change_beyond_the_limit_is_refused_and_dirt_is_reported(part, small, chain):
     later = part.begin + timedelta(hours=1)
     shifted = replace(part, xyz=part.xyz + np.array([0.02, 0.0, 0.0]), begin=later)
     changes = ball_changes([part, shifted], small, chain, 1.0 * UM)
-    with pytest.raises(DesignError, match=r"by 20\.0 µm, expected 10 µm at most: measure anew"):
+    with pytest.raises(DesignError, match=r"by 20\.0 µm, expected 10 µm at most: measure again"):
         check_changes(changes, 10.0 * UM)
     check_changes(changes, 30.0 * UM)
     one = part.xyz.copy()
@@ -143,7 +141,7 @@ def test_no_ball_no_program(plan):
 def test_evaluate_tells_the_change_and_refuses_beyond_the_limit(
     logged, programs, read, small, chain, golden, tmp_path, capsys
 ):
-    run = run_program(read[0], small, VirtualMachine(chain), np.random.default_rng(0))
+    run = run_programs(read[:1], small, VirtualMachine(chain), np.random.default_rng(0))[0]
     folder = tmp_path
     for name, text in run.log.items():
         (folder / name).write_text(text, encoding="ascii")
@@ -161,6 +159,6 @@ def test_evaluate_tells_the_change_and_refuses_beyond_the_limit(
         assert main(["evaluate", *logs, *words, "--probe-limit-um", wrong, "-o", str(out)]) == 2
         assert "--probe-limit-um" in capsys.readouterr().err
     assert main(["evaluate", *logs, *words, "--probe-limit-um", "40", "-o", str(out)]) == 0
-    told = capsys.readouterr().out
-    assert "ball SPH1, 08:00 to 11:00 (3.00 h, 8 touches)" in told
-    assert f"{len(read[0].touches)} touches" in told
+    output = capsys.readouterr().out
+    assert "ball SPH1, 08:00 to 11:00 (3.00 h, 8 touches)" in output
+    assert f"{len(read[0].touches)} touches" in output

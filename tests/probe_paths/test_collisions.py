@@ -11,7 +11,7 @@ from matstd.artefact.reach.workshop import Workshop
 from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.campaign.collisions import SMALLEST_GAP, check_moves
 from matstd.probe_paths.campaign.evaluation import evaluate
-from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.control.steps import Move
@@ -105,7 +105,7 @@ def test_a_feature_number_mixed_up_is_found_when_the_log_is_evaluated(
     at = [i for i, line in enumerate(lines) if "Q1622" in line][3]
     lines[at] = lines[at].replace(f"+{numbers[3]}", f"+{other}")
     read = read_again("\r\n".join(lines), programs, chain)
-    run = run_program(read, small, perfect, np.random.default_rng(0))
+    run = run_programs([read], small, perfect, np.random.default_rng(0))[0]
     part = read_log("MS_A_1.TXT", chain.rotary_axes, run.log["MS_A_1.TXT"])[0]
     found = evaluate([part], small, chain, UM)
     assert len(found) == len(read.touches) - 1

@@ -165,9 +165,9 @@ def test_a_hidden_effect_is_named_from_the_controls_own_log(design, golden, smal
     compared = str(tmp_path / "compared")
     assert main(["compare", str(out / "run.csv"), "--model", model, *quiet, compared]) == 0
     assert main(["diagnose", str(out / "run.csv"), "--model", model, *quiet, str(found)]) == 0
-    told = json.loads((found / "diagnosis.json").read_text())
-    assert told["verdict"] == "missing effect"
-    (effect,) = [step for step in told["steps"] if step["effect"]]
+    written = json.loads((found / "diagnosis.json").read_text())
+    assert written["verdict"] == "missing effect"
+    (effect,) = [step for step in written["steps"] if step["effect"]]
     assert effect["effect"] == "backlash(X)"
     size, u = (effect[key]["amplitude_um"] for key in ("parameters", "uncertainty"))
     assert abs(size - 10.0) < 4.0 * u < 2.0

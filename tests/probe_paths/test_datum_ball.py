@@ -13,7 +13,7 @@ from matstd.artefact.reach.workshop import Workshop
 from matstd.probe_paths.campaign.ball_change import ball_changes, effective_radii
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.control.steps import Move
@@ -54,7 +54,7 @@ def logged(program, small, chain):
     def log(hours=0.0, **machine):
         virtual = VirtualMachine(chain, **machine)
         virtual = replace(virtual, begin=virtual.begin + timedelta(hours=hours))
-        run = run_program(program, small, virtual, np.random.default_rng(0))
+        run = run_programs([program], small, virtual, np.random.default_rng(0))[0]
         run.check_done()
         (part,) = read_log("A.TXT", chain.rotary_axes, "".join(run.log.values()))
         return part
@@ -74,7 +74,7 @@ def test_the_program_touches_the_ball_and_nothing_else(program, small, chain):
         assert away == pytest.approx(BALL.radius + 3.0, abs=2e-4)
 
 
-def test_the_radius_is_told_against_the_ball_s_own(logged, chain):
+def test_the_radius_is_compared_with_that_of_the_ball(logged, chain):
     (exact,) = effective_radii([logged()], chain, 0.2 * UM)
     assert abs(exact.excess) < 3.0 * NM
     assert 0.25 * UM < exact.u < 0.6 * UM

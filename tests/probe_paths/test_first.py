@@ -12,7 +12,7 @@ from matstd.cli import main
 from matstd.probe_paths.campaign.ball_change import read_heights
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.control.steps import ProbeStep
@@ -106,7 +106,7 @@ def test_what_is_wrong_is_refused(made, reads, old, new, expected):
 @pytest.mark.parametrize("meaning", ["gauge", "tip"])
 def test_its_log_tells_what_z_the_control_returns(program, small, chain, meaning):
     machine = VirtualMachine(chain, dialect=replace(read_dialect("itnc530"), result_height=meaning))
-    run = run_program(program, small, machine, np.random.default_rng(0))
+    run = run_programs([program], small, machine, np.random.default_rng(0))[0]
     run.check_done()
     (part,) = read_log("MS_A_COM.TXT", chain.rotary_axes, "".join(run.log.values()))
     assert part.is_complete
@@ -119,7 +119,7 @@ def test_its_log_tells_what_z_the_control_returns(program, small, chain, meaning
 
 def test_a_touch_in_the_air_that_meets_something_stops_it(program, small, chain):
     higher = VirtualMachine(chain, setup_error=pose(np.eye(3), np.array([0.0, 0.0, 22.0])))
-    run = run_program(program, small, higher, np.random.default_rng(0))
+    run = run_programs([program], small, higher, np.random.default_rng(0))[0]
     assert run.log == {}
     with pytest.raises(NotReachable, match="the touch in the air meets SPH1"):
         run.check_done()
@@ -149,8 +149,8 @@ def test_simulate_and_evaluate_take_it(made, small, tmp_path, capsys):
     assert calibrated != text
     Path(log).write_text(calibrated, encoding="ascii")
     assert main(["evaluate", log, *words, *out]) == 0
-    told = capsys.readouterr().out
-    assert "no run file" in told
-    assert "Z of the control is that of gauge (--z gauge)" in told
-    assert "radius of the ball 3.2500 mm as calibrated, 3.0000 mm as planned" in told
+    output = capsys.readouterr().out
+    assert "no run file" in output
+    assert "Z of the control refers to gauge (--z gauge)" in output
+    assert "radius of the ball 3.2500 mm as calibrated, 3.0000 mm as planned" in output
     assert not (tmp_path / "run.csv").exists()

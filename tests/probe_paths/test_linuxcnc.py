@@ -14,7 +14,7 @@ import pytest
 
 from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.control.steps import ProbeStep
@@ -24,7 +24,7 @@ from matstd.probe_paths.linuxcnc import session as session_module
 from matstd.probe_paths.linuxcnc.latch import latch_error, latch_u
 from matstd.probe_paths.linuxcnc.machine_config import machine_files
 from matstd.probe_paths.linuxcnc.replanned import shortened
-from matstd.probe_paths.linuxcnc.session import _answer, _listening, installed, run_on_linuxcnc
+from matstd.probe_paths.linuxcnc.session import _answer, _listen, installed, run_on_linuxcnc
 from matstd.probe_paths.linuxcnc.twin_contact import TwinContact
 from matstd.twin.effects.backlash import Backlash
 from matstd.twin.errors import DesignError
@@ -138,7 +138,7 @@ def joints(chain, q):
 def test_the_contact_is_that_of_the_virtual_probing(twins, small, chain, crooked):
     """From the start of a touch and from 0.3 mm before its contact, to a nanometre."""
     contact = TwinContact(twins, small, crooked, np.random.default_rng(0))
-    run = run_program(twins[0], small, crooked, np.random.default_rng(0))
+    run = run_programs([twins[0]], small, crooked, np.random.default_rng(0))[0]
     linear = [chain.axis_index(a) for a in "XYZ"]
     for touch, q in zip(twins[0].touches[:8], run.q, strict=False):
         way = touch.direction[linear].tolist()
@@ -212,7 +212,7 @@ def test_a_late_probe_is_said(twins, small, chain, crooked):
 
 def test_the_twin_answers_over_a_socket(twins, small, chain, crooked, tmp_path):
     contact = TwinContact(twins, small, crooked, np.random.default_rng(0))
-    server = _listening(tmp_path / "probe")
+    server = _listen(tmp_path / "probe")
     answering = threading.Thread(target=_answer, args=(server, contact), daemon=True)
     answering.start()
     touch = twins[0].touches[0]
@@ -252,7 +252,7 @@ def started(made, twins, small, machine, folder):
 @pytest.fixture
 def log(twins, small, crooked):
     """What the first program logs, cut off in the middle."""
-    run = run_program(twins[0], small, crooked, np.random.default_rng(0))
+    run = run_programs([twins[0]], small, crooked, np.random.default_rng(0))[0]
     text = run.log["MS_A_1.TXT"]
     return text[: len(text) // 2]
 

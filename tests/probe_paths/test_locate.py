@@ -16,7 +16,7 @@ from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.evaluation import ball_centres
 from matstd.probe_paths.campaign.simulation import simulate_search
-from matstd.probe_paths.campaign.virtual_run import run_program
+from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control.interpreter import interpret, read_program
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.emit.program import make_programs, make_search
@@ -60,9 +60,8 @@ def test_at_the_ends_of_the_spread_every_touch_meets_something_and_nothing_else_
     theta, program, small, chain, golden
 ):
     beside = placed(theta)
-    run = run_program(
-        program, small, VirtualMachine(chain, setup_error=beside), np.random.default_rng(0)
-    )
+    machine = VirtualMachine(chain, setup_error=beside)
+    (run,) = run_programs([program], small, machine, np.random.default_rng(0))
     run.check_done()
     stands = Setup("a", golden.setup().T_table_artefact @ beside)
     room = ToolClearance(chain, small, stands, Probe(), program.heading.workshop)
@@ -142,7 +141,7 @@ def test_a_search_on_flat_places_alone_is_refused(golden, chain):
     bare = replace(
         small, patches=(), spheres=small.spheres[:1], base=Base((130.0, 130.0), 10.0, 20.0)
     )
-    with pytest.raises(NotReachable, match="comes down to flat places: it would determine 0 of 60"):
+    with pytest.raises(NotReachable, match="meets flat places: it would determine 0 of 60"):
         plan_search(bare, chain, Probe(), golden.setup(), Spread(3.0, 1.0 * DEG))
 
 
@@ -176,9 +175,9 @@ def test_programs_are_planned_again_where_the_standard_stands(
     out = tmp_path / "again"
     words = ["--within-mm", "6", "--within-deg", "1.5"]
     assert main(["replan", str(log), "--design", str(design), *words, "-o", str(out)]) == 0
-    told = capsys.readouterr().out
+    output = capsys.readouterr().out
     number = r"([+-]\d+\.\d+) ± "
-    shift = [float(re.search(rf"- {a} {number}", told)[1]) for a in "xyz"]
+    shift = [float(re.search(rf"- {a} {number}", output)[1]) for a in "xyz"]
     assert np.abs(np.array(shift) - [5.0, -4.0, 3.0]).max() < 0.05
     programs = sorted((out / "programs").glob("*.H"))
     read = [read_program(path, chain) for path in programs]

@@ -241,7 +241,7 @@ def test_a_body_that_somebody_changed_by_hand_is_refused(programs, chain):
 def test_a_head_without_probe_and_table_is_refused(programs, chain):
     text = re.sub(r"(?m)^\d+ ", "", programs.programs[0].text)
     text = re.sub(r"(?m)^;(STACK|NOSE|BODY|AT) .*\r\n", "", text)
-    with pytest.raises(BadFile, match="emit the program anew"):
+    with pytest.raises(BadFile, match="emit the program again"):
         interpret(text.encode("ascii"), Path("MS_A_1.H"), programs.masks.get, chain)
 
 

@@ -123,7 +123,7 @@ um.SPH1 = [[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.1]]
 
 
 @pytest.mark.parametrize(
-    ("modulus", "moved", "told"),
+    ("modulus", "moved", "output"),
     [
         (None, 0.0, "not taken off: no modulus is stated of '1.2379'; state material.modulus_MPa"),
         (200000.0, 0.5, "taken off: finite elements with 200 GPa (stated), weight along -Z"),
@@ -131,7 +131,7 @@ um.SPH1 = [[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.1]]
     ],
 )
 def test_a_sag_of_earlier_versions_was_made_for_steel(
-    programs, small, plan, tilting, tmp_path, modulus, moved, told
+    programs, small, plan, tilting, tmp_path, modulus, moved, output
 ):
     """Their files have no modulus: with one the displacements go by its reciprocal."""
     path = tmp_path / "standard.toml"
@@ -151,7 +151,7 @@ def test_a_sag_of_earlier_versions_was_made_for_steel(
     rng, machine = np.random.default_rng(5), VirtualMachine(plan.chain)
     done = simulate(programs.write(tmp_path / "p"), small, machine, rng, calibrated=small)
     run = evaluate(done.parts, standard, plan.chain, 1.0 * UM)
-    assert [r for r in run.remarks if f"sag of the standard {told}" in r]
+    assert [r for r in run.remarks if f"sag of the standard {output}" in r]
     assert len([r for r in run.remarks if "sag" in r]) == 1
 
 

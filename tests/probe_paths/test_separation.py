@@ -62,7 +62,7 @@ def test_gaps_are_those_of_alternating_projections_and_never_larger():
 
 
 def test_enough_is_enough():
-    """With a limit every gap below it is the same, and no other is told as below it."""
+    """With a limit every gap below it is the same, and no other is reported below it."""
     sweeps, hulls, _ = random_pairs(np.random.default_rng(4), 800)
     exact, quick = gaps(sweeps, hulls, np.inf), gaps(sweeps, hulls, 5.0)
     assert np.all(quick <= exact + 2.0 * EXACT)

@@ -197,7 +197,7 @@ def test_logs_of_a_control_become_the_run_that_was_simulated(folder, capsys):
     assert "already exists" in capsys.readouterr().err
 
 
-def test_a_log_that_stopped_is_used_and_told(logged, capsys):
+def test_a_log_that_stopped_is_used_and_reported(logged, capsys):
     log = sorted((logged / "logs").iterdir())[-1]
     lines = log.read_text(encoding="ascii").splitlines()
     log.write_text("\n".join(lines[:-6]) + "\n", encoding="ascii")
@@ -402,16 +402,16 @@ def test_a_thermometer_on_the_standard_counts_touch_by_touch(folder, capsys):
 
 
 @pytest.mark.parametrize(
-    ("more", "told"),
+    ("more", "output"),
     [
         (("--body-degC", "295"), "--body-degC 295 (in kelvin?): expected the temperature of"),
         (("--body-degC", "25", "--body-u-K", "-1"), "--body-u-K -1: expected a standard unc"),
         (("--body-u-K", "1"), "--body-u-K 1: expected --body-degC as well"),
     ],
 )
-def test_a_temperature_that_cannot_be(folder, capsys, more, told):
+def test_a_temperature_that_cannot_be(folder, capsys, more, output):
     assert command(folder, *more) == 2
-    assert told in capsys.readouterr().err
+    assert output in capsys.readouterr().err
     assert not (folder / "out").exists()
 
 

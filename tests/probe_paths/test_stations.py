@@ -23,7 +23,7 @@ from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.language.dialect import Dialect
 from matstd.probe_paths.plan.planner import plan_touches
 from matstd.probe_paths.plan.touch_plan import PlanOptions
-from matstd.probe_paths.stations.planned import _reposed, plan_campaign
+from matstd.probe_paths.stations.planned import _in_other_clamping, plan_campaign
 from matstd.probe_paths.stations.programmed import all_programs, make_stations, with_tool
 from matstd.twin.effects.setup_error import setup_errors
 from matstd.twin.errors import BadFile, DesignError, NotReachable
@@ -150,7 +150,7 @@ def test_logs_of_all_stations_are_one_run(texts, small, tmp_path):
     assert again.touches.length == pytest.approx(touches.length, abs=1e-6)
 
 
-def test_a_stylus_calibrated_wrongly_is_told_apart_by_itself(texts, small):
+def test_a_stylus_calibrated_wrongly_is_identified(texts, small):
     """The second probe is 20 um longer and 3 um larger than its calibration says, on the twin."""
     good = VirtualMachine(golden.machine(), noise=2e-4)
     wrong = replace(good, length_error=0.020, radius_error=0.003)
@@ -164,8 +164,10 @@ def test_a_stylus_calibrated_wrongly_is_told_apart_by_itself(texts, small):
     truth = np.array([0.0, 0.0, -0.020, 0.003])
     assert np.all(np.abs(found - truth) < 4.0 * u + 1e-4)
     assert u[2] < 0.004
-    (told,) = [remark for remark in run.remarks if remark.startswith("stylus of length 200.000 mm")]
-    z = re.search(r"z ([+-][\d.]+) ± ([\d.]+) µm beside its calibration", told)
+    (output,) = [
+        remark for remark in run.remarks if remark.startswith("stylus of length 200.000 mm")
+    ]
+    z = re.search(r"z ([+-][\d.]+) ± ([\d.]+) µm beside its calibration", output)
     assert abs(float(z[1]) + 20.0) < 4.0 * float(z[2])
 
 
@@ -203,7 +205,7 @@ def test_what_no_probe_reaches_is_refused_by_the_first_one(small, wanted):
 def test_a_clamping_without_a_touch_is_refused(small, wanted):
     far = Clamping(Setup("c", pose(np.eye(3), np.array([2000.0, 0.0, 0.0]))), Workshop())
     with pytest.raises(NotReachable, match=r"set-up c: none of \d+ touches"):
-        _reposed(small, golden.machine(), [WIDE], far, wanted)
+        _in_other_clamping(small, golden.machine(), [WIDE], far, wanted)
 
 
 def test_a_standard_is_planned_again_in_the_set_up_of_the_log(texts, small):

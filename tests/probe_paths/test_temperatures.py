@@ -93,9 +93,9 @@ def test_a_spoilt_reading_costs_no_touch(log, plan):
     run = evaluate(parts, plan.standard, plan.chain, 1e-3)
     assert len(run) == len(times)
     assert np.abs(run.touches.temperature["spindle"] - warm("spindle", times)).max() < 0.05
-    told = " ".join(run.remarks)
-    assert "21.1?" in told
-    assert f"T_bed_degC: the control logged {len(times) - 2} of {len(times)}" in told
+    output = " ".join(run.remarks)
+    assert "21.1?" in output
+    assert f"T_bed_degC: the control logged {len(times) - 2} of {len(times)}" in output
 
 
 def _other_parameter(masks):

@@ -11,7 +11,7 @@ from matstd.artefact.body.patch import Meeting
 from matstd.artefact.reach.workshop import Workshop, round_table
 from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
-from matstd.probe_paths.campaign.virtual_run import Outcome, run_program, run_programs
+from matstd.probe_paths.campaign.virtual_run import Outcome, run_programs
 from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.emit.program import make_programs
 from matstd.probe_paths.plan.planner import plan_touches
@@ -50,7 +50,7 @@ def deviations(run, standard, chain):
 
 def test_a_perfect_machine_measures_nothing(read, small, perfect, chain):
     for program in read:
-        run = run_program(program, small, perfect, np.random.default_rng(0))
+        run = run_programs([program], small, perfect, np.random.default_rng(0))[0]
         assert run.outcome is Outcome.DONE
         dev = deviations(run, small, chain)
         assert np.abs(dev).max() < NM
@@ -89,7 +89,7 @@ def test_contacts_against_bisection_of_the_distance(read, small, chain):
     believed = read[0].heading.setup.T_table_artefact
     stands = pose(rotation(np.array([2e-4, -1e-4, 3e-4])), np.array([0.03, -0.02, 0.04]))
     machine = VirtualMachine(chain, lambda t: contribution(errors, t), setup_error=stands)
-    run = run_program(read[0], small, machine, np.random.default_rng(0))
+    run = run_programs(read[:1], small, machine, np.random.default_rng(0))[0]
     T_artefact_table = inverse(believed @ stands)
     rows = [i for i, name in enumerate(run.feature) if name.startswith("FF")][::3]
     assert len(rows) >= 3
@@ -129,7 +129,7 @@ def test_all_errors_at_once_against_the_linear_model(read, small, chain, plan):
     model = Model(chain, tuple(effect for effect, _ in errors))
     theta = np.concatenate([size for _, size in errors])
     for program in read:
-        run = run_program(program, small, machine, np.random.default_rng(0))
+        run = run_programs([program], small, machine, np.random.default_rng(0))[0]
         measured = deviations(run, small, chain)
         rows = [t.number - 1 for t in program.touches]
         n = len(rows)
@@ -187,7 +187,7 @@ def test_one_error_gives_the_deviation_worked_out_by_hand(
     is_component = symbol.family.name == "COMPONENT"
     effect = ComponentError(symbol, "constant") if is_component else LocationError(symbol)
     machine = VirtualMachine(chain, lambda t: contribution([(effect, np.array([size]))], t))
-    run = run_program(read, of, machine, np.random.default_rng(0))
+    run = run_programs([read], of, machine, np.random.default_rng(0))[0]
     dev = deviations(run, of, chain)[row]
     assert abs(dev - by_hand * UM) < 1e-3 * UM
 
@@ -199,7 +199,9 @@ def test_shift_of_the_standard_and_bias_of_the_probe_count_outwards(read, small,
         added.bias[:] = 0.7 * UM
         return added
 
-    run = run_program(read[0], small, VirtualMachine(chain, disturbance), np.random.default_rng(0))
+    run = run_programs(
+        [read[0]], small, VirtualMachine(chain, disturbance), np.random.default_rng(0)
+    )[0]
     rows = [t.number - 1 for t in read[0].touches]
     normal = turn(plan.setup.T_table_artefact, plan.normal[rows])
     expected = normal @ np.array([2.0, -1.0, 3.0]) * UM + 0.7 * UM
@@ -210,7 +212,7 @@ def test_shift_of_the_standard_and_bias_of_the_probe_count_outwards(read, small,
 def test_a_probe_that_differs_from_its_calibration(read, small, chain, plan):
     """A larger ball meets early, so does a longer probe where the surface looks up at it."""
     machine = VirtualMachine(chain, radius_error=5.0 * UM, length_error=4.0 * UM)
-    run = run_program(read[0], small, machine, np.random.default_rng(0))
+    run = run_programs(read[:1], small, machine, np.random.default_rng(0))[0]
     rows = [t.number - 1 for t in read[0].touches]
     normal = turn(plan.setup.T_table_artefact, plan.normal[rows])
     axis = table_to_tool(chain, run.q)[:, :3, 2]
@@ -220,7 +222,7 @@ def test_a_probe_that_differs_from_its_calibration(read, small, chain, plan):
 
 def test_noise_is_that_of_the_trigger_and_of_the_seed(read, small, chain):
     machine = VirtualMachine(chain, noise=2.0 * UM)
-    runs = [run_program(read[0], small, machine, np.random.default_rng(s)) for s in (4, 4, 5)]
+    runs = [run_programs(read[:1], small, machine, np.random.default_rng(s))[0] for s in (4, 4, 5)]
     dev = [deviations(run, small, chain) for run in runs]
     drawn = np.random.default_rng(4).normal(0.0, 1.0, len(dev[0])) * 2.0 * UM
     assert np.abs(dev[0] - drawn).max() < HARDLY_CURVED
@@ -242,7 +244,7 @@ def test_a_vector_the_wrong_way_meets_nothing_and_the_program_stops(
     third = first.text.split("TCH PROBE 4.2 ")[3].split("\r\n")[0]
     turned = third.translate(str.maketrans("+-", "-+"))
     broken = changed(first, chain, programs.masks, third, turned)
-    run = run_program(broken, small, perfect, np.random.default_rng(0))
+    run = run_programs([broken], small, perfect, np.random.default_rng(0))[0]
     assert run.outcome is Outcome.NO_CONTACT
     assert run.reached == 3
     with pytest.raises(NotReachable, match=r"touch 3 on .*meets nothing"):
@@ -265,7 +267,7 @@ def test_a_vector_the_wrong_way_meets_nothing_and_the_program_stops(
 )
 def test_a_standard_that_stands_elsewhere_stops_the_program(read, small, chain, stands, met):
     machine = VirtualMachine(chain, setup_error=pose(t=np.array(stands)))
-    run = run_program(read[0], small, machine, np.random.default_rng(0))
+    run = run_programs(read[:1], small, machine, np.random.default_rng(0))[0]
     assert run.outcome is Outcome.NO_CONTACT
     assert run.meeting[run.reached - 1] in met
     assert np.isnan(run.q[run.reached - 1]).all()
@@ -284,7 +286,7 @@ def test_a_touch_beside_the_trimmed_face_is_no_contact(golden, chain, perfect):
     for beside, met in ((15.5, {Meeting.EDGE}), (17.0, {Meeting.EDGE}), (30.0, set(Meeting))):
         moved = text.replace(f"{x} {y}", f"X+{beside:.4f} {y}")
         read = interpret(moved.encode("ascii"), Path("MS_A_1.H"), made.masks.get, chain)
-        run = run_program(read, of, perfect, np.random.default_rng(0))
+        run = run_programs([read], of, perfect, np.random.default_rng(0))[0]
         assert run.outcome is Outcome.NO_CONTACT
         assert run.meeting[run.reached - 1] in met
 
@@ -292,7 +294,7 @@ def test_a_touch_beside_the_trimmed_face_is_no_contact(golden, chain, perfect):
 def test_a_program_for_another_standard_is_refused(read, golden, perfect):
     other = golden.standard((golden.sphere("BALL", 0.0, 0.0),))
     with pytest.raises(DesignError, match="FF1 in the program; standard 'SMALL-1' has 1 BALL"):
-        run_program(read[0], other, perfect, np.random.default_rng(0))
+        run_programs(read[:1], other, perfect, np.random.default_rng(0))[0]
 
 
 def test_time_runs_on_from_program_to_program(read, small, perfect):
@@ -311,7 +313,7 @@ def test_directions_of_approach_are_those_of_the_moves(read, small, chain):
         seen.append(touches)
         return Contribution.zeros(len(touches), len(chain.links))
 
-    run_program(read[0], small, VirtualMachine(chain, disturbance), np.random.default_rng(0))
+    run_programs(read[:1], small, VirtualMachine(chain, disturbance), np.random.default_rng(0))[0]
     touches = seen[-1]
     assert np.array_equal(touches.approach[:, :2], np.array([t.side[:2] for t in read[0].touches]))
     columns = [chain.axis_index(a) for a in "XYZ"]

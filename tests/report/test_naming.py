@@ -96,11 +96,11 @@ def test_many_rivals_are_counted_beyond_the_first() -> None:
 def test_plans_say_what_they_tell_apart() -> None:
     touches = made_up("hsm600u")
     plan = SimpleNamespace(
-        touches=touches, tells_apart=("backlash(X)", "backlash(Y)"), periods_of=""
+        touches=touches, distinguishes=("backlash(X)", "backlash(Y)"), periods_of=""
     )
     assert plan_words(plan) == "reversal of X [backlash(X)] from reversal of Y [backlash(Y)]"
     periods = ("periodic(EXX)@10", "periodic(EXX)@5,3.333")
-    plan = SimpleNamespace(touches=touches, tells_apart=periods, periods_of="periodic(EXX)")
+    plan = SimpleNamespace(touches=touches, distinguishes=periods, periods_of="periodic(EXX)")
     assert plan_words(plan).startswith("the periods 10, 5, 3.333 mm of positioning error of X")
 
 

@@ -50,7 +50,7 @@ def left(run):
 def test_a_set_up_that_stands_elsewhere_is_found_at_any_size(tmp_path, case_files, shift, turn):
     right = read_with(tmp_path, case_files, lambda o, a: (o, a))
     there = read_with(tmp_path, case_files, lambda o, a: (o + shift * AWAY, a + turn * ABOUT_Z))
-    assert any("it is taken there" in remark for remark in there.remarks)
+    assert any("position by the touches is used" in remark for remark in there.remarks)
     assert len(there) == len(right)
     assert left(there) == pytest.approx(left(right), rel=0.02)
 
@@ -58,7 +58,7 @@ def test_a_set_up_that_stands_elsewhere_is_found_at_any_size(tmp_path, case_file
 def test_a_set_up_that_stands_where_it_should_is_not_touched(tmp_path, case_files):
     run = read_with(tmp_path, case_files, lambda o, a: (o, a))
     assert aligned(run) == (run, ())
-    assert not any("taken there" in remark for remark in run.remarks)
+    assert not any("position by the touches" in remark for remark in run.remarks)
 
 
 def test_touches_on_a_line_do_not_turn_the_set_up(tmp_path, case_files):

@@ -265,7 +265,7 @@ def test_a_line_that_nobody_placed_is_said(tmp_path: Path) -> None:
     text = machine.read_text(encoding="utf-8")
     machine.write_text(text.replace("point = [0.0, 0.0, 0.0]\n", ""), encoding="utf-8")
     remark = read_run(path).remarks[0]
-    assert remark.startswith("axis C has no point in the machine file: it is taken to turn about")
+    assert remark.startswith("axis C has no point in the machine file: it is assumed to turn about")
 
 
 @pytest.mark.parametrize("u", ["1e300", "1e-300", "0", "-1", "nan"])

@@ -6,7 +6,7 @@ fit, the search and the reports know it from then on.
 
 from matstd.twin.effects.geometric import ComponentError, HigherOrder, component
 from matstd.twin.effects.location import LocationError
-from matstd.twin.effects.periodic import MOST_OVERTONES, usual_distance
+from matstd.twin.effects.periodic import MAX_OVERTONES, usual_distance
 from matstd.twin.effects.probe import ProbeRadius, normal_in_tool
 from matstd.twin.effects.repeated import MARK, Change, Repeated, repeat
 from matstd.twin.effects.setup_error import (
@@ -21,7 +21,7 @@ from matstd.twin.effects.setup_error import (
 
 __all__ = [
     "MARK",
-    "MOST_OVERTONES",
+    "MAX_OVERTONES",
     "SHIFT_SD",
     "TURN_SD",
     "Change",

@@ -12,15 +12,12 @@ from matstd.twin.fields import SensorName, sensor_record, sensors
 from matstd.twin.frames import Array
 from matstd.twin.model import Declared, Kind, Parameter, Term, Where, scanned
 from matstd.twin.record import Touches
-from matstd.twin.units import UM, URAD
-
-HOUR = 3600.0
-"""Drift is reported per hour, s."""
+from matstd.twin.units import HOUR, UM, URAD
 
 ON_EACH_SIDE = 2
-"""Fewest touches of a set-up before and after a slip: one alone is a touch gone wrong."""
+"""Touches of a set-up needed before and after a slip; a single one may be an outlier."""
 INSTANTS = 256
-"""Most instants that are scanned for a slip; between them it is refined."""
+"""Largest number of instants scanned for a slip; the search refines between them."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +36,6 @@ class ArtefactExpansion(Declared):
     parameters = (Parameter("amplitude", "1/K", 20e-6),)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """A shift of the standard."""
         warmth = sensor_record(touches, self.sensor) - touches.body_temperature
         p = touches.point_table
         return tuple(Term(0, Where("shift", 0, i), warmth * p[:, i]) for i in range(3))
@@ -70,7 +66,6 @@ class ArtefactSlip(Declared):
     )
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Shifts of the standard."""
         slipped, arm = self._slipped(touches)
         later = slipped.astype(float)
         return rigid_shift(later, arm * later[:, None])
@@ -96,7 +91,6 @@ class Drift(Declared):
     parameters = tuple(Parameter(name, "mm/h", 5 * UM) for name in "XYZ")
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Shifts of the standard."""
         hours = touches.since_start / HOUR
         return tuple(Term(i, Where("shift", 0, i), hours) for i in range(3))
 

@@ -29,9 +29,6 @@ class ArtefactForm(Declared):
     length of (a_ij) is thus the amplitude of a wave ``a sin(k v) sin(l w)`` of the same mean
     square. Coefficients are expected to fall with the degree. The touches must be the whole run:
     its points on the patch give the rectangle.
-
-    Attributes:
-        patch: Label of the feature in the run file.
     """
 
     patch: Annotated[str, Argument("patch", read_text)]
@@ -42,7 +39,6 @@ class ArtefactForm(Declared):
     )
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """A bias along the normal on the patch, nothing elsewhere."""
         rows = np.flatnonzero(touches.feature == self.patch)
         v, w = _legendre(_local(touches.point[rows]))
         out = []

@@ -1,4 +1,4 @@
-"""Reversal of an axis: where it stands depends on the side from which it was reached."""
+"""Reversal of an axis: its position depends on the direction of approach."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -18,8 +18,8 @@ from matstd.twin.model import Amounts, Declared, Kind, Title, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
-UNFELT = 1e-6
-"""Share of what is felt most below which a component is not felt at all."""
+MIN_FELT_SHARE = 1e-6
+"""A component below this share of the largest one is not measured at all."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,6 @@ class Backlash(Declared):
     is not disturbed.
 
     Attributes:
-        axis: Name of the axis.
         component: Index of the component that reverses: along or about the axis, as a rule.
     """
 
@@ -48,7 +47,6 @@ class Backlash(Declared):
 
     @cached_property
     def title(self) -> Title:
-        """Reversal of the axis, or of a component error of it."""
         what = self.axis if self._is_own else f"the {self._symbol.title}"
         return Title(f"reversal of {what}", self.axis)
 
@@ -62,15 +60,12 @@ class Backlash(Declared):
 
     @property
     def is_angular(self) -> bool:
-        """Whether it turns."""
         return self._symbol.is_angular
 
     def where(self, chain: Chain) -> Where:
-        """A twist of the axis."""
         return chain.twist_of(self._symbol)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Half of the reversal to either side."""
         return (0.5 * touches.last_move(self.axis),)
 
 
@@ -85,7 +80,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> Backlash:
 
 
 def propose(touches: Touches) -> Iterable[Backlash]:
-    """Every axis that was reached from both sides; what of it was measured."""
+    """The measured component of every axis that was reached from both sides."""
     for axis in moving_axes(touches):
         move = touches.last_move(axis)
         if np.any(move > 0) and np.any(move < 0):
@@ -103,7 +98,7 @@ def measured_component(touches: Touches, axis: str) -> int:
         float(np.abs(touches.signature.of(chain.twist_of(Symbol(c, axis, Family.COMPONENT)))).sum())
         for c in range(6)
     ]
-    if felt[own] > UNFELT * max(felt):
+    if felt[own] > MIN_FELT_SHARE * max(felt):
         return own
     kind = slice(3, 6) if touches.instrument.reads_angle else slice(0, 3)
     return (kind.start or 0) + int(np.argmax(felt[kind]))

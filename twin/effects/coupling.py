@@ -23,7 +23,7 @@ from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
 DEGREES = ("1", "2", "3", "4")
-"""Of a coupling: no guide bends in more waves, and no run resolves them."""
+"""Degrees of a coupling: no guide bends in more waves, and no run resolves them."""
 
 
 def _degree(text: str, chain: Chain, refuse: Refuse) -> int:
@@ -44,7 +44,6 @@ class Coupling(Declared):
 
     Attributes:
         other: Name of the axis it also depends on.
-        degree: n.
     """
 
     symbol: ComponentSymbol
@@ -73,14 +72,12 @@ class Coupling(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """Peak amplitudes."""
         # guides are smooth: a shape of order j k is expected that much smaller
         own, other = (_orders(a, self.degree) for a in (self.symbol.link, self.other))
         shares = [1.0 / (j * k) for j in own for k in other]
         return tuple(self.sized(w, share) for w, share in zip(self._words, shares, strict=True))
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Products of a function of either reading."""
         own, other = (_factors(touches, a, self.degree) for a in (self.symbol.link, self.other))
         return [f * g for f in own for g in other]
 

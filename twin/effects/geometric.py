@@ -14,7 +14,7 @@ from matstd.twin.record import Touches
 from matstd.twin.units import DEG
 
 HIGHEST = 12
-"""Degree beyond which a name is a slip: what varies faster is `periodic`."""
+"""Highest degree accepted; faster variations are `periodic`."""
 PROPOSED_DEGREE = 4
 """Two degrees beyond the ordinary model of a linear axis; what changes faster is `periodic`."""
 _DEGREES = re.compile(r"(?:(\d+)-)?(\d+)\Z")
@@ -29,9 +29,6 @@ class ComponentError(Declared):
     amplitude (`matstd.twin.machine.shapes`).
 
     Attributes:
-        symbol: Which component of which axis.
-        shape: Distribution over the reading.
-        periods: Of the sinusoidal distribution.
         phase: Of the sinusoidal distribution, rad.
         sd: Expected standard deviation of the amplitude, mm or rad.
     """
@@ -59,11 +56,9 @@ class ComponentError(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """The peak amplitude."""
         return (Parameter("amplitude", self.symbol.unit, self.sd),)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """The distribution at the readings."""
         q, link = touches.reading(self.symbol.link), touches.chain.link(self.symbol.link)
         return (shape(self.shape, q, link, self.periods, self.phase),)
 
@@ -83,11 +78,7 @@ class HigherOrder(Declared):
     expected to fall as ``1/k^1.5`` from the size of the class.
 
     Attributes:
-        symbol: Which component of which axis.
-        degree: The highest.
         sd: Expected standard deviation of the first coefficient, mm or rad.
-        rotary: Whether harmonics are meant.
-        lowest: The lowest degree.
     """
 
     symbol: Symbol
@@ -113,13 +104,11 @@ class HigherOrder(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """Coefficients, by rising degree; sine before cosine."""
         words = ("sin", "cos") if self.rotary else ("T",)
         unit, each = self.symbol.unit, [(word, k) for k in self.degrees for word in words]
         return tuple(Parameter(f"{word}{k}", unit, self.sd / k**1.5) for word, k in each)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Chebyshev polynomials, or harmonics, of the reading."""
         q = touches.reading(self.symbol.link)
         if self.rotary:
             return [f(k * q) for k in self.degrees for f in (np.sin, np.cos)]

@@ -1,4 +1,4 @@
-"""Sag under the weight of what the axes carry about: rams, heads, cradles, loads off centre."""
+"""Sag under moved weight: rams, heads, cradles, loads off centre."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -45,7 +45,6 @@ class RamSag(_Sag):
     called = "sag of {symbol.link} {symbol.motion}"
 
     def amounts(self, touches: Touches) -> Amounts:
-        """The cube of the overhang."""
         low, high = touches.chain.link(self.symbol.link).range
         overhang = (high - touches.reading(self.symbol.link)) / (high - low)
         return (overhang**3,)
@@ -63,7 +62,6 @@ class TiltSag(_Sag):
     called = "sag of {symbol.link} under its own weight"
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Two waves a turn."""
         return (np.sin(2.0 * touches.reading(self.symbol.link)),)
 
 
@@ -74,7 +72,6 @@ class OffCentreLoad(_Sag):
     ``E = sin(q_tilt) (a cos(q_table) + b sin(q_table))``: the moment ``m g r sin B cos(C - phi)``.
 
     Attributes:
-        symbol: The component error of the tilting axis.
         table: Name of the axis that turns the load.
     """
 
@@ -85,7 +82,6 @@ class OffCentreLoad(_Sag):
     usual = (10 * UM, 30 * URAD)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """The tilt times either component of the load."""
         tilt, turn = np.sin(touches.reading(self.symbol.link)), touches.reading(self.table)
         return (tilt * np.cos(turn), tilt * np.sin(turn))
 

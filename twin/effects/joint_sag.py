@@ -1,9 +1,8 @@
 """Sag of the joints of a serial arm under the weight of the links that follow.
 
-The gears of a joint give way in proportion to the torque of gravity on it. It is known from
-the geometry of the chain but for the weights: a weight anywhere on the line between two joints
-pulls at every joint before them as its shares at both ends do, so weights at the points of the
-joints that follow, and at the flange, stand for all links that reach from joint to joint.
+The gears of a joint give way in proportion to the torque of gravity on it. Geometry gives all of it
+but the weights. A weight on the line between two joints acts like its shares at both ends, so
+weights at the joints that follow and at the flange represent all straight links.
 """
 
 from collections.abc import Iterable, Sequence
@@ -21,8 +20,8 @@ from matstd.twin.model import Declared, Kind, Parameter, Term, Title, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import URAD
 
-SAME = 1e-6
-"""Points closer than this (mm) with every axis at zero are one."""
+SAME_POINT = 1e-6
+"""Points closer than this (mm) with every axis at zero are equal."""
 
 FLANGE = "flange"
 """Name of the gauge point among the places of weights."""
@@ -47,7 +46,6 @@ class JointSag(Declared):
     positive one, rad a millimetre of lever, turns the arm down.
 
     Attributes:
-        joint: Name of the rotary axis.
         places: Names of the joints at whose points weights are taken to be, and `flange` for the
             gauge point, where a payload hangs.
 
@@ -65,7 +63,6 @@ class JointSag(Declared):
 
     @cached_property
     def title(self) -> Title:
-        """With the joint for its carrier."""
         return Title(f"sag of joint {self.joint} under the weight of the arm", self.joint)
 
     def on(self, chain: Chain, refuse: Refuse) -> Self:
@@ -77,7 +74,6 @@ class JointSag(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """Rotation per lever arm of every weight."""
         # 200 N at 1 m on a joint of 200 N m/mrad: 1 mrad over 1000 mm
         return tuple(Parameter(f"weight at {p}", "rad/mm", URAD) for p in self.places)
 
@@ -123,7 +119,7 @@ def weights_behind(chain: Chain, joint: str) -> tuple[str, ...]:
     for before, after in pairwise(ends):
         lever = after.point - before.point
         lever = np.cross(own.direction, lever) if before is own else lever
-        if np.linalg.norm(lever) > SAME:
+        if np.linalg.norm(lever) > SAME_POINT:
             places.append(FLANGE if after.kind == "fixed" else after.name)
     return tuple(places)
 

@@ -1,7 +1,7 @@
-"""A jump of an axis: counts that were lost, a zero that moved, a collision.
+"""A jump of an axis: lost counts, a shifted zero, a collision.
 
-Stated by the user (`--add 'jump(EXX)'`) and never proposed: noise that remembers wanders off at
-some instant in every log, and three of four such logs got a false jump.
+The user states it (`--add 'jump(EXX)'`); it is never proposed, because correlated noise wanders off
+in every log: three of four such logs got a false jump.
 """
 
 from dataclasses import dataclass
@@ -15,9 +15,9 @@ from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
 ON_EACH_SIDE = 6
-"""Readings before a jump and behind it: fewer are accidents."""
+"""Readings needed before and after a jump; fewer may be outliers."""
 INSTANTS = 600
-"""Most instants that are scanned; between two of them the search refines."""
+"""Largest number of scanned instants; the search refines between them."""
 
 
 def thinned(instants: Array, most: int) -> Array:
@@ -50,7 +50,6 @@ class Jump(Declared):
     usual = (10 * UM, 30 * URAD)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """One from the instant on."""
         return ((touches.time > self.instant).astype(float),)
 
 

@@ -22,7 +22,6 @@ class LocationError(Declared):
     rotary axis's line, `EX0X`, `EC0C` add to a reading.
 
     Attributes:
-        symbol: Which one.
         sd: Expected standard deviation, mm or rad.
     """
 
@@ -41,15 +40,12 @@ class LocationError(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """The constant."""
         return (Parameter("amplitude", self.symbol.unit, self.sd),)
 
     def where(self, chain: Chain) -> Where:
-        """A displacement of the link."""
         return Where("place", chain.link_index(self.symbol.link), self.symbol.component)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """One everywhere."""
         return (np.ones(len(touches)),)
 
 

@@ -1,4 +1,4 @@
-"""Errors that repeat: the pitch of a screw or scale, the higher harmonics of a rotary axis."""
+"""Periodic errors: pitch of a screw or scale, higher harmonics of a rotary axis."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -21,40 +21,40 @@ from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
 SHORTEST, LONGEST = 1.0, 50.0
-"""Periods that are scanned on a linear axis, mm, if nothing else is known; closer readings are
-scanned down to what they resolve."""
-TURNS, WIDEST = 6.0, 250.0
-"""A pinion on a rack turns once in up to `WIDEST` mm: periods beyond `LONGEST` are scanned where
-the travel holds `TURNS` of them; fewer are hard to distinguish from a curve."""
-FRACTIONS = 4
+"""Default range of scanned periods of a linear axis, mm; denser readings are scanned down to what
+they resolve."""
+MIN_PINION_TURNS, LONGEST_PINION = 6.0, 250.0
+"""A pinion on a rack turns once in up to `LONGEST_PINION` mm: periods beyond `LONGEST` are scanned
+where the travel holds `MIN_PINION_TURNS` of them; fewer are hard to distinguish from a curve."""
+PITCH_FRACTIONS = 4
 """Whole fractions of a stated pitch that are scanned: starts of the thread, balls of the nut, lines
-of the encoder on the screw."""
+of the encoder."""
 OVERSAMPLING = 4.0
 """Scanned frequencies per resolvable one; the nearest keeps 97 % of a sine between two of them."""
-MOST_OVERTONES = 12
-"""Sines of one period beyond which its shape is a saw of steps."""
+MAX_OVERTONES = 12
+"""Largest number of sines of one period; more would follow single steps."""
 FINEST_HARMONIC = 400
-"""Of what an instrument of angles reads of an axis: worms have up to 180 teeth, gears more."""
+"""Highest harmonic in readings of angles: worms have up to 180 teeth, gears more."""
 HIGHEST_HARMONIC = 12
 """A period of 30 degrees, which 26 readings of the axis distinguish from its neighbours."""
 ENOUGH_READINGS = 40
-"""Distinct readings of an axis, felt as displacements, from which teeth and gears are looked for:
-fewer poses have more of their own than two numbers of one wave in 400."""
-COHERENT = 0.999
-"""Mean resultant of readings times n from which n waves a turn look like none: readings are 2.6
-degrees of a wave off an even grid."""
-UNEVEN = 0.9
-"""Mean resultant over a distance of readings from which they stand on a grid of it."""
-GAPS = (0.01, 0.1, 0.5, 0.9)
-"""Shares of the gaps between readings, to the widest of which it is taken for that of a grid.
+"""Distinct readings from which teeth and gears are searched for in displacements; with fewer, one
+of 400 waves fits by chance."""
+ALIAS_RESULTANT = 0.999
+"""From this mean resultant of n times the readings, n waves per turn look like a constant: readings
+are within 2.6 degrees of a wave of an even grid."""
+MIN_GRID_RESULTANT = 0.9
+"""From this mean resultant over a distance, readings stand on a grid of that distance."""
+GAP_QUANTILES = (0.01, 0.1, 0.5, 0.9)
+"""Quantiles of the gaps between readings that are tried as grid distances, the widest first.
 
 One row of every eight of an even log leaves a single distance in one gap of 64; in fewer rows no
-period is looked for (`PER_READING`) that they show as a longer one."""
-PER_READING, MOST_PERIODS = 4, 40_000
-"""Periods that are looked for in dense uneven readings: so many for each of them, so many at most.
-A choice of three thousand readings along 60 mm is scanned down to 5 µm."""
-READINGS = 4000
-"""Readings of which it is taken; more make no difference."""
+period is looked for (`PERIODS_PER_READING`) that they show as a longer one."""
+PERIODS_PER_READING, MAX_PERIODS = 4, 40_000
+"""Periods scanned in dense uneven readings, for each reading and at most: 3000 readings along 60 mm
+are scanned down to 5 µm."""
+MAX_SAMPLED_READINGS = 4000
+"""Readings from which the resultant is computed; more make no difference."""
 
 
 @dataclass(frozen=True)
@@ -89,11 +89,9 @@ class Periodic(_Repeating):
     period: float = scanned("mm", _periods, default=10.0, acts="with a period")
 
     def amounts(self, touches: Touches) -> Amounts:
-        """One sine."""
         return self._wave(touches, 2.0 * np.pi / self.period)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The period, over the axis."""
         (period,) = super().inner(touches)
         return (period._replace(over=self.symbol.link),)
 
@@ -116,7 +114,6 @@ class Overtones(Periodic):
     expected to be smaller by ``k^1.5``.
 
     Attributes:
-        order: The highest k.
         near: Period around which p is looked for, mm; None for every one that can be seen.
     """
 
@@ -135,17 +132,15 @@ class Overtones(Periodic):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """Sine and cosine of every k, by rising k."""
         orders = range(1, self.order + 1)
         return tuple(self.sized(f"{word}{k}", k**-1.5) for k in orders for word in ("sin", "cos"))
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Sine and cosine of every k, by rising k."""
         turn = 2.0 * np.pi / self.period * touches.reading(self.symbol.link)
         return [f(k * turn) for k in range(1, self.order + 1) for f in (np.sin, np.cos)]
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The period, as of one sine; beside a known one only the nearest."""
+        """The period; near a known one only its neighbours on the grid."""
         (whole,) = super().inner(touches)
         if self.near is None:
             return (whole,)
@@ -154,10 +149,10 @@ class Overtones(Periodic):
 
 
 def _harmonics(effect: "Harmonic", touches: Touches) -> Array:
-    """As far as the distinct readings of the axis distinguish one harmonic from another.
+    """Harmonics that the distinct readings of the axis can distinguish.
 
-    Of the positioning of an axis that is as fine as the uneven readings resolve: worms and gears
-    turn many times in a turn of their axis.
+    For the positioning of an axis they go up to the resolution of the readings, since worms and
+    gears turn many times per turn of their axis.
     """
     readings = np.unique(np.round(touches.reading(effect.symbol.link), 4))
     highest = int(np.clip(len(readings) // 2 - 1, 2, HIGHEST_HARMONIC))
@@ -174,9 +169,6 @@ class Harmonic(_Repeating):
     ``E = s sin(k q) + c cos(k q)``, k = 2, 3 ...; k = 1 is eccentricity and tilt, part of every
     geometric model. k = 2 comes from two reading heads or an oval seat, 4 from four screws, the
     line count from the encoder.
-
-    Attributes:
-        harmonic: k.
     """
 
     harmonic: float = scanned("1", _harmonics, default=2.0, continuous=False)
@@ -186,11 +178,9 @@ class Harmonic(_Repeating):
         return self.symbol.component == chain.link(self.symbol.link).own_component
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Waves over the turn."""
         return self._wave(touches, self.harmonic)
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The harmonic; of the positioning the waves repeat over the axis."""
         (harmonic,) = super().inner(touches)
         over = self.symbol.link if self.is_positioning(touches.chain) else ""
         return (harmonic._replace(over=over),)
@@ -199,21 +189,23 @@ class Harmonic(_Repeating):
 def scanned_periods(q: Array, pitch: float | None = None) -> Array:
     """Periods that some readings can show, ascending, (G,), mm.
 
-    From half the travel (and `LONGEST`, or `WIDEST` on a long axis) down to `SHORTEST`, or to twice
-    the distance of the readings where they stand closer, of uneven ones farther (`PER_READING`);
-    and around whole fractions of a stated pitch beyond that. Frequencies 1/p are evenly spaced.
+    From half the travel (at most `LONGEST`, on a long axis `LONGEST_PINION`) down to `SHORTEST`, or
+    to twice the distance of denser readings, for uneven ones further (`PERIODS_PER_READING`); and
+    around whole fractions of a stated pitch beyond that. Frequencies 1/p are evenly spaced.
 
     Args:
         q: Readings of the axis, (N,), mm.
-        pitch: As stated, mm; None where none is stated.
+        pitch: Stated pitch, mm, or None.
     """
     travel = float(np.ptp(q))
     shortest = min(SHORTEST, _resolved(q)) if travel > 0.0 else SHORTEST
-    longest = max(min(LONGEST, 0.5 * travel), min(WIDEST, travel / TURNS), 2.0 * shortest)
+    longest = max(
+        min(LONGEST, 0.5 * travel), min(LONGEST_PINION, travel / MIN_PINION_TURNS), 2.0 * shortest
+    )
     low, high = 1.0 / longest, 1.0 / shortest
     step = 1.0 / (OVERSAMPLING * max(travel, longest))
     frequencies = np.linspace(low, high, int(np.ceil((high - low) / step)) + 1)
-    for k in range(1, FRACTIONS + 1) if pitch else ():
+    for k in range(1, PITCH_FRACTIONS + 1) if pitch else ():
         around = k / pitch + step * np.arange(-1.0, 2.0) if pitch else np.zeros(0)
         beyond = (around < low) | (around > high + step)
         if beyond.all() and around[0] > 0.5 / max(travel, longest):
@@ -222,8 +214,7 @@ def scanned_periods(q: Array, pitch: float | None = None) -> Array:
 
 
 def finest_harmonic(q: Array) -> int:
-    """Highest harmonic of a turn that readings do not take for a lower one, `FINEST_HARMONIC` at
-    most.
+    """Highest harmonic without an alias among lower ones, at most `FINEST_HARMONIC`.
 
     Readings that stand on a grid of n to the turn show harmonic n as a constant, and n - k as k.
 
@@ -235,11 +226,11 @@ def finest_harmonic(q: Array) -> int:
         11
         >>> finest_harmonic(np.radians([0.0, 13.7, 31.2, 43.5, 62.9, 70.1, 91.3, 104.6]))
         400
-    """  # noqa: D205
-    if len(q) > READINGS:
-        q = np.random.default_rng(0).choice(q, READINGS, replace=False)
+    """
+    if len(q) > MAX_SAMPLED_READINGS:
+        q = np.random.default_rng(0).choice(q, MAX_SAMPLED_READINGS, replace=False)
     counts = np.arange(len(q) // 2, 2 * FINEST_HARMONIC + 1)
-    alike = (n for n in counts if abs(np.exp(1j * n * q).mean()) > COHERENT)
+    alike = (n for n in counts if abs(np.exp(1j * n * q).mean()) > ALIAS_RESULTANT)
     return (int(next(alike, 2 * FINEST_HARMONIC + 1)) - 1) // 2
 
 
@@ -252,7 +243,7 @@ def _resolved(q: Array) -> float:
     places, usual = np.unique(q), 2.0 * usual_distance(q)
     if usual >= SHORTEST:
         return usual
-    finest = float(np.ptp(q)) / min(PER_READING * len(places), MOST_PERIODS)
+    finest = float(np.ptp(q)) / min(PERIODS_PER_READING * len(places), MAX_PERIODS)
     return min(usual, max(finest, 2.0 * _grid_distance(places)))
 
 
@@ -265,22 +256,21 @@ def _grid_distance(places: Array) -> float:
         places: Distinct readings, ascending, (N,), mm.
     """
     gaps = np.diff(places)
-    for distance in np.unique(np.quantile(gaps, GAPS, method="nearest"))[::-1]:
+    for distance in np.unique(np.quantile(gaps, GAP_QUANTILES, method="nearest"))[::-1]:
         for _ in range(2):  # the second time by a distance that all of the travel determines
             count = np.r_[0.0, np.cumsum(np.round(gaps / distance))]
             if not count.any():
                 break
             distance = float(count @ (places - places[0]) / (count @ count))
-        if abs(np.exp(2j * np.pi * places / distance).mean()) > UNEVEN:
+        if abs(np.exp(2j * np.pi * places / distance).mean()) > MIN_GRID_RESULTANT:
             return float(distance)
     return 0.0
 
 
 def usual_distance(q: Array) -> float:
-    """Distance between neighbouring readings that half of the travel is made of, mm.
+    """Median distance between neighbouring readings, weighted by travel, mm.
 
-    Readings that nearly repeat, such as targets approached several times, count as one: the gaps
-    between them make up no travel.
+    Readings that nearly repeat, such as targets approached several times, count as one.
 
     Example:
         >>> usual_distance(np.array([0.0, 6.0, 12.0, 12.001, 18.0, 0.002]))
@@ -298,8 +288,8 @@ def make(chain: Chain, arguments: Sequence[str]) -> Periodic | Harmonic:
     is_linear = chain.link(symbol.link).kind == "linear"
     if arguments[1:]:
         order = int(arguments[1]) if arguments[1].isdecimal() else 0
-        if not is_linear or not 2 <= order <= MOST_OVERTONES:
-            what = f"nothing, or of a linear axis 2 to {MOST_OVERTONES}"
+        if not is_linear or not 2 <= order <= MAX_OVERTONES:
+            what = f"nothing, or of a linear axis 2 to {MAX_OVERTONES}"
             raise refusal(KIND.usage, arguments, f"{what} behind the component error")
         return Overtones(symbol, order=order)
     return Periodic(symbol) if is_linear else Harmonic(symbol)

@@ -1,8 +1,8 @@
 """Position table of an axis: a smooth curve over its readings, or one for each direction.
 
-A positioning test prints such a table, and a control holds it for its compensation. It states where
-an axis is wrong and not why: a pitch, a polynomial or one reversal that is the same everywhere does
-as well with fewer numbers and then has the better name.
+A positioning test prints such a table, and a control compensates by it. It states the errors of an
+axis without a cause: a pitch, a polynomial or a constant reversal explains them with fewer numbers
+where it can.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -21,33 +21,33 @@ from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
 ORDER = 20
-"""Half waves over the travel: as fine as 20 targets show; what repeats faster is `periodic`."""
+"""Half waves over the travel: the resolution of 20 targets; faster ones are `periodic`."""
 
 LENGTHS = (0.04, 0.1, 0.3)
-"""Correlation lengths that are tried, as shares of the travel: 0.04 is the distance of 25 targets,
-and what is smoother than 0.3 is a polynomial of low degree."""
+"""Tried correlation lengths, as shares of the travel: 0.04 is the distance of 25 targets; smoother
+curves than 0.3 are polynomials of low degree."""
 
-EACH = "directions"
-"""What stands behind the component error where each direction has its own curve."""
+BY_DIRECTION = "directions"
+"""Argument for separate curves of the two directions."""
 
-FEWEST_TARGETS = 5
-"""Of a positioning test of one metre (ISO 230-2)."""
+MIN_TARGETS = 5
+"""Fewest targets of a positioning test of one metre (ISO 230-2)."""
 
-REVISITED = 0.5
-"""Share of the rows at readings that were approached before from which they are targets."""
+MIN_REVISITED_SHARE = 0.5
+"""From this share of rows at readings approached before, readings are targets."""
 
 WHOLE_TURN = 2.0 * np.pi - 0.02
-"""Travel of a rotary axis, rad, from which its curve closes in itself: a degree less is no gap."""
+"""From this travel of a rotary axis, rad, its curve is closed; a degree less leaves no gap."""
 
 
 def _directions(text: str, chain: Chain, refuse: Refuse) -> bool:
-    if text != EACH:
-        raise refuse(f"nothing or '{EACH}' after the comma")
+    if text != BY_DIRECTION:
+        raise refuse(f"nothing or '{BY_DIRECTION}' after the comma")
     return True
 
 
 def _no_or_each(by_direction: bool) -> str:
-    return EACH if by_direction else ""
+    return BY_DIRECTION if by_direction else ""
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,6 @@ class PositionTable(Declared):
 
     @cached_property
     def title(self) -> Title:
-        """By position, or by position and direction."""
         by = "position and direction" if self.by_direction else "position"
         return Title(f"{self.symbol.title} by {by}", self.symbol.link)
 
@@ -110,7 +109,6 @@ class PositionTable(Declared):
         return (*mean, self.sized("reversal"), *turned)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """The curves; of two then half of their difference to either side."""
         mean = self._curves(touches)
         half = 0.5 * touches.last_move(self.symbol.link)
         turned = [half, *(half * c for c in mean)] if self.by_direction else []
@@ -151,14 +149,14 @@ def propose(touches: Touches) -> Iterable[Effect]:
             symbol = Symbol(measured_component(touches, axis), axis, Family.COMPONENT)
             yield KIND.make(touches.chain, (symbol.name,))
             if len(np.unique(touches.last_move(axis))) > 1:
-                yield KIND.make(touches.chain, (symbol.name, EACH))
+                yield KIND.make(touches.chain, (symbol.name, BY_DIRECTION))
 
 
 def _has_targets(q: Array) -> bool:
     """Whether readings are targets that were approached several times."""
     _, counts = np.unique(np.round(q, 4), return_counts=True)
     again = counts[counts > 1]
-    return len(again) >= FEWEST_TARGETS and again.sum() >= REVISITED * len(q)
+    return len(again) >= MIN_TARGETS and again.sum() >= MIN_REVISITED_SHARE * len(q)
 
 
 KIND = Kind.of(

@@ -1,4 +1,4 @@
-"""What a touch probe adds of its own: lobes, its effective radius, a stylus that bends."""
+"""Errors of a touch probe: lobes, effective radius, bending of the stylus."""
 
 from dataclasses import dataclass
 
@@ -22,9 +22,6 @@ class ProbeLobing(Declared):
 
     theta and phi are latitude from the tool axis and azimuth of the surface normal in the tool
     frame; k = 3 for the three seats of a kinematic probe.
-
-    Attributes:
-        lobes: k.
     """
 
     # one lobe is the offset of the stylus
@@ -34,7 +31,6 @@ class ProbeLobing(Declared):
     parameters = (Parameter("cos", "mm", 3 * UM), Parameter("sin", "mm", 3 * UM))
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Cosine and sine, in proportion to how far the stylus is deflected sideways."""
         n = normal_in_tool(touches)
         sideways = np.hypot(n[:, 0], n[:, 1])
         phi = np.arctan2(n[:, 1], n[:, 0])
@@ -54,7 +50,6 @@ class ProbeRadius(Declared):
     parameters = (Parameter("amplitude", "mm", 5 * UM),)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """One everywhere."""
         return (np.ones(len(touches)),)
 
 
@@ -70,7 +65,6 @@ class StylusBending(Declared):
     parameters = (Parameter("amplitude", "mm", 5 * UM),)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """One at a touch square to the stylus."""
         n = normal_in_tool(touches)
         return (n[:, 0] ** 2 + n[:, 1] ** 2,)
 

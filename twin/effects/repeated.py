@@ -1,4 +1,4 @@
-"""Effects made of another effect: repeated beside it, or its change from some run on."""
+"""Effects derived from another: a second one beside it, or its change from some run on."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,8 +14,7 @@ MARK = "#"
 class Repeated:
     """An effect with inner parameters of its own, beside one of the same name.
 
-    Only an effect with inner parameters can stand in a model twice: without them both would be one.
-    All but its name is that of the original.
+    Only an effect with inner parameters can be in a model twice, because others would be identical.
 
     Attributes:
         original: As if it stood there alone.
@@ -26,7 +25,7 @@ class Repeated:
     repetition: int = 2
 
     @property
-    def kind(self) -> str:  # noqa: D102
+    def kind(self) -> str:
         return self.original.kind
 
     @property
@@ -35,24 +34,24 @@ class Repeated:
         return f"{self.original.name}{MARK}{self.repetition}"
 
     @property
-    def title(self) -> Title:  # noqa: D102
+    def title(self) -> Title:
         return own_title(self.original) or Title(self.original.name)
 
     @property
-    def parameters(self) -> Sequence[Parameter]:  # noqa: D102
+    def parameters(self) -> Sequence[Parameter]:
         return self.original.parameters
 
-    def terms(self, touches: Touches) -> Sequence[Term]:  # noqa: D102
+    def terms(self, touches: Touches) -> Sequence[Term]:
         return self.original.terms(touches)
 
-    def inner(self, touches: Touches) -> Sequence[Inner]:  # noqa: D102
+    def inner(self, touches: Touches) -> Sequence[Inner]:
         return self.original.inner(touches)
 
-    def tuned(self, *values: float) -> "Repeated":  # noqa: D102
+    def tuned(self, *values: float) -> "Repeated":
         return replace(self, original=self.original.tuned(*values))
 
     @property
-    def tuning(self) -> Mapping[str, float]:  # noqa: D102
+    def tuning(self) -> Mapping[str, float]:
         return self.original.tuning
 
 
@@ -63,10 +62,10 @@ def repeat(effect: Effect, number: int = 2) -> Repeated | None:
 
 @dataclass(frozen=True)
 class Change:
-    """By how much the parameters of an effect differ from some run on.
+    """Change of the parameters of an effect from some run on.
 
-    The effect itself stands in the model beside it and is that of the runs before; what happened
-    between two runs stays until the next change.
+    The effect itself stays in the model and describes the runs before; a change lasts until the
+    next one.
 
     Attributes:
         original: What changed.
@@ -87,16 +86,13 @@ class Change:
 
     @property
     def title(self) -> Title:
-        """That of the effect."""
         own = own_title(self.original) or Title(self.original.name)
         return Title(f"change of {own.text}", own.carrier)
 
     @property
     def parameters(self) -> Sequence[Parameter]:
-        """Those of the effect: what may be anything may also become anything."""
         return self.original.parameters
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Those of the effect, at the touches of this run and of later ones."""
         here = touches.run >= self.since_run
         return tuple(t._replace(amount=t.amount * here) for t in self.original.terms(touches))

@@ -1,4 +1,4 @@
-"""Servo lag of an axis on a path: while it moves it stands where its command was a little ago."""
+"""Servo lag of an axis on a path: a moving axis stands where its command was a moment before."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -10,15 +10,15 @@ from matstd.twin.frames import Array
 from matstd.twin.model import Amounts, Declared, Kind, Parameter
 from matstd.twin.record import IntArray, Labels, Touches
 
-STATED = "v{axis}_mm_s"
+SPEED_COLUMN = "v{axis}_mm_s"
 """Column of the user's own (`V_vX_mm_s`) that states the speed of an axis, mm/s."""
 
-SMOOTH = 0.02
-"""Step from row to row, as a share of the travel, below which readings were taken on the way: 120
-points a circle; targets of a positioning test stand ten times farther apart."""
+MAX_STEP_SHARE = 0.02
+"""Readings were taken in motion if they differ by less than this share of the travel: 120 points a
+circle; targets of a positioning test stand ten times farther apart."""
 
-GAP = 3.0
-"""Steps of time, in usual ones, from which rows belong to two motions."""
+PAUSE_RATIO = 3.0
+"""A pause of more than this many median time steps separates two motions."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,6 @@ class ServoLag(Declared):
     parameters = (Parameter("lag", "s", 3e-4),)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Against the motion."""
         return (-speed(touches, self.axis),)
 
 
@@ -50,7 +49,7 @@ def speed(touches: Touches, axis: str) -> Array:
     Differences are taken over rows that follow one another in time on one feature; where a motion
     has less than three rows, or all have one time, the speed is 0.
     """
-    stated = touches.value.get(STATED.format(axis=axis))
+    stated = touches.value.get(SPEED_COLUMN.format(axis=axis))
     if stated is not None:
         return stated
     q, out = touches.reading(axis), np.zeros(len(touches))
@@ -70,7 +69,7 @@ def _motions(touches: Touches) -> list[IntArray]:
         step = np.diff(touches.time[rows])
         usual = float(np.median(step)) if len(step) else 0.0
         if usual > 0.0:
-            out += np.split(rows, np.flatnonzero((step > GAP * usual) | (step <= 0.0)) + 1)
+            out += np.split(rows, np.flatnonzero((step > PAUSE_RATIO * usual) | (step <= 0.0)) + 1)
     return out
 
 
@@ -89,11 +88,13 @@ def propose(touches: Touches) -> Iterable[ServoLag]:
 
 def _on_the_way(touches: Touches, axis: str) -> bool:
     """Whether rows were taken while the axis moved."""
-    if STATED.format(axis=axis) in touches.value:
+    if SPEED_COLUMN.format(axis=axis) in touches.value:
         return True
     q = touches.reading(axis)
     steps = [np.abs(np.diff(q[rows])) for rows in _motions(touches) if len(rows) > 2]
-    return bool(steps) and float(np.median(np.concatenate(steps))) < SMOOTH * float(np.ptp(q))
+    return bool(steps) and float(np.median(np.concatenate(steps))) < MAX_STEP_SHARE * float(
+        np.ptp(q)
+    )
 
 
 KIND = Kind.of(

@@ -1,4 +1,4 @@
-"""Free with every run: where the standard stands, every further stylus, and how large it is."""
+"""Free parameters of every run: pose of the standard, further styli, size of the standard."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,14 +16,15 @@ from matstd.twin.units import T_REF, UM
 
 SHIFT_SD = 1000.0 * UM
 TURN_SD = 5e-3
-"""Expected standard deviations of a set-up, mm and rad: wide, since no clamping repeats to a
+"""Prior standard deviations of a set-up, mm and rad: wide, since no clamping repeats to a
 micrometre and the calibration of a machine must not depend on it."""
 
 STYLUS_SD = 100.0 * UM
-"""Of the calibrated place and radius of a further stylus against the first, mm: wide as well."""
+"""Prior standard deviation of place and radius of a further stylus against the first, mm: also
+wide."""
 
-_MOST = 10
-"""Further styli; a length that changes more often is that of a target which is moved."""
+_MAX_STYLI = 10
+"""Largest number of further styli; more lengths belong to a target that is moved."""
 
 
 def rigid_shift(here: Array, arm: Array) -> list[Term]:
@@ -49,7 +50,6 @@ class SetupError(Declared):
     parameters, mm and rad.
 
     Attributes:
-        setup: Label of the set-up.
         centre: c, table frame, mm: the middle of the touched points, so that displacement and
             rotation are estimated nearly independently.
         turns_only: Whether an instrument that feels angles alone stands there: three parameters.
@@ -63,7 +63,6 @@ class SetupError(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """Displacement and rotation in the table frame."""
         shifts = [Parameter(f"d{c}", "mm", SHIFT_SD) for c in "xyz" if not self.turns_only]
         return (*shifts, *(Parameter(f"r{c}", "rad", TURN_SD) for c in "xyz"))
 
@@ -73,7 +72,6 @@ class SetupError(Declared):
         return touches.setup == (names.index(self.setup) if self.setup in names else -1)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Shifts of the standard, at the touches of this set-up."""
         here = self.here(touches).astype(float)
         if self.turns_only:
             felt = np.cross(
@@ -86,7 +84,7 @@ class SetupError(Declared):
 
 @dataclass(frozen=True)
 class StylusError(Declared):
-    """How far a further stylus is beside its calibration, against that of the first.
+    """Calibration error of a further stylus against that of the first.
 
     The ball stands e beside its calibrated place in the tool frame, and its effective radius is r
     larger: ``dev = -n . (R e) + r``. Four parameters, mm; what is wrong with all styli alike is an
@@ -114,7 +112,6 @@ class StylusError(Declared):
         return is_it
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Displacements of the tool and a bias along the normal, at the touches of this stylus."""
         here, tool = self.here(touches).astype(float), touches.chain.link_index("t")
         moves = [Term(i, Where("place", tool, i), here) for i in range(3)]
         return [*moves, Term(3, Where("bias"), here)]
@@ -122,15 +119,11 @@ class StylusError(Declared):
 
 @dataclass(frozen=True)
 class BodyTemperature(Declared):
-    """How far the standard of one run is from its stated temperature, or from 20 degC without one.
+    """Deviation of the standard of one run from its stated temperature, or from 20 degC.
 
     ``shift = alpha dT p``, p from the origin of the standard: one scale of all its touches, within
     the uncertainty of the temperature. A common scale of X, Y and Z looks the same, so that what it
     leaves open stays in the uncertainty of theirs.
-
-    Attributes:
-        run: Name of the run.
-        body: Its standard.
     """
 
     run: str
@@ -145,7 +138,6 @@ class BodyTemperature(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """The temperature beyond the stated one."""
         return (Parameter("temperature", "K", self.body.u_temperature),)
 
     def here(self, touches: Touches) -> NDArray[np.bool_]:
@@ -154,13 +146,12 @@ class BodyTemperature(Declared):
         return np.asarray(own[touches.setup])
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Shifts of the standard."""
         return _grown(touches, self.here(touches).astype(float) * self.body.alpha)
 
 
 @dataclass(frozen=True)
 class BodyExpansion(Declared):
-    """How far the expansion of the standard is from the stated one.
+    """Deviation of the expansion of the standard from the stated one.
 
     ``shift = dalpha (T - 20 degC) p``. Runs that state the same standard share it.
     """
@@ -176,7 +167,6 @@ class BodyExpansion(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """The expansion beyond the stated one."""
         return (Parameter("expansion", "1/K", self.body.u_alpha),)
 
     def here(self, touches: Touches) -> NDArray[np.bool_]:
@@ -188,7 +178,6 @@ class BodyExpansion(Declared):
         return np.asarray(np.array(own)[touches.setup])
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Shifts of the standard."""
         return _grown(touches, self.here(touches) * (touches.body_temperature - T_REF))
 
 
@@ -199,11 +188,11 @@ def _grown(touches: Touches, strain: Array) -> Sequence[Term]:
 
 
 Free = SetupError | StylusError | BodyTemperature | BodyExpansion
-"""What is estimated beside the model of the machine."""
+"""Parameters estimated beside the model of the machine."""
 
 
 def setup_errors(touches: Touches) -> tuple[Free, ...]:
-    """What places every set-up and further stylus, and what the standard's size leaves open."""
+    """Free parameters of set-ups, further styli and the size of the standard."""
     return (*placing_errors(touches), *body_errors(touches))
 
 
@@ -220,7 +209,7 @@ def placing_errors(touches: Touches) -> tuple[SetupError | StylusError, ...]:
 
 
 def body_errors(touches: Touches) -> tuple[BodyTemperature | BodyExpansion, ...]:
-    """What is not known of the size of every standard that states its expansion."""
+    """Free parameters of the size of every standard with a stated expansion."""
     stated = [touches.setups[i] for i in np.unique(touches.setup)]
     pairs = dict.fromkeys((s.run, s.body) for s in stated if s.body is not None)
     warm = [BodyTemperature(run, body) for run, body in pairs]
@@ -235,6 +224,6 @@ def further_styli(touches: Touches) -> tuple[StylusError, ...]:
         return ()
     pairs = zip(touches.length.tolist(), touches.radius.tolist(), strict=True)
     _, *others = dict.fromkeys(pairs)
-    if len(others) > _MOST or not np.all(touches.radius > 0.0):
+    if len(others) > _MAX_STYLI or not np.all(touches.radius > 0.0):
         return ()
     return tuple(StylusError(length, radius) for length, radius in others)

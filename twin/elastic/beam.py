@@ -39,7 +39,6 @@ def bending(support: Support, x: Array, span: Array, EI: float, GA: float) -> Pl
     """Flexibility at a point of a beam.
 
     Args:
-        support: How it is held.
         x: Places of the point from the first end, (N,), mm.
         span: Length of the beam, (N,), mm; of a ram that leaves its guide, its overhang x.
         EI: Bending stiffness, N mm2.

@@ -20,7 +20,8 @@ GRAVITY = 9.80665
 """Standard acceleration, m/s2, N/kg."""
 
 SLENDER = 3.0
-"""Length over depth below which what holds a beam counts as much as the beam: warned about."""
+"""Below this ratio of length to depth the supports of a beam yield as much as the beam; a warning
+is given."""
 
 KEYS = ("at", "sense", "span", "mass", "offset", "material", "down")
 DIRECTIONS = {s + a: i for i, (s, a) in enumerate((s, a) for a in "XYZ" for s in "+-")}
@@ -193,6 +194,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> Body:
         raise refuse("a section such as 220x180, 220x180x20, d120 or d120x10")
     if "at" not in keys:
         raise refuse("at:MM, the frame's place from the root at reading zero")
+    # any positive number is the sense 1: only its sign matters
     sense = 1 if _number(keys, "sense", 1.0, refuse) > 0.0 else -1
     span = _number(keys, "span", 0.0, refuse)
     if arguments[1] != "cantilever" and span <= 0.0:

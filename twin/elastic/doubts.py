@@ -1,4 +1,4 @@
-"""Where the theory of beams is no longer good enough for a body."""
+"""Bodies that are too short for the theory of beams."""
 
 from collections.abc import Iterable, Iterator
 
@@ -10,7 +10,7 @@ from matstd.twin.model import Effect
 def short_beams(chain: Chain, effects: Iterable[Effect]) -> Iterator[tuple[str, float]]:
     """Names of beams that are short for their depth over the whole travel, and length over depth.
 
-    What holds such a body, and the bending of its walls, count as much as the beam.
+    Supports and walls of such a body yield as much as the beam.
     """
     for effect in effects:
         if isinstance(effect, Body):

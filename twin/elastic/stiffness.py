@@ -56,12 +56,10 @@ class Stiffness(Declared):
 
     @cached_property
     def title(self) -> Title:
-        """With the link for its carrier."""
         return Title(f"compliance of {'the tool' if self.link == 't' else self.link}", self.link)
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """Compliances."""
         if self.link == "t":
             return tuple(Parameter(word, "mm/N", 0.5 * UM) for word in ("sideways", "along"))
         if self.components[0][0] >= 3:

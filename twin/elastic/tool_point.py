@@ -41,7 +41,7 @@ class ToolPointStiffness(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """Six entries at the middle of the travels, and how each changes to the end of an axis."""
+        """Six entries at the middle of the travels, and their change to the end of each axis."""
         out = []
         for place in ("", *(f" {axis}" for axis in self.axes)):
             for i, j in PAIRS:
@@ -50,7 +50,6 @@ class ToolPointStiffness(Declared):
         return tuple(out)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Translations of the carrying axis."""
         if touches.force is None:
             raise UnknownEffect(f"'{self.name}': the load on the tool at these touches is unknown")
         chain = touches.chain

@@ -24,18 +24,13 @@ def no_values(touches: Touches) -> Iterable[Any]:
 
 @dataclass(frozen=True)
 class Argument:
-    """What may stand at one place between the brackets of an effect's name.
+    """What may stand at one place between the brackets of an effect's name."""
 
-    Attributes:
-        word: What it is, for the usage.
-        read: Value of a text on a machine; raises what `Refuse` makes, or another DesignError.
-        write: Text of a value.
-        offered: Values that make sense for some touches.
-    """
-
-    word: str
+    word: str  # what it is, for the usage
+    # value of a text on a machine; raises what `Refuse` makes, or another DesignError
     read: Callable[[str, Chain, Refuse], Any]
-    write: Callable[[Any], str] = str
+    write: Callable[[Any], str] = str  # text of a value
+    # values that make sense for some touches
     offered: Callable[[Touches], Iterable[Any]] = no_values
 
 
@@ -43,8 +38,6 @@ def refusal(usage: str, found: Sequence[str], expected: str) -> UnknownEffect:
     """Exception for arguments that an effect does not take.
 
     Args:
-        usage: How the effect is written.
-        found: The arguments that were given.
         expected: What should stand there, with what is available.
     """
     word = usage.partition("(")[0]

@@ -1,4 +1,4 @@
-"""What some touches offer an effect: axes that moved, component errors of them, sensors."""
+"""Arguments that touches offer to effects: axes that moved, their component errors, sensors."""
 
 from collections.abc import Iterator
 

@@ -13,7 +13,7 @@ from matstd.twin.files.lock import in_turn, is_abandoned, locked
 from matstd.twin.files.whole import NOT_WRITABLE, free_name, written_meanwhile
 
 WORKING: set[Path] = set()
-"""Folders in which this process works; whoever ends it at once removes them."""
+"""Working folders of this process; they are removed when it is ended."""
 
 
 @contextmanager
@@ -22,22 +22,19 @@ def results_folder(
 ) -> Iterator[Path]:
     """A neighbour folder to work in; its files move to `out` when the block ends well.
 
-    Files of the same name are replaced, which is why a folder that is not empty needs `force`;
-    whatever else lies in it stays, but for results of an earlier run that this one does not have.
-    Whether it is free is looked at again when the files are moved, one process after the other: if
-    another run was faster, these results are kept whole under a free name beside it. Neighbours
-    that killed runs have left are removed.
+    Files of the same name are replaced, so a folder that is not empty needs `force`. Other files
+    stay, except results of an earlier run that this run does not have. The folder is checked again,
+    under a lock, when the files are moved: if another run was faster, these results are kept under
+    a free name beside it. Neighbour folders of killed runs are removed.
 
     Args:
-        out: Where the results shall stand.
         force: Whether results of an earlier run may be replaced.
-        ours: Patterns of the names of results that not every run has.
-        refused: Names of what a refused run leaves; a folder that holds nothing else counts as
-            empty.
+        ours: Name patterns of results that not every run has.
+        refused: Names of files that a refused run leaves; a folder with only these counts as empty.
 
     Raises:
-        DesignError: The folder holds something, now or when the results are moved, and nobody
-            asked to replace it, or it cannot be written to.
+        DesignError: The folder is not empty, now or when the results are moved, and `force` is not
+            given, or it cannot be written to.
     """
     out = Path(out)
     if out.exists() and not out.is_dir():
@@ -72,12 +69,12 @@ def results_folder(
 
 
 def _holds_results(out: Path, refused: Sequence[str]) -> bool:
-    """Whether a folder holds anything but what a refused run leaves."""
+    """Whether a folder holds other files than those of a refused run."""
     return out.exists() and any(p.name not in refused for p in out.iterdir())
 
 
 def _move(work: Path, out: Path, ours: Sequence[str]) -> None:
-    """Results to where they shall stand, those of an earlier run away; all of it or nothing."""
+    """Move results to their folder and remove those of an earlier run: all or nothing."""
     if not os.path.lexists(out):
         work.rename(out)  # at once: a run that is killed here leaves the whole or nothing
         return
@@ -99,7 +96,7 @@ def _move(work: Path, out: Path, ours: Sequence[str]) -> None:
 
 
 def _remove_abandoned(out: Path) -> None:
-    """Remove what killed runs for the same results have left beside them, and nothing else."""
+    """Remove the working folders that killed runs left for the same results."""
     ours = re.compile(rf"\.{re.escape(out.name)}-[0-9a-f]{{8}}")
     if out.parent.is_dir():
         for place in out.parent.iterdir():

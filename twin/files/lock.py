@@ -1,7 +1,7 @@
-"""Locks that the operating system takes back when a process ends, however it ends.
+"""Locks that the operating system releases when a process ends, however it ends.
 
-One marks a folder as one that a running process of ours works in: where it is free, that process
-has ended. The other lets processes put results under one name in turn.
+`locked` marks the working folder of a running process: if the lock is free, the process has ended.
+`in_turn` lets processes write results under one name one after the other.
 """
 
 import errno
@@ -23,7 +23,7 @@ _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
 """A file system that knows no locks."""
 
 _PATIENCE, _PAUSE = 60.0, 0.02
-"""Longest wait for a lock that is held while names are changed (milliseconds), and a look, s."""
+"""Longest wait for a lock, which is held for milliseconds, and pause between tries, s."""
 
 
 @contextmanager
@@ -87,7 +87,6 @@ def _is_free(file: IO[str], without: bool = False) -> bool:
     """Take the lock; it is given back when the file is closed.
 
     Args:
-        file: Open.
         without: The answer where the file system knows no locks.
     """
     try:

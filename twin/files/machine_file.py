@@ -57,14 +57,10 @@ class MachineTables(Table):
     workpiece: WorkpieceTable = WorkpieceTable()
 
     def made(self, path: str | Path, within: str = "") -> Chain:
-        """The machine in base units.
+        """The machine in base units; raises BadFile.
 
         Args:
-            path: The file, for messages.
             within: Key of the table that the machine stands in.
-
-        Raises:
-            BadFile: File, key, what stood there, what was expected.
         """
         axes = {name: table.axis(name) for name, table in self.axis.items()}
         try:
@@ -82,11 +78,7 @@ class MachineFile(MachineTables):
 
 
 def read_machine(path: str | Path) -> Chain:
-    """Machine from its file.
-
-    Raises:
-        BadFile: File, key, what stood there, what was expected.
-    """
+    """Machine from its file; raises BadFile."""
     data = parse_toml(read_text(path), path)
     check_format(data, "machine/1", path)
     return checked(MachineFile, data, path).made(path)

@@ -67,13 +67,10 @@ def beyond_travel(chain: Chain, q: Array, slack: float) -> Iterator[BeyondTravel
 
 
 def read_poses(path: str | Path, chain: Chain) -> tuple[Array, Array]:
-    """Poses and tool lengths.
+    """Poses and tool lengths; raises BadFile.
 
     Returns:
         Readings (N, A), mm and rad, and tool lengths (N,), mm, zero where the file has none.
-
-    Raises:
-        BadFile: File, line and column, what stood there, what was expected.
     """
     table = CsvTable(read_text(path), path)
     known = [column for column, _ in reading_columns(chain).values()] + ["tool_length_mm"]

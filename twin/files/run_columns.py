@@ -1,4 +1,4 @@
-"""Columns of a run file as arrays in base units: what can be mended is mended and told."""
+"""Columns of a run file as arrays in base units; faults are corrected and reported, or refused."""
 
 import re
 from collections.abc import Sequence
@@ -26,31 +26,32 @@ TARGET = ("tx_mm", "ty_mm", "tz_mm")
 RADIUS = "radius_mm"
 FORCE = ("Fx_N", "Fy_N", "Fz_N")
 
-MOST_GAPS = 0.5
+MAX_GAP_SHARE = 0.5
 """A sensor with gaps in a larger share of its rows is left out."""
 
-SHUFFLED = 0.25
-"""Share of rows before which time goes back, from which they are shuffled: half of them are."""
+MIN_SHUFFLED_SHARE = 0.25
+"""Rows are shuffled if time goes back before at least this share of them (one half if fully
+random)."""
 
-RESTARTS = 3
-"""Times that a clock may begin anew; rows sorted by features or poses go back more often."""
+MAX_RESTARTS = 3
+"""Restarts of a clock; rows sorted by features or poses go back more often."""
 
 LATEST = 1e11
 """Times (s) beyond this, three thousand years, are in another unit."""
 
-MOMENTS = 0.05
-"""Share of rows with a direction 0 up to which an axis stood for a moment: a quadrant of a circle;
-with more the file does not know."""
+MAX_STANDSTILL_SHARE = 0.05
+"""Largest share of rows with direction 0 that counts as a momentary standstill, as at a quadrant of
+a circle; with more, the direction is unknown."""
 
 FINEST, COARSEST = 1e-6, 1e4
 """Standard uncertainties of a touch (µm) lie between: a picometre, and the largest deviation that
 is a measurement."""
 
-SKEW = 0.01
-"""A normal whose length is off by more is no unit normal."""
+MAX_LENGTH_ERROR = 0.01
+"""A normal whose length is off by more is refused."""
 
-ROUNDED = 1e-5
-"""A normal whose length is off by less is rounded, which needs no word."""
+ROUNDING_ERROR = 1e-5
+"""A normal whose length is off by less is rounded; this is not reported."""
 
 
 def points(table: CsvTable) -> Array:
@@ -62,7 +63,6 @@ def targets(table: CsvTable, common: Sequence[float]) -> Array:
     """Ball centre or reflector of every row in the tool frame, (N, 3), mm: its own or that of all.
 
     Args:
-        table: The table.
         common: Place in the head of the file, which a column or cell that is not there means.
     """
     cells = [
@@ -84,14 +84,14 @@ def radii(table: CsvTable, common: float) -> Array:
 
 
 def normals(table: CsvTable, remarks: list[str]) -> Array:
-    """Unit normals; lengths off by rounding are mended and told, others refused."""
+    """Unit normals; lengths off by rounding are corrected and reported, others refused."""
     normal = np.stack([table.numbers(c) for c in NORMAL], axis=-1)
     length = np.linalg.norm(normal, axis=-1)
     off = np.abs(length - 1.0)
     worst = int(np.argmax(off))
-    if off[worst] > SKEW:
+    if off[worst] > MAX_LENGTH_ERROR:
         raise table.bad(worst, "nx, ny, nz", f"a normal of length {length[worst]:.4g}", "length 1")
-    if off[worst] > ROUNDED:
+    if off[worst] > ROUNDING_ERROR:
         remarks.append(
             f"line {table.lines[worst]}: normal of length {length[worst]:.6f}; "
             "all normals were brought to length 1"
@@ -105,10 +105,10 @@ def times(table: CsvTable) -> Array:
 
 
 def put_in_order(table: CsvTable, remarks: list[str]) -> None:
-    """Take the rows in the order of their times where they stand in another, and tell it.
+    """Sort the rows by time where they are in another order, and report it.
 
-    A clock that began anew goes back too; its times mean nothing beside the earlier ones, and the
-    rows stay as they are.
+    A clock that restarted also goes back. Its times cannot be compared with the earlier ones, so
+    the rows keep their order.
     """
     at = times(table)
     back = np.flatnonzero(np.diff(at) < 0.0)
@@ -129,23 +129,21 @@ def _is_one_clock(at: Array, back: IntArray, order: IntArray) -> bool:
     Sorted rows of one machine have some time between them; where clocks began anew rows fall
     anywhere between one another.
     """  # noqa: D205
-    if len(back) > SHUFFLED * len(at):
+    if len(back) > MIN_SHUFFLED_SHARE * len(at):
         return True
     stretches = sorted(np.split(at, back + 1), key=lambda s: float(s[0]))
     if all(a[-1] <= b[0] for a, b in pairwise(stretches)):
         return True
     gaps = np.diff(at[order])
     gaps = gaps[gaps > 0.0]
-    return len(back) > RESTARTS and bool(np.quantile(gaps, 0.05) > 0.1 * np.median(gaps))
+    return len(back) > MAX_RESTARTS and bool(np.quantile(gaps, 0.05) > 0.1 * np.median(gaps))
 
 
 def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Array]:
-    """Temperature of every sensor, (N,) each; missing and absurd values are filled and told.
+    """Temperature of every sensor, (N,) each; missing and impossible values are filled.
 
     Args:
-        table: The table.
         at: Time of every row, (N,), s.
-        remarks: What was noticed; more is added.
     """
     out = {}
     for column in table.columns:
@@ -165,7 +163,7 @@ def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Ar
 
 
 def own_columns(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Array]:
-    """Columns `V_name_unit` of the user's own, (N,) each; missing values are filled and told."""
+    """Columns `V_name_unit` of the user's own, (N,) each; missing values are filled."""
     out = {}
     for column in table.columns:
         match = OWN.match(column)
@@ -195,13 +193,13 @@ def check_units(table: CsvTable) -> None:
 def _mended(
     table: CsvTable, column: str, values: Array, gaps: BoolArray, at: Array, remarks: list[str]
 ) -> Array | None:
-    """A record whose gaps lie on lines between their neighbours in time, told; None where less than
-    half of it is left.
+    """A record with its gaps interpolated in time and reported; None where more than half is
+    missing.
     """  # noqa: D205
     if not gaps.any():
         return values
     fault = _record_fault(table, column, values, gaps)
-    if gaps.mean() > MOST_GAPS:
+    if gaps.mean() > MAX_GAP_SHARE:
         what = "sensor" if SENSOR.match(column) else "column"
         remarks.append(f"{fault}; the {what} is left out")
         return None
@@ -218,7 +216,7 @@ def _filled(values: Array, gaps: BoolArray, at: Array) -> Array:
 
 
 def _record_fault(table: CsvTable, column: str, values: Array, gaps: BoolArray) -> str:
-    """What is wrong with a record at its gaps."""
+    """Description of the fault of a record at its gaps."""
     first = int(np.argmax(gaps))
     rows = _rows(int(gaps.sum()))
     if not np.isfinite(values[gaps]).any():
@@ -269,22 +267,16 @@ def approach(table: CsvTable, touches: Touches) -> Array:
 
 
 def standing(table: CsvTable, approach: Array, touches: Touches, remarks: list[str]) -> Array:
-    """Signs of the last motion where an axis stands for a moment amid known ones, (N, A).
+    """Signs of the last motion, (N, A), with momentary standstills filled.
 
     A logger that writes the sign of the speed writes 0 where an axis turns round; the motion before
     is still its last one. Rows stand in the order of time within a feature.
-
-    Args:
-        table: Of the file; what it does not state stays.
-        approach: As the file has it, (N, A).
-        touches: The rows.
-        remarks: What was noticed; more is added.
     """
     out = approach.copy()
     stroke = np.unique(touches.feature, return_inverse=True)[1].reshape(-1)
     for i, axis in enumerate(touches.chain.axes):
         still = (out[:, i] == 0.0) & (f"dir{axis}" in table)
-        if not still.any() or still.mean() > MOMENTS or np.ptp(touches.q[:, i]) == 0.0:
+        if not still.any() or still.mean() > MAX_STANDSTILL_SHARE or np.ptp(touches.q[:, i]) == 0.0:
             continue
         for k in range(stroke.max() + 1):
             rows = np.flatnonzero(stroke == k)
@@ -337,15 +329,15 @@ def repeats(table: CsvTable) -> IntArray | None:
     return numbers.astype(np.int64)
 
 
-def moved_setup(moved: Moved) -> str:
-    """Remark on a set-up that was taken where its touches say that it stands."""
+def moved_setup_remark(moved: Moved) -> str:
+    """Remark on a set-up that was moved to the position found from its touches."""
     return (
         f"set-up {moved.name} is {moved.shift:.2f} mm and {moved.turn / DEG:.2f}° from its "
         "position in the head, as its touches show; the position by the touches is used"
     )
 
 
-def angles_told(points: Array) -> str:
-    """How an instrument of angles puts them into deviations."""
+def angle_remark(points: Array) -> str:
+    """Remark on how an instrument of angles writes them as deviations."""
     arm = float(np.median(np.linalg.norm(points, axis=1)))
     return f"dev_um are angles times {arm:g} mm: 1 um is {1000.0 / arm:.3g} urad"

@@ -90,16 +90,13 @@ class HeadTable(Table):
 
 
 def read_run(path: str | Path, chain: Chain | None = None) -> Run:
-    """Measurements from a run file.
+    """Measurements from a run file; raises BadFile.
 
-    What can be put right without guessing is put right and told in `Run.remarks`; what cannot is
-    refused.
+    Faults that can be corrected without guessing are corrected and reported in `Run.remarks`;
+    others are refused.
 
     Args:
         chain: The machine; None reads the machine file that the head names.
-
-    Raises:
-        BadFile: File, line or key, what stood there, what was expected.
     """
     text = read_text(path)
     head_text, body, first = _split_head(text, path)
@@ -124,13 +121,13 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     elif states_readings(stated):
         placed, moved = aligned(stated)
         run = replace(placed, deviation=stated.deviation)
-    remarks += [columns.moved_setup(m) for m in moved]
+    remarks += [columns.moved_setup_remark(m) for m in moved]
     if head.instrument.reads_angle:
-        remarks.append(columns.angles_told(stated.touches.point))
+        remarks.append(columns.angle_remark(stated.touches.point))
     try:
         run = checked_run(run, table, remarks)
     except BadFile as refusal:
-        refusal.facts["run"] = stated  # for whoever can say which mistake makes it so
+        refusal.facts["run"] = stated  # for callers that search for the mistake
         raise
     return replace(run, remarks=tuple(remarks))
 
@@ -177,7 +174,7 @@ def _machine(path: str | Path, named: str) -> Chain:
 
 
 def _check_columns(table: CsvTable, chain: Chain) -> None:
-    """Needed columns are there, and none that nobody understands."""
+    """Required columns are present, and no unknown ones."""
     columns.check_units(table)
     names = [column for column, _ in reading_columns(chain).values()]
     directions = [f"dir{axis}" for axis in chain.axes]
@@ -216,6 +213,7 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         pose=columns.poses(table, chain, q, setup),
         value=columns.own_columns(table, time, remarks),
     )
+    # implied directions need the normals and set-ups of the touches, so they come second
     signs = columns.approach(table, touches)
     if not head.instrument.is_ball_on_standard:
         signs = columns.standing(table, signs, touches, remarks)

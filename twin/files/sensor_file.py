@@ -1,4 +1,4 @@
-"""Temperatures and spindle speeds by the clock, and what they were at every touch."""
+"""Temperatures and spindle speeds by the clock, interpolated to the touches of a run."""
 
 from dataclasses import dataclass, replace
 from datetime import datetime, timedelta
@@ -15,38 +15,28 @@ from matstd.twin.record import Run, Touches
 
 EPOCH = datetime(2000, 1, 1)
 
-BEYOND = 300.0
-"""Longest time that a touch may lie outside the record, s; its first or last reading then holds."""
+MAX_OUTSIDE_RECORD = 300.0
+"""Longest time of a touch outside the record, s; the first or last reading then holds."""
 
 
 @dataclass(frozen=True, eq=False)
 class SensorRecord:
-    """Readings of sensors.
-
-    Attributes:
-        path: Where they came from.
-        clock: Of every reading, s since `EPOCH`, (M,), rising.
-        temperature: By sensor, each (M,), degC.
-        spindle_rpm: Speed from each reading to the next, (M,), 1/min; None where not recorded.
-        remarks: On sensors that were left out, or are constant.
-    """
+    """Readings of sensors."""
 
     path: Path
-    clock: Array
-    temperature: dict[str, Array]
+    clock: Array  # of every reading, s since `EPOCH`, (M,), rising
+    temperature: dict[str, Array]  # by sensor, each (M,), degC
+    # speed from each reading to the next, (M,), 1/min; None where not recorded
     spindle_rpm: Array | None
-    remarks: tuple[str, ...]
+    remarks: tuple[str, ...]  # on sensors that were left out, or are constant
 
     def joined(self, run: Run, begin: datetime) -> Run:
-        """A run with the temperatures and the spindle speed at its touches.
+        """A run with the temperatures and the spindle speed at its touches; raises BadFile.
 
         Args:
             begin: What the clock said at the run's time zero.
-
-        Raises:
-            BadFile: The record does not cover the run.
         """
-        touches = self.seen_by(run.touches, begin)
+        touches = self.at_touches(run.touches, begin)
         return replace(run, touches=touches, remarks=(*run.remarks, *self.remarks))
 
     @property
@@ -59,21 +49,18 @@ class SensorRecord:
         times: Array = self.clock - _seconds(begin)
         return times
 
-    def seen_by(self, touches: Touches, begin: datetime) -> Touches:
-        """Touches with what the sensors read at their times.
+    def at_touches(self, touches: Touches, begin: datetime) -> Touches:
+        """Touches with what the sensors read at their times; raises BadFile.
 
         Temperatures are linear in time between readings, the speed stays until the next one.
 
         Args:
             touches: Their times count from `begin`.
             begin: What the clock said at time zero.
-
-        Raises:
-            BadFile: The record does not cover the touches.
         """
         at = _seconds(begin) + touches.time
         first, last = self.clock[0], self.clock[-1]
-        if at.min() < first - BEYOND or at.max() > last + BEYOND:
+        if at.min() < first - MAX_OUTSIDE_RECORD or at.max() > last + MAX_OUTSIDE_RECORD:
             raise BadFile(
                 self.path, "column clock",
                 f"readings from {_words(first)} to {_words(last)}",
@@ -107,6 +94,7 @@ def read_sensors(path: str | Path) -> SensorRecord:
         except (ValueError, TypeError):
             expected = "local date and time such as 2031-05-06T07:08:09"
             raise table.bad(i, "clock", repr(cell), expected) from None
+        # interpolation needs a rising clock
         if i and clock[i] <= clock[i - 1]:
             raise table.bad(i, "clock", cell, "a later reading in every row")
     remarks: list[str] = []

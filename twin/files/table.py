@@ -17,13 +17,13 @@ from matstd.twin.frames import Array
 from matstd.twin.words import did_you_mean
 
 LARGEST = 1e12
-"""Whatever a column holds, a number beyond this is a slip."""
+"""Largest number of any column; larger ones are refused."""
 
-COLDEST, HOTTEST, NOZZLE = -60.0, 200.0, 500.0
+COLDEST, HOTTEST, HOTTEST_HEATED = -60.0, 200.0, 500.0
 """Temperatures (degC) of a machine lie between the first two; a logger writes -9999 for none. A
 sensor of what is heated, such as the nozzle of a printer, may go up to the third."""
 
-HEATED = 0.1
+MIN_HEATED_SHARE = 0.1
 """Share of the readings above `HOTTEST` from which it is hot there, unless the sensor is stuck."""
 
 KELVIN = (240.0, 350.0)
@@ -80,8 +80,6 @@ class CsvTable:
     cells are looked at one by one only where something in it is refused.
 
     Args:
-        text: The table with its header line.
-        path: The file, for messages.
         first_line: Line number of the header in the file.
     """
 
@@ -168,17 +166,13 @@ class CsvTable:
         largest: float = LARGEST,
         smallest: float = -math.inf,
     ) -> Array:
-        """Column as numbers, (N,).
+        """Column as numbers, (N,); raises BadFile.
 
         Args:
-            name: The column.
             empty: What an empty cell means; None refuses it.
             finite: Whether NaN and infinity are refused.
             largest: Numbers beyond this, of either sign, are refused as slips.
             smallest: Numbers below this are refused.
-
-        Raises:
-            BadFile: Line, what stood there.
         """
         if self._values is not None:
             out = self._values[:, self.columns.index(name)].copy()
@@ -186,6 +180,7 @@ class CsvTable:
             wrong = (finite & ~known) | (known & (np.abs(out) > largest)) | (out < smallest)
             if not wrong.any():
                 return out
+        # the slow way names the line of the fault
         out = np.empty(len(self))
         for i, cell in enumerate(self.text(name)):
             if not cell and empty is not None:
@@ -210,10 +205,12 @@ class CsvTable:
         """A column of temperatures, (N,), degC, and where no sensor of a machine gives it, (N,)."""
         values = self.numbers(name, empty=math.nan, finite=False, largest=math.inf)
         known = values[np.isfinite(values)]
-        hot = known[(known > HOTTEST) & (known <= NOZZLE)]
+        hot = known[(known > HOTTEST) & (known <= HOTTEST_HEATED)]
         is_kelvin = bool(np.all((known > KELVIN[0]) & (known < KELVIN[1])))
-        is_heated = len(hot) > HEATED * len(known) and len(np.unique(hot)) > 2 and not is_kelvin
-        top = NOZZLE if is_heated else HOTTEST
+        is_heated = (
+            len(hot) > MIN_HEATED_SHARE * len(known) and len(np.unique(hot)) > 2 and not is_kelvin
+        )
+        top = HOTTEST_HEATED if is_heated else HOTTEST
         return values, ~((values >= COLDEST) & (values <= top))
 
     def bad(self, row: int, name: str, found: object, expected: str) -> BadFile:

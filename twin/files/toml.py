@@ -1,4 +1,4 @@
-"""TOML at the border: read with one clear line for whatever is wrong in it."""
+"""TOML files of users: every fault is reported in one line."""
 
 import math
 import re
@@ -21,10 +21,10 @@ _NO_TEXT = {
     b"\xff\xfe": "text in UTF-16",
     b"\xfe\xff": "text in UTF-16",
 }
-"""How files begin that users take for text, and what they are."""
+"""First bytes of files that users take for text, and what they are."""
 
 LARGEST = 1e18
-"""No number of a file of ours is larger; the product of two such is a floating number still."""
+"""Largest number in our files; the product of two such does not overflow."""
 
 _MANY_DIGITS = re.compile(r"[\d_]{4300,}")
 _TWICE = re.compile(r"Cannot declare \((.+?),?\) twice")
@@ -101,16 +101,11 @@ def _one_line_end(text: str) -> str:
 def parse_toml(
     text: str, path: str | Path, first_line: int = 1, twice: str = "it once"
 ) -> dict[str, Any]:
-    """Tables of a TOML text.
+    """Tables of a TOML text; raises BadFile.
 
     Args:
-        text: The text.
-        path: The file, for messages.
         first_line: Line number of the text in the file.
         twice: What is expected of a table that stands in two places; `{name}` is its name.
-
-    Raises:
-        BadFile: The line, what stood there, what was expected.
     """
     try:
         return tomllib.loads(text, parse_float=_moderate)
@@ -155,16 +150,11 @@ def _no_toml(
 
 
 def checked(model: type[T], data: object, path: str | Path, within: str = "") -> T:
-    """A table checked against its model; the first fault is told in one line.
+    """A table checked against its model; raises BadFile with the first fault.
 
     Args:
         model: Pydantic model with the units in its field names.
-        data: What was read.
-        path: The file, for the message.
         within: Key under which the data stood.
-
-    Raises:
-        BadFile: File, key, what stood there, what was expected.
     """
     try:
         return model.model_validate(data)
@@ -214,7 +204,7 @@ _KINDS = {
 
 
 def _expected(error: Any, model: type[BaseModel], steps: list[str]) -> str:
-    """What a value should have been, in words of the file instead of the library's."""
+    """The expected value in the words of the file, not of the library."""
     kind: str = error["type"]
     field = _field(model, steps)
     bounds = _bounds(field.metadata if field else [])

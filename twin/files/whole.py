@@ -24,10 +24,10 @@ NOT_WRITABLE = (
     errno.EIO,
     errno.ENAMETOOLONG,
 )
-"""What a user can put right when a file cannot be written: a full disk, no right to write."""
+"""Errors that a user can correct: a full disk, no permission to write."""
 
 UNFINISHED: set[Path] = set()
-"""Files that this process has begun; whoever ends it at once removes them."""
+"""Unfinished files of this process; they are removed when it is ended."""
 
 _ASKED: dict[Path, bool] = {}
 """Outputs of this process that are not written yet, and whether they may be overwritten."""
@@ -37,8 +37,8 @@ _ASKED: dict[Path, bool] = {}
 def written_whole(path: str | Path) -> Iterator[Path]:
     """A neighbour name to write to; renamed to `path` when the block ends well, else removed.
 
-    An output that `refuse_to_overwrite` has found free is looked for once more at the renaming: if
-    another process has written it meanwhile, this one is kept under a free name beside it.
+    If `refuse_to_overwrite` found the name free, it is checked again before the renaming: if
+    another process has written the file meanwhile, this one is kept under a free name beside it.
 
     Raises:
         DesignError: The folder cannot be written to, the disk is full, or the file exists now.
@@ -80,7 +80,7 @@ def written_whole(path: str | Path) -> Iterator[Path]:
 
 
 def _put(part: Path, path: Path, force: bool) -> None:
-    """Give a finished output its name, or keep it beside what stands there now."""
+    """Rename a finished output, or keep it beside a file that appeared meanwhile."""
     if not force and path.exists():
         kept = free_name(path)
         part.replace(kept)
@@ -95,7 +95,7 @@ def free_name(path: Path) -> Path:
 
 
 def written_meanwhile(path: Path, kept: Path) -> DesignError:
-    """What is said where another process was the first to write an output."""
+    """The exception for an output that another process wrote first."""
     return DesignError(
         f"{path}: another run has written it meanwhile; it stays as it is, and the results of this "
         f"run are in {kept}"

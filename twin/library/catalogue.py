@@ -1,4 +1,4 @@
-"""The library of effects by name: what can be added to a model, proposed, and written by a user.
+"""The library of effects: register, find, parse, propose and load the effects of users.
 
 A user's own effect is a `Kind` in a Python file (`load_user_effects`) or behind the entry point
 group `material_standard.effects`; from then on it is named, proposed and diagnosed like the rest.
@@ -63,11 +63,7 @@ _FILES: dict[str, Path] = {}
 
 
 def register(kind: Kind) -> Kind:
-    """Make a kind known by its word, which must be new.
-
-    Raises:
-        DesignError: The word is taken by another kind, or is no word.
-    """
+    """Make a kind known by its word, which must be new; raises DesignError."""
     if _NAME.match(kind.word) is None or "(" in kind.word:
         raise DesignError(f"kind '{kind.word}': expected letters, digits and hyphens")
     known = _REGISTER.get(kind.word)
@@ -78,11 +74,7 @@ def register(kind: Kind) -> Kind:
 
 
 def _register_from(kind: Kind, path: Path) -> Kind:
-    """Register a kind of a user's file, in the place of its former version.
-
-    Raises:
-        BadFile: The word is taken, or is no word.
-    """
+    """Register a kind of a user's file, in the place of its former version; raises BadFile."""
     place = path.resolve()
     if _FILES.get(kind.word) == place:
         del _REGISTER[kind.word]
@@ -162,7 +154,7 @@ def _parse_repeated(whole: str, number: str, text: str, chain: Chain) -> Effect:
 
 
 def _unknown(text: str, chain: Chain) -> UnknownEffect:
-    """What an unknown name may have meant, and what is available."""
+    """The exception for an unknown name, with suggestions."""
     word, bracket, inside = (part.strip() for part in text.partition("("))
     near = nearest(word.replace("_", "-"), _REGISTER)
     written = [f"{k.word}({word})" for k in kinds() if _is_taken(k, chain, word)]

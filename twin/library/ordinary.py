@@ -1,4 +1,4 @@
-"""The ordinary geometric model: what everybody models before asking what is missing."""
+"""The ordinary geometric model, to which a diagnosis adds what is missing."""
 
 import math
 

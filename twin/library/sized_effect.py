@@ -44,20 +44,15 @@ _UNITS: Mapping[str, tuple[float, str]] = {
 }
 """Factor to the base unit and that unit; an angle is a number, as um/m is an angle."""
 
-_TRIED = 24
+_TRIAL_POSES = 24
 """Poses and minutes at which an effect is asked for the units of its inner parameters."""
 
 
 class SizedEffect(NamedTuple):
-    """An effect and how large it is.
+    """An effect and how large it is."""
 
-    Attributes:
-        effect: With its inner parameters.
-        theta: Its parameters, (P,), base units.
-    """
-
-    effect: Effect
-    theta: Array
+    effect: Effect  # with its inner parameters
+    theta: Array  # its parameters, (P,), base units
 
 
 def parse_sized_effect(text: str, chain: Chain) -> SizedEffect:
@@ -81,6 +76,7 @@ def parse_sized_effect(text: str, chain: Chain) -> SizedEffect:
     units = {p.name: p.unit for p in effect.parameters}
     inner = effect.inner(touches) if is_tunable(effect) else ()
     inner_units = {i.name: i.unit for i in inner}
+    # a size without a name is clear only where the effect has one parameter
     only = next(iter(units)) if len(units) == 1 else None
     sizes = parse_sizes(text, rest, {**units, **inner_units}, only) if equals else {}
     if not set(sizes) & set(units) or not set(inner_units) <= set(sizes):
@@ -101,9 +97,9 @@ def parse_sized_effect(text: str, chain: Chain) -> SizedEffect:
 def _trial_touches(chain: Chain) -> Touches:
     """Poses spread over the travels, a minute apart."""
     low, high = np.array([chain.link(axis).range for axis in chain.axes]).T
-    share = np.linspace(0.0, 1.0, _TRIED)[:, None]
+    share = np.linspace(0.0, 1.0, _TRIAL_POSES)[:, None]
     touches = at_poses(chain, low + share * (high - low), 100.0)
-    touches.time[:] = MINUTE * np.arange(_TRIED)
+    touches.time[:] = MINUTE * np.arange(_TRIAL_POSES)
     return touches
 
 

@@ -1,9 +1,9 @@
-"""A first try of effects that users wrote: every fault is one line about their file.
+"""Trial of effects that users wrote: every fault is reported in one line about their file.
 
-An effect is tried at the touches of a run before anything else is computed with it: what it is
-called, what it depends on, what its formula returns at the first, the middle and the last value of
-its inner parameters, and again at the same touches. What it is handed cannot be written to. A fault
-that raises nothing, such as noise or zeros, is reported with the line of the method behind it.
+An effect is tried at the touches of a run before anything is computed with it: its name, its
+parameters, and its formula, twice, at the first, middle and last value of its inner parameters. It
+gets read-only arrays. A fault that raises nothing, such as noise or zeros, is reported with the
+line of its method.
 """
 
 import traceback
@@ -27,21 +27,12 @@ _PARTS = {"twist": 6, "place": 6, "shift": 3, "bias": 1}
 _HAS = ("name", "kind", "parameters", "terms")
 _TUNABLE_HAS = ("inner", "tuned", "tuning")
 
-SCANNED = 512
+MAX_COMBINATIONS = 512
 """Combinations of inner parameters that are tried before an effect is reported to move nothing."""
 
 
 def try_kind(kind: Kind, touches: Touches, path: str | Path) -> None:
-    """Try everything that a user's kind proposes for some touches.
-
-    Args:
-        kind: The kind.
-        touches: Of the run.
-        path: The user's file.
-
-    Raises:
-        BadFile: File, line, effect, what it does, what was expected.
-    """
+    """Try everything that a user's kind proposes for some touches; raises BadFile."""
     guarded = read_only(touches)
     try:
         proposed = list(kind.propose(guarded))
@@ -59,11 +50,7 @@ def try_kind(kind: Kind, touches: Touches, path: str | Path) -> None:
 
 
 def try_effect(effect: Effect, touches: Touches, path: str | Path) -> None:
-    """Try one effect of a user at some touches.
-
-    Raises:
-        BadFile: File, line, effect, what it does, what was expected.
-    """
+    """Try one effect of a user at some touches; raises BadFile."""
     _try_attributes(effect, path)
     _try_parameters(effect, path)
     touches = read_only(touches)
@@ -77,7 +64,7 @@ def try_effect(effect: Effect, touches: Touches, path: str | Path) -> None:
         values = [tuple(float(g.grid[k]) for g in grids) for k in (0, -1)]
         values.append(tuple(float(g.grid[len(g.grid) // 2]) for g in grids))
         moves = [_moves(_tuned(effect, v, path), touches, path) for v in values]
-        others = islice(product(*(g.grid for g in grids)), 0 if any(moves) else SCANNED)
+        others = islice(product(*(g.grid for g in grids)), 0 if any(moves) else MAX_COMBINATIONS)
         if not any(moves) and not any(_moves(effect.tuned(*v), touches, path) for v in others):
             raise _moves_nothing(effect, path)
     except BadFile:

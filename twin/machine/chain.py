@@ -19,21 +19,21 @@ from matstd.twin.units import DEG
 Kind = Literal["linear", "rotary", "fixed"]
 
 _SAME = 1e-6
-"""Two machines whose numbers differ by less (mm, rad) are the same."""
+"""Machines whose numbers differ by less (mm, rad) are equal."""
 
 SHORTEST = 1e-6
-"""A direction that is shorter is none."""
+"""Directions shorter than this are refused."""
 
 FLATTEST = 0.01
 """Smallest singular value of the directions of linear axes: below, two of three axes stand within
 about a degree of one another."""
 
 OPEN_CHAIN = 4
-"""Rotary axes in series on the tool side from which they are joints: heads of machine tools have
-two or three."""
+"""From this many rotary axes in series on the tool side, they are joints of an arm; heads of
+machine tools have two or three."""
 
 SPINDLE_RANGE = (-360.0 * DEG, 360.0 * DEG)
-"""Range of a bracketed spindle whose machine file says nothing about it, rad."""
+"""Range of a bracketed spindle without an entry in the machine file, rad."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,8 +49,8 @@ class Link:
             every axis at zero, (3,), mm.
         range: Smallest and largest reading, mm or rad.
         programmed: False in brackets: a spindle that is not programmed, a quill that stays in.
-        pitch: Of the screw or scale of a linear axis, mm, as its owner states it; None where nobody
-            said. Knowledge of the machine, no part of its kinematics.
+        pitch: Of the screw or scale of a linear axis, mm, as its owner states it; None where it is
+            unknown. It is no part of the kinematics.
         expected: Size of each translational error of a linear axis, mm, beyond which it is unusual
             for such an axis; None for that of its class. No part of its kinematics either.
         is_joint: A rotary axis whose line is known by how it lies to the lines of its neighbours,
@@ -91,7 +91,7 @@ class Link:
 
 @dataclass(frozen=True)
 class Axis:
-    """What a machine file says of one axis, base units; None where it is silent."""
+    """Entry of one axis in a machine file, base units; None where a key is missing."""
 
     range: tuple[float, float] | None = None
     point: tuple[float, float, float] | None = None
@@ -102,15 +102,14 @@ class Axis:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Chain(Displayed):
-    """A machine: its links in chain order from workpiece to tool, and the place of its table.
+    """A machine: its links from workpiece to tool, and the position of its table.
 
     Attributes:
-        name: Of the machine.
         notation: ISO chain notation as the user wrote it.
         links: `w` first, `t` last, without the foundation.
         table_origin: Origin of the table frame, machine frame with every axis at zero, (3,), mm.
-        assumed_points: Rotary axes of which nobody said where their line is: they are taken to
-            turn about lines through the machine's origin.
+        assumed_points: Rotary axes without a stated line; they are assumed to turn about a line
+            through the machine's origin.
     """
 
     name: str
@@ -121,9 +120,9 @@ class Chain(Displayed):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What the machine file leaves open, and what is taken instead, one line each."""
+        """What the machine file leaves open and what is assumed instead, one line each."""
         return tuple(
-            f"axis {axis} has no point in the machine file: it is taken to turn about a line "
+            f"axis {axis} has no point in the machine file: it is assumed to turn about a line "
             "through the origin of the machine"
             for axis in self.assumed_points
         )
@@ -168,11 +167,7 @@ class Chain(Displayed):
         return Where("twist", self.link_index(symbol.link), symbol.component)
 
     def axis_index(self, name: str) -> int:
-        """Column of an axis in an array of readings (N, A).
-
-        Raises:
-            UnknownAxis: The machine has no such axis.
-        """
+        """Column of an axis in an array of readings (N, A); raises UnknownAxis."""
         if name not in self.axes:
             raise UnknownAxis(name, self.axes)
         return self.axes.index(name)
@@ -209,11 +204,7 @@ class Chain(Displayed):
         return tuple(component + location + workpiece + tool)
 
     def symbol(self, name: str) -> Symbol:
-        """The error parameter of that name.
-
-        Raises:
-            UnknownSymbol: No such parameter on this machine.
-        """
+        """The error parameter of that name; raises UnknownSymbol."""
         symbol = parse_symbol(name)
         if symbol is None or symbol not in self.symbols:
             raise UnknownSymbol(name, (s.name for s in self.symbols))
@@ -233,7 +224,7 @@ class Chain(Displayed):
         return replace(self, links=tuple(links))
 
     def difference(self, other: "Chain") -> tuple[str, str, str] | None:
-        """The first thing in which two machines differ, None if nothing.
+        """The first difference between two machines, None if they are equal.
 
         Travels count too: the shapes of component errors are scaled to them.
 
@@ -281,8 +272,6 @@ def make_chain(
     """Machine from its notation and what is known of each axis.
 
     Args:
-        name: Of the machine.
-        notation: Chain notation.
         axes: Range, point and direction by axis name, mm and rad; a bracketed spindle may be left
             out.
         table_origin: Origin of the table frame, machine frame with every axis at zero, mm.
@@ -296,32 +285,13 @@ def make_chain(
     for key in axes:
         if key not in [n for n, _, _ in parsed]:
             raise UnknownAxis(key, [n for n, _, _ in parsed])
-    zero = np.zeros(3)
     origin = np.array(table_origin, dtype=float)
-    links = [
-        Link(
-            name="w",
-            kind="fixed",
-            carries_workpiece=True,
-            direction=zero,
-            point=origin,
-            range=(0.0, 0.0),
-        )
-    ]
-    links += [_make_link(n, primed, prog, axes.get(n, Axis())) for n, primed, prog in parsed]
-    _check_directions([link for link in links if link.kind == "linear"])
-    links.append(
-        Link(
-            name="t",
-            kind="fixed",
-            carries_workpiece=False,
-            direction=zero,
-            point=zero,
-            range=(0.0, 0.0),
-        )
-    )
+    moving = [_make_link(n, primed, prog, axes.get(n, Axis())) for n, primed, prog in parsed]
+    _check_directions([link for link in moving if link.kind == "linear"])
+    links = [_end("w", True, origin), *moving, _end("t", False, np.zeros(3))]
     rotary = [link for link in links if link.kind == "rotary" and link.programmed]
     assumed = tuple(k.name for k in rotary if axes.get(k.name, Axis()).point is None)
+    # a long series of rotary axes is an arm: its links have tolerances of another class
     in_series = [link for link in rotary if not link.carries_workpiece]
     is_open = len(in_series) >= OPEN_CHAIN
     return Chain(
@@ -330,6 +300,18 @@ def make_chain(
         links=tuple(replace(k, is_joint=True) if is_open and k in in_series else k for k in links),
         table_origin=origin,
         assumed_points=assumed,
+    )
+
+
+def _end(name: str, carries_workpiece: bool, point: Array) -> Link:
+    """The workpiece or the tool: a link that does not move."""
+    return Link(
+        name=name,
+        kind="fixed",
+        carries_workpiece=carries_workpiece,
+        direction=np.zeros(3),
+        point=point,
+        range=(0.0, 0.0),
     )
 
 
@@ -346,7 +328,7 @@ def _check_directions(linear: list[Link]) -> None:
 
 
 def checked_length(kind: Kind, name: str, key: str, value: float | None) -> None:
-    """Refuse what is no length, or of an axis that turns; raises BadValue."""
+    """Refuse values that are no length, or belong to a rotary axis; raises BadValue."""
     if value is None:
         return
     if kind != "linear":
@@ -366,6 +348,7 @@ def _make_link(name: str, primed: bool, programmed: bool, axis: Axis) -> Link:
         found = [significant(end / unit, 12) for end in reach]
         raise BadValue(f"axis.{name}.range", found, "the smaller reading first")
     own = np.eye(3)["XYZ".index(ALONG[name[0]])]
+    # letters give the direction by ISO 841 unless the file states another
     direction = own if axis.direction is None else np.array(axis.direction, dtype=float)
     length = float(np.linalg.norm(direction))
     if not length > SHORTEST:

@@ -1,4 +1,4 @@
-"""Everything that disturbs a measurement ends here; nothing downstream asks which effect it was."""
+"""The sum of all effects at some touches; nothing downstream depends on which effect it was."""
 
 from typing import Literal, NamedTuple
 
@@ -23,7 +23,7 @@ class Where(NamedTuple):
 
     @property
     def entry(self) -> tuple[slice | int, ...]:
-        """Of the entry at all touches in the array of its part."""
+        """Index of this entry in the array of its part, over all touches."""
         if self.moves_tip:
             return (slice(None), self.link, self.component)
         return (slice(None), self.component) if self.part == "shift" else (slice(None),)
@@ -35,21 +35,16 @@ class Where(NamedTuple):
 
 
 class Contribution(NamedTuple):
-    """What effects add at N touches; contributions of several effects add up.
+    """What effects add at N touches; contributions of several effects add up."""
 
-    Attributes:
-        twist: Component errors of each link, tool side minus workpiece side, X Y Z A B C,
-            (N, L, 6), mm and rad.
-        place: Displacement of each axis's line, of the workpiece `w` and of the tool `t`,
-            (N, L, 6), mm and rad; along an axis's own direction it is its zero position.
-        shift: Of the standard in the table frame, (N, 3), mm.
-        bias: Of the measured surface along its outward normal, (N,), mm.
-    """
-
+    # component errors of each link, tool side minus workpiece side, X Y Z A B C, (N, L, 6), mm and
+    # rad
     twist: Array
+    # displacement of each axis's line, of the workpiece `w` and of the tool `t`, (N, L, 6), mm and
+    # rad; along an axis's own direction it is its zero position
     place: Array
-    shift: Array
-    bias: Array
+    shift: Array  # of the standard in the table frame, (N, 3), mm
+    bias: Array  # of the measured surface along its outward normal, (N,), mm
 
     @classmethod
     def zeros(cls, n: int, links: int) -> "Contribution":

@@ -1,4 +1,4 @@
-"""How axis readings, and errors anywhere in the chain, reach the tool point in the table frame.
+"""Forward kinematics: from axis readings and errors of the chain to the tool point, table frame.
 
 Poses are products of exponentials: with every axis at zero all bodies share the machine frame, so
 link k multiplies its motion, written in that frame, onto the body it sits on. A workpiece-carrying
@@ -17,15 +17,10 @@ from matstd.twin.machine.moved_point import moved_tip, tip_in_tool
 
 
 class Reach(NamedTuple):
-    """Tip deviation in the table frame per unit of every component at every link, first order.
+    """Tip deviation in the table frame per unit of every component at every link, first order."""
 
-    Attributes:
-        twist: Of component errors, (N, L, 6, 3), mm/mm and mm/rad.
-        place: Of displacements of an axis's line, of the workpiece or the tool, (N, L, 6, 3).
-    """
-
-    twist: Array
-    place: Array
+    twist: Array  # of component errors, (N, L, 6, 3), mm/mm and mm/rad
+    place: Array  # of displacements of an axis's line, of the workpiece or the tool, (N, L, 6, 3)
 
     def of(self, where: Where) -> Array:
         """Displacement of the tip relative to the standard per unit of one entry, (N, 3).
@@ -121,14 +116,11 @@ def table_to_tool(chain: Chain, q: Array) -> Array:
 
 
 def tip(chain: Chain, q: Array, length: Array | float) -> Array:
-    """Nominal tool point (ball centre of a probe) in the table frame.
+    """Nominal tool point (ball centre of a probe) in the table frame, (N, 3), mm.
 
     Args:
         q: Readings, shape (N, A), mm and rad.
         length: Tool length, scalar or (N,), or the tool point in the tool frame, (N, 3), mm.
-
-    Returns:
-        Shape (N, 3), mm.
     """
     return moved_tip(chain, checked_readings(chain, q), length, None)
 

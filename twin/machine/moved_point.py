@@ -38,20 +38,16 @@ def tip_in_tool(length: Array | float, n: int) -> Array:
 def moved_tip(
     chain: Chain, q: Array, length: Array | float, contribution: Contribution | None
 ) -> Array:
-    """Tool point in the table frame, exactly, with or without errors.
+    """Tool point in the table frame, exactly, with or without errors, (N, 3), mm.
 
     From the tool to the foundation every link moves the point by its motion and then by its
     component error; from there to the workpiece by its error and then back along its motion, which
     are the products ``G M`` and their inverses without one matrix. No angle is taken for small.
 
     Args:
-        chain: The machine.
         q: Readings, shape (N, A), mm and rad.
         length: As of `tip_in_tool`.
         contribution: What all effects add at these readings; None for the nominal machine.
-
-    Returns:
-        Shape (N, 3), mm.
     """
     start = tip_in_tool(length, len(q)).T
     tool = [i for i, link in enumerate(chain.links) if not link.carries_workpiece]
@@ -67,24 +63,16 @@ def moved_tip(
 
 
 class _Step(NamedTuple):
-    """A link on the way of the point; arrays have a last dimension of one where all poses agree.
-
-    Attributes:
-        travel: Reading of the axis, (N,).
-        far: The reading with the error of its zero, (N,).
-        along: Direction of the displaced line, (3, N).
-        point: On that line, (3, N).
-        place: Displacement of the workpiece or the tool, (6, N); None where there is none.
-        twist: Component errors, (6, N); None where all are zero.
-    """
+    """A link on the way of the point; arrays have a last dimension of one where all poses agree."""
 
     link: Link
-    travel: Array
-    far: Array
-    along: Array
-    point: Array
+    travel: Array  # reading of the axis, (N,)
+    far: Array  # the reading with the error of its zero, (N,)
+    along: Array  # direction of the displaced line, (3, N)
+    point: Array  # on that line, (3, N)
+    # displacement of the workpiece or the tool, (6, N); None where there is none
     place: Array | None
-    twist: Array | None
+    twist: Array | None  # component errors, (6, N); None where all are zero
 
     def at(self, rows: slice) -> "_Step":
         """The same at some poses."""
@@ -129,28 +117,15 @@ def _step(chain: Chain, i: int, q: Array, contribution: Contribution | None) -> 
     along, point = link.direction[:, None], link.point[:, None]
     travel = np.zeros(1) if link.kind == "fixed" else q[:, chain.axis_index(link.name)]
     twist, place = _rows(contribution, "twist", i), _rows(contribution, "place", i)
-    if place is None or link.kind == "fixed":
-        return _Step(
-            link=link,
-            travel=travel,
-            far=travel,
-            along=along,
-            point=point,
-            place=place,
-            twist=twist,
-        )
-    turn = place[3:].copy()
-    if link.kind == "rotary":  # about its own letter it is the zero of the reading
-        turn[link.own] = 0.0
-    far, along = travel + place[link.own_component], _turned(turn, along)
+    far = travel
+    if place is not None and link.kind != "fixed":
+        turn = place[3:].copy()
+        if link.kind == "rotary":  # about its own letter it is the zero of the reading
+            turn[link.own] = 0.0
+        far, along = travel + place[link.own_component], _turned(turn, along)
+        point, place = point + place[:3], None
     return _Step(
-        link=link,
-        travel=travel,
-        far=far,
-        along=along,
-        point=point + place[:3],
-        place=None,
-        twist=twist,
+        link=link, travel=travel, far=far, along=along, point=point, place=place, twist=twist
     )
 
 

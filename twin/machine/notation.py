@@ -31,6 +31,7 @@ def parse_notation(notation: str) -> list[tuple[str, bool, bool]]:
             expected = "a letter of X Y Z U V W A B C, a prime on the workpiece side"
             raise BadValue("chain", f"unknown axis '{token}' in '{notation}'", expected)
         name, prime = match.groups()
+        # the prime repeats what the position says; a contradiction is a typing error
         if bool(prime) != (position < foundation):
             side, wanted = ("workpiece", "a") if position < foundation else ("tool", "no")
             found = f"axis '{token}' on the {side} side of f in '{notation}'"

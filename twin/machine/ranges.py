@@ -55,14 +55,11 @@ def error_class(chain: Chain, symbol: Symbol) -> str:
 
 @dataclass(frozen=True)
 class Ranges:
-    """Expected amplitude of every error: by class, or by name where a name is given.
+    """Expected amplitude of every error: by class, or by name where a name is given."""
 
-    Attributes:
-        by_class: Smallest and largest peak amplitude of each class, mm or rad.
-        by_name: The same for single parameters, which go before their class.
-    """
-
+    # smallest and largest peak amplitude of each class, mm or rad
     by_class: Mapping[str, tuple[float, float]] = field(default_factory=lambda: DEFAULT_RANGES)
+    # the same for single parameters, which go before their class
     by_name: Mapping[str, tuple[float, float]] = field(default_factory=dict)
 
     def of(self, chain: Chain, symbol: Symbol) -> tuple[float, float]:

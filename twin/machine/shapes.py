@@ -22,21 +22,16 @@ def sine_argument(q: Array, link: Link, periods: float = 1.0) -> Array:
 
 
 def shape(name: ShapeName, q: Array, link: Link, periods: float = 1.0, phase: float = 0.0) -> Array:
-    """Error per unit of peak amplitude at every reading.
+    """Error per unit of peak amplitude at every reading, (N,).
 
     With u the reading scaled to [-1, 1]: linear ``u``; parabolic ``2 u^2 - 1``; sinusoidal
     ``sin(2 pi n (q - q_min)/(q_max - q_min) + phi)`` on a linear axis, ``sin(n q + phi)`` on a
     rotary one; constant 1.
 
     Args:
-        name: Which distribution.
         q: Readings, shape (N,), mm or rad.
-        link: The axis.
         periods: n of the sinusoidal distribution.
         phase: phi of the sinusoidal distribution, rad.
-
-    Returns:
-        Shape (N,).
     """
     if name == "constant":
         return np.ones_like(q)

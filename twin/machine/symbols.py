@@ -1,6 +1,6 @@
 """Error parameters by their ISO 230-1 names: `EXX`, `EC0Y`, `EX0w`, and what each one means.
 
-Two sentences hold for the whole house. The six components of an error are always in the letter
+Two conventions hold everywhere. The six components of an error are always in the letter
 order X Y Z A B C = (dx, dy, dz, ra, rb, rc), which is the second letter of the name. A component
 error is *tool side minus workpiece side* of its axis, in the directions of the body that the axis
 sits on, whichever side of the machine carries the axis.
@@ -30,17 +30,11 @@ class Family(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """One error parameter of ISO 230-1.
+    """One error parameter of ISO 230-1."""
 
-    Attributes:
-        component: Index of the component in X Y Z A B C.
-        link: Name of the axis, or `w` (workpiece), `t` (tool).
-        family: Component, location or set-up.
-    """
-
-    component: int
-    link: str
-    family: Family
+    component: int  # index of the component in X Y Z A B C
+    link: str  # name of the axis, or `w` (workpiece), `t` (tool)
+    family: Family  # component, location or set-up
 
     @property
     def name(self) -> str:

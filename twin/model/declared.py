@@ -191,17 +191,11 @@ class Declared:
 
 
 class Layout(NamedTuple):
-    """What the fields of a class are for.
+    """What the fields of a class are for."""
 
-    Attributes:
-        arguments: Those that stand in the brackets of a name, in their order.
-        usual: Values of arguments that may be left out.
-        scanned: Those that are searched.
-    """
-
-    arguments: Mapping[str, Argument]
-    usual: Mapping[str, Any]
-    scanned: Mapping[str, _Scanned]
+    arguments: Mapping[str, Argument]  # those that stand in the brackets of a name, in their order
+    usual: Mapping[str, Any]  # values of arguments that may be left out
+    scanned: Mapping[str, _Scanned]  # those that are searched
 
 
 _LAYOUTS: dict[type, Layout] = {}

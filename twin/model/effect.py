@@ -1,4 +1,4 @@
-"""What an effect is: where in the machine it acts, and how much per unit of its parameters."""
+"""Effects: where in the machine they act, and how much per unit of their parameters."""
 
 from collections.abc import Mapping, Sequence
 from functools import cache
@@ -15,43 +15,26 @@ Acts = Literal["smoothly", "with a period", "at an instant"]
 
 
 class Term(NamedTuple):
-    """How much one parameter of an effect adds at one place, per unit, at every touch.
+    """How much one parameter of an effect adds at one place, per unit, at every touch."""
 
-    Attributes:
-        parameter: Index into the effect's parameters.
-        where: Entry of the contribution that it adds to.
-        amount: Per unit of the parameter, shape (N,).
-    """
-
-    parameter: int
-    where: Where
-    amount: Array
+    parameter: int  # index into the effect's parameters
+    where: Where  # entry of the contribution that it adds to
+    amount: Array  # per unit of the parameter, shape (N,)
 
 
 class Parameter(NamedTuple):
-    """A number that an effect leaves open and that it depends on linearly.
+    """A number that an effect leaves open and that it depends on linearly."""
 
-    Attributes:
-        name: Word of the trade, unique within its effect.
-        unit: Base unit, "mm", "rad", "1/K", "mm/K"; `units.shown` is what a user sees.
-        sd: Standard deviation that is expected before any measurement, base unit.
-    """
-
-    name: str
-    unit: str
-    sd: float
+    name: str  # word of the trade, unique within its effect
+    unit: str  # base unit, "mm", "rad", "1/K", "mm/K"; `units.shown` is what a user sees
+    sd: float  # standard deviation that is expected before any measurement, base unit
 
 
 class Title(NamedTuple):
-    """What an effect is called in reports.
+    """What an effect is called in reports."""
 
-    Attributes:
-        text: Without the body that carries it where another could as well: `growth along Z`.
-        carrier: Axis, `t`, `w`, or "standard", "probe" ...; empty where the text names it.
-    """
-
-    text: str
-    carrier: str = ""
+    text: str  # without the body that carries it where another could as well: `growth along Z`
+    carrier: str = ""  # axis, `t`, `w`, or "standard", "probe" ...; empty where the text names it
 
 
 class Effect(Protocol):
@@ -84,7 +67,6 @@ def contribution(
 
     Args:
         effects: Pairs of an effect and its parameters (P,), base units.
-        touches: The touches or poses.
     """
     total = Contribution.zeros(len(touches), len(touches.chain.links))
     pairs = effects.items() if isinstance(effects, Mapping) else effects
@@ -95,25 +77,18 @@ def contribution(
 
 
 class Inner(NamedTuple):
-    """A parameter that an effect depends on non-linearly: scanned on a grid, then refined.
+    """A parameter that an effect depends on non-linearly: scanned on a grid, then refined."""
 
-    Attributes:
-        name: Any word, unique within its effect; nothing is read out of it.
-        unit: Base unit: "s", "mm", "rad", "1".
-        grid: Values to scan, ascending, (G,), base units.
-        continuous: Whether values between those of the grid make sense.
-        acts: "smoothly", such as a time constant or a width; "with a period", the reading in which
-            the effect repeats; "at an instant", a time at which something jumps, so that every
-            instant between two touches is as good as another.
-        over: Of a period, or of the waves of a turn, whose unit is "1", the axis over whose
-            reading it repeats; empty where it repeats over something else.
-    """
-
-    name: str
-    unit: str
-    grid: Array
-    continuous: bool = True
+    name: str  # any word, unique within its effect
+    unit: str  # base unit: "s", "mm", "rad", "1"
+    grid: Array  # values to scan, ascending, (G,), base units
+    continuous: bool = True  # whether values between those of the grid make sense
+    # "smoothly", such as a time constant or a width; "with a period", the reading in which the
+    # effect repeats; "at an instant", a time at which something jumps, so that every instant
+    # between two touches is as good as another
     acts: Acts = "smoothly"
+    # of a period, or of the waves of a turn, whose unit is "1", the axis over whose reading it
+    # repeats; empty where it repeats over something else
     over: str = ""
 
     @property
@@ -151,7 +126,7 @@ class Tunable(Effect, Protocol):
 def is_tunable(effect: Effect) -> TypeGuard[Tunable]:
     """Whether an effect has inner parameters.
 
-    Known by class: the protocol asked attribute by attribute took a twentieth of a diagnosis.
+    Cached by class: checking the protocol by attributes took a twentieth of a diagnosis.
     """
     return _is_tunable(type(effect))
 

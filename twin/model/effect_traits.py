@@ -1,7 +1,7 @@
-"""What the rest of the program may ask of an effect beyond its terms, with the usual answers.
+"""Traits of an effect beyond its terms, with their defaults.
 
-Above the twin nothing asks which class an effect is of; it asks for a trait. An effect answers by
-an attribute or a property of the same name, and where it has none the answer is the default here.
+Above the twin nothing depends on the class of an effect, only on its traits. An effect states a
+trait by an attribute or property of the same name; otherwise the default here holds.
 """
 
 from collections.abc import Callable
@@ -16,22 +16,16 @@ from matstd.twin.record import Touches
 
 
 class Wave(NamedTuple):
-    """What repeats over a linear axis.
+    """What repeats over a linear axis."""
 
-    Attributes:
-        symbol: The component error that repeats.
-        period: In which it repeats, mm.
-        sines: Sines of this period and of its whole fractions: 1 for a single one.
-    """
-
-    symbol: Symbol
-    period: float
-    sines: int
+    symbol: Symbol  # the component error that repeats
+    period: float  # in which it repeats, mm
+    sines: int  # sines of this period and of its whole fractions: 1 for a single one
 
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Traits:
-    """Answers of one effect.
+    """Traits of one effect.
 
     Attributes:
         symbol: The error parameter that it acts on, where it acts on one alone.
@@ -46,8 +40,8 @@ class Traits:
         is_tensor: Whether its parameters have no common size: reported is the rms that it explains.
         is_shrunk: Whether its parameters share a prior whose size the run chooses; reported as a
             tensor, and weighed against single effects by what it predicts.
-        is_table: Whether it could imitate most other effects: it is followed only where it predicts
-            plainly better than those that give a cause.
+        is_table: Whether it could imitate most other effects; it is chosen only where it predicts
+            clearly better than effects with a cause.
         reversal: Of a curve for either direction: forward less backward at every touch, per unit of
             every parameter, (N, P).
         harmonic: Waves a turn of what repeats over a rotary axis; 0 of a curve, which has many.
@@ -110,10 +104,10 @@ _OLD_NAMES = {"is_reported_whole": "is_told_whole"}
 
 
 def traits(effect: Effect) -> Traits:
-    """The answers of an effect; the defaults where it has none.
+    """The traits of an effect, with defaults where it states none.
 
-    A field of a user's effect may have the name of a trait by chance, so an answer of another type
-    is none: `wave: float` is not a `Wave`.
+    A field of a user's effect may have the name of a trait by chance, so values of another type are
+    ignored: `wave: float` is not a `Wave`.
     """
     found = {old: getattr(effect, old, None) for old in (*_USUAL, *_OLD_NAMES.values())}
     found |= {name: found[old] for name, old in _OLD_NAMES.items() if found[name] is None}

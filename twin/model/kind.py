@@ -29,7 +29,7 @@ class Kind:
         propose: Every effect of the kind that makes sense for some touches.
         classes: Classes of its effects, whose docstrings describe them.
         about: What the family is, in one line; empty for the first line of its first class.
-        title: What those who run machines call it.
+        title: Its name on the shop floor.
         synonyms: Other words for it, commas between them.
         belongs_to: One of OWNERS, where it is to be expected again: in every run of the
             machine, in those with the same probe, or in no other run, as a slip on a certain day.
@@ -70,15 +70,8 @@ class Kind:
         Args:
             effect: The class, a `Declared` one or one that takes no arguments; its `kind` is the
                 word, and its first line of documentation the summary.
-            formula: The closed formula, one line.
-            units: Of its parameters and inner parameters, as a user sees them.
-            typical: Size that is met in practice.
-            source: Where the formula and the size are from.
             propose: Every effect that makes sense for some touches; None for one with every value
                 that its fields are offered, and the usual values of those that may be left out.
-            title: What those who run machines call it.
-            synonyms: Other words for it, commas between them.
-            belongs_to: As of the attribute.
             when: Whether it is proposed for some touches at all; None for always.
         """
         signature = _Signature.of(effect)
@@ -126,19 +119,12 @@ def _refused(expected: str) -> UnknownEffect:
 
 @dataclass(frozen=True)
 class _Signature:
-    """How an effect is written, from the fields of its class.
+    """How an effect is written, from the fields of its class."""
 
-    Attributes:
-        word: First word of its name.
-        effect: Makes it from the values of its arguments by name.
-        arguments: What stands in the brackets, by the name of the field.
-        required: How many of them cannot be left out.
-    """
-
-    word: str
-    effect: Callable[..., Effect]
-    arguments: Mapping[str, Argument]
-    required: int
+    word: str  # first word of its name
+    effect: Callable[..., Effect]  # makes it from the values of its arguments by name
+    arguments: Mapping[str, Argument]  # what stands in the brackets, by the name of the field
+    required: int  # how many of them cannot be left out
 
     @classmethod
     def of(cls, effect: Callable[..., Effect]) -> "_Signature":

@@ -115,10 +115,6 @@ class Model(Displayed):
 def columns(effects: Sequence[Effect], touches: Touches) -> Array:
     """Deviation along the normal per unit of every parameter of some effects, first order.
 
-    Args:
-        effects: Any effects of the machine.
-        touches: N touches.
-
     Returns:
         Shape (N, P), mm per base unit of each parameter.
     """

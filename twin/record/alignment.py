@@ -1,9 +1,9 @@
-"""Set-ups that stand elsewhere than their file says, found before anything is linear.
+"""Set-ups that stand elsewhere than the file states, found before linearisation.
 
 Every touch gives a pair of points: the centre of the ball on the calibrated surface, artefact
-frame, and the tool point of the nominal machine, table frame. The rigid motion that joins the
-pairs best is known in closed form at any size; machine errors are small beside what makes it
-necessary.
+frame, and the tool point of the nominal machine, table frame. The rigid motion that fits the pairs
+best has a closed form for any size (SVD); machine errors are small compared with the displacements
+that make it necessary.
 
 Reference:
     W. Kabsch, Acta Cryst. A32 (1976) 922: rotation between two sets of points.
@@ -26,35 +26,29 @@ TURN = 1e-3
 """Rotation (rad) from which it is moved: half its square times 200 mm is 0.1 µm, what a linear fit
 of the set-up would get wrong."""
 
-FEWEST = 6
-"""Touches of a set-up, one for each of its freedoms; of fewer nothing is concluded."""
+MIN_TOUCHES = 6
+"""Touches of a set-up, one for each degree of freedom; with fewer the set-up stays as stated."""
 
-SLIP = 10.0
-"""Touches farther off than so many times the median are slips and do not count."""
+OUTLIER_RATIO = 10.0
+"""Touches farther off than this multiple of the median are outliers and not used."""
 
-FLAT = 1.0
-"""Touches that spread by less (mm) in a direction do not tell a rotation: it is left as stated."""
+MIN_SPREAD = 1.0
+"""Touches that spread less (mm) in a direction do not determine a rotation; it stays as stated."""
 
 
 @dataclass(frozen=True)
 class Moved:
-    """A set-up that was moved.
-
-    Attributes:
-        name: Of the set-up.
-        shift: Displacement of the middle of its touches, mm.
-        turn: Angle of its rotation, rad.
-    """
+    """A set-up that was moved."""
 
     name: str
-    shift: float
-    turn: float
+    shift: float  # displacement of the middle of its touches, mm
+    turn: float  # angle of its rotation, rad
 
 
 def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
-    """A run whose set-ups stand where its touches say, and which of them were moved.
+    """A run with its set-ups moved to where the touches show them, and the list of moved ones.
 
-    Deviations are computed anew from the readings; call it only where they were computed so.
+    Deviations are recomputed from the readings; call it only for runs that compute them so.
 
     Args:
         run: Measurements of a touching ball, or of any instrument that states points.
@@ -65,12 +59,12 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
     setups, moved = list(t.setups), []
     for i, setup in enumerate(t.setups):
         rows = t.setup == i
-        if rows.sum() < FEWEST:
+        if rows.sum() < MIN_TOUCHES:
             continue
         a, b, stated = centre[rows], reached[rows], setup.T_table_artefact
         T = rigid_motion(a, b, stated)
         far = np.linalg.norm(apply(T, a) - b, axis=1)
-        near = far <= SLIP * np.median(far)  # a slip of the pen must not turn the standard
+        near = far <= OUTLIER_RATIO * np.median(far)  # an outlier must not turn the standard
         T = rigid_motion(a[near], b[near], stated)
         middle = centre[rows].mean(axis=0)
         change = apply(T, middle) - apply(setup.T_table_artefact, middle)
@@ -90,7 +84,7 @@ def rigid_motion(
     a: Array,
     b: Array,
     stated: Array | None = None,
-    flat: float = FLAT,
+    flat: float = MIN_SPREAD,
     is_mirrored: bool = False,
 ) -> Array:
     """Pose that takes points a to points b best, (k + 1, k + 1) in k directions.
@@ -107,7 +101,7 @@ def rigid_motion(
     R = np.eye(k) if stated is None else stated[:k, :k]
     middle_a, middle_b = a.mean(axis=0), b.mean(axis=0)
     U, s, Vt = np.linalg.svd(R @ (a - middle_a).T @ (b - middle_b))
-    # of points on a line nobody knows how far they are turned about it
+    # points on a line do not determine the rotation about it
     if is_mirrored or k == 1 or np.sqrt(s[-2] / len(a)) >= flat:
         sign = np.sign(np.linalg.det(Vt.T @ U.T)) * (-1.0 if is_mirrored else 1.0)
         R = Vt.T @ np.diag([*np.ones(k - 1), sign]) @ U.T @ R

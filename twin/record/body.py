@@ -1,7 +1,7 @@
-"""The size of a standard: its expansion, its temperature, and the one place that takes growth off.
+"""The size of a standard: its expansion and temperature, and the correction for its growth.
 
-Calibrated points hold at 20 degC. A standard at T stands ``alpha (T - 20 degC) p`` beside them, p
-from its own origin: where it is really held only displaces it, which the set-up takes up.
+Calibrated points hold at 20 degC. At T they move by ``alpha (T - 20 degC) p``, p from the origin of
+the standard; where it is really held is a displacement, which the set-up absorbs.
 """
 
 from dataclasses import dataclass, replace
@@ -30,24 +30,24 @@ U_UNKNOWN = 2.0
 tools keep within 3 or 4 K of it, and a standard that comes from elsewhere takes hours."""
 
 COLDEST, HOTTEST = 0.0, 50.0
-"""Temperatures of a standard (degC) lie between: beyond, it is another body's, or kelvin."""
+"""Range of temperatures of a standard, degC; others are of another body, or in kelvin."""
 
 KELVIN = 270.0
-"""Temperatures above are in kelvin."""
+"""Higher temperatures are in kelvin."""
 
 LARGEST = 1e-3
-"""Expansions (1/K) are below: rubber has 2e-4, steel 11.5e-6."""
+"""Largest expansion, 1/K; rubber has 2e-4, steel 11.5e-6."""
 
 LARGEST_U = 20.0
-"""Standard uncertainties of a temperature (K) are below: it says nothing any more."""
+"""Largest standard uncertainty of a temperature, K."""
 
-APART = 2.0
+MAX_DISAGREEMENT = 2.0
 """Standard uncertainties by which two statements of one temperature may differ."""
 
 
 @dataclass(frozen=True, slots=True)
 class StatedBody:
-    """What is stated of a standard, by the names that it has in files; None where nothing is.
+    """Statements on a standard under their names in files; None where one is missing.
 
     Raises:
         BadValue: A number in another unit, or of something else.
@@ -71,9 +71,9 @@ class StatedBody:
 
 
 def with_body(run: Run, stated: StatedBody) -> Run:
-    """A run whose deviations are those from its standard at its own temperature.
+    """A run with deviations from its standard at the temperature of that standard.
 
-    The one place where the growth of a standard is taken off; `raw_deviation` gives it back.
+    Only here the growth of a standard is subtracted; `raw_deviation` adds it back.
 
     Args:
         run: Of calibrated points at 20 degC, sensors included.
@@ -103,14 +103,14 @@ def with_body(run: Run, stated: StatedBody) -> Run:
 
 
 def _check_readings(at: Array, common: float | None, u: float) -> None:
-    """Refuse a sensor that is not on the standard, or says something else than is stated."""
+    """Refuse a sensor that is not on the standard, or contradicts the stated temperature."""
     for value in (at.min(), at.max()):
         _check_temperature(f"T_{BODY}_degC", float(value))
-    if common is not None and abs(common - float(at.mean())) > APART * u:
+    if common is not None and abs(common - float(at.mean())) > MAX_DISAGREEMENT * u:
         raise BadValue(
             "body_degC",
             f"{common:g}, where T_{BODY}_degC is {at.mean():.2f} on average",
-            f"one of the two, or both within {APART * u:g} K",
+            f"one of the two, or both within {MAX_DISAGREEMENT * u:g} K",
         )
 
 

@@ -1,8 +1,9 @@
-"""Where a machine was sent, of touches whose readings hold what was measured.
+"""Commanded readings of touches whose recorded readings hold the measured value.
 
 A touch trigger stops the axes at the surface: the reading is the commanded one plus the deviation,
 with its noise. A residual regressed on it correlates with itself: on a flat plate touched along Z,
-where Z varies by nothing else, pure noise "varies with Z".
+pure noise would "vary with Z". So the deviation, less the motion of its set-up, is subtracted along
+the normal.
 """
 
 from dataclasses import replace
@@ -14,20 +15,21 @@ from matstd.twin.machine import linear_directions
 from matstd.twin.record.run import Run
 from matstd.twin.record.touches import Touches, computed_deviation
 
-FAR_MOVED = 2000.0
-"""Range of an axis over usual deviations from which its readings stay as they are: noise is then
-small beside every period that is looked for. Errors are functions of the true reading; one of
-0.4 mm shifts the argument of its own wave, which over commanded readings looks like an overtone.
+MIN_RANGE_RATIO = 2000.0
+"""From this ratio of an axis's range to the median deviation its readings are kept: noise is then
+small against every period searched for. Errors are functions of the true reading; an error of 0.4
+mm shifts the argument of its own wave, which over commanded readings looks like an overtone.
 """
 
-LARGE = 0.05
-"""Usual deviation (mm) from which they stay as they are whatever the range."""
+LARGEST_DEVIATION = 0.05
+"""From this median deviation (mm) readings are kept, whatever the range."""
 
-FEW = 1 / 8
-"""Levels over touches up to which an axis has moved by little but what was measured."""
+MAX_LEVEL_SHARE = 1 / 8
+"""Up to this ratio of levels to touches an axis moved by little more than the measured
+deviation."""
 
-FAR = 10.0
-"""Deviations beyond so many times the median do not place a set-up."""
+OUTLIER_RATIO = 10.0
+"""Deviations beyond this multiple of the median are not used to place a set-up."""
 
 
 def with_commanded(run: Run) -> Run:
@@ -37,7 +39,7 @@ def with_commanded(run: Run) -> Run:
     the rigid motion of each set-up that fits it best: a set-up that stands elsewhere is met where
     it stands. Readings of instruments beside the machine are commanded as they are; a row counts
     as such where its readings imply less than half of its deviation. Only axes are given so that
-    moved little (`FAR_MOVED`) or stood at few places, as Z of a flat plate.
+    moved little (`MIN_RANGE_RATIO`) or stood at few places, as Z of a flat plate.
     """
     touches = run.touches
     is_ball = touches.instrument.is_ball_on_standard & (touches.radius > 0.0)
@@ -54,8 +56,8 @@ def with_commanded(run: Run) -> Run:
     for column, by in zip(linear, moved.T, strict=True):
         usual = float(np.median(np.abs(by)))
         at = touches.q[:, column] - by
-        is_near = usual < LARGE and np.ptp(at) < FAR_MOVED * usual
-        if is_near or _levels(at, 2.0 * usual) < FEW * len(at):
+        is_near = usual < LARGEST_DEVIATION and np.ptp(at) < MIN_RANGE_RATIO * usual
+        if is_near or _levels(at, 2.0 * usual) < MAX_LEVEL_SHARE * len(at):
             commanded[:, column] = at
     return replace(run, touches=replace(touches, commanded=commanded))
 
@@ -75,9 +77,9 @@ def _less_setups(touches: Touches, deviation: Array) -> Array:
         usual = rows
         if not len(rows):
             continue
-        for _ in range(2):  # a slip must not turn the standard
+        for _ in range(2):  # an outlier must not turn the standard
             size = np.linalg.lstsq(modes[usual], deviation[usual], rcond=1e-9)[0]
             off = np.abs(deviation[rows] - modes[rows] @ size)
-            usual = rows[off <= FAR * max(float(np.median(off)), 1e-12)]
+            usual = rows[off <= OUTLIER_RATIO * max(float(np.median(off)), 1e-12)]
         out[rows] -= modes[rows] @ size
     return out

@@ -1,4 +1,4 @@
-"""Rows that are copies of others: a measurement that is counted twice is believed twice."""
+"""Rows that are copies of others: a measurement counted twice would get twice its weight."""
 
 from dataclasses import replace
 
@@ -10,30 +10,29 @@ from matstd.twin.units import NM
 
 BoolArray = NDArray[np.bool_]
 
-FEWEST = 8
+MIN_COPIES = 8
 """Fewer rows that agree with an earlier one to the last digit may be chance."""
 
-MOSTLY = 0.6
-"""Share of the repeated touches that must agree so: honest ones rarely do, unless readings are much
-coarser than the noise."""
+MIN_COPIED_SHARE = 0.6
+"""Share of the repeated touches that must agree exactly: real ones rarely do, unless readings are
+much coarser than the noise."""
 
 SAME_PLACE = 0.05
 """Touches whose readings lie within this (mm, or mrad) at one calibrated point are repeated."""
 
 
-COARSE = 8
-"""Rows for every different deviation from which the reading is coarse; a file is rarely pasted
-under itself more often than that."""
+ROWS_PER_VALUE = 8
+"""With more rows per distinct deviation the reading is coarse; a file is rarely copied into itself
+more often."""
 
 
 def without_copies(run: Run) -> Run:
     """The run without copied rows, and a remark that says so; the run itself if there are none.
 
-    A row that stands twice, its time included, is a copy; where no time was recorded, only if more
-    rows do than the steps of the reading let agree by chance. So are rows that agree with earlier
-    ones in all columns but the time to the last digit, if most touches that are repeated do: the
-    noise of real ones differs, unless it is read too coarsely to show. Rows of another repetition
-    or feature are none.
+    A row that occurs twice, its time included, is a copy; without times only if more rows do than
+    the resolution of the reading explains by chance. Rows that agree with earlier ones in all
+    columns but the time are copies if most repeated touches do, since the noise of real ones
+    differs. Rows of another repetition or feature are never copies.
 
     Example:
         A file that was pasted twice under itself counts once.
@@ -45,7 +44,7 @@ def without_copies(run: Run) -> Run:
         out = out[~same]
         remarks.append(_words(run, same, "stand twice" if same.sum() > 1 else "stands twice"))
     again = _copies(out, with_time=False)
-    is_odd = again.sum() >= FEWEST and again.sum() > MOSTLY * _repeated(out)
+    is_odd = again.sum() >= MIN_COPIES and again.sum() > MIN_COPIED_SHARE * _repeated(out)
     if is_odd and not _coarse(out):
         remarks.append(
             _words(out, again, "repeat the readings and the deviation of earlier rows exactly")
@@ -94,7 +93,7 @@ def _by_chance(run: Run) -> float:
 
 def _coarse(run: Run) -> bool:
     """Whether deviations are read in steps so large that equal ones mean nothing."""
-    return len(np.unique(run.deviation)) * COARSE < len(run)
+    return len(np.unique(run.deviation)) * ROWS_PER_VALUE < len(run)
 
 
 def _kinds(run: Run) -> list[str]:
@@ -103,7 +102,7 @@ def _kinds(run: Run) -> list[str]:
 
 
 def _later(key: NDArray[np.float64]) -> BoolArray:
-    """Rows of a table that stand higher up already, (N,)."""
+    """Rows of a table that equal an earlier row, (N,)."""
     first = np.unique(key, axis=0, return_index=True)[1]
     later = np.ones(len(key), dtype=bool)
     later[first] = False

@@ -1,4 +1,4 @@
-"""Several runs of one machine as one: days, set-ups, standards, before and after."""
+"""Several runs of one machine as one."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -13,8 +13,8 @@ from matstd.twin.record.run import Run
 from matstd.twin.record.touches import MAPS, PER_TOUCH, Setup, Touches
 
 PAUSE = 3600.0
-"""Between one run and the next, s: bodies and noise have forgotten; every run counts its own time
-besides (`Touches.since_start`)."""
+"""Pause between runs, s: long enough for bodies and noise to be independent; every run also counts
+its own time (`Touches.since_start`)."""
 
 
 def joined(runs: Mapping[str, Run]) -> Run:
@@ -40,6 +40,7 @@ def joined(runs: Mapping[str, Run]) -> Run:
         return parts[0]
     _check_alike(names, parts)
     every = [part.touches for part in parts]
+    # times of all runs on one axis, so that noise and lags of one do not reach the next
     starts = _starts(every)
     setups = [
         replace(s, name=f"{name}/{s.name}", run=name, start=begin)

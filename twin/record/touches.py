@@ -1,4 +1,4 @@
-"""`Touches`: all that is known about N contacts, the one record that flows through the house."""
+"""`Touches`: all that is known about N contacts; the record that every room takes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
@@ -27,43 +27,29 @@ Labels = NDArray[np.str_]
 
 
 METRE = 1000.0
-"""Arm, mm, at which a deviation in µm is as many µrad."""
+"""Arm, mm, at which a deviation in µm equals the angle in µrad."""
 
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """The standard as a body that expands.
+    """The standard as a body that expands."""
 
-    Attributes:
-        alpha: Coefficient of linear expansion, 1/K.
-        u_alpha: Its standard uncertainty, 1/K.
-        u_temperature: That of its temperature, K, the same error at all touches of a run.
-        is_known: Whether its temperature is stated; else points stay those of 20 degC.
-    """
-
-    alpha: float
-    u_alpha: float
-    u_temperature: float
-    is_known: bool
+    alpha: float  # coefficient of linear expansion, 1/K
+    u_alpha: float  # its standard uncertainty, 1/K
+    u_temperature: float  # that of its temperature, K, the same error at all touches of a run
+    is_known: bool  # whether its temperature is stated; else points stay those of 20 degC
 
 
 @dataclass(frozen=True, eq=False)
 class Setup:
-    """One placement of the standard on the table.
+    """One placement of the standard on the table."""
 
-    Attributes:
-        name: Label in the run file.
-        T_table_artefact: Pose (4, 4), takes artefact coordinates to table coordinates.
-        run: Name of the run that it belongs to, where several were joined.
-        start: Time at which that run started, s.
-        body: The standard as it expands; None where the run does not state it.
-    """
-
-    name: str
+    name: str  # label in the run file
+    # pose (4, 4), takes artefact coordinates to table coordinates
     T_table_artefact: Array = field(default_factory=lambda: np.eye(4))
-    run: str = ""
-    start: float = 0.0
-    body: Body | None = None
+    run: str = ""  # name of the run that it belongs to, where several were joined
+    start: float = 0.0  # time at which that run started, s
+    body: Body | None = None  # the standard as it expands; None where the run does not state it
 
 
 class Signature:
@@ -176,9 +162,9 @@ class Touches:
         return replace(self, temperature=temperature, value=own, **picked)
 
     def reading(self, axis: str) -> Array:
-        """Where one axis was sent, (N,), mm or rad; raises UnknownAxis.
+        """Commanded reading of one axis, (N,), mm or rad; raises UnknownAxis.
 
-        Its readings, but for those that hold the measured value and its noise (`commanded`).
+        Where readings hold the measured value and its noise, `commanded` is used instead.
         """
         q = self.q if self.commanded is None else self.commanded
         return q[:, self.chain.axis_index(axis)]
@@ -224,7 +210,7 @@ class Touches:
 
     @cached_property
     def growth(self) -> Array:
-        """How far the surface stands outside its place at 20 degC, (N,), mm: ``alpha dT n . p``."""
+        """Growth of the surface along its normal from 20 degC, (N,), mm: ``alpha dT n . p``."""
         alpha = np.array([0.0 if s.body is None else s.body.alpha for s in self.setups])[self.setup]
         along = np.einsum("ni,ni->n", self.normal, self.point)
         return np.asarray(alpha * (self.body_temperature - T_REF) * along)
@@ -250,13 +236,13 @@ class Touches:
 
     @property
     def deviation_unit(self) -> str:
-        """Unit in which deviations are told: those of angles at an arm of one metre are µrad."""
+        """Unit in which deviations are reported: µrad for angles at an arm of one metre."""
         is_metre = np.allclose(np.linalg.norm(self.point, axis=1), METRE, atol=1e-6)
         return "µrad" if self.instrument.reads_angle and is_metre else "µm"
 
     @cached_property
     def opposite(self) -> "Touches":
-        """The points behind the origin of every set-up, and what of the tool is there."""
+        """The points opposite each touch, behind the origin of its set-up."""
         point = -self.point
         tool = inverse(table_to_tool(self.chain, self.q))
         at = apply(tool, apply(self.T_table_artefact, point))
@@ -323,8 +309,8 @@ def implied_approach(touches: Touches) -> Array:
 def motion(q: Array, time: Array) -> Array:
     """Signs of the last motion of every axis in a log that was read on the way, (N, A).
 
-    An axis that stands keeps its sign. Of the last row before an axis is seen to come back nobody
-    knows whether it had turned already: the sign is 0.
+    An axis that stands keeps its sign. In the last row before a reversal the axis may have turned
+    already, so the sign is 0.
 
     Args:
         q: Readings, (N, A).

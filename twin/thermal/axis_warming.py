@@ -1,4 +1,4 @@
-"""Growth of a screw or scale, and of what holds it, while its axis works."""
+"""Thermal growth of a screw or scale and its bearing while its axis works."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,8 +16,8 @@ from matstd.twin.thermal.thermal_lag import LONGEST, SHORTEST, STEPS
 from matstd.twin.units import MINUTE, UM
 
 FASTEST, SLOWEST = 0.3, 1.0
-"""Time constants that are scanned without times: in cycles, and in lengths of the test. What is
-slower is a straight line, which needs no time constant and has no size to settle at."""
+"""Shortest time constant scanned in cycles, and longest in durations of the test: a slower one
+cannot be distinguished from a straight line, which has no final value."""
 
 
 def _clock_name(text: str, chain: Chain, refuse: Refuse) -> str:
@@ -54,7 +54,6 @@ class AxisWarming(Declared):
         return replace(self, tau=1.0) if self.clock else self
 
     def amounts(self, touches: Touches) -> Amounts:
-        """What has warmed, at either end."""
         low, high = touches.chain.link(self.axis).range
         s = (touches.reading(self.axis) - low) / (high - low)
         y = -np.expm1(-self._clock(touches) / self.tau)
@@ -76,12 +75,10 @@ class AxisWarming(Declared):
         return (Inner("tau", "s", np.geomspace(SHORTEST, high, STEPS)),)
 
     def tuned(self, *values: float) -> Self:
-        """With this time constant."""
         return replace(self, tau=float(values[0]))
 
     @property
     def tuning(self) -> Mapping[str, float]:
-        """The time constant."""
         return {"cycles" if self.clock else "tau": self.tau}
 
 

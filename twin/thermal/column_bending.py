@@ -56,7 +56,6 @@ class ColumnBending(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """Rotation at full height, per kelvin, about the two axes across."""
         names = ("XYZ"[i] for i in self._across)
         return tuple(Parameter(f"about {name}", "rad/K", 20 * URAD) for name in names)
 

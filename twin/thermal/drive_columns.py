@@ -1,4 +1,4 @@
-"""What an effect may follow: a sensor, the spindle speed, or a column of the user's own.
+"""Drives that an effect may follow: a sensor, the spindle speed, or a column of the user's own.
 
 A body that is driven settles with its own time constant. What drives it is recorded at the touches
 only, so the equation is integrated exactly for a drive that is straight between two records (or
@@ -32,12 +32,12 @@ PER_KELVIN = 0.2
 """Usual size of an error per kelvin, over that at 10 000 rpm or after a step of an own column."""
 
 
-MOST_KNOWN = 64
-"""Responses that are kept of one record: of one drive with every time constant of a grid."""
+MAX_CACHED_RESPONSES = 64
+"""Responses cached for one record: one drive with every time constant of a grid."""
 
-_KNOWN: WeakKeyDictionary[Touches, dict[tuple[str, float, float], Array]] = WeakKeyDictionary()
-"""What follows a drive, by drive, time constant and step: every component error of every axis asks
-for the same, and without this a search spent a tenth of its time here."""
+_RESPONSES: WeakKeyDictionary[Touches, dict[tuple[str, float, float], Array]] = WeakKeyDictionary()
+"""Responses by drive, time constant and step. Every component error of every axis uses the same
+ones; without the cache a search spent a tenth of its time here."""
 
 
 def drives(touches: Touches) -> list[str]:
@@ -80,24 +80,21 @@ def amplitude_unit(drive: str, unit: str, sd: float) -> tuple[str, float]:
 
 
 def driven(touches: Touches, drive: str, tau: float, effect: str, step: float = 1.0) -> Array:
-    """What has followed of a drive with a time constant at every touch, (N,).
+    """Response to a drive with a time constant at every touch, (N,); raises UnknownEffect.
 
     Args:
         drive: A sensor, followed as its difference from 20 degC, `spindle_rpm` in units of
             10 000 rpm, or an own column in units of a step.
         tau: Time constant, s; zero follows at once.
-        effect: Who asks, for the message.
+        effect: Name of the effect, for the message.
         step: Of an own column, in its unit.
-
-    Raises:
-        UnknownEffect: The drive was not recorded.
     """
     if is_speed(drive) and touches.spindle_rpm is None:
         raise UnknownEffect(f"'{effect}': the spindle speed of these touches is unknown")
-    known = _KNOWN.setdefault(touches, {})
+    known = _RESPONSES.setdefault(touches, {})
     key = (drive, tau, step)
     if key not in known:
-        if len(known) >= MOST_KNOWN:
+        if len(known) >= MAX_CACHED_RESPONSES:
             known.clear()
         known[key] = _driven(touches, drive, tau, step)
         known[key].flags.writeable = False
@@ -163,7 +160,7 @@ def lagged(touches: Touches, drive: Array, tau: float, steps: bool = False) -> A
 
 
 def first_order_lag(time: Array, drive: Array, tau: float, steps: bool = False) -> Array:
-    """First-order lag of a record, exact between the records.
+    """First-order lag of a record, exact between the records, (N,), in the unit of the drive.
 
     ``tau dy/dt = d - y``. With ``x = dt/tau`` and a straight drive from d0 to d1 one step is
     ``y1 = e^-x y0 + (1 - e^-x) d0 + (1 - (1 - e^-x)/x) (d1 - d0)``; with a constant one it ends
@@ -175,9 +172,6 @@ def first_order_lag(time: Array, drive: Array, tau: float, steps: bool = False) 
         tau: Time constant, s.
         steps: Whether the drive is constant from one record to the next, and the body cold (y = 0)
             at time zero; otherwise straight, and y = d at the first record.
-
-    Returns:
-        Shape (N,), in the unit of the drive.
     """
     order = np.argsort(time, kind="stable")
     t, d = time[order], drive[order]

@@ -30,7 +30,7 @@ from matstd.twin.thermal.drive_columns import (
 )
 from matstd.twin.units import UM, URAD
 
-USUAL = (6 * UM, 20 * URAD)
+USUAL_AMPLITUDE = (6 * UM, 20 * URAD)
 """Usual size of an error after a kelvin or a step, mm and rad."""
 
 
@@ -48,7 +48,7 @@ class ThermalStatic(Declared):
     symbol: ComponentSymbol
     sensor: SensorName
 
-    kind, usual, per = "thermal-static", USUAL, "/K"
+    kind, usual, per = "thermal-static", USUAL_AMPLITUDE, "/K"
 
     @cached_property
     def title(self) -> Title:
@@ -57,7 +57,6 @@ class ThermalStatic(Declared):
         return Title(f"{what} {self.symbol.motion} with {self.sensor}", self.symbol.link)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Kelvins above 20 degC."""
         return (driven(touches, self.sensor, 0.0, self.name),)
 
 
@@ -87,11 +86,10 @@ class Follows(Declared):
     column: Annotated[str, Argument("column of the user's own", _column)]
     step: float = scanned("1", _steps, default=1.0, continuous=False)
 
-    kind, usual = "follows", USUAL
+    kind, usual = "follows", USUAL_AMPLITUDE
 
     @cached_property
     def title(self) -> Title:
-        """With the column in words."""
         if self.column in (CYCLE, PROGRESS):
             how = "with every cycle" if self.column == CYCLE else "steadily over the cycles"
             return Title(f"{self.symbol.title} that grows {how}", self.symbol.link)
@@ -99,7 +97,6 @@ class Follows(Declared):
         return Title(f"{self.symbol.title} that follows {column}", self.symbol.link)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """The column in steps."""
         return (driven(touches, OWN + self.column, 0.0, self.name, self.step),)
 
 

@@ -23,7 +23,6 @@ class ThermalExpansion(Declared):
     parameters = (Parameter("amplitude", "1/K", 20e-6),)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """Kelvins above 20 degC times the reading."""
         return ((sensor_record(touches, self.sensor) - T_REF) * touches.reading(self.axis),)
 
 

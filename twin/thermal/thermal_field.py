@@ -1,9 +1,8 @@
-"""A body of the machine after every drive, at once and through a few lags, shrunk together.
+"""Response of a body of the machine to all drives, each at once and through lags, with one prior.
 
-Sensors of one machine share what they know. Picked one by one they stand in for each other, and
-which one is picked is chance; fitted together with one common prior each contributes a little,
-and their sum predicts. Time constants need not be searched: a lag between two of the fixed ones
-is nearly a mean of both.
+Sensors of one machine are correlated, so a choice of single ones is arbitrary. Fitted together with
+one common prior (ridge regression), each contributes a little and their sum predicts. Time
+constants are fixed: a lag between two of them is nearly a mean of both.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -11,7 +10,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from matstd.twin.fields import moving_axes, refusal
-from matstd.twin.machine import Chain
+from matstd.twin.machine import LETTERS, Chain
 from matstd.twin.model import Declared, Inner, Kind, Parameter, Term, Where
 from matstd.twin.record import Touches
 from matstd.twin.thermal.drive_columns import (
@@ -27,8 +26,6 @@ from matstd.twin.thermal.drive_columns import (
 from matstd.twin.units import MINUTE, UM, URAD
 
 USAGE = "thermal-field(axis,drive,...)"
-
-LETTERS = "XYZABC"
 
 LAGS = (4.0 * MINUTE, 16.0 * MINUTE, 64.0 * MINUTE, 256.0 * MINUTE)
 """Time constants, s, over the range of `thermal-lag`. A lag between two neighbours is
@@ -91,7 +88,6 @@ class ThermalField(Declared):
         return tuple(out)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        """Twists of the axis, one for every parameter."""
         link = touches.chain.link_index(self.axis)
         step = dict(zip(self._own, self.tuning.values(), strict=True))
         amounts = [driven(touches, d, tau, self.name, step.get(d, 1.0)) for d, tau in self.places]
@@ -106,16 +102,13 @@ class ThermalField(Declared):
         return [d for d in self.drives if is_own(d)]
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
-        """The steps of own columns."""
         return [step_inner(touches, d, f"step_{d.removeprefix(OWN)}") for d in self._own]
 
     def tuned(self, *values: float) -> "ThermalField":
-        """With these steps."""
         return replace(self, steps=tuple(map(float, values)))
 
     @property
     def tuning(self) -> Mapping[str, float]:
-        """The steps."""
         names = [f"step_{d.removeprefix(OWN)}" for d in self._own]
         return dict(zip(names, self.steps or [1.0] * len(names), strict=True))
 
@@ -135,7 +128,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> ThermalField:
 
 
 def propose(touches: Touches) -> Iterable[ThermalField]:
-    """None: a field is weighed against single effects by what it predicts, not found among them."""
+    """None: a field competes with single effects by its prediction error."""
     return ()
 
 

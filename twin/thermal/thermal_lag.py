@@ -81,23 +81,20 @@ class ThermalLag(Declared):
 
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
-        """The settled amplitude."""
         whole = self.sized("amplitude")
         return (Parameter("amplitude", *amplitude_unit(self.drive, whole.unit, whole.sd)),)
 
     def amounts(self, touches: Touches) -> Amounts:
-        """What has followed."""
         return (self.response(touches),)
 
     def response(self, touches: Touches) -> Array:
-        """What has followed of the drive at every touch, per unit of amplitude, (N,)."""
+        """Response to the drive at every touch, per unit of amplitude, (N,)."""
         if not self.drive:
             return -np.expm1(-touches.since_start / self.tau)
         return driven(touches, self.drive, self.tau, self.name, self.step)
 
     @property
     def searched(self) -> Sequence[str]:
-        """The time constant, and the step of an own column."""
         return ("tau", "step") if is_own(self.drive) else ("tau",)
 
 

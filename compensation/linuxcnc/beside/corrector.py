@@ -197,12 +197,7 @@ class Corrector:
     """Pins of the component, and what happens at every look at them."""
 
     def __init__(self, args: argparse.Namespace, component: Any) -> None:
-        """Make the pins.
-
-        Args:
-            args: Of the command line.
-            component: Of the module `hal`.
-        """
+        """Make the pins."""
         import hal
 
         self.args, self.component = args, component
@@ -246,6 +241,7 @@ class Corrector:
         )
         if answer is not None:
             self.quality = answer["quality"]
+            # a fading answer is not taken as new, so that the last correction ages and goes to zero
             if self.quality != "fading":
                 self.giver.answer(answer["correction"], now)
         never = (-1e9, 1e9)

@@ -61,7 +61,7 @@ def _report(args: argparse.Namespace, found: Comparison, arm: str) -> None:
     saved = found.saved
     say(comparison_sentence(found), style="bold")
     if found.learnt is not None and saved is not None:
-        for line in learnt_lines(found.learnt, saved.told):
+        for line in learnt_lines(found.learnt, saved.reported):
             say(line)
     elif saved is not None and saved.source.held_out_um > 0.0:
         say(promise_sentence(found, saved.source.held_out_um * UM, saved.left_out))

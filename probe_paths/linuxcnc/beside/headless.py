@@ -17,7 +17,7 @@ COMMAND = linuxcnc.command()
 ERRORS = linuxcnc.error_channel()
 
 
-def say(text: str) -> None:
+def report(text: str) -> None:
     """A line that is there at once, whatever happens next."""
     with open("headless.txt", "a", encoding="utf-8") as file:
         file.write(f"{text}\n")
@@ -77,14 +77,14 @@ def main() -> None:
     """All programs, or as many as run."""
     error = start()
     if error:
-        return say(f"stopped machine: {error}")
-    say("ready")
+        return report(f"stopped machine: {error}")
+    report("ready")
     for line in Path("programs.txt").read_text().splitlines():
         name, seconds = line.split()
         error = run(str(Path(name).resolve()), float(seconds))
         if error:
-            return say(f"stopped {name}: {error}")
-        say(f"done {name}")
+            return report(f"stopped {name}: {error}")
+        report(f"done {name}")
 
 
 if __name__ == "__main__":

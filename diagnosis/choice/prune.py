@@ -11,13 +11,12 @@ from matstd.twin.numbers import rms
 from matstd.twin.record import IntArray
 
 
-def needed(
+def prune_by_held_out_error(
     complement: ResidualSpace, effects: Sequence[ScaledEffect], groups: Sequence[IntArray]
 ) -> tuple[ScaledEffect, ...]:
-    """The set without effects that do not lower the error of blocks left out, the worst first.
+    """The set without effects that do not lower the error of left-out blocks, the worst first.
 
     Args:
-        complement: What the model without them leaves.
         effects: The set, at inner parameters found with all rows in use.
         groups: Rows of the run in every block; those not in use are passed over.
     """
@@ -44,7 +43,7 @@ def _error(complement: ResidualSpace, effects: Sequence[ScaledEffect]) -> float:
 
 
 def _renumbered(effects: Sequence[ScaledEffect]) -> tuple[ScaledEffect, ...]:
-    """No effect is a second one without a first."""
+    """The effects renumbered so that no second one exists without a first."""
     names = {s.effect.name for s in effects}
     out = []
     for sized in effects:

@@ -1,4 +1,4 @@
-"""Gross errors that fit once effects are found: foretold by them, or bending them?"""
+"""Outliers that found effects predict are taken back into the fit; those that bend it stay out."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,18 +11,16 @@ from matstd.diagnosis.regression import GrossErrors, shots
 from matstd.diagnosis.search.task import DiagnosisTask
 
 
-def foretold(task: DiagnosisTask, effects: Sequence[ScaledEffect], before: GrossErrors) -> Fit:
-    """The fit with effects, of whose gross errors before only those return that it foretells.
+def restore_predicted_outliers(
+    task: DiagnosisTask, effects: Sequence[ScaledEffect], before: GrossErrors
+) -> Fit:
+    """The fit with effects; outliers that the effects predict are taken back into it.
 
     Of an instrument that sees a target from afar (`shots`): a pose that its neighbours know little
     of, as the only one of an arm far out, bends an effect in all its coordinates until it fits. It
     returns if effects that were found without it, and fitted without it, say what it reads; where
     they merely do not contradict it, it stays out. Single touches return as they like: of a drift
     they are the first after a step, which what drives it explains.
-
-    Args:
-        effects: Everything that was found or added.
-        before: Gross errors beside the model without what was found.
     """
     whole = task.fit(effects)
     shot = shots(task.run.touches)

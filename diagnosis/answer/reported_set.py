@@ -1,9 +1,9 @@
-"""One set: what was tested is what is told, drawn and saved.
+"""One set: what was tested is what is reported, drawn and saved.
 
 A search tests effects at points of a grid, and then two things happen to them: their inner
-parameters are refined, and of effects that the run cannot tell apart the likeliest lends its name.
-Either makes another set. So the set that would be told is tested as it stands, every member beside
-the others; a name that does not stand there stays what it was, and is told beside the set.
+parameters are refined, and of effects that the run cannot distinguish the likeliest is named.
+Either makes another set. So the reported set is tested as it stands, every member beside the
+others; a name that fails there is not used, and is reported beside the set.
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,12 +26,12 @@ from matstd.diagnosis.search import (
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class ToldSet:
+class ReportedSet:
     """A set of effects with its tests.
 
     Attributes:
-        state: Of the search, its members the effects as they are told.
-        classes: What each cannot be told from, none of it in the set.
+        state: Of the search, its members the effects as reported.
+        classes: What each cannot be distinguished from, none of it in the set.
         tests: Of every member with the others in place, by the name of the effect.
     """
 
@@ -40,11 +40,11 @@ class ToldSet:
     tests: Mapping[str, Verified]
 
 
-def told_set(final: SearchState) -> ToldSet:
-    """The set of a search as it is told, tested.
+def reported_set(final: SearchState) -> ReportedSet:
+    """The set of a search as it is reported, with its tests.
 
     Inner parameters are the refined ones and names those of the likeliest members of every class,
-    as far as the set so made passes all tests; else the members of the search are told.
+    as far as the set so made passes all tests; else the members of the search are reported.
 
     Args:
         final: Result of the search; of a set that was chosen by prediction nothing is exchanged.
@@ -64,7 +64,7 @@ def told_set(final: SearchState) -> ToldSet:
             alike = alike.beside(state.effects[i], named)
         classes.append(replace(found.headed(state.effects[i]), alike=alike))
     names = {s.effect.name for s in state.effects}
-    return ToldSet(state, tuple(c.beside(names) for c in classes), tests)
+    return ReportedSet(state, tuple(c.beside(names) for c in classes), tests)
 
 
 def _refined(final: SearchState) -> tuple[SearchState, Mapping[str, Verified]]:

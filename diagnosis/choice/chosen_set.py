@@ -1,12 +1,12 @@
-"""The way that predicts best, followed: the set that was weighed is the set told and saved."""
+"""The way that predicts best, applied to all rows: the judged set is the set reported and saved."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from matstd.diagnosis.choice.prediction import SETS, Choice, ChoiceRule
-from matstd.diagnosis.choice.remembering import loudest
+from matstd.diagnosis.choice.noise_memory import max_noise
+from matstd.diagnosis.choice.prediction import MAX_SETS_PER_BLOCK, Choice, ChoiceRule
 from matstd.diagnosis.evidence import (
     Grid,
     Progress,
@@ -23,15 +23,15 @@ from matstd.diagnosis.residual import PatternTests, find_structure
 from matstd.diagnosis.search import DiagnosisTask, Library, Member, Search, SearchState
 from matstd.twin.model import Effect, columns, traits
 
-LISTED = 6
-"""Drives of a field that are told."""
+MAX_LISTED_DRIVES = 6
+"""Most drives of a field that are reported."""
 
-FEWEST = 30.0
-"""Independent observations that a run with a slow residual is taken to hold at least: a memory as
-long as the run has no length that the run could tell."""
+MIN_INDEPENDENT = 30.0
+"""Least number of independent observations assumed for a run with a slow residual. A memory as long
+as the run cannot be estimated from it."""
 
 
-def followed(
+def with_chosen_set(
     task: DiagnosisTask,
     added: tuple[ScaledEffect, ...],
     final: SearchState,
@@ -39,15 +39,7 @@ def followed(
     candidates: Sequence[Effect],
     progress: Progress = quiet,
 ) -> tuple[DiagnosisTask, SearchState]:
-    """The task with rows that count as independent observations, and the chosen set in it.
-
-    Args:
-        added: Effects that the user added.
-        final: Result of the search.
-        choice: Which way predicts best.
-        candidates: Effects that may be found, for what cannot be told apart.
-        progress: Told of every stage.
-    """
+    """The task with rows that count as independent observations, and the chosen set in it."""
     gross, best = final.base.gross, choice.best
     task = replace(task, memory=None)
     plain = task.fit((*added, *best.effects), gross)
@@ -61,7 +53,7 @@ def followed(
     chosen = search.evaluate(members)
     smooth = PatternTests(chosen.effects.complement)
     left = find_structure(chosen.effects, progress, smooth)
-    if not left and plain.noise.factor > loudest(best.effects):
+    if not left and plain.noise.factor > max_noise(best.effects):
         left = list(final.left or final.nameless)
     shrunk = {s.effect.name: _chance(choice) for s in effects if _is_shrunk(s)}
     nothing = find_structure(search.evaluate(()).effects, progress, smooth)
@@ -85,7 +77,7 @@ def _slow(memory: Memory | None, rows: int) -> Memory | None:
     """A memory by which rows count, not by which they are filtered."""
     if memory is None:
         return None
-    most = max(rows / FEWEST, 1.0)
+    most = max(rows / MIN_INDEPENDENT, 1.0)
     correlation = min(memory.correlation, (most - 1.0) / (most + 1.0))
     return replace(memory, correlation=correlation, is_filtered=False) if correlation > 0 else None
 
@@ -135,15 +127,11 @@ def field_shares(fit: Fit, effect: Effect) -> FieldShares:
     drives = dict.fromkeys(own.parameter_drives)
     sizes = {d: float(np.std(C[:, places == d].sum(axis=1))) for d in drives}
     ranked = sorted(sizes.items(), key=lambda item: -item[1])
-    return FieldShares(own.axis, tuple(ranked[:LISTED]))
+    return FieldShares(own.axis, tuple(ranked[:MAX_LISTED_DRIVES]))
 
 
 def choice_remarks(choice: Choice, found: Sequence[Effect]) -> tuple[Remark, ...]:
-    """Every way of a choice with its plain error of blocks left out, and a limit that was met.
-
-    Args:
-        found: What came of it with all rows in use.
-    """
+    """Every way of a choice with its plain error of blocks left out, and a limit that was met."""
     tried = tuple((rule.name, rule.error) for rule in choice.rules)
-    told = ChosenByPrediction(choice.best.name, choice.blocks, tried, is_empty=not found)
-    return (told, SearchEnded(SETS)) if choice.is_ended else (told,)
+    chosen = ChosenByPrediction(choice.best.name, choice.blocks, tried, is_empty=not found)
+    return (chosen, SearchEnded(MAX_SETS_PER_BLOCK)) if choice.is_ended else (chosen,)

@@ -3,7 +3,7 @@
 A residual that wanders from touch to touch looks like structure in time to every test made for
 white noise. It is called noise with memory only where that explains the run better than effects and
 patterns in white noise do, where the run holds many times its memory, and where it is not much
-larger than what is stated; else it is a cause that nobody has named yet.
+larger than what is stated; else it is a cause without a name yet.
 """
 
 from collections.abc import Sequence
@@ -13,25 +13,25 @@ import numpy as np
 
 from matstd.diagnosis.evidence import Progress, ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.regression import CLEARLY, GrossErrors, Memory, likely_memory
+from matstd.diagnosis.regression import MIN_GAIN_MEMORY, GrossErrors, Memory, likely_memory
 from matstd.diagnosis.search import DiagnosisTask, SearchState, search_until_stable
 from matstd.twin.model import Effect
 
-FEWEST = 15.0
+MIN_INDEPENDENT = 15.0
 """Independent observations that a run must hold for its memory to be known: the length of a memory
 is uncertain by about the root of two over their number, 37 % here."""
 
-LOUDEST = 3.0
-"""Noise over stated noise from which what wanders is no noise of the instrument."""
+MAX_NOISE = 3.0
+"""Noise over stated noise above which a wandering residual is not noise of the instrument."""
 
-LOUD_ALONE = 2.0
-"""The same where no effect is found beside it: users misjudge their noise by less, and an error
-that follows the order of probing looks just like it."""
+MAX_NOISE_ALONE = 2.0
+"""The same if no effect is found beside it. Users misjudge their noise by less, and an error that
+follows the order of probing looks the same."""
 
-TURNS = 3
+MAX_TURNS = 3
 """Searches in which effects and memory settle beside one another."""
 
-SETTLED = 0.1
+SETTLED_CHANGE = 0.1
 """Change of a memory, as atanh of its correlation, below which it has settled: its uncertainty in a
 run of a hundred touches."""
 
@@ -43,41 +43,34 @@ def memory_of(fit: Fit) -> tuple[Memory, float]:
 
 def is_noise(memory: Memory, rows: int) -> bool:
     """Whether a run of so many rows holds enough of a memory to call it one of the noise."""
-    return rows >= FEWEST * memory.per_independent
+    return rows >= MIN_INDEPENDENT * memory.per_independent
 
 
-def remembered(
+def with_noise_memory(
     task: DiagnosisTask,
     added: tuple[ScaledEffect, ...],
     final: SearchState,
     candidates: Sequence[Effect],
     progress: Progress = quiet,
 ) -> tuple[DiagnosisTask, SearchState]:
-    """The task and its result with memory in the noise, or as they were where there is none.
+    """The task and its result with memory in the noise, or unchanged where there is none.
 
     Memory and effects settle beside one another: beside too few effects what they do passes for a
-    memory, beside too many those mop it up.
-
-    Args:
-        task: What is diagnosed, noise white.
-        added: Effects that the user added.
-        final: Its result.
-        candidates: Effects that may be found.
-        progress: Told of every stage.
+    memory, beside too many they absorb it.
     """
     best = (_evidence(final), task, final)
     tried = [0.0]
     for beside in _beside(final):
         effects = beside
-        for _ in range(TURNS):
+        for _ in range(MAX_TURNS):
             memory = memory_beside(task, (*added, *effects), final.base.gross)
             at = 0.0 if memory is None else float(np.arctanh(memory.correlation))
-            if memory is None or min(abs(at - t) for t in tried) < SETTLED:
+            if memory is None or min(abs(at - t) for t in tried) < SETTLED_CHANGE:
                 break
             tried.append(at)
             other = replace(task, memory=memory)
             found = search_until_stable(other, added, candidates, progress)
-            if found.base.noise.factor > loudest(found.effects):
+            if found.base.noise.factor > max_noise(found.effects):
                 break
             best = max(best, (_evidence(found), other, found), key=lambda b: b[0])
             effects = found.effects
@@ -95,16 +88,16 @@ def _beside(final: SearchState) -> list[tuple[ScaledEffect, ...]]:
 def memory_beside(
     task: DiagnosisTask, effects: Sequence[ScaledEffect], gross: GrossErrors | None = None
 ) -> Memory | None:
-    """Memory of the noise beside some effects; None where there is none that the run can tell."""
+    """Memory of the noise beside some effects; None where the run does not determine one."""
     fit = replace(task, memory=None).fit(effects, gross)
     memory, gain = memory_of(fit)
-    is_told = gain >= CLEARLY and is_noise(memory, int(fit.used.sum()))
-    return memory if is_told and fit.noise.factor <= LOUDEST else None
+    is_determined = gain >= MIN_GAIN_MEMORY and is_noise(memory, int(fit.used.sum()))
+    return memory if is_determined and fit.noise.factor <= MAX_NOISE else None
 
 
-def loudest(effects: Sequence[ScaledEffect]) -> float:
-    """Noise over stated noise that may be noise beside what was found."""
-    return LOUDEST if effects else LOUD_ALONE
+def max_noise(effects: Sequence[ScaledEffect]) -> float:
+    """Largest noise over stated noise that counts as noise beside the found effects."""
+    return MAX_NOISE if effects else MAX_NOISE_ALONE
 
 
 def _evidence(final: SearchState) -> float:

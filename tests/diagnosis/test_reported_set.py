@@ -8,12 +8,12 @@ import pytest
 from simulator_case import simulate_case
 
 from matstd.cli import main
-from matstd.diagnosis.answer import one_set
+from matstd.diagnosis.answer import reported_set as reporting
 from matstd.diagnosis.answer.ambiguity import ConfusionClass, Rival
 from matstd.diagnosis.answer.collinear import left_by
-from matstd.diagnosis.answer.one_set import told_set, with_members
-from matstd.diagnosis.choice.following import choice_remarks
-from matstd.diagnosis.choice.prediction import SETS, Choice, ChoiceRule
+from matstd.diagnosis.answer.reported_set import reported_set, with_members
+from matstd.diagnosis.choice.chosen_set import choice_remarks
+from matstd.diagnosis.choice.prediction import MAX_SETS_PER_BLOCK, Choice, ChoiceRule
 from matstd.diagnosis.files.diagnosis_file import choice_table
 from matstd.diagnosis.files.model_file import read_model
 from matstd.diagnosis.files.model_writer import write_model
@@ -50,7 +50,7 @@ def searched(case, key, names):
 
 def test_refined_effects_are_tested_as_they_are_told(case) -> None:
     _, final = searched(case, LAG, ["thermal-lag(EXC)", "backlash(X)"])
-    tested = told_set(final)
+    tested = reported_set(final)
     (told,) = tested.state.effects
     (member,) = tested.state.chosen.members
     assert member.effect is told.effect
@@ -71,8 +71,8 @@ def test_a_name_that_does_not_stand_is_not_told(case, monkeypatch) -> None:
     def headed(pool, found, others, fixed=None):
         return ConfusionClass(other, (), ())
 
-    monkeypatch.setattr(one_set, "confusion_class", headed)
-    tested = told_set(final)
+    monkeypatch.setattr(reporting, "confusion_class", headed)
+    tested = reported_set(final)
     assert [s.effect.name for s in tested.state.effects] == ["thermal-lag(EXC)"]
     assert [c.effect.name for c in tested.classes] == ["thermal-lag(EXC)"]
     assert [r.effect.name for r in tested.classes[0].rivals] == ["backlash(X)"]
@@ -89,8 +89,8 @@ def test_no_effect_stands_twice_when_two_classes_want_one_head(case, monkeypatch
         assert found.effect.name not in {o.effect.name for o in others}
         return ConfusionClass(found, (Rival(wanted, 0.0, 1.0),), ())
 
-    monkeypatch.setattr(one_set, "confusion_class", headed)
-    tested = told_set(final)
+    monkeypatch.setattr(reporting, "confusion_class", headed)
+    tested = reported_set(final)
     told = [s.effect.name for s in tested.state.effects]
     assert sorted(told) == sorted(set(told)) == ["backlash(Y)", "stylus-bending"]
     rivals = {r.effect.name for c in tested.classes for r in c.rivals}
@@ -202,7 +202,7 @@ def test_every_figure_can_be_had_again_from_the_model(folder, tmp_path, capsys, 
     for text in (shown, page.replace("\u00a0", " ").replace("&nbsp;", " ")):
         assert f"fitted {step['rms_um']:.3f} µm, held out {step['test_rms_um']:.3f} µm" in text
     saved = read_model(model)
-    numbers = saved.told[step["effect"]]
+    numbers = saved.reported[step["effect"]]
     assert {n.name: n.value for n in numbers} == pytest.approx(step["parameters"], rel=1e-5)
     for words in number_words(numbers):
         assert " ".join(words) in shown
@@ -252,7 +252,7 @@ def test_ways_of_a_choice_are_told_with_the_limit_that_was_met() -> None:
     told, ended = choice_remarks(choice, [])
     plain = np.sqrt((10 * 3.0**2 + 30 * 4.0**2) / 40)
     assert [error / UM for _, error in told.tried] == pytest.approx([plain, 1.0])
-    assert ended == SearchEnded(SETS)
+    assert ended == SearchEnded(MAX_SETS_PER_BLOCK)
     assert len(choice_remarks(replace(choice, is_ended=False), [])) == 1
     table = choice_table(choice)
     assert (table["chosen"], table["blocks"]) == ("single effects", 2)
@@ -269,6 +269,6 @@ def test_rivals_of_a_large_effect_are_told(case) -> None:
     task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
     alike = [f"thermal-lag(EZ{axis})" for axis in "XYZ"]
     library = [parse_effect(n, start.chain) for n in [*alike, "thermal-lag(EXC)", "backlash(X)"]]
-    tested = told_set(search_until_stable(task, (), library))
+    tested = reported_set(search_until_stable(task, (), library))
     growth = next(c for c in tested.classes if c.effect.name in alike)
     assert {growth.effect.name, *(r.effect.name for r in growth.rivals)} == set(alike)
