@@ -148,5 +148,5 @@ def test_a_sag_of_a_feature_that_there_is_not_is_refused(standard, tmp_path):
     head, there, tail = text.partition("[sag")
     path = tmp_path / "bad.toml"
     path.write_text(head + there + tail.replace("FF1", "NONE"))
-    with pytest.raises(BadFile, match=r"sag\.um\.NONE: found .NONE., expected one of FF1"):
+    with pytest.raises(BadFile, match=r"sag\.um\.NONE: found NONE, expected one of FF1"):
         read_standard(path)
