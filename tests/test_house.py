@@ -57,7 +57,7 @@ KERNEL = {
 MAX_FILES = 16
 MAX_LINES = 400
 MAX_CODE = 60
-FACE = range(3, 27)
+FACE = range(2, 27)
 """Names of a face."""
 UNIT = re.compile(r"µm|µrad|°|\b(?:mm|min|degC)\b")
 CARDS = {"formula", "units", "typical", "source", "summary"}
