@@ -1,23 +1,23 @@
-"""Designs a freeform material standard for a machine, and knows everything of it but its CAD.
+"""Designs a freeform material standard for a machine; its CAD model is made in `cad_out`.
 
 A standard is one body: balls on posts, whose touches identify the machine, freeform faces on
 pillars, whose touches prove the model, and a datum plane. From a project (the machine, its probe,
-the user's workspace, the errors that are expected, a blank and its limits) `design_standard` makes
-the body and chooses the touches on it:
+the user's workspace, the expected errors, a blank and its limits) `design_standard` designs the
+body and chooses the touches on it:
 
     project.toml -> read_project -> Brief (machine, probe, workshop, blank, expected errors, wishes)
-    Brief -> feasibility -> table poses, or what stands against it and the nearest wishes
+    Brief -> feasibility -> table poses, or the binding limit and the nearest feasible requests
     Brief, table poses -> design_standard -> Placement
     Placement = Standard, Requests, Criterion, rivals, certificate
-    Placement -> identifiability_report -> what the touches can and cannot know
-    Standard -> write_standard -> standard.toml, which CAD and probing programs start from
+    Placement -> identifiability_report -> what the touches can and cannot determine
+    Standard -> write_standard -> standard.toml, the input of CAD and probing programs
 
-Places for balls and for random smooth faces lie all over the blank (`layout`); every touch that the
-machine can make on them (`reach`) is a row of information (`worth`); balls, faces, table poses and
-touches are chosen from the rows (`place`) and judged beside other artefacts (`compare`). A new kind
-of face, body or limit goes into `body`, a new key of the project into `brief`, a rival artefact
-into `layout`, a hindrance for the probe into `reach`, for its place on the table into `seat`, a
-criterion into `worth`.
+Candidate balls and random smooth faces are spread over the blank (`layout`). Every touch that the
+machine can make on them (`reach`) is a row of information (`worth`). Balls, faces, table poses and
+touches are chosen from these rows (`place`) and compared with other artefacts (`compare`). A new
+kind of face, body or limit goes into `body`, a new key of the project into `brief`, a rival
+artefact into `layout`, a new obstacle to the probe into `reach`, a new check of the position on the
+table into `seat`, a criterion into `worth`.
 """
 
 PARTS = (
@@ -33,4 +33,4 @@ PARTS = (
     "compare",
     "place",
 )
-"""From bottom to top: each imports only from those before it."""
+"""From bottom to top: a part imports only from those before it."""

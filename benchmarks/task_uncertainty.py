@@ -23,14 +23,14 @@ import numpy as np
 
 from matstd.artefact.body import Standard, read_standard
 from matstd.artefact.brief import Brief, Task, read_project
-from matstd.artefact.certify import like_task, misplaced, on_faces
+from matstd.artefact.certify import displaced_features, like_task, on_faces
 from matstd.artefact.worth import Calibration
 from matstd.diagnosis.fit import Prior, fit_run
 from matstd.diagnosis.task import Visits, task_uncertainty
 from matstd.probe_paths.campaign import check_moves, visits
 from matstd.probe_paths.control import ReadProgram, read_program
 from matstd.sensitivity.population import drawn_errors
-from matstd.stages.budgets import CLAMPED, PLAIN, places_of
+from matstd.stages.budgets import CLAMPING_SCATTER, UNCORRECTED, places_of
 from matstd.stages.design import _twin
 from matstd.twin.effects import setup_errors
 from matstd.twin.frames import Array, pose, rotation
@@ -40,7 +40,7 @@ from matstd.twin.record import Run, Touches
 
 RESULTS = 400  # on workpieces, a machine
 LEARNT = "with the identified model"
-NAMES = (PLAIN, LEARNT)
+NAMES = (UNCORRECTED, LEARNT)
 _KEYS = ("deviation", "face", "pose", "region", "shared")
 
 
@@ -122,17 +122,17 @@ def machine(
 ) -> dict[str, Measured]:
     """What one machine's visits found, and its errors on workpieces, by what corrects results."""
     truth = drawn_errors(brief.population, rng)
-    true, twin = misplaced(standard, known, rng), _twin(brief, truth)
+    true, twin = displaced_features(standard, known, rng), _twin(brief, truth)
     stands = [
         replace(twin, setup_error=pose(rotation(rng.normal(0.0, b, 3)), rng.normal(0.0, a, 3)))
-        for a, b in [CLAMPED] * number
+        for a, b in [CLAMPING_SCATTER] * number
     ]
     runs = [c.run for c in visits(programs, true, stands, rng, calibrated=standard)]
     held_back = np.where(on_faces(standard, runs[0].touches), "test", "train")
     fit = fit_run(replace(runs[0], split=held_back), brief.population.expected())
     count = len(fit.model.parameters)
     models = {
-        PLAIN: None,
+        UNCORRECTED: None,
         LEARNT: (fit.model, Prior(fit.theta[:count], np.zeros((count, count)))),
     }
     found = places_of(runs, standard, known, Task(), models)

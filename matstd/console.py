@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
     from matstd.twin.machine import Chain
 
-WIDE = 120
+DEFAULT_WIDTH = 120
 """Letters of a line where neither a terminal nor COLUMNS says how wide it is."""
 
 
@@ -21,7 +21,7 @@ def console() -> "Console":
 
     out = Console(highlight=False)
     is_said = out.is_terminal or "COLUMNS" in os.environ
-    return out if is_said else Console(highlight=False, width=WIDE)
+    return out if is_said else Console(highlight=False, width=DEFAULT_WIDTH)
 
 
 def say(text: str, style: str | None = None) -> None:

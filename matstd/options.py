@@ -34,7 +34,6 @@ def add_output(parser: argparse.ArgumentParser, name: str = "OUT", force: str = 
     """The options -o and --force.
 
     Args:
-        parser: Of the command.
         name: Of what is written: `RUN.csv`; a folder is `OUT`.
         force: Help of --force where it is not the usual.
     """
@@ -77,7 +76,6 @@ def add_measured(parser: argparse.ArgumentParser, without: str) -> None:
     """What compare and diagnose have in common.
 
     Args:
-        parser: Of the command.
         without: What it does without a model, for the help.
     """
     add_start(parser, without)
@@ -125,7 +123,6 @@ def add_start(parser: argparse.ArgumentParser, without: str) -> None:
     """The options --model and --start.
 
     Args:
-        parser: Of the command.
         without: What it does without a model, for the help.
     """
     parser.add_argument("--model", metavar="MODEL.toml", help=f"model of an earlier run; {without}")

@@ -22,7 +22,7 @@ PERIOD = 10.0
 """Seconds between two lines where there is no terminal."""
 
 
-STEADY = 1.2
+TIME_LEFT_TOLERANCE = 1.2
 """Times the time left that was last shown, up to which a new estimate counts as the same."""
 
 
@@ -54,7 +54,7 @@ class _State:
             return None
         whole = (self.reported - self.since) * self.total / self.done
         left = self.since + whole - now
-        if not 0.0 < left <= STEADY * self.shown:
+        if not 0.0 < left <= TIME_LEFT_TOLERANCE * self.shown:
             return None
         self.shown = min(left, self.shown)
         return self.shown

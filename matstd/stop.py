@@ -12,7 +12,7 @@ from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
-STOPPED = 130
+EXIT_STOPPED = 130
 """Exit code of a command that was asked to stop."""
 
 _LAST_WORDS = threading.Lock()
@@ -114,7 +114,7 @@ def leave() -> NoReturn:
     cursor = "\x1b[?25h" if sys.stderr.isatty() else ""  # bars of progress hide it
     text = f"{cursor}matstd{command}: stopped, and nothing half-written is left"
     print(text, file=sys.stderr, flush=True)
-    os._exit(STOPPED)
+    os._exit(EXIT_STOPPED)
 
 
 def _begun(module: str, name: str) -> tuple[Path, ...]:

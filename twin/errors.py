@@ -122,7 +122,7 @@ def _short(value: object, most: int = 120) -> str:
 
 
 class BadFile(DesignError, ValueError):
-    """A file that says something else than it should.
+    """A file with unexpected content.
 
     Args:
         where: The line or key.

@@ -7,7 +7,7 @@ from matstd.twin.units import UM
 
 
 def significant(value: float, digits: int = 6) -> float:
-    """A number rounded to so many significant digits: more of them would be rounding.
+    """A number rounded to significant digits.
 
     Example:
         >>> significant(0.012345678), significant(1234.5678, digits=4)
@@ -17,7 +17,7 @@ def significant(value: float, digits: int = 6) -> float:
 
 
 def in_um(value: float, places: int = 3) -> float:
-    """A length in mm as µm, rounded to so many places and without a minus before a zero.
+    """A length in mm as µm, rounded to decimal places, without negative zero.
 
     Example:
         >>> in_um(0.0123456), in_um(-1e-9)

@@ -1,8 +1,8 @@
-"""What a standard is: faces, spheres, body, limits and file, and what a moving ball meets on it.
+"""The standard: faces, spheres, body, limits and file, and the first contact of a moving ball.
 
-In: control nets and places of faces, or a `standard.toml`. Out: a `Standard` whose surfaces answer
-for points, normals and curvatures, whose bodies answer for distances, and whose `constraints` are
-numbers. A new kind of face implements `Surface`; a new limit is one more yield in `limits`.
+In: control nets and places of faces, or a `standard.toml`. Out: a `Standard` whose surfaces return
+points, normals and curvatures, whose bodies return distances, and whose `constraints` are numbers.
+A new kind of face implements `Surface`; a new limit is one more yield in `limits`.
 """
 
 from matstd.artefact.body.datum import DatumSphere, MountingHole, outline_distance

@@ -86,14 +86,12 @@ class DatumSphere:
         return np.where((length > 0.0)[:, None], np.column_stack([azimuth, elevation]), np.nan)
 
     def is_bare(self, uv: Array) -> Mask:
-        """Whether the ball itself is there, not its stem."""
-        bare: Mask = rows(uv)[:, 1] >= self.rim
-        return bare
+        """Whether the surface is that of the ball and not of its stem."""
+        return rows(uv)[:, 1] >= self.rim
 
     def contains(self, uv: Array) -> Mask:
         """Whether the point stays `STEM_CLEARANCE` away from the rim of the stem."""
-        free: Mask = rows(uv)[:, 1] >= self.rim + STEM_CLEARANCE
-        return free
+        return rows(uv)[:, 1] >= self.rim + STEM_CLEARANCE
 
     def contact(self, start: Array, direction: Array, radius: float) -> Hit:
         """First contact of a moving ball, closed form: ``|start + t d - c| = r + radius``."""
@@ -109,7 +107,6 @@ class DatumPlane:
     """The finished top face of the base, normal +z; its parameters are x and y.
 
     Attributes:
-        name: Feature name, DATUM_A.
         height: Of the face, artefact frame, mm.
         half_size: Half sides of its outline, mm.
         corner_radius: Of its outline, mm.
@@ -138,12 +135,11 @@ class DatumPlane:
         return rows(points)[:, :2].copy()
 
     def contains(self, uv: Array) -> Mask:
-        """Whether (x, y) lies within the outline; what stands on the face is not looked at."""
-        inside: Mask = outline_distance(rows(uv), self.half_size, self.corner_radius) <= 0.0
-        return inside
+        """Whether (x, y) lies within the outline; bodies on the face are ignored."""
+        return outline_distance(rows(uv), self.half_size, self.corner_radius) <= 0.0
 
     def contact(self, start: Array, direction: Array, radius: float) -> Hit:
-        """First contact of a moving ball: its centre comes down to ``height + radius``."""
+        """First contact of a moving ball: its centre descends to ``height + radius``."""
         p = rows(start)
         d = unit(rows(direction, len(p)))
         fall = np.where(d[:, 2] < 0.0, d[:, 2], np.nan)
@@ -194,5 +190,4 @@ def outline_distance(xy: Array, half_size: tuple[float, float], corner_radius: f
     """
     beyond = np.abs(xy) - (np.asarray(half_size) - corner_radius)
     outside = np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
-    distance: Array = outside + np.minimum(beyond.max(axis=1), 0.0) - corner_radius
-    return distance
+    return outside + np.minimum(beyond.max(axis=1), 0.0) - corner_radius

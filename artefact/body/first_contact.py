@@ -1,4 +1,8 @@
-"""What a moving ball meets first on a whole standard: face, trimmed edge, column, stem or base."""
+"""First contact of a moving ball with a whole standard: face, trimmed edge, column, stem or base.
+
+Every surface is asked separately for its contact with the ball on its exact shape; of all contacts
+the earliest wins (`_Race`). Bounding spheres exclude most pairs of ball and feature beforehand.
+"""
 
 from dataclasses import dataclass
 
@@ -13,13 +17,13 @@ from matstd.twin.frames import Array, apply, turn, unit
 from matstd.twin.units import NM
 
 _EDGE_PITCH = 0.5  # mm, of the samples of a trimmed edge
-_PIECE = 16  # samples of an edge that are looked at as one
-_BLOCK = 2_000_000  # numbers held at once while edges are searched
+_PIECE = 16  # samples of an edge that share one bounding sphere
+_BLOCK = 2_000_000  # numbers in memory at once during the search of the edges
 
 
 @dataclass(frozen=True, eq=False)
 class Contact:
-    """What each of N moving balls meets first.
+    """First contact of each of N moving balls.
 
     Attributes:
         feature: Name of the feature or body, (N,); empty where nothing is met.
@@ -39,13 +43,12 @@ class Contact:
 
     @property
     def is_surface(self) -> Mask:
-        """Where a surface is met, and not an edge, a side or nothing."""
-        mask: Mask = self.meeting == Meeting.SURFACE
-        return mask
+        """Whether a surface is met, not an edge or a side."""
+        return self.meeting == Meeting.SURFACE
 
 
 class _Race:
-    """Keeps, for every ball, whatever it meets first."""
+    """Keeps the earliest contact of every ball."""
 
     def __init__(self, count: int) -> None:
         self.travel = np.full(count, np.inf)
@@ -56,7 +59,7 @@ class _Race:
     def offer(
         self, travel: Array, name: str, meeting: Meeting, index: np.ndarray, uv: Array | None = None
     ) -> None:
-        """Enter a contact of the balls `index` after `travel`; earlier ones stay."""
+        """Enter contacts of the balls `index` after `travel`; earlier contacts stay."""
         won = travel < self.travel[index]
         rows_won = index[won]
         self.travel[rows_won] = travel[won]
@@ -74,19 +77,16 @@ def contact(
 ) -> Contact:
     """First contact of moving balls with the whole standard, on its exact shapes.
 
-    Faces are B-splines and spheres, never a mesh. A trimmed edge, a side wall, a stem, a hole,
-    the core and the base take part, so that a touch on them is reported and not taken for one
-    on a face. Edges are found to better than a micrometre, all else to `CONTACT_TOLERANCE`.
+    Faces are B-splines and spheres, never a mesh. Trimmed edges, side walls, stems, holes, the
+    core and the base are included, so that a touch on them is not mistaken for one on a face.
+    Edges are found to better than a micrometre, all else to `CONTACT_TOLERANCE`.
 
     Args:
         standard: In the artefact frame.
         start: Ball centres, shape (N, 3), artefact frame, mm.
         direction: Of travel, shape (N, 3) or (3,).
         radius: Of the ball, mm.
-        travel: Longest way looked at, mm; one for all or (N,).
-
-    Returns:
-        The first contact of every ball.
+        travel: Longest travel that is searched, mm; one for all or (N,).
     """
     p = rows(start).astype(np.float64)
     d = np.array(unit(rows(direction, len(p))))
@@ -164,19 +164,18 @@ def _meet_patch(
 
 
 def _aims_at_face(patch: FreeformPatch, p: Array, d: Array, travel: Array) -> Mask:
-    """Balls that end well over the face, away from its border: there Newton must succeed."""
+    """Balls that end over the face, 3 mm inside its border: there Newton must succeed."""
     end = p + np.where(np.isfinite(travel), travel, 0.0)[:, None] * d
     local = apply(patch.T_patch_artefact, end)
-    over: Mask = np.all(np.abs(local[:, :2]) < np.asarray(patch.half_size) - 3.0, axis=1)
-    return over
+    return np.all(np.abs(local[:, :2]) < np.asarray(patch.half_size) - 3.0, axis=1)
 
 
 def _edge_entry(patch: FreeformPatch, p: Array, d: Array, radius: float, latest: Array) -> Array:
     """Travel to the trimmed edge, (N,), mm; inf where it is missed, or met after the latest travel.
 
     The travel to the samples of each edge is refined by the vertex of the parabola through the
-    earliest three and evaluated there, on the edge itself. Balls that meet none of a few larger
-    ones round the samples in time are not looked at closely.
+    earliest three and evaluated there, on the edge itself. Balls that meet no bounding sphere of
+    the samples in time are skipped.
     """
     best = np.full(len(p), np.inf)
     for fixed in (0, 1):
@@ -256,7 +255,7 @@ def _corner_entry(patch: FreeformPatch, p: Array, d: Array, radius: float) -> Ar
     flat = np.where(moving[:, None], d[:, :2] / np.where(moving, across, 1.0)[:, None], [1.0, 0.0])
     for x in (-patch.half_size[0], patch.half_size[0]):
         for y in (-patch.half_size[1], patch.half_size[1]):
-            # Seen along the edge the ball is a disc that meets a point.
+            # In the plane across the edge the ball is a disc that meets a point.
             travel = sphere_entry(np.array([x, y]), p[:, :2], flat, radius)
             travel = travel / np.where(moving, across, 1.0)
             reached = moving & np.isfinite(travel) & (travel >= 0.0)
@@ -281,7 +280,7 @@ def _meet_sphere(
 
 
 def _meet_base(race: _Race, standard: Standard, p: Array, d: Array, radius: float) -> None:
-    """The base: its upper face is the datum plane, a bore or the hole behind it a side."""
+    """The base: its upper face counts as the datum plane, a bore or hole in it as a side."""
     everyone = np.arange(len(p))
     plane = standard.plane
     travel = entry(standard.base.body, p, d, radius)

@@ -14,17 +14,17 @@ from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array, apply, inverse, turn, unit
 
 OVERHANG = 6.0
-"""How far the spline reaches beyond the trimmed rectangle on every side, mm: room for the trim."""
+"""Extension of the spline beyond the trimmed rectangle on every side, mm."""
 
 LEAST_OVERHANG = 1.0
-"""What a patch from elsewhere must have of it at least, mm."""
+"""Smallest extension of a patch that is read from a file, mm."""
 
 _GRID_PITCH = 2.0  # of the start grid, mm; finer than half the smallest concave radius allowed
-_BLOCK = 4_000_000  # numbers held at once while a start point is sought
+_BLOCK = 4_000_000  # numbers in memory at once during the search of start points
 
 
 class ErrorShare(NamedTuple):
-    """One error parameter that a patch is for, and its share of the patch's signal (0 to 1)."""
+    """An error parameter that a patch reveals, and its share of the patch's signal (0 to 1)."""
 
     name: str
     share: float
@@ -47,7 +47,7 @@ class FreeformPatch:
         knots_v: Shape (nv + kv + 1,), mm.
         heights: Control heights, shape (nu, nv), mm.
         depth: How far the column runs back along -z of the patch frame, mm.
-        errors: The error parameters this patch is for.
+        errors: Error parameters that this patch reveals.
     """
 
     name: str
@@ -80,10 +80,10 @@ class FreeformPatch:
         return apply(self.T_artefact_patch, np.stack([x, y, self.heights], axis=-1))
 
     def scaled(self, k: float) -> "FreeformPatch":
-        """The face of a body all of whose lengths from its origin are k times as large."""
+        """The patch of a body scaled by k about its origin."""
         T = self.T_artefact_patch.copy()
         T[:3, 3] *= k
-        # a smaller face needs the whole overhang all the same
+        # the overhang is not scaled: a smaller face needs the whole of it
         u, v = (k * a - max(0.0, 1.0 - k) * LEAST_OVERHANG for a in self.half_size)
         return replace(
             self,
@@ -101,7 +101,7 @@ class FreeformPatch:
 
     @property
     def is_upright(self) -> bool:
-        """Whether its column is upright and parallel to the sides of the base: a pillar."""
+        """Whether its column is upright and parallel to the sides of the base (a pillar)."""
         return bool(np.abs(self.T_artefact_patch[:3, :3] - np.eye(3)).max() < 1e-12)
 
     @cached_property
@@ -114,7 +114,7 @@ class FreeformPatch:
         return jet(self.knots_u, self.knots_v, self.degree, self.heights, rows(uv))
 
     def height(self, uv: Array) -> Array:
-        """Height alone, at uv (N, 2), (N,), mm: three times as fast as `jet`."""
+        """Height at uv (N, 2), (N,), mm; three times as fast as `jet`."""
         return height(self.knots_u, self.knots_v, self.degree, self.heights, rows(uv))
 
     def point(self, uv: Array) -> Array:
@@ -137,11 +137,10 @@ class FreeformPatch:
 
     def contains(self, uv: Array) -> Mask:
         """Whether uv (N, 2) lies on the trimmed face; nan does not."""
-        inside: Mask = np.all(np.abs(rows(uv)) <= np.asarray(self.half_size), axis=1)
-        return inside
+        return np.all(np.abs(rows(uv)) <= np.asarray(self.half_size), axis=1)
 
     def grid(self, pitch: float = _GRID_PITCH, beyond: float = 0.0) -> Array:
-        """Parameters of a regular grid over the trimmed face and so far beyond it, (N, 2)."""
+        """Parameters of a regular grid over the face, extended by `beyond` mm, (N, 2)."""
         half = [a + beyond for a in self.half_size]
         axes = [np.linspace(-a, a, int(np.ceil(2 * a / pitch)) + 1) for a in half]
         return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
@@ -164,10 +163,10 @@ class FreeformPatch:
     def contact(self, start: Array, direction: Array, radius: float) -> Hit:
         """First contact of a moving ball: ``S(u, v) + radius n(u, v) = start + t d``, by Newton.
 
-        The start is the node of a grid over the trimmed face that the ball would meet first, so
-        the first of several contacts is found. The search may end beyond the trimmed face, on
-        the spline's overhang: ask `contains`. Unique where the smallest concave radius exceeds
-        the ball's.
+        The search starts at the node of a grid over the trimmed face that the ball meets first, so
+        that it finds the first of several contacts. It may end beyond the trimmed face, on the
+        overhang of the spline: check with `contains`. The contact is unique where the smallest
+        concave radius exceeds that of the ball.
 
         Args:
             start: Ball centres, shape (N, 3), artefact frame, mm.
@@ -190,18 +189,18 @@ class FreeformPatch:
         return Hit(hit_uv, hit_travel)
 
     def contact_start(self, start: Array, direction: Array, radius: float) -> Hit:
-        """Node of the grid that each ball meets first; infinite travel where it meets none."""
+        """Grid node that each ball meets first; infinite travel where it meets none."""
         uv, nodes, centre, reach = self._nodes
         d = unit(rows(direction, len(start)))
         best, travel = np.zeros(len(start), dtype=int), np.full(len(start), np.inf)
-        # A ball whose line passes outside the bounding sphere of the face meets no node.
+        # a ball whose line passes outside the bounding sphere of the face meets no node
         near = np.flatnonzero(np.isfinite(sphere_entry(centre, start, d, reach + radius)))
-        # Steep faces leave gaps between nodes: a node counts when the ball nearly touches it.
+        # steep faces leave gaps between nodes: a node counts when the ball nearly touches it
         fat, offset = np.hypot(radius, 2.0 * _GRID_PITCH), nodes - centre
         for some in np.array_split(near, len(near) * len(nodes) // _BLOCK + 1):
             to_centre = np.einsum("ni,ni->n", centre - start[some], d[some])
             foot = start[some] + to_centre[:, None] * d[some] - centre
-            # from the foot of the centre on the ball's line numbers are small enough for squares
+            # relative to the foot of the centre on the ball's line, so that squares lose no digits
             along = d[some] @ offset.T
             across2 = np.einsum("ni,ni->n", foot, foot)[:, None] - 2.0 * foot @ offset.T
             across2 += np.einsum("ki,ki->k", offset, offset) - along**2
@@ -233,8 +232,7 @@ class FreeformPatch:
 
         uv, points, _, _ = self._nodes
         tree = cKDTree(apply(self.T_patch_artefact, points))
-        nearest: Array = uv[tree.query(local)[1]]
-        return nearest
+        return uv[tree.query(local)[1]]
 
 
 def graph_patch(
@@ -249,13 +247,10 @@ def graph_patch(
     """Freeform patch from control heights on equally spaced clamped knots.
 
     Args:
-        name: Feature name.
         T_artefact_patch: Pose of the patch frame in the artefact, shape (4, 4).
         half_size: Half sides of the trimmed rectangle, mm.
         heights: Control heights, shape (nu, nv), mm; at least degree + 1 each way.
-        degree: In u and v.
         depth: Length of the column behind the patch plane, mm.
-        errors: The error parameters this patch is for.
 
     Returns:
         The patch, whose spline reaches `OVERHANG` beyond the rectangle.

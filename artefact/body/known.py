@@ -1,4 +1,4 @@
-"""How well the features of a calibrated standard are known, and whether they conform."""
+"""Calibration uncertainties of the features of a standard, and their conformity."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,7 +9,6 @@ class KnownFeature:
     """Calibration of one feature; standard uncertainties.
 
     Attributes:
-        points: That it rests upon.
         u: Of its place in every direction, which all touches on it share, mm.
         u_tilt: Of its rotations, rad; 0 of a ball.
         u_form: Of its surface at a point, beyond that, mm.
@@ -22,8 +21,8 @@ class KnownFeature:
 
 
 GUARD = 1.65
-"""Standard uncertainties between a measured value and a limit that prove on which side of it the
-true value is, with 95 % (ISO 14253-1:2017)."""
+"""Guard band in standard uncertainties; decides with 95 % on which side of a limit the true value
+lies (ISO 14253-1:2017)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,10 +30,10 @@ class Verdict:
     """Whether a characteristic of a feature is within its tolerance, by ISO 14253-1.
 
     Attributes:
-        feature: Name; of the scale those of the two balls that are farthest from each other.
+        feature: Name; for the scale the names of the two balls with the largest distance.
         characteristic: `diameter`, `position`, `profile` or `scale`.
-        deviation: From the design, mm.
-        tolerance: Largest deviation that is allowed, mm.
+        deviation: Measured minus designed, mm.
+        tolerance: Largest allowed deviation, mm.
         u: Standard uncertainty of the deviation, mm.
     """
 
@@ -46,12 +45,12 @@ class Verdict:
 
     @property
     def is_refused(self) -> bool:
-        """Whether it is proven to be out of tolerance."""
+        """Whether nonconformity is proven."""
         return abs(self.deviation) - GUARD * self.u > self.tolerance
 
     @property
     def state(self) -> str:
-        """What is proven of it."""
+        """Conforming, not conforming, or neither proven."""
         if self.is_refused:
             return "not conforming"
         is_proven = abs(self.deviation) + GUARD * self.u <= self.tolerance
@@ -63,10 +62,9 @@ class Known:
     """The calibration of a standard.
 
     Attributes:
-        source: File of points that it was made from.
         nominal: Fingerprint of the standard as designed.
-        features: By name; the others are as designed and as uncertain as they are assumed to be.
-        verdicts: Whether they conform to the drawing; empty where that was not judged.
+        features: By name; for other features the designed shape and assumed uncertainties hold.
+        verdicts: Conformity with the drawing; empty where it was not evaluated.
     """
 
     source: str
@@ -76,5 +74,5 @@ class Known:
 
     @property
     def accepted(self) -> tuple[str, ...]:
-        """What was accepted although it does not conform, "SPH1 diameter"."""
+        """Nonconforming characteristics that were accepted, such as "SPH1 diameter"."""
         return tuple(f"{v.feature} {v.characteristic}" for v in self.verdicts if v.is_refused)

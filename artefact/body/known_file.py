@@ -1,4 +1,4 @@
-"""Border: `[calibration]` of a `standard.toml`."""
+"""Reader and writer of `[calibration]` of a `standard.toml`."""
 
 from typing import Annotated, Any, Literal
 

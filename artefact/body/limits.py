@@ -1,4 +1,4 @@
-"""What makes a standard buildable and touchable, each as a number with its limit."""
+"""Constraints that make a standard manufacturable and measurable, as numbers with limits."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,21 +14,21 @@ from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array, apply
 from matstd.twin.units import DEG
 
-BURIED = 2.0
-"""How deep the end of a column must lie inside base or core, mm."""
+MIN_BURIAL = 2.0
+"""Depth of the end of a column inside base or core, at least, mm."""
 
-_FACE_PITCH = 4.0  # mm, of the points of a face that must be free
+_FACE_PITCH = 4.0  # mm, of the points of a face at which the probe needs room
 
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What workshop, stylus and table allow.
+    """Limits of cutter, stylus and table.
 
     Attributes:
         min_concave_radius: For the ball-end cutter, mm; never less than the ball's own radius.
         max_slope: Between a face's normal and its patch's own direction, rad.
         ball_radius: Of the largest probe ball, mm.
-        gap: Left between the ball at any touch and every other body, mm.
+        gap: Between the ball at any touch and every other body, mm.
         max_mass: Of the standard, kg.
         table_radius: Of the disc about the standard's own axis that lies on the table, mm.
         slot_pitch: Between the slots of the table, which run along its x, one through its middle;
@@ -49,13 +49,9 @@ class Constraint:
     """One constraint as a number: met where `slack` is not negative.
 
     Attributes:
-        name: What is constrained.
         subject: Feature it is about.
-        value: What the standard has.
-        limit: What is asked.
-        slack: Distance from the limit on the good side, in the unit of the value.
-        unit: Of value, limit and slack.
-        other: Body that is in the way; empty where there is none.
+        slack: Margin to the limit in the unit of the value; negative where violated.
+        other: Interfering body; empty where there is none.
     """
 
     name: str
@@ -68,7 +64,7 @@ class Constraint:
 
     @property
     def features(self) -> tuple[str, ...]:
-        """Subject and, where there is one, the body in its way."""
+        """Subject and, if any, the interfering body."""
         return tuple(filter(None, (self.subject, self.other)))
 
     def __str__(self) -> str:
@@ -81,10 +77,6 @@ class Constraint:
 
 def constraints(standard: Standard, limits: Limits) -> tuple[Constraint, ...]:
     """Every constraint of a standard with its slack, met or not.
-
-    Args:
-        standard: To be judged.
-        limits: What is asked.
 
     Returns:
         Curvature, slope, blank, burial and freedom of every patch; place and freedom of every
@@ -101,7 +93,7 @@ def constraints(standard: Standard, limits: Limits) -> tuple[Constraint, ...]:
 
 
 def check(standard: Standard, limits: Limits) -> None:
-    """Refuse a standard that cannot be made or probed.
+    """Reject a standard that cannot be made or probed.
 
     Raises:
         NotBuildable: Names the constraint that binds most, and how many more are violated.
@@ -122,7 +114,7 @@ def _severity(constraint: Constraint) -> float:
 def min_concave_radius(patch: FreeformPatch) -> float:
     """Smallest concave radius on the trimmed face, mm; inf where it is convex everywhere.
 
-    Largest principal curvature on a 1 mm grid, then on grids ever finer round its maximum.
+    From the largest principal curvature on a 1 mm grid, then on finer grids about its maximum.
     """
     uv, step = patch.grid(1.0), 1.0
     largest = 0.0
@@ -146,7 +138,7 @@ def overhang(patch: FreeformPatch, base: Base) -> float:
     """How far the column of a patch reaches beyond the outline of the base, mm; negative inside.
 
     Its four edges are followed from the mean plane of the face down to mid-base, where the column
-    is cut off: one that leans outwards could else come out through the side of the base.
+    is cut off, because a column that leans outwards could leave the base through its side.
     """
     (a, b), T = patch.half_size, patch.T_artefact_patch
     corners = apply(T, np.array([[x, y, 0.0] for x in (-a, a) for y in (-b, b)]))
@@ -167,7 +159,7 @@ def _of_patch(standard: Standard, patch: FreeformPatch, limits: Limits) -> Itera
     yield _at_most("reach beyond the outline of the blank", patch.name, outside, 0.0)
     yield _at_most("height", patch.name, float(face[:, 2].max()), standard.blank_height)
     yield _at_least(
-        "depth of the column's end in the body", patch.name, _burial(standard, patch), BURIED
+        "depth of the column's end in the body", patch.name, _burial(standard, patch), MIN_BURIAL
     )
     centres = face + limits.ball_radius * patch.normal(uv)
     others = {name: body for name, body in standard.bodies.items() if name != patch.name}
@@ -226,7 +218,7 @@ def _burial(standard: Standard, patch: FreeformPatch) -> float:
 
 
 def _nearest(bodies: dict[str, Body], points: Array) -> tuple[str, float]:
-    """The body nearest to any of the points (N, 3) and its distance, mm."""
+    """Name of the body nearest to any of the points (N, 3), and its distance, mm."""
     rooms = {name: float(body.distance(points).min()) for name, body in bodies.items()}
     if not rooms:
         return "nothing", np.inf

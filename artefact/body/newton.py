@@ -12,9 +12,9 @@ from matstd.twin.units import NM
 CONTACT_TOLERANCE = 1e-4 * NM
 """Newton stops when the ball is this close to the surface, mm."""
 
-_STEPS = 30  # a bound: Newton settles in a few, and what uses them up has not converged
-_LONGEST = 4.0  # mm of one step over the surface: Newton is trusted no farther from its start
-_SETTLED = 0.1 * NM  # mm: what is not closer than this when the steps are used up has not converged
+_MAX_STEPS = 30  # Newton converges in a few steps; a search that needs more has failed
+_MAX_STEP = 4.0  # mm of one step over the surface, within which Newton is trusted
+_MAX_GAP = 0.1 * NM  # mm between ball and surface after the last step; more is no convergence
 
 Surface = Callable[[Array], Jet]
 Domain = tuple[Array, Array]
@@ -28,7 +28,6 @@ def foot_parameters(surface: Surface, domain: Domain, points: Array, uv: Array) 
 
     Args:
         surface: Jet of the height at parameters (N, 2).
-        domain: Lowest and highest parameters.
         points: Shape (N, 3), frame of the height field, mm.
         uv: Where to start, shape (N, 2), mm.
 
@@ -38,9 +37,9 @@ def foot_parameters(surface: Surface, domain: Domain, points: Array, uv: Array) 
     uv = uv.copy()
     moved = np.full(len(points), np.inf)
     open_ = np.arange(len(points))
-    for _ in range(_STEPS):
+    for _ in range(_MAX_STEPS):
         step = _foot_step(surface(uv[open_]), uv[open_], points[open_])
-        new = np.clip(uv[open_] + _bounded(step), *domain)
+        new = np.clip(uv[open_] + _shortened(step), *domain)
         moved[open_] = np.abs(new - uv[open_]).max(axis=1)
         uv[open_] = new
         open_ = open_[moved[open_] > CONTACT_TOLERANCE]
@@ -57,19 +56,18 @@ def ball_contact(
 
     Args:
         surface: Jet of the height at parameters (N, 2).
-        domain: Lowest and highest parameters.
         p: Ball centres, shape (N, 3), frame of the height field, mm.
         d: Unit directions of travel, shape (N, 3).
         radius: Of the ball, mm.
         first: Where to start.
 
     Returns:
-        Parameters and travel; nan where Newton does not converge inside the domain, or only on
-        a contact that the ball leaves instead of meeting.
+        Parameters and travel; nan where Newton does not converge inside the domain, or at a
+        contact that the ball leaves instead of meeting.
     """
     uv, travel = first.uv.copy(), first.travel.copy()
     open_ = np.arange(len(p))
-    for _ in range(_STEPS):
+    for _ in range(_MAX_STEPS):
         j = surface(uv[open_])
         centre = p[open_] + travel[open_, None] * d[open_]
         residual = _offset_point(j, uv[open_], radius) - centre
@@ -79,16 +77,16 @@ def ball_contact(
             break
         along_u, along_v = _offset_tangents(j, radius)
         step = -_solve3(along_u[far], along_v[far], -d[open_], residual[far])
-        held = np.clip(uv[open_] + _bounded(step[:, :2]), *domain)
+        held = np.clip(uv[open_] + _shortened(step[:, :2]), *domain)
         short = open_[np.any(held != uv[open_] + step[:, :2], axis=1)]
         uv[open_] = held
         travel[open_] += step[:, 2]
-        # A step held back sideways must not keep its full travel: that is solved for again.
+        # where a step was shortened sideways, its full travel would overshoot: solve for it again
         centre = _offset_point(surface(uv[short]), uv[short], radius)
         travel[short] = np.einsum("ni,ni->n", centre - p[short], d[short])
     j = surface(uv)
     gap = np.abs(_offset_point(j, uv, radius) - p - travel[:, None] * d).max(axis=1)
-    met = (gap < _SETTLED) & _inside(uv, domain)
+    met = (gap < _MAX_GAP) & _inside(uv, domain)
     met &= np.einsum("ni,ni->n", graph_normal(j), d) < 0.0
     return Hit(np.where(met[:, None], uv, np.nan), np.where(met, travel, np.nan))
 
@@ -134,17 +132,15 @@ def _solve3(a: Array, b: Array, c: Array, right: Array) -> Array:
     return np.column_stack(dots) / safe[:, None]
 
 
-def _bounded(step: Array) -> Array:
-    """Steps (N, 2) shortened to the longest that is trusted."""
+def _shortened(step: Array) -> Array:
+    """Steps (N, 2), none longer than `_MAX_STEP`."""
     length = np.linalg.norm(step, axis=1, keepdims=True)
-    bounded: Array = step * (_LONGEST / np.maximum(length, _LONGEST))
-    return bounded
+    return step * (_MAX_STEP / np.maximum(length, _MAX_STEP))
 
 
 def _inside(uv: Array, domain: Domain) -> Mask:
-    """Parameters that are strictly inside: on the border the search was held back."""
-    strictly: Mask = np.all((uv > domain[0]) & (uv < domain[1]), axis=1)
-    return strictly
+    """Parameters strictly inside: a search that ends on the border was stopped there."""
+    return np.all((uv > domain[0]) & (uv < domain[1]), axis=1)
 
 
 def _foot_step(j: Jet, uv: Array, local: Array) -> Array:

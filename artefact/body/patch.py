@@ -1,4 +1,4 @@
-"""What every touchable surface of a standard can do, whatever its shape."""
+"""Protocol of the touchable surfaces of a standard, and contact with a point."""
 
 from enum import StrEnum
 from typing import NamedTuple, Protocol
@@ -20,7 +20,7 @@ class Hit(NamedTuple):
 
 
 class Meeting(StrEnum):
-    """What a moving ball ran into; the values are sentences for a report."""
+    """What a moving ball meets; the values are parts of sentences in a report."""
 
     SURFACE = "meets the surface"
     EDGE = "meets the trimmed edge of the patch"
@@ -62,7 +62,7 @@ def read_only(
     """A read-only float64 copy of the stated shape.
 
     Raises:
-        ShapeMismatch: The shape is another one, or a value is not finite.
+        ShapeMismatch: Another shape, or a value that is not finite.
     """
     copy = np.array(values, dtype=np.float64)
     if shape is not None and copy.shape != shape:
@@ -82,7 +82,7 @@ def rows(values: ArrayLike, count: int | None = None) -> Array:
 def sphere_entry(points: Array, start: Array, direction: Array, radius: float) -> Array:
     """Travel at which a moving ball first touches a point, ``|start + t d - p| = radius``.
 
-    Balls that are already past the point count as never touching it.
+    A ball that is already past the point never touches it.
 
     Args:
         points: Shape (..., 3), mm.

@@ -1,9 +1,9 @@
-"""How features of a standard move when its weight pulls another way than it did in calibration.
+"""Displacements of features where the direction of weight differs from that in calibration.
 
-A standard is calibrated upright. On a table that tilts, its posts bend under their own weight and
-its plate between the screws: ``u = S (g - g0)``, S the displacement of a feature per unit of a
-direction of weight, g the direction at a table pose and g0 = -z that of the calibration, all in
-the artefact frame.
+A standard is calibrated upright. On a tilting table its posts and its plate between the screws bend
+under their own weight: ``u = S (g - g0)``, where S is the displacement of a feature per unit
+direction of weight, g the direction at a table pose and g0 = -z that in calibration, all in the
+artefact frame.
 """
 
 from collections.abc import Mapping
@@ -20,7 +20,7 @@ DIRECTIONS = {
     for i, axis in enumerate("XYZ")
     for sign in "+-"
 }
-"""In which weight may pull, in machine coordinates."""
+"""Possible directions of weight, in machine coordinates."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,13 +28,11 @@ class Sag:
     """Displacements of features under the standard's own weight.
 
     Attributes:
-        source: What they come from.
-        down: Where weight pulls to in machine coordinates, a key of `DIRECTIONS`.
+        down: Direction of weight in machine coordinates, a key of `DIRECTIONS`.
         share: Standard uncertainty of every displacement, as a share of it.
         per_weight: By feature, displacement along x, y, z (rows) for weight along x, y, z
             (columns), (3, 3), mm.
-        modulus: Young's modulus that it was computed with, N/mm^2; None of a sag that rests on
-            none, such as a measured one.
+        modulus: Young's modulus of the computation, N/mm^2; None for a measured sag.
     """
 
     source: str
@@ -44,7 +42,7 @@ class Sag:
     modulus: float | None = None
 
     def with_modulus(self, modulus: float) -> "Sag":
-        """The same body of another modulus: displacements are inversely proportional to it."""
+        """Scaled to another modulus, to which displacements are inversely proportional."""
         assert self.modulus is not None
         ratio = self.modulus / modulus
         scaled = {name: ratio * moved for name, moved in self.per_weight.items()}
@@ -54,10 +52,9 @@ class Sag:
         """Displacements of features from their calibrated places, artefact frame, (N, 3), mm.
 
         Args:
-            chain: The machine.
             q: Readings, (N, A), mm and rad.
             T_table_artefact: Where the standard stands, (4, 4) or (N, 4, 4).
-            feature: What moves, (N,); others than those known stand still.
+            feature: Names, (N,); unknown features do not move.
         """
         change = weight_directions(chain, q, T_table_artefact, self.down) - [0.0, 0.0, -1.0]
         out = np.zeros((len(q), 3))

@@ -1,4 +1,7 @@
-"""The solid bodies of a standard as signed distances: exact for convex ones, else from below."""
+"""The solid bodies of a standard as signed distances: exact for convex ones, else lower bounds.
+
+A lower bound is on the safe side: a clearance is never overestimated.
+"""
 
 from dataclasses import dataclass
 from typing import Protocol
@@ -10,22 +13,22 @@ from matstd.artefact.body.freeform import FreeformPatch
 from matstd.twin.frames import Array, apply
 
 BLEND = 3.0
-"""Radius of the inner edge round the foot of a pillar or a post, mm."""
+"""Fillet radius at the foot of a pillar or post, mm."""
 
-_STEPS = 60  # a bound: where a ball grazes a body, Newton but halves the gap at each
+_MAX_STEPS = 60  # bound: where a ball grazes a body, each Newton step only halves the gap
 _SECANT = 1e-5  # mm
-_SLIVER = 1e-9  # mm: distance at which a ball counts as touching
+_CONTACT_GAP = 1e-9  # mm: distance at which a ball counts as touching
 
 
 class Body(Protocol):
-    """Something solid in the artefact frame."""
+    """A solid in the artefact frame."""
 
     @property
     def hull(self) -> tuple[Array, float]:
         """Centre (3,) and radius of a ball that holds the body, mm."""
 
     def distance(self, points: Array) -> Array:
-        """Distance of points (N, 3) from the body, (N,), mm, negative inside; never too large."""
+        """Signed distance of points (N, 3), (N,), mm, negative inside; never too large."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +103,7 @@ class Cone:
         beside = from_low @ np.array([edge[1], -edge[0]])
         inside = (beside < 0.0) & (np.abs(z) < half)
         distance = np.where(inside, -1.0, 1.0) * np.minimum(to_cap, to_side)
-        return _blended(distance, points[:, 2] - self.low) if self.blend else distance
+        return _with_blend(distance, points[:, 2] - self.low) if self.blend else distance
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -122,8 +125,7 @@ class Ball:
 
     def distance(self, points: Array) -> Array:
         """Exact signed distance, (N,), mm."""
-        distance: Array = _length(*(points - self.centre).T) - self.radius
-        return distance
+        return _length(*(points - self.centre).T) - self.radius
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -154,7 +156,7 @@ class Column:
         return middle, to_corner + (0.0 if self.foot is None else 2.0 * BLEND)
 
     def distance(self, points: Array) -> Array:
-        """Signed distance from below, (N,), mm; its sign is exact."""
+        """Lower bound of the signed distance, (N,), mm; its sign is exact."""
         patch = self.patch
         local = apply(patch.T_patch_artefact, points)
         half = np.asarray(patch.half_size)
@@ -164,13 +166,13 @@ class Column:
         z = np.abs(local[:, 2] - middle) - half_height
         out = _length(*(np.maximum(away, 0.0) for away in (x, y, z)))
         box = out + np.minimum(np.maximum(np.maximum(x, y), z), 0.0)
-        # no lid is lower than its lowest pole: where the box is farther even from that, it counts
+        # the lid is nowhere below its lowest pole: a box distance above that bound decides alone
         most = (local[:, 2] - patch.heights.min()) * self.steepest
         near = np.flatnonzero((box < 2.0 * (self.top + np.abs(half).max())) & (box < most))
         uv = np.clip(local[near, :2], -half, half)
         over = (local[near, 2] - patch.height(uv)) * self.steepest
         box[near] = np.maximum(box[near], over)
-        return box if self.foot is None else _blended(box, points[:, 2] - self.foot)
+        return box if self.foot is None else _with_blend(box, points[:, 2] - self.foot)
 
 
 def _length(*coordinates: Array) -> Array:
@@ -181,8 +183,8 @@ def _length(*coordinates: Array) -> Array:
 def column(patch: FreeformPatch, foot: float | None = None) -> Column:
     """The column of a patch with its highest point and steepest slope found on a 1 mm grid."""
     uv = patch.grid(1.0)
-    # Between the nodes of the grid the lid can be higher by slope times half a pitch at most,
-    # and hardly steeper: a tenth of a millimetre and two degrees cover designs that check().
+    # between the nodes of the grid the lid can be higher by slope times half a pitch at most, and
+    # hardly steeper: a tenth of a millimetre and two degrees cover every design that check() passes
     return Column(
         patch=patch,
         top=float(patch.height(uv).max()) + 0.1,
@@ -194,8 +196,8 @@ def column(patch: FreeformPatch, foot: float | None = None) -> Column:
 def entry(body: Body, start: Array, direction: Array, radius: float) -> Array:
     """Travel at which a moving ball first touches a convex body.
 
-    ``f(t) = distance(start + t d) - radius`` is convex in t, so Newton's method from the outside
-    runs up to the first root and never over it.
+    ``f(t) = distance(start + t d) - radius`` is convex in t, so Newton's method from outside
+    approaches the first root and never passes it.
 
     Args:
         body: Convex, with an exact distance.
@@ -208,14 +210,14 @@ def entry(body: Body, start: Array, direction: Array, radius: float) -> Array:
     """
     travel = np.zeros(len(start))
     active = np.arange(len(start))
-    for _ in range(_STEPS):
+    for _ in range(_MAX_STEPS):
         p, d = start[active] + travel[active, None] * direction[active], direction[active]
         gap = body.distance(p) - radius
-        # Backward secant: on a convex function it is at least as steep as the tangent, so the
-        # step it gives never jumps over the root.
+        # backward secant: on a convex function it is at least as steep as the tangent, so that the
+        # step never passes the root
         rate = (gap + radius - body.distance(p - _SECANT * d)) / _SECANT
         lost = rate > -1e-6
-        done = gap < _SLIVER
+        done = gap < _CONTACT_GAP
         travel[active[lost & ~done]] = np.inf
         go = ~(lost | done)
         travel[active[go]] += gap[go] / np.minimum(-rate[go], 1.0)
@@ -228,12 +230,11 @@ def entry(body: Body, start: Array, direction: Array, radius: float) -> Array:
 def _corner(a: Array, b: Array) -> Array:
     """Signed distance to the intersection of two half spaces at right angles."""
     out = np.hypot(np.maximum(a, 0.0), np.maximum(b, 0.0))
-    distance: Array = out + np.minimum(np.maximum(a, b), 0.0)
-    return distance
+    return out + np.minimum(np.maximum(a, b), 0.0)
 
 
-def _blended(distance: Array, above: Array) -> Array:
-    """Distance from a wall and its blend, of points at a height above the plane at its foot.
+def _with_blend(distance: Array, above: Array) -> Array:
+    """Distance from a wall with a fillet, of points at a height above the plane at its foot.
 
     Exact at an upright wall, ``R - |(R - d, R - z)|``; too small where the wall leans back.
     """

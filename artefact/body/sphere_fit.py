@@ -6,11 +6,11 @@ import numpy as np
 
 from matstd.twin.frames import Array
 
-_PRECISE = 1e-14  # relative change of the unknowns at which the fit ends
+_FIT_TOLERANCE = 1e-14  # relative change of the unknowns at which the fit ends
 
 
 class FittedSphere(NamedTuple):
-    """A sphere, and what its points leave.
+    """A sphere, and the residuals of its points.
 
     Attributes:
         centre: (3,), mm.
@@ -30,8 +30,8 @@ def fitted_sphere(points: Array, start: Array | None = None) -> FittedSphere:
 
     Args:
         points: (N, 3), four or more, mm.
-        start: A centre that is near, (3,), mm; None for that of the linear form
-            ``2 c.p + (r^2 - c.c) = p.p``, which needs points all round.
+        start: Approximate centre, (3,), mm; None for that of the linear form
+            ``2 c.p + (r^2 - c.c) = p.p``, which needs points all round the sphere.
     """
     from scipy.optimize import least_squares
 
@@ -48,7 +48,9 @@ def fitted_sphere(points: Array, start: Array | None = None) -> FittedSphere:
         return -np.column_stack([away / length, np.ones(len(points))])
 
     first = np.append(start, np.linalg.norm(points - start, axis=1).mean())
-    solved = least_squares(left, first, jacobian, method="lm", xtol=_PRECISE, ftol=_PRECISE).x
+    solved = least_squares(
+        left, first, jacobian, method="lm", xtol=_FIT_TOLERANCE, ftol=_FIT_TOLERANCE
+    ).x
     J = jacobian(solved)
     cofactor = np.asarray(np.linalg.pinv(J.T @ J), dtype=np.float64)
     return FittedSphere(solved[:3], float(solved[3]), left(solved), cofactor)

@@ -21,16 +21,14 @@ def clamped_knots(low: float, high: float, count: int, degree: int) -> Array:
 
 
 def check_knots(knots: Array, degree: int, reach: float, what: str) -> None:
-    """Refuse knots that are not those of a smooth, clamped and wide enough spline.
+    """Reject knots that do not belong to a smooth, clamped and wide enough spline.
 
     Args:
         knots: Shape (poles + degree + 1,).
-        degree: Of the spline.
         reach: How far the knots must reach to both sides of zero, mm.
-        what: Whose they are, for the message.
 
     Raises:
-        ShapeMismatch: Says what is wrong with them.
+        ShapeMismatch: Names the violated condition.
     """
     if degree < 2:
         raise ShapeMismatch(f"{what}: degree {degree}, expected at least 2 for a normal that bends")
@@ -48,14 +46,13 @@ def check_knots(knots: Array, degree: int, reach: float, what: str) -> None:
 
 
 def greville(knots: Array, degree: int) -> Array:
-    """Abscissae at which poles must stand so that the spline reproduces ``x = u`` exactly.
+    """Abscissae of the poles with which the spline reproduces ``x = u`` exactly.
 
     ``g_i = (t_{i+1} + ... + t_{i+k}) / k``, shape (poles,).
     """
     count = len(knots) - degree - 1
     windows = np.lib.stride_tricks.sliding_window_view(knots[1:-1], degree)[:count]
-    means: Array = windows.mean(axis=1)
-    return means
+    return windows.mean(axis=1)
 
 
 def basis(knots: Array, degree: int, x: Array, orders: int = 3) -> tuple[np.ndarray, Array]:
@@ -80,7 +77,7 @@ def basis(knots: Array, degree: int, x: Array, orders: int = 3) -> tuple[np.ndar
     count = len(knots) - degree - 1
     span = np.clip(np.searchsorted(knots, x, side="right") - 1, degree, count - 1)
     near = knots[span + np.arange(1 - degree, degree + 1)[:, None]]  # (2 degree, N)
-    # points in rows of memory: half the time of points in columns
+    # points along the last axis: half the time of points along the first
     ladder = [np.ones((1, len(x)))]
     for d in range(1, degree + 1):
         left, right = near[degree - d : degree], near[degree : degree + d]
@@ -94,7 +91,7 @@ def basis(knots: Array, degree: int, x: Array, orders: int = 3) -> tuple[np.ndar
 
 
 def _beside(low: Array, high: Array) -> Array:
-    """What each of d splines gives to its lower and to its upper neighbour, (d + 1, N)."""
+    """Sum of what each of d splines adds to its lower and its upper neighbour, (d + 1, N)."""
     values = np.zeros((len(low) + 1, low.shape[1]))
     values[:-1] += low
     values[1:] += high
@@ -172,8 +169,7 @@ def height(
     """Height alone, (N,), of the tensor spline of `jet`; arguments as there."""
     bu, bv, local = _local(knots_u, knots_v, degree, poles, uv, orders=1)
     along_u = np.einsum("ni,nij->nj", bu[0], local)
-    values: Array = np.einsum("nj,nj->n", along_u, bv[0])
-    return values
+    return np.einsum("nj,nj->n", along_u, bv[0])
 
 
 def _local(

@@ -24,22 +24,19 @@ from matstd.twin.units import T_REF
 
 DATUM_PLANE = "DATUM_A"
 
-_SLIVER = 1e-6  # mm by which a hull is taken larger: squares of coordinates have lost digits
+_HULL_MARGIN = 1e-6  # mm added to a hull: squares of coordinates have lost digits
 
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """What the standard is made of.
+    """Material of the standard.
 
     Attributes:
-        name: Designation.
         density: In kg/mm^3.
         expansion: Coefficient of linear thermal expansion, 1/K.
         u_expansion: Its standard uncertainty, 1/K; None where it is not stated.
         modulus: Young's, N/mm^2; None where it is not known.
-        poisson: Poisson's ratio.
-        modulus_source: Where the modulus is from.
-        modulus_share: Its standard uncertainty, as a share of it; 0 where it is stated.
+        modulus_share: Relative standard uncertainty of the modulus; 0 where it is stated.
     """
 
     name: str = "X40Cr14 (1.2083), hardened"
@@ -52,10 +49,10 @@ class Material:
     modulus_share: float = 0.0
 
     def with_usual_modulus(self) -> "Material":
-        """The same with the usual modulus of its name, unless one is stated.
+        """With the usual modulus of the named material, unless one is stated.
 
         Only the words before a bracket or comma count, and only as a whole: "X40Cr14 (1.2083),
-        hardened" and "Cast iron" are known, "steel-filled epoxy" is not and stays unknown.
+        hardened" and "Cast iron" are known, "steel-filled epoxy" is not.
         """
         word = re.split(r"[(,]", self.name)[0].strip().casefold().replace(" ", "-")
         known = usual({"aluminum": "aluminium"}.get(word, word))
@@ -81,7 +78,6 @@ class Base:
     Attributes:
         half_size: Half sides of the outline, mm.
         corner_radius: Mm; equal to both half sides the base is a disc.
-        thickness: Mm.
     """
 
     half_size: tuple[float, float] = (140.0, 140.0)
@@ -114,18 +110,12 @@ class Standard(Displayed):
     """A freeform material standard in its own frame: origin in the middle of the seat, z up.
 
     Attributes:
-        name: Type.
-        serial: Of this one piece; may be empty.
-        material: What it is made of.
+        serial: Serial number of the piece; may be empty.
         base: Plate with the seat and the datum plane.
-        core: Where the columns meet, or None.
-        patches: Freeform patches.
-        spheres: Datum spheres.
-        holes: Mounting holes.
+        core: Body in which the columns meet, or None.
         blank_height: Of the blank above the seat, mm; its outline is that of the base.
         known: Its calibration; None for a standard as designed.
-        sag: How its features move under its own weight, as its file has it; None where it was not
-            computed.
+        sag: Displacements by its own weight as stated in its file; None where not computed.
     """
 
     name: str
@@ -151,7 +141,7 @@ class Standard(Displayed):
 
     @cached_property
     def fingerprint(self) -> str:
-        """Short digest of the surfaces as they are: what was calibrated must have that of these."""
+        """Short digest of the surfaces; a calibration states the digest of its standard."""
         digest = hashlib.sha256(f"{self.name} {self.serial}".encode())
         for patch in self.patches:
             numbers = patch.T_artefact_patch, patch.knots_u, patch.knots_v, patch.heights
@@ -169,13 +159,13 @@ class Standard(Displayed):
         per_weight: Mapping[str, Array],
         modulus: float | None = None,
     ) -> "Standard":
-        """The same standard with what its weight does to it; arguments as of `Sag`."""
+        """With displacements by its weight; arguments as of `Sag`."""
         sag = Sag(source, down, share, per_weight, modulus=modulus)
         return replace(self, sag=sag)
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What was accepted out of tolerance when it was calibrated."""
+        """Nonconforming characteristics that were accepted at its calibration."""
         if self.known is None or not self.known.accepted:
             return ()
         named = ", ".join(self.known.accepted)
@@ -183,22 +173,22 @@ class Standard(Displayed):
 
     @cached_property
     def usable_sag(self) -> Sag | None:
-        """The sag with the modulus of the material; None where it needs one and none is known."""
+        """The sag scaled to the modulus of the material; None where that modulus is unknown."""
         if self.sag is None or self.sag.modulus is None:
             return self.sag
         modulus = self.material.modulus
         return None if modulus is None else self.sag.with_modulus(modulus)
 
     def moved(self, chain: Chain, q: Array, T_table_artefact: Array, feature: Labels) -> Array:
-        """Displacements of features by their own weight, as of `Sag.moved`; zeros if unknown."""
+        """Displacements of features by weight, as of `Sag.moved`; zeros if unknown."""
         if self.usable_sag is None:
             return np.zeros((len(q), 3))
         return self.usable_sag.moved(chain, q, T_table_artefact, feature)
 
     def at(self, temperature: float) -> "Standard":
-        """The same standard at a temperature, degC: every length but those of stems and holes.
+        """The standard at a temperature, degC; stems and holes are not scaled.
 
-        Evenly warm and held at its origin, so that all surfaces grow by
+        Uniformly warm and fixed at its origin, so that all surfaces grow by
         ``1 + expansion (temperature - 20)`` and keep their normals.
         """
         k = 1.0 + self.material.expansion * (temperature - T_REF)
@@ -225,10 +215,10 @@ class Standard(Displayed):
 
     @cached_property
     def blended(self) -> frozenset[str]:
-        """Patches and spheres whose pillar or post has a foot rounded into the plate.
+        """Patches and spheres whose pillar or post has a fillet at its foot.
 
-        All of an upright standard that leave room for the radius; none where columns lean, run
-        into each other or meet in a core.
+        On an upright standard all that leave room for the radius; none where columns lean or
+        meet in a core.
         """
         if self.core is not None or not all(patch.is_upright for patch in self.patches):
             return frozenset()
@@ -271,7 +261,7 @@ class Standard(Displayed):
 
     @cached_property
     def bodies(self) -> dict[str, Body]:
-        """Everything solid by the name of its owner; stems are called `SPH1 stem`."""
+        """All solids by the name of their feature; stems are called `SPH1 stem`."""
         bodies: dict[str, Body] = {"BASE": self.base.body}
         if self.core is not None:
             core, low = self.core, 0.5 * self.base.thickness
@@ -290,27 +280,26 @@ class Standard(Displayed):
         return bodies
 
     def distance(self, points: Array) -> Array:
-        """Distance of points (N, 3) from the standard, (N,), mm; never too large, holes filled."""
-        distance: Array = np.min([body.distance(points) for body in self.bodies.values()], axis=0)
-        return distance
+        """Distance of points (N, 3), (N,), mm; never too large; holes count as filled."""
+        return np.min([body.distance(points) for body in self.bodies.values()], axis=0)
 
     def holds(self, points: Array, depth: float, without: Collection[str] = ()) -> Mask:
-        """Whether points (N, 3) lie so deep, mm, or deeper in the standard, holes filled, (N,).
+        """Whether points (N, 3) lie at least `depth` mm inside, (N,); holes count as filled.
 
-        Bodies `without` which it is looked at do not count: balls, before they are glued in.
+        Bodies named in `without` are left out, such as balls before they are glued in.
         """
         bodies = [body for name, body in self.bodies.items() if name not in without]
         middles, reaches = (np.array(one) for one in zip(*(b.hull for b in bodies), strict=True))
         square = (points**2).sum(axis=1)[:, None] - 2.0 * points @ middles.T
         square += (middles**2).sum(axis=1)
         held = np.zeros(len(points), dtype=bool)
-        for body, is_near in zip(bodies, (square < (reaches + _SLIVER) ** 2).T, strict=True):
+        for body, is_near in zip(bodies, (square < (reaches + _HULL_MARGIN) ** 2).T, strict=True):
             near = np.flatnonzero(is_near & ~held)
             held[near] = body.distance(points[near]) <= -depth
         return held
 
     def volume(self, step: float = 4.0) -> float:
-        """Estimate of the volume on a grid of cells, mm^3; about 1 % at the default step."""
+        """Volume estimated on a grid of cells, mm^3; to about 1 % at the default step."""
         low = [-self.base.half_size[0], -self.base.half_size[1], 0.0]
         high = [self.base.half_size[0], self.base.half_size[1], self.blank_height]
         axes = [np.arange(a + 0.5 * step, b + step, step) for a, b in zip(low, high, strict=True)]

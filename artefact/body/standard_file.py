@@ -1,4 +1,4 @@
-"""Border: `standard.toml`, everything that is needed to rebuild a standard, without loss."""
+"""Reader and writer of `standard.toml`, which holds a standard without loss."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -26,9 +26,9 @@ Triple = Annotated[list[float], Field(min_length=3, max_length=3)]
 Degree = Annotated[int, Field(ge=2, le=9)]
 
 _OLD_SOURCE, _OLD_MODULUS = "finite elements", 200e3
-"""Of a sag without a modulus: earlier versions computed every one for steel, N/mm^2."""
+"""For a sag without a modulus: earlier versions computed all of them for steel, N/mm^2."""
 
-_ORTHONORMAL = 1e-9  # deviation of R R^T from 1 that counts as a slip and not as rounding
+_ORTHONORMAL = 1e-9  # deviation of R R^T from 1 that counts as an error and not as rounding
 
 
 class _Material(Table):
@@ -128,7 +128,7 @@ def read_standard(path: str | Path) -> Standard:
 
 
 def write_standard(path: str | Path, standard: Standard) -> None:
-    """Write `standard.toml` whole or not at all; reading it gives the same numbers.
+    """Write `standard.toml` whole or not at all; reading it returns the same numbers.
 
     Args:
         standard: In base units.
@@ -169,7 +169,7 @@ def _standard(path: Path, file: _File) -> Standard:
 
 
 def _known(path: Path, file: _File) -> Known | None:
-    """The calibration, of features that there are."""
+    """The calibration, checked for features that exist."""
     if file.calibration is None:
         return None
     _check_features(path, file, "calibration.feature", file.calibration.feature)
@@ -177,7 +177,7 @@ def _known(path: Path, file: _File) -> Known | None:
 
 
 def _sag(path: Path, file: _File) -> Sag | None:
-    """What weight does, to features that there are."""
+    """Displacements by weight, checked for features that exist."""
     if file.sag is None:
         return None
     _check_features(path, file, "sag.um", file.sag.um)
@@ -191,7 +191,7 @@ def _sag(path: Path, file: _File) -> Sag | None:
 
 
 def _check_features(path: Path, file: _File, key: str, named: Iterable[str]) -> None:
-    """Refuse figures of features that the standard has not."""
+    """Reject figures of features that the standard does not have."""
     names = [patch.name for patch in file.patch] + [sphere.name for sphere in file.sphere]
     for name in named:
         if name not in names:
@@ -359,5 +359,5 @@ def _hole_table(hole: MountingHole) -> dict[str, Any]:
 
 
 def _floats(values: Any) -> Any:
-    """Plain (nested) lists of Python floats, which are written with their shortest exact digits."""
+    """Nested lists of Python floats, which are written with their shortest exact digits."""
     return np.asarray(values, dtype=np.float64).tolist()

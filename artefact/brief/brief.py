@@ -1,4 +1,4 @@
-"""What a design is asked for, resolved once: everything downstream takes this record.
+"""The request of a design, resolved once: everything downstream takes this record.
 
 project.toml, machine.toml, task.toml -> read_project -> Brief -> feasibility, design_standard
 """
@@ -33,22 +33,18 @@ from matstd.twin.record import Setup
 from matstd.twin.units import UM
 
 _ROOM, _ROOM_OF_BALL = 2.0, 2.0 / 3.0
-"""Largest gap kept round the probe, mm, and the same as a share of the ball's radius."""
+"""Largest gap round the probe, mm, and the gap as a share of the ball's radius."""
 
 
 @dataclass(frozen=True)
 class PlacementOptions:
-    """What is designed, how much is tried, and what for.
+    """Size of the standard, number of candidates, and design criterion.
 
     Attributes:
-        name: Type of the standard.
-        serial: Of the piece.
-        patches: Number of freeform patches.
-        balls: Number of balls, fewer where no more find room.
+        balls: Largest number of balls; fewer where there is no room for more.
         sites: Number of random faces to choose from.
         noise: Standard deviation of one touch, mm.
-        criterion: What faces, balls, poses and touches are chosen for.
-        choice: How many touches at how many table poses.
+        criterion: By which faces, balls, poses and touches are chosen.
     """
 
     name: str = "FFS"
@@ -63,23 +59,20 @@ class PlacementOptions:
 
 @dataclass(frozen=True)
 class ProgramSettings:
-    """The control, and how its programs move. What is None is as the dialect has it.
+    """The control and the motions of its programs. None leaves a value to the dialect.
 
     Attributes:
         control: Name of a dialect, or a dialect file of the user's own.
-        folder: Of programs and logs on the control.
-        tool: Number of the probe in the tool table.
-        further_tools: Of the probes that make what those before them do not reach.
-        preset: Row of the preset table.
+        further_tools: Tool numbers of the further probes.
         height_read: Point whose height a result states: `gauge` or `tip`.
         clearance: Height of the tool above everything while it moves sideways, mm.
         retract: Below the upper end of Z's travel, where rotary axes may turn, mm.
         probing_feed: As it stands in a program, mm/min.
         approach_feed: Along Z below the clearance height, mm/min.
         turning_feed: Of the last motion towards a rotary position, degrees/min.
-        touches_per_file: After so many touches the next visit begins a new file.
-        minutes_per_file: A file takes no longer, unless one visit does.
-        dry_run: By how much dry runs are raised, mm.
+        touches_per_file: Number of touches after which the next visit begins a new file.
+        minutes_per_file: Longest duration of a file that holds more than one visit.
+        dry_run: Height by which dry runs are raised, mm.
         planes: Whether positions are stated in tilted planes.
         temperatures: Sensors by name: number of the Q parameter, factor and offset of its value.
     """
@@ -107,10 +100,9 @@ class StudySettings:
     """Random machines of the maps, and of the proof on the twin.
 
     Attributes:
-        poses: Number of poses for the maps.
-        draws: Number of random machines for the maps; at most so many where digits are asked for.
-        digits: Significant digits that have to be stable (JCGM 101); 0 for none.
-        tolerance: Volumetric error that users allow, mm; infinite where they state none.
+        draws: Number of random machines for the maps; the largest number where digits are set.
+        digits: Significant digits that must be stable (JCGM 101); 0 for no such test.
+        tolerance: Allowed volumetric error, mm; infinite where none is stated.
         machines: Number of random machines of the proof.
         visits: Number of virtual visits from which the uncertainty of the task is evaluated.
     """
@@ -125,33 +117,21 @@ class StudySettings:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Brief(Displayed):
-    """A design as it is asked for, in base units.
+    """The request of a design in base units.
 
     Attributes:
-        chain: The machine.
-        ranges: Smallest and largest reading of every axis that the user cares about, mm or rad; an
-            axis left out has its whole travel.
-        errors: Machines that are expected; None for the ordinary ones.
-        probes: The one that the standard is designed for, then those that make what it does not
-            reach.
-        setups: Where the standard stands, the first for the design.
-        table: Its face carries the standard.
-        bodies: Clamps, fixtures, covers.
-        ball: By which the probe is watched; None where there is none.
+        ranges: Smallest and largest reading of every axis in the workspace, mm or rad; an axis left
+            out has its whole travel.
+        errors: Expected machines; None for the default population.
+        probes: First the probe of the design, then probes for what it does not reach.
+        setups: Poses of the standard; the first is that of the design.
+        ball: Datum ball that monitors the probe; None where there is none.
         blank: Base, fittings, material and limits of the standard.
-        overhang: How far a base may reach beyond the edge of the table, mm; None for the usual.
+        overhang: Allowed reach of the base beyond the edge of the table, mm; None for the default.
         riser: Height of a riser or pallet under the seat, mm.
-        options: What is designed, and what for.
-        programs: The control.
-        study: Random machines.
-        task: What the user measures; every touch on the faces where he states none.
-        seed: Of all random numbers.
-        down: Where weight pulls to in machine coordinates.
-        author: For the heads of files.
-        organisation: For the heads of files.
-        path: The project file, named in refusals.
+        task: Measuring task; by default every touch on the faces.
+        down: Direction of weight in machine coordinates.
         machine_path: The machine file; None where there is none.
-        remarks: What the user should know of his file.
     """
 
     chain: Chain
@@ -179,12 +159,12 @@ class Brief(Displayed):
 
     @property
     def probe(self) -> Probe:
-        """That the standard is designed for."""
+        """The probe of the design."""
         return self.probes[0]
 
     @property
     def setup(self) -> Setup:
-        """In which the standard is designed."""
+        """The set-up of the design."""
         return self.setups[0]
 
     @property
@@ -196,14 +176,14 @@ class Brief(Displayed):
     def room(self) -> float:
         """Gap between the probe above its ball and anything solid, mm.
 
-        The stylus has two thirds of the ball's radius, so that beside a face it has a third of it
-        and never more: what a ball of 3 mm is given would bar a smaller one from every touch.
+        The stylus has two thirds of the ball's radius, which leaves a third of it beside a steep
+        face: the gap of a 3 mm ball would exclude every touch of a smaller one.
         """
         return min(_ROOM, _ROOM_OF_BALL * self.probe.radius)
 
     @cached_property
     def clampings(self) -> tuple[Clamping, ...]:
-        """Set-ups with what stands beside the standard in each."""
+        """Set-ups with the bodies beside the standard in each."""
         return tuple(
             Clamping(
                 setup,
@@ -223,7 +203,7 @@ class Brief(Displayed):
 
     @cached_property
     def reach(self) -> ProbeReach:
-        """What the machine reaches in the first set-up."""
+        """Machine and probe in the first set-up."""
         return ProbeReach(
             chain=self.chain,
             setup=self.setup,
@@ -235,12 +215,12 @@ class Brief(Displayed):
 
     @cached_property
     def workspace(self) -> Workspace:
-        """Where the user works."""
+        """Workspace of the user."""
         return Workspace(self.chain, self.ranges, self.probe.length)
 
     @cached_property
     def population(self) -> Population:
-        """Machines to draw from."""
+        """Population of machines."""
         return self.errors or Population(self.chain)
 
     @property

@@ -1,4 +1,4 @@
-"""`[errors]` of a project file: what is expected of errors, their size, shape and relations."""
+"""`[errors]` of a project file: expected sizes, shapes and correlations of errors."""
 
 from pathlib import Path
 from typing import Any
@@ -55,7 +55,7 @@ class ErrorsTable(Table):
 
 
 def expected_errors(table: ErrorsTable, chain: Chain, path: Path) -> Population:
-    """Machines that a table expects.
+    """Population of machines that a table describes.
 
     Raises:
         BadFile: File, key, what stood there, what was expected.

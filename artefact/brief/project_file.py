@@ -1,4 +1,4 @@
-"""Project file (TOML, format "project/1"): what is designed, for which machine."""
+"""Project file (TOML, format "project/1"): the standard and its machine."""
 
 import re
 from collections.abc import Mapping
@@ -44,22 +44,22 @@ from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG, UM, URAD
 
-FARTHEST = 1e6
-"""A reading beyond this (mm, degrees) is a slip; larger whole numbers are no floating ones."""
+MAX_READING = 1e6
+"""Largest plausible reading, mm or degrees; larger integers may not convert to floats."""
 
 
-RENAMED = {
+RENAMED_KEYS = {
     "standard.drawn_machines": "standard.robust_machines",
     "standard.worst_share": "standard.robust_share",
     "standard.material": "material.name",
     "standard.density_kg_m3": "material.density_kg_m3",
     "standard.expansion_per_K": "material.expansion_1_K",
 }
-"""Present keys by those of older files, which are read all the same."""
+"""Present keys by keys of older files, which are still accepted."""
 
 
 class MonteCarloTable(Table):
-    """`[montecarlo]`: number of random machines, and when it is enough of them."""
+    """`[montecarlo]`: number of random machines, and when to stop."""
 
     draws: int = Field(default=2000, ge=100)
     digits: int = Field(default=0, ge=0, le=3)
@@ -114,7 +114,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     """Read a project with its machine, its task and the bodies of its workshop.
 
     Args:
-        montecarlo: Keys of `[montecarlo]` that stand in place of those of the file.
+        montecarlo: Keys of `[montecarlo]` that replace those of the file.
 
     Raises:
         BadFile: File, key, what stood there, what was expected.
@@ -122,7 +122,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     path = Path(path)
     data = parse_toml(read_text(path), path)
     check_format(data, "project/1", path)
-    remarks = _under_their_names(data, path)
+    remarks = _rename_keys(data, path)
     if montecarlo and isinstance(data.setdefault("montecarlo", {}), dict):
         data["montecarlo"] |= montecarlo
     table = checked(ProjectTable, data, path)
@@ -138,7 +138,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         table.blank, table.limits, table.material, first_probe.radius, min(face.half_size), path
     )
     setups = _setups(table, path)
-    # screws and pads stand on the table in every set-up
+    # screws and pads must stand on the table in every set-up
     room = min(middle_room(face, setup.T_table_artefact) for setup in setups)
     limits = table.limits.limits(first_probe.radius, room)
     wanted, shop = table.standard, table.workshop
@@ -198,10 +198,10 @@ def _bodies(table: ProjectTable, chain: Chain, path: Path) -> tuple[Body, ...]:
     return tuple(body.body(path.parent) for body in table.workshop.bodies)
 
 
-def _under_their_names(data: dict[str, Any], path: Path) -> tuple[str, ...]:
-    """Put keys of older files under their present names; a remark for each."""
+def _rename_keys(data: dict[str, Any], path: Path) -> tuple[str, ...]:
+    """Rename keys of older files; a remark for each."""
     remarks = []
-    for old, new in RENAMED.items():
+    for old, new in RENAMED_KEYS.items():
         (table, key), (new_table, new_key) = old.split("."), new.split(".")
         had = data.get(table)
         if not isinstance(had, dict) or key not in had:
@@ -209,12 +209,12 @@ def _under_their_names(data: dict[str, Any], path: Path) -> tuple[str, ...]:
         wanted = data.setdefault(new_table, {})
         if isinstance(wanted, dict) and new_key not in wanted:
             wanted[new_key] = had.pop(key)
-            remarks.append(f"{path}: {old} is called {new} now, and read as that")
+            remarks.append(f"{path}: {old} is now called {new} and was read as such")
     return tuple(remarks)
 
 
 def _setups(table: ProjectTable, path: Path) -> list[Setup]:
-    """Where the standard is clamped, the first for the design; their programs have their names."""
+    """Set-ups, the first for the design; their programs carry their names."""
     if not table.setup:
         raise BadFile(path, "setup", "no set-up", "one at least, [setup.a]")
     letters: list[str] = []
@@ -229,7 +229,7 @@ def _setups(table: ProjectTable, path: Path) -> list[Setup]:
 
 
 def _task(table: ProjectTable, workspace: Mapping[str, tuple[float, float]], path: Path) -> Task:
-    """The user's task, which must lie within his workspace and within the slopes of faces."""
+    """The task, which must lie within the workspace and the slopes of the faces."""
     if table.task is None:
         return Task()
     file = path.parent / table.task
@@ -237,7 +237,7 @@ def _task(table: ProjectTable, workspace: Mapping[str, tuple[float, float]], pat
     if task.slope[0] > steepest * DEG:
         raise BadFile(file, "slope_deg", f"{task.slope[0] / DEG:g} and more",
                       f"some within limits.max_slope_deg = {steepest:g} of {path}")  # fmt: skip
-    sharpest = 2e3 / table.limits.min_concave_radius_mm  # waves bulge about as much as they dip
+    sharpest = 2e3 / table.limits.min_concave_radius_mm  # waves are about as convex as concave
     if task.curvature[0] * 1e3 > sharpest:
         raise BadFile(file, "curvature_1_m", f"{task.curvature[0] * 1e3:g} and more",
                       f"some up to {sharpest:.4g}, twice what limits.min_concave_radius_mm of "
@@ -255,7 +255,7 @@ def _task(table: ProjectTable, workspace: Mapping[str, tuple[float, float]], pat
 
 
 def _table_face(table: ProjectTable, path: Path) -> Solid:
-    """The table, which is stated once at most."""
+    """The table, stated at most once."""
     check_workshop(table.workshop, table.setup, path)
     stated = table.workshop.table
     if stated is None:
@@ -269,7 +269,7 @@ def _table_face(table: ProjectTable, path: Path) -> Solid:
 def _workspace(
     table: ProjectTable, chain: Chain, path: Path
 ) -> tuple[dict[str, tuple[float, float]], int]:
-    """Ranges of readings that the user cares about, and the number of poses."""
+    """Ranges of readings, and the number of poses."""
     given = dict(table.workspace)
     poses = given.pop("poses", 2000)
     if not isinstance(poses, int) or not 100 <= poses <= 100_000:
@@ -295,7 +295,7 @@ def _workspace(
 def _pair(value: Any, path: Path, key: str) -> tuple[float, float]:
     """Two finite numbers, the smaller first."""
     is_pair = isinstance(value, list) and len(value) == 2
-    if not is_pair or not all(type(v) in (int, float) and abs(v) < FARTHEST for v in value):
+    if not is_pair or not all(type(v) in (int, float) and abs(v) < MAX_READING for v in value):
         raise BadFile(path, key, repr(value), "two numbers")
     low, high = float(value[0]), float(value[1])
     if not low <= high:

@@ -1,6 +1,6 @@
-"""Tables of a project file that say what standard is wanted, from which blank, within which limits.
+"""Tables of a project file: the standard, its blank and its limits.
 
-What contradicts itself is refused before any work is done.
+Contradictions are rejected before any work is done.
 """
 
 from pathlib import Path
@@ -17,32 +17,32 @@ from matstd.twin.files import Pair, Table
 from matstd.twin.units import DEG, KG_M3
 
 BASE_THICKNESS = 30.0
-"""Of the plate that every standard stands on, mm."""
+"""Thickness of the plate of every standard, mm."""
 
 CORNER_RADIUS = 25.0
-"""Of that plate, mm."""
+"""Corner radius of that plate, mm."""
 
 
 FEWEST_PATCHES = 3
-"""Of a standard."""
+"""Smallest number of patches of a standard."""
 
 STEEL = "X40Cr14 (1.2083), hardened"
-"""Material that the defaults of density and expansion are of."""
+"""Material of the default density and expansion."""
 
-FINISHING = 3.0
-"""Radius of the ball-end mill that finishes what is milled, mm: no radius is asked below it."""
+FINISHING_RADIUS = 3.0
+"""Radius of the finishing ball-end mill, mm; smaller concave radii cannot be made."""
 
 LEAST_SIDE = 160.0
-"""Of a base, mm."""
+"""Smallest side of a base, mm."""
 
-_NARROWEST = 20.0  # mm between two slots of a table, ISO 299
+_MIN_SLOT_PITCH = 20.0  # mm between two slots of a table, ISO 299
 
 _HIGHEST_SPHERE = 130.0 / 220.0
 """Centre of the highest sphere above the seat, as a share of the blank's height."""
 
 
 class StandardTable(Table):
-    """`[standard]`: what shall be made."""
+    """`[standard]`: size of the standard and design criterion."""
 
     name: str = "FFS-1"
     serial: str = ""
@@ -60,7 +60,7 @@ class StandardTable(Table):
     down: Literal["+X", "-X", "+Y", "-Y", "+Z", "-Z"] = "-Z"
 
     def options(self, noise: float, calibration: Calibration) -> PlacementOptions:
-        """What is designed, and what for, with a noise of mm."""
+        """The options in base units; noise in mm."""
         return PlacementOptions(
             name=self.name,
             serial=self.serial,
@@ -79,7 +79,7 @@ class StandardTable(Table):
 
 
 class MaterialTable(Table):
-    """`[material]`: what the standard is made of."""
+    """`[material]` of the standard."""
 
     name: str = STEEL
     density_kg_m3: float = Field(default=7800.0, gt=0.0)
@@ -107,7 +107,7 @@ class BlankTable(Table):
     height_mm: float = Field(default=220.0, ge=120.0, le=400.0)
 
     def blank(self, material: Material, limits: Limits) -> Blank:
-        """With the fittings that a blank of this height has."""
+        """The blank with fittings that suit its height."""
         return Blank(
             base=base_of(self.base_mm),
             fittings=Fittings(highest_sphere=round(_HIGHEST_SPHERE * self.height_mm, 1)),
@@ -118,7 +118,7 @@ class BlankTable(Table):
 
 
 class LimitsTable(Table):
-    """`[limits]`: what cutter, probe and table allow."""
+    """`[limits]` of cutter, probe and table."""
 
     min_concave_radius_mm: float = Field(default=12.0, gt=0.0)
     max_slope_deg: float = Field(default=45.0, gt=0.0, lt=90.0)
@@ -134,7 +134,7 @@ class LimitsTable(Table):
 
         Args:
             ball_radius: Of the probe, mm.
-            table_radius: Of the disc about the standard's own axis that lies on the table, mm.
+            table_radius: Of the disc about the axis of the standard that lies on the table, mm.
         """
         return Limits(
             min_concave_radius=self.min_concave_radius_mm,
@@ -153,7 +153,7 @@ def base_of(sides: tuple[float, float]) -> Base:
 
 
 def check_standard(wanted: StandardTable, path: Path) -> None:
-    """Refuse keys of `[standard]` that contradict one another.
+    """Reject keys of `[standard]` that contradict each other.
 
     Raises:
         BadFile: The key and what it contradicts.
@@ -175,7 +175,7 @@ def check_standard(wanted: StandardTable, path: Path) -> None:
 
 
 def check_material(material: MaterialTable, path: Path) -> None:
-    """Refuse another material with density or expansion of the default one.
+    """Reject another material with the default density or expansion.
 
     Raises:
         BadFile: The key that is missing.
@@ -201,14 +201,7 @@ def check_body(
     table_radius_mm: float,
     path: Path,
 ) -> None:
-    """Refuse a blank and limits that no standard can meet.
-
-    Args:
-        blank: Of what it is made.
-        limits: What is allowed.
-        material: Of the standard.
-        ball_mm: Radius of the probe's ball.
-        table_radius_mm: Of the table's face.
+    """Reject a blank and limits that no standard can meet.
 
     Raises:
         BadFile: The key and what it contradicts.
@@ -237,19 +230,19 @@ def check_body(
             f"{limits.min_concave_radius_mm:g} with a ball of probe.radius_mm = {ball_mm:g}",
             "a radius that the ball fits into",
         )
-    if limits.min_concave_radius_mm < FINISHING:
+    if limits.min_concave_radius_mm < FINISHING_RADIUS:
         raise BadFile(
             path,
             "limits.min_concave_radius_mm",
             f"{limits.min_concave_radius_mm:g}",
-            f"{FINISHING:g} mm or more, which a finishing cutter of {2 * FINISHING:g} mm can make",
+            f"{FINISHING_RADIUS:g} mm or more: a finishing cutter of {2 * FINISHING_RADIUS:g} mm",
         )
-    if 0.0 < limits.slot_pitch_mm < _NARROWEST:
+    if 0.0 < limits.slot_pitch_mm < _MIN_SLOT_PITCH:
         raise BadFile(
             path,
             "limits.slot_pitch_mm",
             f"{limits.slot_pitch_mm:g}",
-            f"{_NARROWEST:g} mm or more, or 0 where screws may stand anywhere",
+            f"{_MIN_SLOT_PITCH:g} mm or more, or 0 where screws may stand anywhere",
         )
     base = sides[0] * sides[1] * BASE_THICKNESS * material.density_kg_m3 * KG_M3
     if base > limits.max_mass_kg:

@@ -1,4 +1,4 @@
-"""Task file (TOML, format "task/1"): what is measured on a machine, and how well."""
+"""Task file (TOML, format "task/1"): surfaces that are measured, poses and tolerance."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -37,15 +37,14 @@ class TaskTable(Table):
 
 @dataclass(frozen=True)
 class Task:
-    """Surfaces that are measured, at which table poses, within which tolerance.
+    """A measuring task: surfaces, table poses and tolerance.
 
     Attributes:
-        name: Of the task.
         slope: Smallest and largest angle of a normal to the workpiece's z, rad.
-        curvature: Smallest and largest of the larger principal curvature, whatever its sign, 1/mm.
-        rotary: Smallest and largest reading of rotary axes by letter, rad; others are free.
-        tolerance: Width of the zone of the profile, even about the surface, mm; None for none.
-        u_w: Standard uncertainty that the workpieces add, mm.
+        curvature: Range of the largest absolute principal curvature, 1/mm.
+        rotary: Ranges of rotary readings by letter, rad; other axes are free.
+        tolerance: Width of the profile tolerance zone, symmetric to the surface, mm; None for none.
+        u_w: Standard uncertainty contributed by the workpieces, mm.
     """
 
     name: str = "every touch on the freeform faces"

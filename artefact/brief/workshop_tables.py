@@ -1,7 +1,6 @@
-"""Tables of a project file that say what is in the workshop: probe, table, clamps, control.
+"""Tables of a project file on the workshop: probe, table, clamps, control.
 
-Whatever the plan needs to know of the room and nothing that it could find out by itself. A body
-that contradicts itself, or a probe that cannot be, is refused before any work is done.
+Contradictory bodies and impossible probes are rejected before any work is done.
 """
 
 import re
@@ -27,10 +26,9 @@ Cylinders = tuple[tuple[float, float], ...]
 
 
 class ProbeTable(Table):
-    """`[probe]`: the ball, its distance from the gauge point, and what stands above it.
+    """`[probe]`: the ball, its distance from the gauge point, and the bodies above it.
 
-    The stylus reaches from the ball centre to the body, the body to the gauge line, the nose of the
-    spindle above it; or a model of the library, or a stack of cylinders, says so.
+    The shape is stated by stylus and body, by a stack of cylinders or by a model of the library.
     """
 
     model: str | None = None
@@ -43,7 +41,7 @@ class ProbeTable(Table):
     nose_diameter_mm: float = Field(default=90.0, gt=0.0)
 
     def probe(self) -> Probe:
-        """In base units, once everything is stated (`checked_probe`)."""
+        """In base units; requires the complete table of `checked_probe`."""
         assert self.radius_mm is not None
         assert self.length_mm is not None
         return Probe(
@@ -86,7 +84,7 @@ class TableTable(Table):
 class BodyTable(Table):
     """`[[workshop.bodies]]`: clamp, fixture or cover, in the frame of the table's face.
 
-    With `setup` it stands there in that set-up alone.
+    With `setup` it stands there only in that set-up.
     """
 
     name: str = Field(pattern=r"^[A-Za-z0-9_.+-]{1,13}$")
@@ -120,7 +118,7 @@ class BodyTable(Table):
 
 
 class BallTable(Table):
-    """`[workshop.ball]`: a calibrated ball on the table, by which the probe is watched."""
+    """`[workshop.ball]`: a calibrated ball on the table that monitors the probe."""
 
     at_mm: Vector
     diameter_mm: float = Field(gt=0.0, le=100.0)
@@ -128,13 +126,13 @@ class BallTable(Table):
     u_um: float = Field(default=0.5, ge=0.0, le=100.0)
 
     def ball(self, low: float) -> DatumBall:
-        """The ball on a stem that begins at some height, mm."""
+        """The ball on a stem that begins at height `low`, mm."""
         size = (0.5 * self.diameter_mm, 0.5 * self.stem_diameter_mm)
         return DatumBall(*self.at_mm, *size, low, 0.5 * self.u_um * UM)
 
 
 class TemperatureTable(Table):
-    """`[workshop.temperatures]`: a sensor whose reading the control's PLC hands to programs."""
+    """`[workshop.temperatures]`: a sensor whose reading the PLC passes to programs."""
 
     parameter: int = Field(ge=100, le=107)
     factor: float = 1.0
@@ -145,13 +143,13 @@ AnyProbe = TypeVar("AnyProbe", bound=ProbeTable)
 
 
 class FurtherProbeTable(ProbeTable):
-    """`[[workshop.probes]]`: a probe for what those before it do not reach, under its own tool."""
+    """`[[workshop.probes]]`: a probe with its own tool number for touches that others miss."""
 
     tool: int = Field(ge=1, le=32767)
 
 
 class WorkshopTable(Table):
-    """`[workshop]`: the room and the control that the programs are for."""
+    """`[workshop]`: bodies on the machine, and its control."""
 
     table: TableTable | None = None
     bodies: list[BodyTable] = Field(default_factory=list)
@@ -173,7 +171,7 @@ class WorkshopTable(Table):
     strategy: Literal["axes", "plane-spatial"] = "axes"
 
     def settings(self, control: str) -> ProgramSettings:
-        """How programs for a control are made; what the file leaves out is left to the dialect."""
+        """Settings of programs; keys that the file leaves out are left to the dialect."""
         stated = self.model_fields_set
         return ProgramSettings(
             control=control,
@@ -206,16 +204,11 @@ def probe_models() -> dict[str, ModelTable]:
 
 
 def checked_probe(probe: AnyProbe, path: Path, key: str = "probe") -> AnyProbe:
-    """The probe with everything that its model or a rule says of it stated.
-
-    Args:
-        probe: As in the file.
-        path: Of the file.
-        key: Where it stands there.
+    """The probe with all values that follow from its model or from defaults.
 
     Raises:
-        BadFile: An unknown model, no radius or length, a stack that does not go upwards or
-            beyond the gauge line, a stylus that is not thinner than the ball.
+        BadFile: An unknown model, no radius or length, a stack that does not rise or
+            ends beyond the gauge line, a stylus that is not thinner than the ball.
     """
     given = probe.model_fields_set
     shaped = {"stack_mm", "stylus_length_mm", "stylus_diameter_mm", "body_diameter_mm"}
@@ -267,10 +260,10 @@ def _plain(probe: ProbeTable, radius: float, length: float, path: Path, key: str
 
 
 def checked_probes(workshop: WorkshopTable, path: Path) -> tuple[FurtherProbeTable, ...]:
-    """The further probes, whole, each a tool of its own.
+    """The further probes, completed, each with its own tool number.
 
     Raises:
-        BadFile: As of `checked_probe`; a tool that another probe has.
+        BadFile: As of `checked_probe`; a tool number that is used twice.
     """
     tools, out = [workshop.tool], []
     for i, probe in enumerate(workshop.probes):
@@ -283,7 +276,7 @@ def checked_probes(workshop: WorkshopTable, path: Path) -> tuple[FurtherProbeTab
 
 
 def check_workshop(workshop: WorkshopTable, setups: Collection[str], path: Path) -> None:
-    """Refuse a table or a body that is not one shape, or stands in no set-up.
+    """Reject a table or body without exactly one shape, or in an unknown set-up.
 
     Raises:
         BadFile: The key and what was expected.
@@ -312,7 +305,7 @@ def check_workshop(workshop: WorkshopTable, setups: Collection[str], path: Path)
 
 
 def _check_ball(workshop: WorkshopTable, path: Path) -> None:
-    """A ball on a thinner stem, above the table."""
+    """The ball must stand on a thinner stem, above the table."""
     ball, table = workshop.ball, workshop.table
     if ball is None:
         return
@@ -327,7 +320,7 @@ def _check_ball(workshop: WorkshopTable, path: Path) -> None:
 
 
 def _check_temperatures(sensors: Mapping[str, TemperatureTable], path: Path) -> None:
-    """Names that a column can have, a parameter for each."""
+    """Names must suit a column, and every sensor needs its own parameter."""
     for name, sensor in sensors.items():
         key = f"workshop.temperatures.{name}"
         if not re.fullmatch(r"[A-Za-z0-9_]{1,16}", name):

@@ -1,14 +1,14 @@
-"""From points of a coordinate measuring machine to the standard as it is.
+"""The standard as measured, from points of a coordinate measuring machine.
 
-Balls are fitted with centre and radius. Their centres say where the CMM had the standard: the
-points are taken to the frame of the design by the rigid motion that brings them there best. Every
-face then gets a smooth correction of its control heights,
+Balls are fitted with centre and radius. A least-squares rigid motion takes their centres, and with
+them all points, to the frame of the design. Every face then receives a smooth correction of its
+control heights,
 
     d = n . (p - foot point) = B c + noise,    c penalised by the bending of the correction,
 
-with the weight of the penalty by generalised cross-validation; planes are never penalised, so the
-place and the tilts of a face are free. What is left over says how large the noise is, and with it
-the covariance of c how well the surface is known between the points.
+with the weight of the penalty by generalised cross-validation; planes are never penalised, so
+that position and tilts of a face are free. The residuals estimate the noise; with it the covariance
+of c gives the uncertainty of the surface between the points.
 
 Reference:
     Wahba, Spline Models for Observational Data, 4 (generalised cross-validation).
@@ -41,28 +41,27 @@ MIN_BALL, MIN_FACE = 6, 20
 """Fewest points on a ball (four determine it) and on a face (six move it, the rest bend it)."""
 
 MIN_BALLS = 3
-"""Balls that say where the CMM had the standard."""
+"""Fewest balls that determine the alignment."""
 
-_GROSS = 6.0
-"""Robust standard deviations from which a point is dust or a slip and is left out: of a thousand
-good ones none is so far."""
+_OUTLIER_LIMIT = 6.0
+"""Robust standard deviations beyond which a point is left out as dust or mistake; not one of a
+thousand good points lies so far out."""
 
-_ASTRAY = 0.5  # mm from its feature: a point of another feature, or a slip
+_MAX_MISFIT = 0.5  # mm from its feature: a point of another feature, or a mistake
 _UNITS = {"µm": 1e3, "m": 1e-3, "inches": 1.0 / 25.4, "cm": 0.1}
-_LIKE = 0.01  # relative difference of distances that no made part has, but other units do
+_UNIT_TOLERANCE = 0.01  # relative difference of distances: parts agree better, other units do not
 
 
 @dataclass(frozen=True)
-class Calibrated:
-    """A calibrated standard and what its calibration found.
+class CalibrationFit:
+    """A calibrated standard and the results of its calibration.
 
     Attributes:
-        standard: As it is.
-        moved: Of every feature its largest deviation from the design, mm.
-        offset: Of every face its mean deviation along the normal, mm.
-        u_radius: Of every ball the standard uncertainty of its radius by its points, mm.
-        left: Root mean square that the fitted feature leaves of its points, mm.
-        remarks: What was not used, or is out of the ordinary.
+        moved: Largest deviation of every feature from the design, mm.
+        offset: Mean deviation of every face along the normal, mm.
+        u_radius: Standard uncertainty of the radius of every ball by its points, mm.
+        left: Root mean square of the residuals of every feature, mm.
+        remarks: Unused points and other irregularities.
     """
 
     standard: Standard
@@ -74,19 +73,19 @@ class Calibrated:
 
     @property
     def verdicts(self) -> tuple[Verdict, ...]:
-        """Whether the features conform to the drawing, once that was judged."""
+        """Conformity of the features with the drawing, once evaluated."""
         return () if self.standard.known is None else self.standard.known.verdicts
 
 
-def calibrated(nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: float) -> Calibrated:
-    """The standard as a CMM found it.
+def fit_calibration(
+    nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: float
+) -> CalibrationFit:
+    """Fit the standard to the points of a CMM.
 
     Args:
-        nominal: As designed.
-        cmm: Its points.
-        u_point: Standard uncertainty of one point by what points do not share, mm.
-        u_feature: Of the place of a feature by what its points share: scales and squareness of the
-            CMM, qualification of its stylus, mm.
+        u_point: Standard uncertainty of one point, independent between points, mm.
+        u_feature: Standard uncertainty that the points of a feature share (scales and squareness of
+            the CMM, qualification of its stylus), mm.
 
     Raises:
         BadFile: Points in other units, or far from every feature.
@@ -114,9 +113,9 @@ def calibrated(nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: flo
             continue
         _check_face(nominal, patch, cmm, rows, point)
         found = corrected_face(patch, point[rows], u_point)
-        far = _gross(found.left, u_point)
+        far = _is_outlier(found.left, u_point)
         if far.any():
-            slips.append(_slips(patch.name, cmm, rows[far]))
+            slips.append(_outlier_remark(patch.name, cmm, rows[far]))
             rows = rows[~far]
             found = corrected_face(patch, point[rows], u_point)
         patches.append(found.patch)
@@ -129,7 +128,7 @@ def calibrated(nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: flo
         spheres=tuple(spheres),
         known=Known(cmm.path.name, nominal.fingerprint, known),
     )
-    return Calibrated(
+    return CalibrationFit(
         standard=standard,
         moved=moved,
         offset=offset,
@@ -140,16 +139,18 @@ def calibrated(nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: flo
 
 
 def _remarks(nominal: Standard, cmm: CmmPoints, known: dict[str, KnownFeature]) -> list[str]:
-    """Features that were not measured, and points that are of no use."""
+    """Remarks on features without points, and on points without use."""
     names = [s.name for s in nominal.spheres] + [p.name for p in nominal.patches]
     missing = [name for name in names if name not in known]
     out = []
     if missing:
-        out.append(f"no points on {', '.join(missing)}: as designed, as uncertain as is assumed")
+        out.append(
+            f"no points on {', '.join(missing)}: taken as designed, with the assumed uncertainty"
+        )
     datums = (nominal.plane.name, *SIDES)
     if touched := int(np.isin(cmm.feature, datums).sum()):
         on = ", ".join(name for name in datums if name in cmm.feature)
-        out.append(f"{touched} points on {on} align nothing: balls say where the piece is")
+        out.append(f"{touched} points on {on} are not used: the balls align the piece")
     return out
 
 
@@ -164,20 +165,20 @@ class Ball(NamedTuple):
     points: int
 
 
-def _gross(left: Array, u_point: float) -> NDArray[np.bool_]:
-    """Points that stand out of all others, (N,)."""
+def _is_outlier(left: Array, u_point: float) -> NDArray[np.bool_]:
+    """Points whose residual exceeds the outlier limit, (N,)."""
     usual = max(u_point, float(np.median(np.abs(left))) / 0.6745)
-    return np.asarray(np.abs(left) > _GROSS * usual)
+    return np.asarray(np.abs(left) > _OUTLIER_LIMIT * usual)
 
 
-def _slips(name: str, cmm: CmmPoints, rows: np.ndarray) -> str:
+def _outlier_remark(name: str, cmm: CmmPoints, rows: np.ndarray) -> str:
     """Remark on points that were left out."""
     lines = ", ".join(str(line) for line in cmm.line[rows])
     return f"{name}: points that stand out are left out, lines {lines} of {cmm.path}"
 
 
 def _balls(nominal: Standard, cmm: CmmPoints, u_point: float, slips: list[str]) -> dict[str, Ball]:
-    """Every measured ball in the frame of the CMM; what is left out goes to the slips."""
+    """Every measured ball in the frame of the CMM; remarks on outliers go to `slips`."""
     out: dict[str, Ball] = {}
     for sphere in nominal.spheres:
         rows = np.flatnonzero(cmm.feature == sphere.name)
@@ -198,15 +199,15 @@ def _balls(nominal: Standard, cmm: CmmPoints, u_point: float, slips: list[str]) 
         else:
             ball = fitted_ball(cmm.point[rows], u_point)
             left = np.linalg.norm(cmm.point[rows] - ball.centre, axis=1) - ball.radius
-            far = _gross(left, u_point)
+            far = _is_outlier(left, u_point)
             if far.any() and np.sum(~far) >= MIN_BALL:
-                slips.append(_slips(sphere.name, cmm, rows[far]))
+                slips.append(_outlier_remark(sphere.name, cmm, rows[far]))
                 ball = fitted_ball(cmm.point[rows[~far]], u_point)
             out[sphere.name] = ball
     if len(out) < MIN_BALLS:
         raise NotEnoughData(
-            f"{cmm.path}: points on {len(out)} balls, expected at least {MIN_BALLS}: they say "
-            "where the standard stood"
+            f"{cmm.path}: points on {len(out)} balls, expected at least {MIN_BALLS}: they "
+            "align the standard"
         )
     _check_size(nominal, cmm, out)
     _check_radii(nominal, cmm, out)
@@ -214,7 +215,7 @@ def _balls(nominal: Standard, cmm: CmmPoints, u_point: float, slips: list[str]) 
 
 
 def fitted_ball(points: Array, u_point: float) -> Ball:
-    """Least-squares sphere, with uncertainties by the larger of stated and found noise."""
+    """Least-squares sphere; uncertainties from the larger of stated and estimated noise."""
     found = fitted_sphere(points)
     scatter = float(np.sqrt(found.left @ found.left / max(len(points) - 4, 1)))
     covariance = found.cofactor * max(u_point, scatter) ** 2
@@ -229,7 +230,7 @@ def fitted_ball(points: Array, u_point: float) -> Ball:
 
 
 def _check_size(nominal: Standard, cmm: CmmPoints, balls: dict[str, Ball]) -> None:
-    """Distances between balls say whether the points are in mm, and of this standard."""
+    """Reject points in other units or of another standard, by the distances between balls."""
     names = list(balls)
     stated = {s.name: s.centre for s in nominal.spheres}
     found = _distances(np.array([balls[name].centre for name in names]))
@@ -237,10 +238,10 @@ def _check_size(nominal: Standard, cmm: CmmPoints, balls: dict[str, Ball]) -> No
     pairs = np.tril_indices(len(names), -1)
     ratio = float(np.median(found[pairs] / wanted[pairs]))
     for unit, factor in _UNITS.items():
-        if abs(ratio / factor - 1.0) < _LIKE:
+        if abs(ratio / factor - 1.0) < _UNIT_TOLERANCE:
             raise BadFile(cmm.path, "x, y, z", f"distances of balls in {unit}", "mm")
     a, b = np.unravel_index(int(np.argmax(np.abs(found - wanted))), found.shape)
-    if abs(found[a, b] - wanted[a, b]) <= _ASTRAY:
+    if abs(found[a, b] - wanted[a, b]) <= _MAX_MISFIT:
         return
     if swapped := _swapped(found, wanted):
         mixed = ", ".join(f"{names[j]} under the name {names[i]}" for i, j in swapped)
@@ -258,23 +259,23 @@ def _distances(centres: Array) -> Array:
 
 
 def _swapped(found: Array, wanted: Array) -> list[tuple[int, int]]:
-    """Balls (found, wanted) that go by another's name, if with their own all distances agree.
+    """Balls (found, wanted) with swapped names, if all distances agree once they are corrected.
 
-    A ball is known by its distances from all others, in their order.
+    A ball is recognised by its sorted distances from all others.
     """
     from scipy.optimize import linear_sum_assignment
 
     unlike = np.abs(np.sort(found, axis=1)[:, None] - np.sort(wanted, axis=1)).max(axis=-1)
     own = linear_sum_assignment(unlike)[1]
-    if np.abs(found - wanted[np.ix_(own, own)]).max() > _ASTRAY:
+    if np.abs(found - wanted[np.ix_(own, own)]).max() > _MAX_MISFIT:
         return []
     return [(i, int(j)) for i, j in enumerate(own) if i != j]
 
 
 def _check_radii(nominal: Standard, cmm: CmmPoints, balls: dict[str, Ball]) -> None:
-    """Refuse points of the tip's centre: all balls are as much too large as its radius."""
+    """Reject points of the tip centre: all balls are too large by the radius of the tip."""
     off = np.array([balls[s.name].radius - s.radius for s in nominal.spheres if s.name in balls])
-    if np.abs(off).min() > _ASTRAY and np.ptp(off) < _ASTRAY:
+    if np.abs(off).min() > _MAX_MISFIT and np.ptp(off) < _MAX_MISFIT:
         raise BadFile(
             cmm.path,
             "balls",
@@ -284,7 +285,7 @@ def _check_radii(nominal: Standard, cmm: CmmPoints, balls: dict[str, Ball]) -> N
 
 
 def _alignment(nominal: Standard, cmm: CmmPoints, centres: dict[str, Array]) -> Array:
-    """Pose (4, 4) that takes the points of the CMM to the frame of the design."""
+    """Pose (4, 4) from the frame of the CMM to that of the design."""
     stated = np.array([s.centre for s in nominal.spheres if s.name in centres])
     found = np.array([centres[s.name] for s in nominal.spheres if s.name in centres])
     if np.linalg.matrix_rank(stated - stated.mean(axis=0), tol=1.0) < 2:
@@ -295,16 +296,16 @@ def _alignment(nominal: Standard, cmm: CmmPoints, centres: dict[str, Array]) -> 
 def _check_face(
     nominal: Standard, patch: FreeformPatch, cmm: CmmPoints, rows: np.ndarray, point: Array
 ) -> None:
-    """Enough points, all of them near their face."""
+    """Reject too few points, and points far from their face."""
     if len(rows) < MIN_FACE:
         raise NotEnoughData(
             f"{cmm.path}: {patch.name} has {len(rows)} points, expected at least {MIN_FACE}"
         )
-    far = _away(patch, point[rows])
+    far = _distance_from_face(patch, point[rows])
     worst = int(np.argmax(far))
-    if far[worst] > _ASTRAY:
+    if far[worst] > _MAX_MISFIT:
         for other in nominal.patches:
-            if other is not patch and _away(other, point[rows]).max() <= _ASTRAY:
+            if other is not patch and _distance_from_face(other, point[rows]).max() <= _MAX_MISFIT:
                 found = f"points of {other.name} under the name {patch.name}"
                 raise BadFile(cmm.path, "feature", found, "every face under its own name")
         raise BadFile(
@@ -313,11 +314,11 @@ def _check_face(
             f"a point {far[worst] / UM:.0f} µm from {patch.name}"
             if np.isfinite(far[worst])
             else f"a point beside {patch.name}",
-            f"points within {_ASTRAY:g} mm of their feature",
+            f"points within {_MAX_MISFIT:g} mm of their feature",
         )
 
 
-def _away(patch: FreeformPatch, point: Array) -> Array:
+def _distance_from_face(patch: FreeformPatch, point: Array) -> Array:
     """Distances of points (N, 3) from a face, (N,), mm; infinite beside it."""
     uv = patch.project(point)
     far = np.linalg.norm(point - patch.point(np.nan_to_num(uv)), axis=1)

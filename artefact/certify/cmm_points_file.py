@@ -1,4 +1,4 @@
-"""Border: points that a coordinate measuring machine took on the features of a standard."""
+"""Reader of points that a coordinate measuring machine took on a standard."""
 
 import re
 from dataclasses import dataclass
@@ -13,13 +13,13 @@ from matstd.twin.frames import Array
 from matstd.twin.record import Labels
 
 STAMP = "MATSTD"
-"""Word before the fingerprint of the standard, in the programs we write and in their results."""
+"""Word before the fingerprint of the standard, in emitted programs and in their results."""
 
 _STAMPED = re.compile(rf"{STAMP} ([0-9a-f]{{16}})")
 _NUMBERED = re.compile(r"(.+)_\d+\Z")
 _FEATURE = ("feature", "name", "element", "label", "point")
 SIDES = ("DATUM_B", "DATUM_C")
-"""Datums that our program touches by hand, which a list of all points has as well."""
+"""Datums that the program touches by hand; a list of all points may include them."""
 
 _DIAMETER = ("diameter", "d", "dia")
 
@@ -30,10 +30,9 @@ class CmmPoints:
 
     Attributes:
         feature: Name of the feature of every point, (N,).
-        point: On the surface, or the centre of a ball where a diameter stands, (N, 3), mm.
+        point: On the surface, or the centre of a ball where a diameter is given, (N, 3), mm.
         diameter: Of a ball that was evaluated by the CMM, (N,), mm; nan for a point.
-        line: Of the file, (N,).
-        remarks: What was taken for granted.
+        line: Line number in the file, (N,).
     """
 
     path: Path
@@ -47,13 +46,14 @@ class CmmPoints:
 def read_cmm_points(path: str | Path, standard: Standard) -> CmmPoints:
     """Points of a standard from any table with a column of features and x, y, z.
 
-    Names may be numbered (`FF1_017`). Above the header a line may hold the stamp of our programs.
+    Names may be numbered (`FF1_017`). A line above the header may hold the stamp of an emitted
+    program.
 
     Args:
         standard: As designed; the one that was measured.
 
     Raises:
-        BadFile: No such columns, a feature that the standard has not, or another standard's stamp.
+        BadFile: Missing columns, an unknown feature, or the stamp of another standard.
     """
     sheet = read_sheet(path)
     remarks = _checked_stamp(sheet, standard)
@@ -89,7 +89,7 @@ def read_cmm_points(path: str | Path, standard: Standard) -> CmmPoints:
 
 
 def _checked_stamp(sheet: Sheet, standard: Standard) -> list[str]:
-    """Refuse points of another standard; a remark where nothing says of which they are."""
+    """Reject points of another standard; a remark where no stamp names the standard."""
     for text in sheet.title:
         if found := _STAMPED.search(text):
             if found[1] != standard.fingerprint:

@@ -1,9 +1,9 @@
 """DMIS program that takes the points of a calibration on a coordinate measuring machine.
 
 The datum system of the drawing, plane A, two touches on side B and one on side C, aligns the part
-by hand, then all features are measured in the frame of the design with one upright stylus: every
-ball as a sphere, every face point as a point of its own, so that any DMIS software can run the
-program and list x, y and z. Between points the stylus goes up to a plane above the standard.
+by hand, then all features are measured in the frame of the design with one upright stylus. Every
+ball is a sphere and every face point a single point, so that any DMIS software can run the program
+and list x, y and z. Between points the stylus rises to a clearance plane.
 
 Reference:
     ISO 22093:2011 (DMIS 5.2): DATSET, FEAT, MEAS, PTMEAS, OUTPUT.
@@ -20,7 +20,7 @@ from matstd.twin.frames import Array
 from matstd.twin.units import DEG
 
 PITCH = 5.0
-"""Between points on a face, mm: half the shortest wave that its control heights can follow."""
+"""Between points on a face, mm: half the shortest wave that the control heights resolve."""
 
 RIM = 2.0
 """Between a point and the edge of its face, mm: a stylus of 2 mm rests on the face alone."""
@@ -29,7 +29,7 @@ LIFT = 15.0
 """Of the clearance plane above the standard, mm."""
 
 APPROACH = 3.0
-"""From which a point is probed, mm."""
+"""Approach distance of a point, mm."""
 
 _RINGS = ((60.0, 4), (25.0, 8))  # elevation, degrees, and number of points below the pole
 _PLANE_POINTS = 8
@@ -45,7 +45,7 @@ def dmis_program(standard: Standard, sides: Sides, engraved: Array) -> str:
     Args:
         standard: As designed; its fingerprint stands in the program and in its results.
         sides: Where `DATUM_B` is touched twice, from -x to +x, and `DATUM_C` once.
-        engraved: Places of the lettering, (N, 3), mm, which points of the plane keep away from.
+        engraved: Positions of the lettering, (N, 3), mm; points of the plane avoid them.
     """
     if len(standard.spheres) < 3:
         raise NotEnoughData(f"'{standard.name}' has {len(standard.spheres)} balls, 3 align it")
@@ -83,7 +83,7 @@ def ball_points(centre: Array, radius: float) -> tuple[Array, Array]:
 
 
 def face_points(standard: Standard, name: str) -> tuple[Array, Array]:
-    """An even grid on a face, to and fro, points and normals."""
+    """Points and normals of a meandering grid on a face."""
     patch = next(p for p in standard.patches if p.name == name)
     axes = [np.linspace(-a + RIM, a - RIM, int(np.ceil(2 * (a - RIM) / PITCH)) + 1)
             for a in patch.half_size]  # fmt: skip
@@ -93,7 +93,7 @@ def face_points(standard: Standard, name: str) -> tuple[Array, Array]:
 
 
 def _head(standard: Standard) -> list[str]:
-    """Title, stamp, units, how points are probed."""
+    """Title, stamp, units and probing settings."""
     title = f"{standard.name} {standard.serial} {STAMP} {standard.fingerprint}".replace("'", " ")
     return [
         f"DMISMN/'{title}',05.2",
@@ -109,7 +109,7 @@ def _head(standard: Standard) -> list[str]:
 
 
 def _aligned(standard: Standard, sides: Sides, engraved: Array) -> list[str]:
-    """Datums A, B and C by hand; the frame of the design from them."""
+    """Datums A, B and C by hand, and from them the frame of the design."""
     plane, half = standard.plane, np.asarray(standard.base.half_size)
     points = plane_points(standard, engraved)
     normals = np.tile([0.0, 0.0, 1.0], (len(points), 1))
@@ -133,7 +133,7 @@ def _aligned(standard: Standard, sides: Sides, engraved: Array) -> list[str]:
 
 
 def plane_points(standard: Standard, engraved: Array) -> Array:
-    """Points of the datum plane as far out as nothing stands or is engraved beside them, (8, 3)."""
+    """Points of the datum plane, far out and clear of bodies and lettering, (8, 3)."""
     height, half = standard.plane.height, np.asarray(standard.base.half_size)
     out = []
     for angle in 2.0 * np.pi * (np.arange(_PLANE_POINTS) + 0.5) / _PLANE_POINTS:
@@ -151,7 +151,7 @@ def plane_points(standard: Standard, engraved: Array) -> Array:
 
 
 def _measured(kind: str, name: str, points: Array, normals: Array, high: float | None) -> list[str]:
-    """One feature with its points; from above, where a clearance plane is given."""
+    """One feature with its points; approached from a clearance plane where one is given."""
     lines = [f"MEAS/{kind},F({name}),{len(points)}"]
     for p, n in zip(points, normals, strict=True):
         out = p + APPROACH * n

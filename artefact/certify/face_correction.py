@@ -1,4 +1,8 @@
-"""A face as points say that it is: its control heights with a smooth correction."""
+"""Correction of a face to measured points: a smooth change of its control heights.
+
+A penalised least-squares fit of the deviations along the normal; `calibration_fit` has the
+equation. The linear fit is repeated because the foot points move with the surface.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -8,19 +12,18 @@ from matstd.artefact.body import FreeformPatch
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
 
-_WEIGHTS = np.logspace(-8.0, 4.0, 49)  # of the bending, over the range from none to a plane
-_ROUNDS = 3  # foot points move by slope times correction: micrometres, settled after two
+_WEIGHTS = np.logspace(-8.0, 4.0, 49)  # of the bending: from no penalty to a plane
+_ROUNDS = 3  # foot points move by slope times correction, micrometres: constant after two rounds
 _GRID = 3.0  # mm between the places over which the uncertainty of the surface is averaged
 
 
 @dataclass(frozen=True, eq=False)
 class CorrectedFace:
-    """A face as it is.
+    """A face as measured.
 
     Attributes:
-        patch: With corrected heights.
         u_form: Root mean square standard uncertainty of the surface over the face, mm.
-        u_tilt: Standard uncertainty of its rotations by the points, rad.
+        u_tilt: Standard uncertainty of its rotations by its points, rad.
         moved: Largest deviation from the design along the normal, mm.
         offset: Mean of these deviations over the face, mm.
         left: Deviation of every point from the corrected face, (N,), mm.
@@ -38,15 +41,16 @@ def corrected_face(patch: FreeformPatch, points: Array, u_point: float) -> Corre
     """Fit a smooth correction to the deviations of points.
 
     Args:
-        patch: As designed.
         points: On the real face, artefact frame, (N, 3), mm.
-        u_point: Standard uncertainty of a point; more where the points scatter more, mm.
+        u_point: Smallest standard uncertainty of a point, mm; raised to the scatter of the points.
     """
     bend = _bending(patch)
     heights = patch.heights
     for _ in range(_ROUNDS):
         uv, deviation, tilt = _deviations(replace(patch, heights=heights), points)
-        B = _basis(patch, uv) / tilt[:, None]  # a height counts by the cosine of its slope
+        B = (
+            _basis(patch, uv) / tilt[:, None]
+        )  # a change of height moves the surface along its normal by the cosine of the slope
         before = B @ (heights - patch.heights).ravel()
         c, root, left = _smooth(B, deviation + before, bend, u_point)
         heights = patch.heights + c.reshape(heights.shape)
@@ -101,9 +105,9 @@ def _bending(patch: FreeformPatch) -> Array:
 
 
 def _smooth(B: Array, d: Array, bend: Array, u_point: float) -> tuple[Array, Array, Array]:
-    """Coefficients, root of their covariance, and what they leave, (N,).
+    """Coefficients, square root of their covariance, and residuals, (N,).
 
-    Of all weights the one with the least ``n |d - H d|^2 / (n - tr H)^2``.
+    The weight minimises ``n |d - H d|^2 / (n - tr H)^2``.
     """
     n, best = len(d), None
     gram, right, penalty = B.T @ B / n, B.T @ d / n, bend.T @ bend
@@ -119,6 +123,6 @@ def _smooth(B: Array, d: Array, bend: Array, u_point: float) -> tuple[Array, Arr
     assert best is not None
     _, c, M, used, squares = best
     noise = max(u_point, float(np.sqrt(squares / max(n - used, 1.0))))
-    # the Bayesian covariance of the penalised fit, which holds what the penalty may have hidden
+    # the Bayesian covariance of the penalised fit includes the bias by the penalty
     root = np.linalg.cholesky(np.linalg.inv(M)) * noise / np.sqrt(n)
     return c, root, d - B @ c

@@ -1,4 +1,4 @@
-"""Which touches on a standard are like a measuring task: slopes, curvatures, table poses."""
+"""Touches on a standard that resemble a measuring task in slope, curvature and table pose."""
 
 from pathlib import Path
 
@@ -14,16 +14,16 @@ from matstd.twin.units import DEG, UM
 
 Mask = NDArray[np.bool_]
 
-_OFF = 2.0 * UM  # rms by which touches may lie off the standard that they were evaluated with: its
-# sag is some tenths, what a piece differs from its design by 5 to 50
-_EDGE = 1e-6  # rad and 1/mm: a range includes its ends, whatever rounding did
+_MAX_OFFSET = 2.0 * UM  # rms of touches off the standard that evaluated them: its sag
+# is some tenths of a µm, a piece differs from its design by 5 to 50 µm
+_EDGE = 1e-6  # rad and 1/mm: ranges include their ends in spite of rounding
 
 
 def on_faces(standard: Standard, touches: Touches) -> Mask:
     """Touches on freeform faces, (N,).
 
     Raises:
-        DesignError: A feature that the standard has not.
+        DesignError: A feature that the standard does not have.
     """
     unknown = sorted(set(touches.feature.tolist()) - set(standard.features))
     if unknown:
@@ -35,10 +35,10 @@ def on_faces(standard: Standard, touches: Touches) -> Mask:
 
 
 def like_task(task: Task, standard: Standard, touches: Touches) -> Mask:
-    """Touches on freeform faces that are like those of a task, (N,).
+    """Touches on freeform faces within all ranges of a task, (N,).
 
     Raises:
-        DesignError: There is none; says which range is not met, and what there is.
+        DesignError: None; the message states the number and the range within each condition.
     """
     chain = touches.chain
     for letter in task.rotary:
@@ -61,30 +61,29 @@ def like_task(task: Task, standard: Standard, touches: Touches) -> Mask:
     for letter, limits in task.rotary.items():
         readings = touches.q[:, chain.axis_index(letter)]
         asked.append((f"poses.{letter}_deg", DEG, readings, limits))
-    like, told = face.copy(), []
+    like, per_range = face.copy(), []
     for key, unit, values, (low, high) in asked:
         met = (values >= low - _EDGE) & (values <= high + _EDGE)
         like &= met
         there = values[face] / unit
-        told.append(
+        per_range.append(
             f"{key} {int((met & face).sum())} (they have {there.min():.3g} to {there.max():.3g})"
         )
     if not like.any():
         raise DesignError(
             f"task '{task.name}': none of {int(face.sum())} touches on freeform faces is within "
-            f"all its ranges; within each: {', '.join(told)}"
+            f"all its ranges; within each: {', '.join(per_range)}"
         )
     return like
 
 
 def check_places(standard: Standard, touches: Touches, path: str | Path) -> None:
-    """Refuse a run that was evaluated with another file than that of this standard.
+    """Reject a run that was evaluated with another file than that of this standard.
 
-    A touch lies on the surface that its evaluation believed in: that of the design, or that which
-    a calibration found.
+    A touch lies on the surface that its evaluation assumed: designed or calibrated.
 
     Raises:
-        BadFile: They lie off its surfaces; by how much.
+        BadFile: The touches lie off its surfaces.
     """
     on_faces(standard, touches)
     square: list[float] = []
@@ -94,7 +93,7 @@ def check_places(standard: Standard, touches: Touches, path: str | Path) -> None
         there = np.isfinite(uv).all(axis=1)
         square += ((points[there] - surface.point(uv[there])) ** 2).sum(axis=1).tolist()
     rms = float(np.sqrt(np.mean(square))) if square else 0.0
-    if rms > _OFF:
+    if rms > _MAX_OFFSET:
         other = "the design" if standard.known else "a calibration of it"
         raise BadFile(
             path,

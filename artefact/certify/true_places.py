@@ -1,4 +1,4 @@
-"""A standard as it may really be: every feature beside its calibrated place."""
+"""A possible true standard: every feature displaced within its calibration uncertainty."""
 
 from dataclasses import replace
 
@@ -9,14 +9,10 @@ from matstd.artefact.worth import Calibration
 from matstd.twin.frames import pose, rotation
 
 
-def misplaced(standard: Standard, known: Calibration, rng: np.random.Generator) -> Standard:
-    """Features displaced and turned at random, as much as a calibration leaves open.
-
-    Args:
-        standard: As calibrated.
-        known: Standard uncertainties of its features' places.
-        rng: Draws them.
-    """
+def displaced_features(
+    standard: Standard, known: Calibration, rng: np.random.Generator
+) -> Standard:
+    """Displace and rotate features at random by their calibration uncertainties."""
     patches = [
         replace(
             patch,

@@ -1,13 +1,12 @@
-"""Whether a calibrated standard is the one that was drawn, and what its errors have in common.
+"""Conformity of a calibrated standard with its drawing, and common causes of its errors.
 
-Every measured value is judged by ISO 14253-1: its deviation from the design, with a guard band of
-1.65 standard uncertainties, against the tolerance of the drawing. The points were taken to the
-frame of the balls, not to the datums of the drawing: what balls beside their places leave open of
-that frame is a part of every uncertainty.
+Every deviation from the design is compared with the tolerance of the drawing by ISO 14253-1, with a
+guard band of 1.65 standard uncertainties. The points were aligned by the balls, not by the datums
+of the drawing: the uncertainty of that alignment is part of every uncertainty.
 
-The scale is the seventh parameter of the motion that brings the balls to the design. What the CMM
-and the temperature of the piece are stated to leave open is its tolerance (k = 2); what the places
-of the balls scatter is its uncertainty, so a scale that their tolerance hides cannot be decided.
+The scale is the seventh parameter of the motion that aligns the balls. Its tolerance follows from
+the stated uncertainties of CMM and temperature (k = 2), its uncertainty from the scatter of the
+balls: a scale that their position errors can cause remains undecided.
 """
 
 from collections.abc import Mapping
@@ -16,22 +15,25 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.artefact.body import Standard, Verdict
-from matstd.artefact.certify.calibration_fit import Calibrated
+from matstd.artefact.certify.calibration_fit import CalibrationFit
 from matstd.twin.frames import Array, skew
 
-_COMMON = 0.1  # of a common offset, by which radii or faces may differ from it
+_COMMON_TOLERANCE = 0.1  # of a common offset: largest difference of radii or faces from it
 _CORNERS = np.array([[x, y] for x in (-1.0, 1.0) for y in (-1.0, 1.0)])
-_K, _ONE_SIDED = 2.0, 0.95  # of the scale's tolerance, and of its guard band
+_K, _ONE_SIDED = (
+    2.0,
+    0.95,
+)  # coverage factor of the tolerance of the scale; confidence of its guard band
 
 
 @dataclass(frozen=True, slots=True)
 class Allowed:
-    """What drawing and calibration allow.
+    """Tolerances by drawing and calibration.
 
     Attributes:
         drawing: Largest deviations of `diameter` and `position` of a ball, `profile` of a face, mm.
-        u_feature: Standard uncertainty of the place of a feature by what its points share, mm.
-        u_temperature: Of the piece about 20 degC while it was measured, K.
+        u_feature: Standard uncertainty that the points of a feature share, mm.
+        u_temperature: Standard uncertainty of the temperature of the piece about 20 degC, K.
     """
 
     drawing: Mapping[str, float]
@@ -44,11 +46,11 @@ class CommonCause:
     """One cause of many deviations.
 
     Attributes:
-        kind: `radius`: all balls as much too large or too small; `scale`: all distances.
+        kind: `radius`: the same error of all radii; `scale`: of all distances.
         value: Mm of radius, or the relative scale.
         spread: Largest difference of a ball from it, mm; standard uncertainty of the scale.
-        on_faces: Whether all faces stand as far out along their normals.
-        temperature: At which the piece has that scale by its expansion, degC above 20; nan.
+        on_faces: Whether all faces are offset by the same amount along their normals.
+        temperature: Above 20 degC that would explain the scale by expansion, K; nan if none.
     """
 
     kind: str
@@ -58,16 +60,10 @@ class CommonCause:
     temperature: float = float("nan")
 
 
-def judged(
-    nominal: Standard, found: Calibrated, allowed: Allowed
-) -> tuple[Calibrated, tuple[CommonCause, ...]]:
-    """The calibration with verdicts on all measured features and on the scale, and common causes.
-
-    Args:
-        nominal: As designed.
-        found: As measured.
-        allowed: By drawing and calibration.
-    """
+def with_verdicts(
+    nominal: Standard, found: CalibrationFit, allowed: Allowed
+) -> tuple[CalibrationFit, tuple[CommonCause, ...]]:
+    """Add verdicts on all measured features and on the scale; report common causes."""
     frame = _Frame(nominal, found)
     verdicts = [*_of_balls(nominal, found, allowed, frame)]
     verdicts += _of_faces(nominal, found, allowed, frame)
@@ -84,9 +80,9 @@ def judged(
 
 
 class _Frame:
-    """Rigid motion and scale that the places of the measured balls leave open."""
+    """Uncertainty of the alignment, and the scale, from the measured balls."""
 
-    def __init__(self, nominal: Standard, found: Calibrated) -> None:
+    def __init__(self, nominal: Standard, found: CalibrationFit) -> None:
         pairs = zip(nominal.spheres, found.standard.spheres, strict=True)
         measured = [(a, b) for a, b in pairs if a.name in found.u_radius]
         self.names = [a.name for a, _ in measured]
@@ -106,9 +102,9 @@ class _Frame:
         self.u_ppm = scatter * float(np.sqrt(np.linalg.inv(S.T @ S)[6, 6]))
 
     def u(self, points: Array, directions: Array | None = None) -> float:
-        """Largest standard uncertainty of places (N, 3) by the frame, along directions or any, mm.
+        """Largest standard uncertainty of places (N, 3) by the alignment, mm.
 
-        Along any direction it is that along the worst.
+        Along the directions (N, 3), or along the worst direction where none are given.
         """
         J = _rigid(points - self.middle).reshape(-1, 3, 6)
         covariance = J @ self.covariance @ J.transpose(0, 2, 1)
@@ -132,22 +128,22 @@ class _Frame:
         )
 
     def cause(self, expansion: float) -> CommonCause:
-        """The scale, and the temperature that would explain it."""
+        """The scale, with the temperature that would explain it."""
         warmer = self.ppm / expansion if expansion else float("nan")
         return CommonCause("scale", self.ppm, self.u_ppm, temperature=warmer)
 
 
 def _rigid(places: Array) -> Array:
-    """Displacement of places (N, 3) by a small translation and turn, (3 N, 6)."""
+    """Displacement of places (N, 3) per small translation and rotation, (3 N, 6)."""
     blocks = [np.hstack([np.eye(3), -skew(place)]) for place in places]
     return np.concatenate(blocks)
 
 
 def _scatter(J: Array, left: Array, floor: float) -> float:
-    """Standard deviation of a coordinate of a ball, mm; what one ball is known to at least.
+    """Standard deviation of a coordinate of a ball, mm, not below the uncertainty of one ball.
 
-    Of few balls it is as much larger as Student's factor than that of many: with three balls
-    20 um beside their places 7 % of pieces with perfect faces are refused without it, 3 % with it.
+    Few balls enlarge it by the ratio of Student's factors: with three balls 20 um out of place
+    7 % of pieces with perfect faces are rejected without this factor, 3 % with it.
     """
     from scipy.special import stdtrit
 
@@ -157,7 +153,7 @@ def _scatter(J: Array, left: Array, floor: float) -> float:
 
 
 def _of_balls(
-    nominal: Standard, found: Calibrated, allowed: Allowed, frame: _Frame
+    nominal: Standard, found: CalibrationFit, allowed: Allowed, frame: _Frame
 ) -> list[Verdict]:
     """Diameter and position of every measured ball."""
     known = found.standard.known
@@ -181,7 +177,7 @@ def _of_balls(
 
 
 def _of_faces(
-    nominal: Standard, found: Calibrated, allowed: Allowed, frame: _Frame
+    nominal: Standard, found: CalibrationFit, allowed: Allowed, frame: _Frame
 ) -> list[Verdict]:
     """Profile of every measured face."""
     known = found.standard.known
@@ -205,13 +201,13 @@ def _of_faces(
     return out
 
 
-def _common_radius(nominal: Standard, found: Calibrated) -> list[CommonCause]:
+def _common_radius(nominal: Standard, found: CalibrationFit) -> list[CommonCause]:
     """The offset that all radii share, if they do."""
     pairs = zip(nominal.spheres, found.standard.spheres, strict=True)
     off = np.array([b.radius - a.radius for a, b in pairs if a.name in found.u_radius])
     common = float(np.median(off))
     spread = float(np.abs(off - common).max())
-    if spread > max(_COMMON * abs(common), 3.0 * max(found.u_radius.values())):
+    if spread > max(_COMMON_TOLERANCE * abs(common), 3.0 * max(found.u_radius.values())):
         return []
     faces = np.array(list(found.offset.values()))
     on_faces = len(faces) > 0 and bool(np.abs(faces - common).max() < 0.5 * abs(common))

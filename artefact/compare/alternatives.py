@@ -1,9 +1,9 @@
-"""What another stylus length or another set-up of the standard would buy, at equal touches.
+"""Benefit of a second stylus length or set-up of the standard, at equal numbers of touches.
 
-Half of the touches stay; the other half is chosen greedily from the same points at the same table
-poses, once as they are and once with the other stylus or in the other place. Every set-up has six
-free numbers of its own, every stylus its own offset, length and tilt, so nothing is won by knowing
-them. Reach and travel are looked at, collisions are not.
+Half of the touches stay. The other half is chosen greedily from the same points at the same table
+poses, once unchanged and once with the other stylus or set-up. Every set-up has six parameters of
+its own, every stylus its own offset, length and tilt, so that no knowledge of them is assumed.
+Angle and travels are checked, collisions are not.
 """
 
 from dataclasses import dataclass, replace
@@ -21,7 +21,7 @@ from matstd.twin.record import IntArray, Setup
 from matstd.twin.units import DEG
 
 STYLUS = 60.0
-"""By which a second stylus is longer, mm."""
+"""Additional length of a second stylus, mm."""
 
 SETUPS = {
     "a second set-up, turned by 90° about Z": ((0.0, 0.0, 0.0), (0.0, 0.0, 90.0)),
@@ -31,13 +31,13 @@ SETUPS = {
 }
 """Displacements (mm) and rotations (degrees) of the standard for a second set-up."""
 
-_EACH = 6  # table poses tried at every point
-_MOST = 1500  # touches that the second half is chosen from
+_POSES_PER_POINT = 6  # table poses tried at every point
+_MAX_CANDIDATES = 1500  # candidates for the second half of the touches
 
 
 @dataclass(frozen=True, eq=False)
-class Measured:
-    """Touches that could be made in some way, as rows.
+class JoinedRows:
+    """Rows of touches of which some are made with another stylus or set-up.
 
     Attributes:
         W: Whitened rows, (N, P + own): columns of set-up and tool are repeated for a second
@@ -51,15 +51,13 @@ class Measured:
 
 @dataclass(frozen=True)
 class Alternative:
-    """What another way to measure buys.
+    """Benefit of another stylus or set-up.
 
     Attributes:
-        name: What it is.
-        is_possible: Whether the machine reaches enough touches.
-        rank_gained: Combinations of machine errors that are seen beyond those seen now.
-        variance_ratio: Mean predicted variance of the tool point, over that of as many touches as
-            now; below one is better.
-        refusal: Why the machine cannot do it, in one line; empty where it can.
+        rank_gained: Additional combinations of machine errors that are determined.
+        variance_ratio: Mean predicted variance of the tool point relative to that of as many
+            touches of the design; below one is better.
+        refusal: Why the machine cannot do it; empty where it can.
     """
 
     name: str
@@ -70,7 +68,7 @@ class Alternative:
 
 
 def other_setups(criterion: Criterion) -> dict[str, ProbeReach]:
-    """Other ways to measure: another stylus, other set-ups; by name."""
+    """A second stylus length and further set-ups, by name."""
     reach = criterion.reach
     out = {"a second stylus length": replace(reach, length=reach.length + STYLUS)}
     for name, (shift, turn) in SETUPS.items():
@@ -80,34 +78,34 @@ def other_setups(criterion: Criterion) -> dict[str, ProbeReach]:
 
 
 def touches_reached_in(other: ProbeReach, requests: Requests, rng: np.random.Generator) -> Requests:
-    """Touches of the same points at the same table poses that a way to measure reaches."""
+    """Touches on the same points at the same table poses that another set-up reaches."""
     poses = np.unique(np.round(requests.rotary, 9), axis=0)
     n = len(requests)
-    rows = np.tile(np.arange(n), _EACH)
+    rows = np.tile(np.arange(n), _POSES_PER_POINT)
     tried = replace(requests[rows], rotary=poses[rng.integers(len(poses), size=len(rows))])
-    return tried[np.flatnonzero(other.is_reachable(tried))[:_MOST]]
+    return tried[np.flatnonzero(other.is_reachable(tried))[:_MAX_CANDIDATES]]
 
 
 def joined_rows(
     criterion: Criterion, first: Requests, second: Requests, other: ProbeReach
-) -> Measured:
-    """Rows of touches made as now, and of others made in another way."""
+) -> JoinedRows:
+    """Rows of touches as designed, and of others with another stylus or set-up."""
     model = criterion.model
     W = [
         whitened(model.columns(criterion.reach.touches(first)), criterion.prior_sd, criterion.noise)
     ]
     W.append(whitened(model.columns(other.touches(second)), criterion.prior_sd, criterion.noise))
-    own = _own(criterion, other)
+    own = _own_parameters(criterion, other)
     rows = np.zeros((len(first) + len(second), len(criterion.prior_sd) + len(own)))
     rows[: len(first), : len(criterion.prior_sd)] = W[0]
     rows[len(first) :, : len(criterion.prior_sd)] = W[1]
     rows[len(first) :, own] = 0.0
     rows[len(first) :, len(criterion.prior_sd) :] = W[1][:, own]
-    return Measured(rows, np.concatenate([criterion.prior_sd, criterion.prior_sd[own]]))
+    return JoinedRows(rows, np.concatenate([criterion.prior_sd, criterion.prior_sd[own]]))
 
 
-def _own(criterion: Criterion, other: ProbeReach) -> IntArray:
-    """Parameters that are others in another way to measure: of the set-up, or of the tool."""
+def _own_parameters(criterion: Criterion, other: ProbeReach) -> IntArray:
+    """Parameters that differ with another stylus or set-up: of the tool, or of the set-up."""
     link = "w" if other.length == criterion.reach.length else "t"
     if other is criterion.reach:
         return np.zeros(0, dtype=np.int64)
@@ -115,7 +113,7 @@ def _own(criterion: Criterion, other: ProbeReach) -> IntArray:
 
 
 def machine_rank(criterion: Criterion, W: Array) -> int:
-    """Combinations of machine errors that rows see, set-ups and tools being unknown."""
+    """Combinations of machine errors that rows determine with unknown set-ups and tools."""
     P = len(criterion.prior_sd)
     nuisance = np.concatenate([setup_parameters(criterion.model), np.arange(P, W.shape[1])])
     return rank_analysis(W).rank - rank_analysis(W[:, nuisance]).rank
@@ -124,18 +122,13 @@ def machine_rank(criterion: Criterion, W: Array) -> int:
 def alternatives(
     criterion: Criterion, requests: Requests, rng: np.random.Generator
 ) -> tuple[Alternative, ...]:
-    """What every other way to measure buys.
-
-    Args:
-        requests: The touches of the design.
-        rng: Draws the touches that are tried.
-    """
+    """Benefit of every other stylus length and set-up."""
     half = requests[::2]
-    base = _bought(criterion, requests, half, criterion.reach, rng)
+    base = _rank_and_variance(criterion, requests, half, criterion.reach, rng)
     out = []
     for name, other in other_setups(criterion).items():
         try:
-            found = _bought(criterion, requests, half, other, rng)
+            found = _rank_and_variance(criterion, requests, half, other, rng)
         except DesignError as error:
             out.append(
                 Alternative(
@@ -152,14 +145,14 @@ def alternatives(
     return tuple(out)
 
 
-def _bought(
+def _rank_and_variance(
     criterion: Criterion,
     requests: Requests,
     half: Requests,
     other: ProbeReach,
     rng: np.random.Generator,
 ) -> tuple[int, float]:
-    """Machine rank and mean predicted variance, mm^2, with the other half made in some way.
+    """Machine rank and mean predicted variance, mm^2, with the other half in another set-up.
 
     Raises:
         DesignError: The machine reaches too few touches.

@@ -1,4 +1,8 @@
-"""What a standard buys over the artefacts that people have, at equal touches and table poses."""
+"""A standard compared with artefacts in use, at equal numbers of touches and table poses.
+
+Every artefact is given its best table poses and touches by the criterion of the standard, so that
+the difference in predicted error is due to the bodies alone.
+"""
 
 from contextlib import suppress
 from dataclasses import dataclass
@@ -27,15 +31,15 @@ from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
 
-_TRIED = 3000  # touches that the ideal scatter may choose from
+_SCATTER_SIZE = 3000  # candidate touches of the ideal scatter
 _DRAWS = 5  # of random touches, averaged
 
 COUNTS = (4, 5, 7, 13)
-"""Numbers of spheres that the standard is compared with."""
+"""Numbers of spheres of the rivals."""
 
 RIVAL_ROUNDS = 20
-"""Looks at all candidates on the way to a rival's relaxed optimum: its exchanges mend the rest, and
-a hundred took half a minute a body."""
+"""Rounds on the way to the relaxed optimum of a rival: exchanges improve the rest, and a hundred
+rounds took half a minute per body."""
 
 
 @dataclass(frozen=True)
@@ -43,21 +47,19 @@ class Rival:
     """One artefact at the same number of touches and of table poses, under the same rules.
 
     Attributes:
-        name: What it is.
         rms: Predicted root mean square of the unknown tool point deviation over the probed volume
             after chosen touches, mm.
         p95: 95 % of the poses stay below this, mm.
         rms_user: The same as `rms` over the user's workspace, mm.
         p95_user: The same as `p95` over the user's workspace, mm.
-        rms_random: As `rms`, after touches taken at random on the same artefact, mm.
-        estimable: Combinations of parameters that are determined (effective degrees of freedom).
-        visible: Effects of the library, of those that any touches could show, that these show.
+        rms_random: As `rms`, after random touches on the same artefact, mm.
+        estimable: Effective degrees of freedom: combinations of parameters that are determined.
+        visible: Number of the effects in `could_be_visible` that these touches show.
         could_be_visible: Number of effects that any touches could show.
-        value: Of the criterion that the touches were chosen by.
-        touches: What it is judged by.
-        available: Number of different touches among which they were chosen; with fewer than are
-            compared, some are made more than once.
-        body: What is touched; None for scatter that no body has.
+        value: Of the criterion that chose the touches.
+        available: Number of different candidate touches; if it is smaller than the number of
+            touches, some are repeated.
+        body: The artefact; None for ideal scatter.
     """
 
     name: str
@@ -75,7 +77,7 @@ class Rival:
     body: Standard | None = None
 
 
-def evaluated(
+def evaluate_rival(
     name: str,
     criterion: Criterion,
     chosen: Requests,
@@ -87,12 +89,8 @@ def evaluated(
     """Figures of one artefact after its touches.
 
     Args:
-        name: What it is.
-        chosen: Its touches.
-        random: Lots of touches taken at random on it, as many in each.
-        library: Effects of the library that touches could show.
-        available: Number of different touches among which they were chosen.
-        body: What is touched; None for scatter that no body has.
+        random: Lots of random touches on it, of equal number.
+        body: The artefact; None for ideal scatter.
     """
     after, rows = _posterior(criterion, chosen), criterion.rows(chosen)
     over = after.predicted_sd(criterion.tip_volume)
@@ -117,7 +115,7 @@ def evaluated(
     )
 
 
-def _different(tried: Requests) -> int:
+def _count_different(tried: Requests) -> int:
     return len(np.unique(np.column_stack([tried.point, tried.rotary]), axis=0))
 
 
@@ -128,7 +126,7 @@ def _posterior(criterion: Criterion, touches: Requests) -> Posterior:
 def prior_rms(criterion: Criterion) -> tuple[float, float]:
     """Root mean square of the expected deviation before any touch, mm: probed volume, user's.
 
-    The set-up counts with what the machine's error ranges say of it, not as unknown.
+    The set-up counts with its error range, not as unknown.
     """
     return (
         rms(prior_sd_of_tip(criterion.tip_volume, criterion.model.prior_sd)),
@@ -145,23 +143,19 @@ def compare(
     library: Visibility,
     rng: np.random.Generator,
 ) -> tuple[tuple[Rival, ...], tuple[str, ...]]:
-    """Other artefacts at as many touches: bodies in use, and scatter that no body has.
+    """Other artefacts at as many touches: bodies in use, and ideal scatter.
 
-    Spheres are placed, and table poses and touches on them chosen, as those of the standard are;
-    block and face choose theirs from touches drawn at random. The probe needs the same angle,
-    travel, room and free way on all, and calibration knows all alike.
-    The ideal scatter has points anywhere in the volume and any normal, and nothing is in its way.
+    Spheres, their table poses and touches are chosen as those of the standard; touches on block and
+    face are chosen from random candidates. Angle, travels, clearance and calibration are the same
+    for all. The ideal scatter has any points and normals in the volume and no obstacles.
 
     Args:
-        places: That balls may have; None where the machine touches none.
-        all_poses: Table poses that bodies choose from, (K, R), rad.
-        blank: Base, blank and limits of the standard.
-        options: Numbers of touches and poses.
-        library: Effects of the library that touches could show.
+        places: Candidate balls; None where the machine touches none.
+        all_poses: Candidate table poses, (K, R), rad.
 
     Returns:
-        The artefacts, and the names of those that the blank has no room for, or that this
-        machine can make too few touches on.
+        The artefacts, and the names of those without room on the blank or with too few possible
+        touches.
     """
     out, unreachable = [], []
     for name, body in _bodies(criterion, places, blank, options, rng).items():
@@ -182,17 +176,19 @@ def compare(
             unreachable.append(name)
             continue
         lots = random_lots(tried, options.touches, rng)
-        out.append(evaluated(name, here, chosen, lots, library, _different(tried), body))
+        out.append(evaluate_rival(name, here, chosen, lots, library, _count_different(tried), body))
     tried = _scatter(criterion, spread_poses(all_poses, options.poses), rng)
     lots = random_lots(tried, options.touches, rng)
     for name, objective in (("I", criterion.objectives["I"]), ("D", criterion.objectives["D"])):
         chosen = chosen_touches(criterion, objective, tried, options)
         out.append(
-            evaluated(
+            evaluate_rival(
                 f"ideal scatter, chosen by {name}", criterion, chosen, lots, library, len(tried)
             )
         )
-    out.append(evaluated("ideal scatter, at random", criterion, lots[0], lots, library, len(tried)))
+    out.append(
+        evaluate_rival("ideal scatter, at random", criterion, lots[0], lots, library, len(tried))
+    )
     return tuple(out), tuple(unreachable)
 
 
@@ -203,7 +199,7 @@ def _bodies(
     options: TouchOptions,
     rng: np.random.Generator,
 ) -> dict[str, Standard | None]:
-    """Artefacts by name; None for one that the blank has no room for."""
+    """Artefacts by name; None where the blank has no room."""
     named: dict[str, Standard | None] = {}
     for count in COUNTS:
         balls = places.best(count, options.touches) if places is not None else []
@@ -214,7 +210,7 @@ def _bodies(
 
 
 def random_lots(tried: Requests, count: int, rng: np.random.Generator) -> list[Requests]:
-    """A few lots of touches taken at random from those that could be made."""
+    """A few random lots of the possible touches."""
     size = min(count, len(tried))
     return [tried[rng.choice(len(tried), size, replace=False)] for _ in range(_DRAWS)]
 
@@ -222,7 +218,7 @@ def random_lots(tried: Requests, count: int, rng: np.random.Generator) -> list[R
 def chosen_touches(
     criterion: Criterion, objective: DesignCriterion, tried: Requests, options: TouchOptions
 ) -> Requests:
-    """Touches chosen greedily and mended by exchange, with no quota but that of the poses."""
+    """Touches chosen greedily and improved by exchange, under the quota of the poses alone."""
     count = min(options.touches, len(tried))
     quotas = (pose_quota(tried, options.touches),)
     selection = Selection(objective, criterion.rows(tried))
@@ -232,10 +228,10 @@ def chosen_touches(
 
 
 def _scatter(criterion: Criterion, poses: Array, rng: np.random.Generator) -> Requests:
-    """Points anywhere in the volume with any normal: no artefact, but what one could hope for."""
-    reach, volume, each = criterion.reach, criterion.volume, _TRIED // len(poses)
+    """Random points and normals in the volume: the upper bound for any artefact."""
+    reach, volume, each = criterion.reach, criterion.volume, _SCATTER_SIZE // len(poses)
     parts = []
     for pose in poses:
-        with suppress(NotReachable):  # at some poses a head reaches none of what it swings above
+        with suppress(NotReachable):  # at some poses a swivelling head reaches no touch
             parts.append(random_touches(reach, volume, np.stack([pose, pose], axis=-1), each, rng))
-    return joined(parts or [random_touches(reach, volume, criterion.rotary, _TRIED, rng)])
+    return joined(parts or [random_touches(reach, volume, criterion.rotary, _SCATTER_SIZE, rng)])

@@ -1,4 +1,4 @@
-"""What touches on a standard can and cannot know of a machine: one record for report and file."""
+"""What touches on a standard can and cannot determine of a machine, for report and file."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -32,11 +32,10 @@ from matstd.twin.model import Model
 
 
 @dataclass(frozen=True)
-class Alone:
-    """A parameter whose variance the touches cut at least tenfold; base units.
+class DeterminedParameter:
+    """A parameter whose variance the touches reduce at least tenfold; base units.
 
     Attributes:
-        name: Of the parameter.
         expected: Standard deviation before the touches.
         u: Standard uncertainty after them.
         unit: Base unit.
@@ -50,18 +49,16 @@ class Alone:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class IdentifiabilityReport(Displayed):
-    """What a design's touches can and cannot know.
+    """What the touches of a design can and cannot determine.
 
     Attributes:
-        touches: Their number.
-        model: The machine and its expected errors.
         readings: Smallest and largest reading of every programmed axis in them, mm or rad.
         gauge: Rank, condition numbers, freedoms and groups, each freedom with what resolves it.
         freedoms: The freedoms, shapes of the same error together.
-        combinations: Combinations of machine errors that are determined, the surest first.
-        alone: Machine errors that are known for themselves, the surest first.
-        degrees: Of every component error, to which degree the touches support it.
-        alternatives: What a second stylus length or a second set-up would buy.
+        combinations: Determined combinations of machine errors, the most certain first.
+        alone: Individually determined machine errors, the most certain first.
+        degrees: Polynomial degree of every component error that the touches support.
+        alternatives: Benefit of a second stylus length or set-up.
     """
 
     touches: int
@@ -70,7 +67,7 @@ class IdentifiabilityReport(Displayed):
     gauge: Identifiability
     freedoms: tuple[FreedomFamily, ...]
     combinations: tuple[EstimableCombination, ...]
-    alone: tuple[Alone, ...]
+    alone: tuple[DeterminedParameter, ...]
     degrees: tuple[Degree, ...]
     alternatives: tuple[Alternative, ...]
 
@@ -83,13 +80,7 @@ class IdentifiabilityReport(Displayed):
 def identifiability_report(
     criterion: Criterion, requests: Requests, rng: np.random.Generator
 ) -> IdentifiabilityReport:
-    """What some touches can know of the machine.
-
-    Args:
-        criterion: Machine, expected errors, noise.
-        requests: The touches.
-        rng: Draws the touches that alternatives are tried with.
-    """
+    """Report what some touches can determine of the machine."""
     model, touches = criterion.model, criterion.reach.touches(requests)
     W = criterion.whitened(requests)
     more = touches_reached_in(criterion.reach, requests, rng)
@@ -114,18 +105,20 @@ def identifiability_report(
         gauge=gauge,
         freedoms=in_families(gauge.freedoms),
         combinations=combinations(W, criterion.prior_sd, units, setup.tolist()),
-        alone=_alone(criterion, W, setup.tolist()),
+        alone=_determined_parameters(criterion, W, setup.tolist()),
         degrees=supported_degrees(model, touches, W, criterion.noise),
         alternatives=alternatives(criterion, requests, rng),
     )
 
 
-def _alone(criterion: Criterion, W: Array, setup: Sequence[int]) -> tuple[Alone, ...]:
-    """Machine errors that are known for themselves; the set-up is of no interest."""
+def _determined_parameters(
+    criterion: Criterion, W: Array, setup: Sequence[int]
+) -> tuple[DeterminedParameter, ...]:
+    """Individually determined machine errors; parameters of the set-up are left out."""
     known = Posterior(W, criterion.prior_sd, criterion.model.names)
     alone = set(known.alone)
     out = [
-        Alone(name, float(before), float(after), parameter.unit)
+        DeterminedParameter(name, float(before), float(after), parameter.unit)
         for p, (name, before, after, (_, parameter)) in enumerate(
             zip(known.names, known.prior_sd, known.sd, criterion.model.parameters, strict=True)
         )

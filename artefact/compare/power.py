@@ -1,17 +1,17 @@
-"""Would touches that had no part in an identification show that its model is wrong, and how surely.
+"""Power of touches outside an identification to show that its model is wrong.
 
 A model that lacks an effect of the library is fitted to the identifying touches by ``E``; part of
 the effect goes into the fitted parameters, the rest makes the model wrong in the volume of the
-standard and at the proving touches. The size of the effect is such that the model is wrong there by
-a stated root mean square: in whatever direction, or along the normals of a measuring task, which is
-what a user would feel of it. The proving touches find it if what they see beyond the prediction, d,
-is larger than noise, calibration and uncertainty of the prediction allow; in units of the noise
+standard and at the proving touches. The effect is scaled so that the model is wrong there by a
+stated root mean square, in any direction or along the normals of a measuring task. The proving
+touches detect it if their residual d exceeds what noise, calibration and uncertainty of the
+prediction explain; in units of the noise
 
     d^T V^-1 d > chi2(1 - risk, n)
     V = 1 + W_p E E^T W_p^T + W_p (1 - E W)(1 - E W)^T W_p^T + K K^T,   K = C_p - W_p E C
 
 which is a noncentral chi-square variable with the noncentrality ``d^T V^-1 d`` of the expected d.
-``K`` is what calibration does: a feature that identified and proves hides part of its own fault.
+``K`` is the effect of calibration: a feature that identifies and proves hides part of its error.
 
 Reference:
     Kendall and Stuart, The Advanced Theory of Statistics II, 24.4 (power of a chi-square test).
@@ -28,29 +28,26 @@ from matstd.twin.frames import Array, turn
 from matstd.twin.model import Effect, Model, columns
 from matstd.twin.units import UM
 
-ERROR = 2.0 * UM
-"""By which a model is wrong, rms, mm."""
+MODEL_ERROR = 2.0 * UM
+"""Error of a wrong model, rms, mm."""
 
-RISK = 0.05
-"""Of calling a right model wrong."""
+FALSE_ALARM = 0.05
+"""Probability of rejecting a correct model."""
 
-WANTED = 0.95
-"""Power that counts as found."""
+DETECTION_POWER = 0.95
+"""Power from which an effect counts as detected."""
 
-_MIXES = 8  # of the parameters of an effect that has several, averaged
-_SILENT = (
-    1e-9  # share of an effect that reaches the tool point, below which it is no error of a task
-)
+_MIXES = 8  # random mixes of the parameters of an effect, averaged
+_MIN_TIP_SHARE = 1e-9  # share of an effect at the tool point below which a task does not see it
 
 
 @dataclass(frozen=True, eq=False)
 class Power:
-    """How surely some touches find a model wrong.
+    """Power of some touches to detect a wrong model.
 
     Attributes:
-        touches: Their number.
-        effects: Names of what the model lacks, one at a time, (E,).
-        power: Probability that it is found, (E,).
+        effects: Names of the effects that the model lacks, one at a time, (E,).
+        power: Probability of detection, (E,).
     """
 
     touches: int
@@ -59,8 +56,8 @@ class Power:
 
     @property
     def found(self) -> int:
-        """Effects found with the power `WANTED`."""
-        return int(np.sum(self.power >= WANTED))
+        """Number of effects detected with at least `DETECTION_POWER`."""
+        return int(np.sum(self.power >= DETECTION_POWER))
 
 
 def proof_power(
@@ -75,12 +72,9 @@ def proof_power(
 
     Args:
         criterion: On the standard, so that touches on one feature share its calibration.
-        identifying: Touches that the model is fitted to.
-        proving: Touches that had no part in it.
-        effects: What the model may lack; those that move no tool point are left out.
-        rng: Draws mixes of the parameters of an effect.
-        normals: At every pose of the volume, (M, 3), table frame: what is wrong across them is no
-            error of the task. None counts every direction.
+        effects: Effects that the model may lack; those that do not move the tool point are skipped.
+        normals: At every pose of the volume, (M, 3), table frame: only errors along them count.
+            None counts every direction.
     """
     from scipy.stats import chi2, ncx2
 
@@ -99,25 +93,21 @@ def proof_power(
         absorbed = estimate @ (columns([effect], before) @ mixes / criterion.noise)
         own = Model(reach.chain, (effect,)).tip_columns(poses) @ mixes
         wrong, moved = _rms(own - tip @ absorbed, normals), _rms(own, None)
-        if np.all(moved == 0.0) or np.any(wrong < _SILENT * moved):
+        if np.all(moved == 0.0) or np.any(wrong < _MIN_TIP_SHARE * moved):
             continue
         seen = columns([effect], after) @ mixes / criterion.noise - Wp @ absorbed
-        whitened = np.linalg.solve(factor, seen * (ERROR / wrong))
+        whitened = np.linalg.solve(factor, seen * (MODEL_ERROR / wrong))
         names.append(effect.name)
         noncentral.append(np.sum(whitened**2, axis=0))
     n = len(proving)
-    power = ncx2.sf(chi2.isf(RISK, n), n, np.array(noncentral).reshape(-1, _MIXES)).mean(axis=1)
+    power = ncx2.sf(chi2.isf(FALSE_ALARM, n), n, np.array(noncentral).reshape(-1, _MIXES)).mean(
+        axis=1
+    )
     return Power(touches=n, effects=tuple(names), power=np.asarray(power))
 
 
 def task_normals(criterion: Criterion, like: Requests, rng: np.random.Generator) -> Array:
-    """Normals of surfaces as steep as those of some touches, in any azimuth, (M, 3), table frame.
-
-    Args:
-        criterion: With the poses of the volume, one normal each.
-        like: The touches.
-        rng: Draws slopes among theirs, and azimuths.
-    """
+    """Normals with the slopes of some touches and random azimuths, (M, 3), table frame."""
     count = len(criterion.at_volume)
     slope = np.arccos(np.clip(like.normal[rng.integers(0, len(like), count), 2], -1.0, 1.0))
     azimuth = rng.uniform(-np.pi, np.pi, count)
@@ -127,13 +117,13 @@ def task_normals(criterion: Criterion, like: Requests, rng: np.random.Generator)
 
 
 def _rms(displaced: Array, normals: Array | None) -> Array:
-    """Of displacements (M, 3, K), or of what they are along normals (M, 3); (K,)."""
+    """Root mean square of displacements (M, 3, K), or of their parts along normals; (K,)."""
     if normals is None:
         return np.asarray(np.sqrt(np.mean(np.sum(displaced**2, axis=1), axis=0)))
     return np.asarray(np.sqrt(np.mean(np.einsum("mi,mik->mk", normals, displaced) ** 2, axis=0)))
 
 
 def _estimator(W: Array, C: Array) -> Array:
-    """What a deviation in units of noise adds to the estimates in units of the prior, (P, N)."""
+    """Change of the estimates, in units of the prior, per deviation in units of noise, (P, N)."""
     known = np.linalg.solve(np.eye(len(W)) + C @ C.T, W)
     return np.asarray(np.linalg.solve(np.eye(W.shape[1]) + W.T @ known, known.T))

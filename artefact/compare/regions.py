@@ -1,8 +1,8 @@
-"""How much of the regions where the machine is wrong again and again the faces see.
+"""How well the faces determine the regions where machines have their largest errors.
 
-A freeform face is for errors that dominate. Which do follows from the Monte Carlo: poses of the
-user's workspace that are among the worst of many machines. What touches on the faces alone, without
-a ball, would leave unknown of the tool point there is compared with what is expected of it:
+The Monte Carlo study finds the poses of the workspace that are among the worst of many machines.
+The error of the tool point there that touches on the faces alone leave unknown is compared with the
+expected error:
 
     before = sqrt(trace(G P G^T)),   after = sqrt(trace(G (P^-1 + W^T W)^-1 G^T))
 """
@@ -18,20 +18,20 @@ from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
 from matstd.twin.record import at_poses
 
-_SHARE = 0.05  # of the poses: as many as are the worst of one machine
-_SEEN = 0.1  # of the expected error: where no more is left, the faces see the region
+_WORST_SHARE = 0.05  # of the poses: the same share as the worst of one machine
+_COVERED_BELOW = 0.1  # of the expected error: where less remains unknown, a pose counts as covered
 
 
 @dataclass(frozen=True, slots=True)
 class WorstRegions:
-    """Poses that are most often among the worst of a machine, and what touches determine of them.
+    """Poses that are most often among the worst of a machine, and how well touches determine them.
 
     Attributes:
-        poses: Their number, a twentieth of those looked at.
-        recurrence: Share of the machines of which one of them is among the worst 5 %, on average.
+        poses: Their number, a twentieth of all poses.
+        recurrence: Mean share of machines for which such a pose is among the worst 5 %.
         before: Expected error there, rms, mm.
-        after: What the touches leave unknown of it, rms, mm.
-        covered: Share of these poses at which they leave a tenth of the error at most.
+        after: Error that remains unknown after the touches, rms, mm.
+        covered: Share of these poses at which at most a tenth of the error remains.
     """
 
     poses: int
@@ -44,15 +44,14 @@ class WorstRegions:
 def worst_regions(
     criterion: Criterion, touches: Requests, q: Array, recurrence: Array
 ) -> WorstRegions:
-    """What touches on some features alone determine of the poses that are wrong again and again.
+    """Error that touches on some features leave at the poses with the largest errors.
 
     Args:
         criterion: On the standard, so that the calibration of its features counts.
-        touches: On the features.
         q: Poses over the workspace, (N, A), of the probe.
-        recurrence: Share of the machines of which each is among the worst, (N,).
+        recurrence: Share of the machines for which each pose is among the worst, (N,).
     """
-    count = max(int(np.ceil(_SHARE * len(q))), 1)
+    count = max(int(np.ceil(_WORST_SHARE * len(q))), 1)
     worst = np.argsort(-recurrence, kind="stable")[:count]
     reach, model = criterion.reach, criterion.model
     tip = model.tip_columns(at_poses(reach.chain, q[worst], reach.length))
@@ -63,5 +62,5 @@ def worst_regions(
         recurrence=float(recurrence[worst].mean()),
         before=rms(before),
         after=rms(after),
-        covered=float(np.mean(after <= _SEEN * before)),
+        covered=float(np.mean(after <= _COVERED_BELOW * before)),
     )

@@ -1,7 +1,7 @@
-"""Whether a brief can be met: what stands, what is reached, what fits, before anything is chosen.
+"""Whether a brief can be met, before anything is chosen: clamping, reach, room and mass.
 
-In: a `Brief`. Out: `Feasibility`, with table poses to choose from, or what stands against it and
-the nearest wishes that can be met. A new obstacle is a check here, with changes of the brief to
+In: a `Brief`. Out: `Feasibility`, with table poses to choose from, or the binding limit and the
+nearest feasible requests. A new obstacle is a check here, with changes of the brief to
 try.
 """
 
@@ -11,9 +11,9 @@ from matstd.artefact.feasibility.room import (
     Room,
     check_blank,
     check_room,
-    light_enough,
+    lightest_room,
+    mass_per_face,
     room_among,
-    share_of_mass,
 )
 from matstd.artefact.feasibility.standing import check_beside, check_seat
 from matstd.artefact.feasibility.touched import (
@@ -21,7 +21,7 @@ from matstd.artefact.feasibility.touched import (
     is_from_side,
     mutually_probeable,
     touches_on,
-    untouched,
+    untouchable_faces,
 )
 
 __all__ = [
@@ -35,10 +35,10 @@ __all__ = [
     "feasibility",
     "in_the_way",
     "is_from_side",
-    "light_enough",
+    "lightest_room",
+    "mass_per_face",
     "mutually_probeable",
     "room_among",
-    "share_of_mass",
     "touches_on",
-    "untouched",
+    "untouchable_faces",
 ]

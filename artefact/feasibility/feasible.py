@@ -1,9 +1,9 @@
-"""Whether a brief can be met, looked at before anything is chosen.
+"""Whether a brief can be met, checked before anything is chosen.
 
-    travels: enough of the blank is reached -> room: the patches stand side by side and are touched
+    travels: enough of the blank is reached -> room: the patches fit side by side and can be touched
 
-What fails first is the refusal; changes of the project by which it would hold are tried, the
-nearest of every kind is named.
+The first failing check becomes the refusal. Changes of the project are then tried, and the nearest
+feasible one of every kind is named.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from matstd.artefact.brief import Brief
 from matstd.artefact.feasibility.room import Room, check_room
 from matstd.artefact.feasibility.side_by_side import nearest_that_fits, room_of
-from matstd.artefact.feasibility.within_travels import TRIED, nearest_in_reach, travels
+from matstd.artefact.feasibility.within_travels import TRIED_CHANGES, nearest_in_reach, travels
 from matstd.artefact.reach import PlacesInReach
 from matstd.twin.errors import DesignError, NotBuildable, NotReachable
 from matstd.twin.frames import Array
@@ -19,14 +19,12 @@ from matstd.twin.frames import Array
 
 @dataclass(frozen=True, eq=False)
 class Feasibility:
-    """What of a brief the machine can do.
+    """Result of the feasibility checks of a brief.
 
     Attributes:
-        places: What it reaches of the blank.
-        poses: Table poses to choose from, (K, R), rad: where Z can rise above the standard.
+        poses: Candidate table poses, (K, R), rad, at which Z can rise above the standard.
         room: Patches that stand side by side; None where too little is reached.
-        refusal: What stands against the brief, with the wishes that were tried and would do; None
-            where nothing does.
+        refusal: Binding limit with the feasible changes that were found; None where nothing binds.
     """
 
     places: PlacesInReach
@@ -35,7 +33,7 @@ class Feasibility:
     refusal: DesignError | None = None
 
     def check(self) -> None:
-        """Raise what stands against the brief.
+        """Raise the refusal, if any.
 
         Raises:
             NotReachable: Fewer places than a standard needs; which limit binds, the nearest wishes.
@@ -46,7 +44,7 @@ class Feasibility:
 
 
 def feasibility(brief: Brief) -> Feasibility:
-    """What of a brief the machine can do; where that is too little, what would do.
+    """Check reach and room of a brief; where one fails, search for the nearest feasible changes.
 
     Raises:
         NotReachable: Limits of a rotary axis without room to approach a reading from both sides.
@@ -55,7 +53,7 @@ def feasibility(brief: Brief) -> Feasibility:
     found = travels(brief)
     if found.against:
         wishes = nearest_in_reach(brief, found.tried)
-        nearest = " or ".join(wishes) or f"no other {TRIED} alone"
+        nearest = " or ".join(wishes) or f"no other {TRIED_CHANGES} alone"
         beyond = NotReachable(f"{brief.path}: {found.against}; {nearest} would do")
         return Feasibility(found.tried, found.poses, refusal=beyond)
     room = room_of(brief, found.poses)

@@ -1,8 +1,7 @@
-"""Whether the wanted faces stand side by side on the blank, beside the fewest balls that identify.
+"""Whether the requested faces fit side by side on the blank, with the fewest balls that identify.
 
-Looked at before anything is chosen: that they find room, that the probe can touch them there, and
-that they are not too heavy. As many places are tried as the choice has later, with random shapes of
-their own: what does not fit among these is not found later either, but for luck.
+Checked before anything is chosen: room, access of the probe, and mass. The check draws as many
+random candidates as the later choice: faces that do not fit among these rarely fit later.
 """
 
 from collections.abc import Sequence
@@ -11,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.artefact.body import Base, DatumSphere, FreeformPatch, MountingHole, Standard
-from matstd.artefact.feasibility.touched import is_from_side, mutually_probeable, untouched
+from matstd.artefact.feasibility.touched import is_from_side, mutually_probeable, untouchable_faces
 from matstd.artefact.layout import (
     Blank,
     Pairs,
@@ -28,29 +27,24 @@ from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array
 
 FEWEST_BALLS = 3
-"""A set-up has six unknowns, and a ball alone hides every turn about it."""
+"""A set-up has six unknowns; a single ball leaves all rotations about it undetermined."""
 
-_POSES = 20  # table poses at which a place has to be reached once
+_POSES = 20  # table poses, at one of which a place must be reached
 _BALLS = 200  # places of balls that are tried
 _ROUNDS = 8  # of a search for faces that can be touched
-_NEAR = 16  # places to which the lightest faces are found
-_CELL = 6.0  # mm, of the grid by which a standard is weighed
-_SPARE = 0.97  # of the mass left to the faces: their shares are estimates
+_SEARCH_WIDTH = 16  # resolution, in places, of the search for the lightest faces
+_CELL = 6.0  # mm, cells for the mass of a standard
+_MASS_SHARE = 0.97  # of the mass left for the faces: their shares are estimates
 
 
 @dataclass(frozen=True, eq=False)
 class Room:
-    """The most bodies that were found to stand side by side.
+    """The largest set of bodies found to fit side by side.
 
     Attributes:
-        blank: On which they stand.
-        wanted: Number of faces.
-        tried: Number of places of faces that were tried.
-        reached: Number of those that the machine reaches within angle and travels.
-        faces: That fit.
-        balls: That still stand beside them.
-        unseen: What keeps the probe from touching more faces, in words; empty where nothing does.
-        least: Mass of the lightest such standard that was found, kg; 0 where these are light.
+        reached: Number of these within angle and travels of the machine.
+        unseen: Obstacle that keeps the probe from more faces; empty where there is none.
+        least: Mass of the lightest such standard found, kg; 0 where these bodies are light enough.
     """
 
     blank: Blank
@@ -64,27 +58,29 @@ class Room:
 
     @property
     def is_enough(self) -> bool:
-        """Whether all faces fit, and with them as many balls as a set-up needs."""
+        """Whether all faces fit together with the fewest balls."""
         return len(self.faces) >= self.wanted and len(self.balls) >= FEWEST_BALLS
 
     @property
     def is_hidden(self) -> bool:
-        """Whether it is the probe that finds no way to most of the faces."""
+        """Whether most of the faces are inaccessible to the probe."""
         return bool(self.unseen) or 2 * self.reached < self.tried
 
     @property
     def is_light(self) -> bool:
-        """Whether such a standard keeps its mass."""
+        """Whether such a standard is within the mass limit."""
         return self.least <= self.blank.limits.max_mass
 
     @property
     def standard(self) -> Standard:
         """The bodies on their plate."""
-        return replace(_bare(self.blank, self.balls, holes_on(self.blank)), patches=self.faces)
+        return replace(
+            _plate_and_balls(self.blank, self.balls, holes_on(self.blank)), patches=self.faces
+        )
 
 
 def check_room(room: Room) -> None:
-    """Refuse what does not fit, with how much does.
+    """Reject faces that do not fit; the message states how many do.
 
     Raises:
         NotBuildable: Fewer faces or balls than wanted (fact `fitting`).
@@ -113,7 +109,7 @@ def check_room(room: Room) -> None:
             fitting=len(room.faces),
         )
     if not room.is_light:
-        plate = _bare(room.blank, (), ()).mass(_CELL)
+        plate = _plate_and_balls(room.blank, (), ()).mass(_CELL)
         raise NotBuildable(
             f"the lightest standard found weighs {room.least:.1f} kg, limit "
             f"{limits.max_mass:g} kg: its plate {plate:.1f} kg, {FEWEST_BALLS} balls on the "
@@ -130,14 +126,10 @@ def room_among(
     blank: Blank,
     seen: Pairs | None = None,
 ) -> Room:
-    """As many faces as wanted that stand beside the fewest balls, or the most that are found.
+    """As many faces as wanted beside the fewest balls, or the largest set found.
 
     Args:
-        faces: Where they may stand.
-        balls: Where they may stand.
-        wanted: Number of faces.
-        blank: On which they stand.
-        seen: Which faces leave each other to the probe, (F, F); None for all.
+        seen: Pairs of faces that can both be probed, (F, F); None for all.
 
     Raises:
         NotBuildable: No screw holes on such a blank.
@@ -153,15 +145,10 @@ def room_among(
 def room_for(
     patches: int, reach: ProbeReach, blank: Blank, poses: Array, count: int, seed: int
 ) -> Room:
-    """Places that the machine reaches and that stand side by side.
+    """Draw random places, keep those within reach and fit them side by side.
 
     Args:
-        patches: Number wanted.
-        reach: Machine, probe, set-up.
-        blank: Base, height and limits.
-        poses: Table poses that can be used, (K, R), rad.
-        count: Number of random places.
-        seed: Of them.
+        poses: Usable table poses, (K, R), rad.
 
     Raises:
         NotBuildable: No screw holes, or no face at all, on such a blank.
@@ -176,59 +163,59 @@ def room_for(
     balls = balls_on_posts(blank, _BALLS, rng)
     room = room_among(reached, balls, patches, blank)
     if room.is_enough:
-        room = _touched(room, reached, balls, reach, few)
+        room = _probeable_room(room, reached, balls, reach, few)
     room = replace(room, tried=len(faces), reached=len(reached))
-    return light_enough(room, reached, balls)
+    return lightest_room(room, reached, balls)
 
 
-def light_enough(room: Room, faces: Sequence[FreeformPatch], balls: Sequence[DatumSphere]) -> Room:
-    """The same, or where that is too heavy the lightest that is found, with its mass.
+def lightest_room(room: Room, faces: Sequence[FreeformPatch], balls: Sequence[DatumSphere]) -> Room:
+    """The room itself, or the lightest one found if it is too heavy, with its mass.
 
-    Its faces are of places where the heaviest one, were it as low as it can be, is lightest.
+    Bisects the list of places, sorted by the mass of the lowest possible face there.
     """
     blank, wanted = room.blank, room.wanted
     if not room.is_enough or room.standard.mass(_CELL) <= blank.limits.max_mass:
         return room
-    low = _lowest(balls)
+    low = _lowest_third(balls)
     mass = np.array([least_mass(face, blank) for face in faces])
     order, found = np.argsort(mass, kind="stable"), room
     at_least, enough = wanted, len(faces)
-    while enough - at_least > _NEAR:
+    while enough - at_least > _SEARCH_WIDTH:
         middle = (at_least + enough) // 2
         trial = room_among([faces[k] for k in order[:middle]], low, wanted, blank)
         if trial.is_enough:
             enough, found = middle, trial
         else:
             at_least = middle + 1
-    bare = _bare(blank, found.balls, holes_on(blank)).mass(_CELL)
+    bare = _plate_and_balls(blank, found.balls, holes_on(blank)).mass(_CELL)
     heaviest = max(least_mass(face, blank) for face in found.faces)
-    least = bare + wanted * heaviest / _SPARE
+    least = bare + wanted * heaviest / _MASS_SHARE
     return replace(room, faces=found.faces, balls=found.balls, least=least)
 
 
-def share_of_mass(
+def mass_per_face(
     blank: Blank, balls: Sequence[DatumSphere], holes: Sequence[MountingHole], count: int
 ) -> float:
-    """What each of some faces may weigh beside balls, kg; negative where these are too heavy."""
-    left = blank.limits.max_mass - _bare(blank, balls, holes).mass(_CELL)
-    return _SPARE * left / count
+    """Allowed mass of each face beside the balls, kg; negative where these are too heavy."""
+    left = blank.limits.max_mass - _plate_and_balls(blank, balls, holes).mass(_CELL)
+    return _MASS_SHARE * left / count
 
 
-def _touched(
+def _probeable_room(
     room: Room,
     faces: Sequence[FreeformPatch],
     balls: Sequence[DatumSphere],
     reach: ProbeReach,
     poses: Array,
 ) -> Room:
-    """The same if the probe can touch every face, or the most faces that leave each other to it."""
-    if not untouched(reach, room.standard, poses):
+    """The room itself if every face can be probed, or the largest set of faces that can."""
+    if not untouchable_faces(reach, room.standard, poses):
         return room
     seen = mutually_probeable(reach, room.blank, faces, (), poses)
-    most, beside, low = replace(room, faces=()), seen.beside.copy(), _lowest(balls)
+    most, beside, low = replace(room, faces=()), seen.beside.copy(), _lowest_third(balls)
     for _ in range(_ROUNDS):
         found = room_among(faces, low, room.wanted, room.blank, beside)
-        out = set(untouched(reach, found.standard, poses))
+        out = set(untouchable_faces(reach, found.standard, poses))
         left = tuple(face for face in found.faces if face.name not in out)
         if len(left) > len(most.faces):
             most = replace(found, faces=left)
@@ -242,19 +229,21 @@ def _touched(
     return replace(most, unseen=unseen)
 
 
-def _lowest(balls: Sequence[DatumSphere]) -> list[DatumSphere]:
-    """A third of some balls: they weigh least, and hide least."""
+def _lowest_third(balls: Sequence[DatumSphere]) -> list[DatumSphere]:
+    """The lower third of some balls, which weigh and hide least."""
     low = sorted(balls, key=lambda ball: float(ball.centre[2]))
     return low[: max(FEWEST_BALLS, len(low) // 3)]
 
 
-def _bare(blank: Blank, balls: Sequence[DatumSphere], holes: Sequence[MountingHole]) -> Standard:
-    """Plate and balls."""
+def _plate_and_balls(
+    blank: Blank, balls: Sequence[DatumSphere], holes: Sequence[MountingHole]
+) -> Standard:
+    """A standard of plate and balls."""
     return replace(with_spheres(blank, [b.centre for b in balls]), holes=tuple(holes))
 
 
 def check_blank(base: Base, reach: ProbeReach) -> None:
-    """Refuse a blank whose sides reach beyond the table; its corners may.
+    """Reject a blank whose sides reach beyond the table; its corners may.
 
     Raises:
         NotBuildable: With both sizes.

@@ -1,4 +1,4 @@
-"""Changes of a project by which patches that do not fit side by side would, each of them tried."""
+"""Changes of a project with which patches fit side by side; every named one was tried."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -13,23 +13,23 @@ from matstd.twin.frames import Array
 from matstd.twin.units import DEG
 
 _LARGER, _SMALLER = (1.1, 1.25, 1.5), (0.95, 0.9, 0.85)  # sides of the blank
-_CLOSER = (0.5, 0.2)  # of the gap
-_STEEPER = (5.0, 15.0, 30.0)  # degrees
-_STEEPEST = 60.0  # degrees, that any face has
+_GAP_SHARES = (0.5, 0.2)  # of the gap
+_SLOPE_STEPS = (5.0, 15.0, 30.0)  # degrees
+_MAX_SLOPE = 60.0  # degrees, that any face has
 
 
 def room_of(brief: Brief, poses: Array) -> Room:
-    """The patches of a brief that stand side by side, at table poses (K, R), rad."""
+    """Room for the patches of a brief, at table poses (K, R), rad."""
     wanted = brief.options
     return room_for(wanted.patches, brief.reach, brief.blank, poses, wanted.sites, brief.seed)
 
 
 def nearest_that_fits(brief: Brief, room: Room, poses: Array) -> list[str]:
-    """The smallest change of every kind that would do, in words."""
+    """The smallest feasible change of every kind, in words."""
     found = []
-    if not room.is_light:  # what the lightest weighs is known
+    if not room.is_light:  # the mass of the lightest one is known
         found.append(f"limits.max_mass_kg = {np.ceil(10.0 * room.least) / 10.0:g}")
-    kinds = (_fewer, _closer, _steeper, _resized)
+    kinds = (_fewer_patches, _smaller_gaps, _steeper_faces, _resized_blanks)
     for wishes in (kind(brief, room) for kind in kinds):
         for words, other in wishes:
             try:
@@ -42,30 +42,32 @@ def nearest_that_fits(brief: Brief, room: Room, poses: Array) -> list[str]:
     return found
 
 
-def _fewer(brief: Brief, room: Room) -> Iterator[tuple[str, Brief]]:
-    """As many patches as fit, or one less: each is larger then."""
+def _fewer_patches(brief: Brief, room: Room) -> Iterator[tuple[str, Brief]]:
+    """As many patches as fit, or one less, because fewer patches are larger."""
     for fewer in (len(room.faces), len(room.faces) - 1):
         if fewer >= FEWEST_PATCHES and not room.is_enough:
             other = replace(brief, options=replace(brief.options, patches=fewer))
             yield f"standard.patches = {fewer}", other
 
 
-def _closer(brief: Brief, room: Room) -> Iterator[tuple[str, Brief]]:
-    """A smaller gap, where it is that which keeps bodies apart and not the cutter."""
+def _smaller_gaps(brief: Brief, room: Room) -> Iterator[tuple[str, Brief]]:
+    """A smaller gap, where the gap and not the cutter separates the bodies."""
     gap = brief.blank.limits.gap
-    for share in _CLOSER if least_gap(room.blank.limits) > WALL_GAP and not room.is_enough else ():
+    for share in (
+        _GAP_SHARES if least_gap(room.blank.limits) > WALL_GAP and not room.is_enough else ()
+    ):
         closer = float(round(share * gap))
         yield f"limits.gap_mm = {closer:g}", _with_limits(brief, gap=closer)
 
 
-def _steeper(brief: Brief, room: Room) -> Iterator[tuple[str, Brief]]:
-    """Faces that look more towards a probe that finds no way to them."""
-    for more in _STEEPER if room.is_hidden else ():
-        if (slope := round(brief.blank.limits.max_slope / DEG, 6) + more) <= _STEEPEST:
+def _steeper_faces(brief: Brief, room: Room) -> Iterator[tuple[str, Brief]]:
+    """Steeper faces, which face a probe that cannot reach them otherwise."""
+    for more in _SLOPE_STEPS if room.is_hidden else ():
+        if (slope := round(brief.blank.limits.max_slope / DEG, 6) + more) <= _MAX_SLOPE:
             yield f"limits.max_slope_deg = {slope:g}", _with_limits(brief, max_slope=slope * DEG)
 
 
-def _resized(brief: Brief, room: Room) -> Iterator[tuple[str, Brief]]:
+def _resized_blanks(brief: Brief, room: Room) -> Iterator[tuple[str, Brief]]:
     """A smaller blank for less mass, a larger one for more room."""
     factors = () if room.is_hidden else _LARGER if room.is_light else _SMALLER
     for factor in factors:

@@ -1,6 +1,7 @@
-"""Whether the standard stands on its table and no clamp stands in it; looked at before all else.
+"""Whether the standard stands on its table, clear of clamps; the first check of a design.
 
-A refusal names the body, by how much it is wrong, and a change of that body that was tried.
+A refusal names the body, the distance by which it is wrong, and a change that was tried: other
+places of the same body, the nearest first, until one leaves fewer faults.
 """
 
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ from matstd.artefact.body import Standard
 from matstd.artefact.brief import Brief
 from matstd.artefact.reach import Body, Solid, hangs, table_face
 from matstd.artefact.seat import (
-    TOUCHING,
+    CONTACT_DEPTH,
     base_corners,
     common_part,
     off_table,
@@ -25,37 +26,35 @@ from matstd.twin.frames import Array, apply, fixed_xyz, fixed_xyz_angles, invers
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
-RISEN = 1.0
-"""By which a seat may lie above or below what carries it, mm: set-ups are measured."""
+SEAT_TOLERANCE = 1.0
+"""Allowed gap or overlap between seat and support, mm: set-ups are measured values."""
 
 Mesh = tuple[Array, np.ndarray]
 
 _OVERHANG, _MORE = 40.0, 5.0
-"""Of a base over the edge of the table where nothing is stated, mm, and by how much more than in
-the middle of the table where that is more: the example has 33.9 mm at its corners."""
+"""Default overhang of a base over the edge of the table, mm, and the margin over the overhang in
+the middle of the table where that is larger: the example has 33.9 mm at its corners."""
 
-_FURTHER = (1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0, 300.0, 400.0)
-"""By which another place of a clamp is tried, mm."""
+_SHIFTS = (1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 50.0, 75.0, 100.0, 150.0, 200.0, 300.0, 400.0)
+"""Displacements of a clamp that are tried, mm."""
 
 _SIDES = 256
-"""Of the hull round a disc: 0.008 mm outside it at a diameter of 200 mm."""
+"""Sides of the polygon round a disc: 0.008 mm outside it at a diameter of 200 mm."""
 
 _TURNS = ((0.0, 0.0, 0.0), (-90.0, 0.0, 0.0), (90.0, 0.0, 0.0), (0.0, 90.0, 0.0), (0.0, -90.0, 0.0))
-"""Ways in which a standard may stand, degrees."""
+"""Orientations of a standard that are tried, degrees."""
 
 _HALVES = 7
-"""Of the way of a standard to the middle of the table."""
+"""Bisections of the distance to the middle of the table: 7 give 1 %."""
 
 
 @dataclass(frozen=True, eq=False)
 class Fault:
-    """A body that stands where it cannot.
+    """A body at an impossible place.
 
     Attributes:
-        key: Of the brief file.
-        found: What stands there.
         words: What is wrong, with the distance.
-        way: By which a clamp leaves what it stands in, (3,), mm, in the frame of the face.
+        way: Displacement that frees a clamp, (3,), mm, in the frame of the face.
     """
 
     key: str
@@ -65,7 +64,7 @@ class Fault:
 
 
 def check_seat(brief: Brief) -> None:
-    """Refuse a standard that does not stand on its table, and bodies in its base or in the table.
+    """Reject a standard that does not stand on its table, and bodies in its base or the table.
 
     Raises:
         BadFile: Body and distance, and a change of that body that was tried.
@@ -74,11 +73,9 @@ def check_seat(brief: Brief) -> None:
 
 
 def check_beside(brief: Brief, standard: Standard, mesh: Mesh) -> None:
-    """Refuse bodies that stand in the finished standard.
+    """Reject bodies that overlap the finished standard.
 
     Args:
-        brief: What is designed.
-        standard: As designed.
         mesh: Of it: corners (V, 3) and triangles (F, 3), artefact frame, mm.
 
     Raises:
@@ -88,12 +85,12 @@ def check_beside(brief: Brief, standard: Standard, mesh: Mesh) -> None:
 
 
 def stands(brief: Brief, setup: Setup) -> bool:
-    """Whether the standard stands on the table in some set-up."""
-    return next(_of_setup(brief, setup), None) is None
+    """Whether the standard stands on the table in a set-up."""
+    return next(_setup_faults(brief, setup), None) is None
 
 
 def _refuse(brief: Brief, finished: tuple[Standard, Mesh] | None) -> None:
-    """Raise BadFile for the first fault, with a change that leaves fewer and none of its key."""
+    """Raise BadFile for the first fault, with a change that removes it and adds none."""
     found = _faults(brief, finished)
     if not found:
         return
@@ -110,21 +107,21 @@ def _refuse(brief: Brief, finished: tuple[Standard, Mesh] | None) -> None:
 
 
 def _faults(brief: Brief, finished: tuple[Standard, Mesh] | None) -> list[Fault]:
-    """Of every set-up; with a finished standard also of what stands on its base."""
+    """Faults of every set-up, and of the finished standard where there is one."""
     found = [
         fault
         for setup in brief.setups
-        for fault in (*_of_setup(brief, setup), *_of_bodies(brief, setup))
+        for fault in (*_setup_faults(brief, setup), *_body_faults(brief, setup))
     ]
-    return found if finished is None else [*found, *_in_standard(brief, *finished)]
+    return found if finished is None else [*found, *_faults_in_standard(brief, *finished)]
 
 
-def _of_setup(brief: Brief, setup: Setup) -> Iterator[Fault]:
-    """A standard that hangs, is sunk, floats or stands over the edge."""
+def _setup_faults(brief: Brief, setup: Setup) -> Iterator[Fault]:
+    """A standard that hangs, sinks into the table, floats or overhangs."""
     T, base, table = setup.T_table_artefact, brief.blank.base, brief.table
     key, place = f"setup.{setup.name}", T[:3, 3].round(6).tolist()
     above = seat_height(T, base.half_size) - table.high
-    if above < -RISEN:
+    if above < -SEAT_TOLERANCE:
         words = f"its lowest corner lies {-above:.1f} mm below"
         yield Fault(f"{key}.origin_mm", place, f"a seat on the table's face or above it: {words}")
     if hangs(brief.chain, T):
@@ -132,7 +129,7 @@ def _of_setup(brief: Brief, setup: Setup) -> Iterator[Fault]:
         words = "a standard that looks towards the tool with every axis at zero: its seat does"
         yield Fault(f"{key}.rotation_deg", angles, words)
     key = f"{key}.origin_mm"
-    if above - brief.riser > RISEN and not _is_carried(brief, setup):
+    if above - brief.riser > SEAT_TOLERANCE and not _is_carried(brief, setup):
         yield Fault(
             key,
             place,
@@ -151,7 +148,7 @@ def _of_setup(brief: Brief, setup: Setup) -> Iterator[Fault]:
 
 
 def _overhang(brief: Brief) -> float:
-    """How far a base may reach beyond the edge of the table, mm."""
+    """Allowed overhang of a base over the edge of the table, mm."""
     stated = brief.overhang
     if stated is not None:
         return stated
@@ -163,38 +160,39 @@ def _is_carried(brief: Brief, setup: Setup) -> bool:
     """Whether a stated body reaches up to the seat."""
     corners = base_corners(brief.blank.base, setup.T_table_artefact)
     return any(
-        abs(solid.high - corners[:, 2].min()) <= RISEN
-        and overlap(solid.corners() + np.array([0.0, 0.0, 2.0 * RISEN]), corners).depth > 0.0
+        abs(solid.high - corners[:, 2].min()) <= SEAT_TOLERANCE
+        and overlap(solid.corners() + np.array([0.0, 0.0, 2.0 * SEAT_TOLERANCE]), corners).depth
+        > 0.0
         for _, body in _bodies(brief, setup)
         for solid in body.solids
     )
 
 
 def _bodies(brief: Brief, setup: Setup) -> Iterator[tuple[int, Body]]:
-    """Bodies that stand beside a standard in some set-up, with their number in the file."""
+    """Bodies of a set-up with their number in the file."""
     for i, body in enumerate(brief.bodies):
         if body.setup in {"", setup.name}:
             yield i, body
 
 
-def _of_bodies(brief: Brief, setup: Setup) -> Iterator[Fault]:
+def _body_faults(brief: Brief, setup: Setup) -> Iterator[Fault]:
     """Bodies in the base or in the table, and a ball whose stem stands in the base."""
     base = base_corners(brief.blank.base, setup.T_table_artefact)
     table, ball = brief.table, brief.ball
     for i, body in _bodies(brief, setup):
         key, place = f"workshop.bodies.{i}.at_mm", list(body.at)
-        depth, way = _into(body, base)
-        if depth > TOUCHING:
+        depth, way = _penetration(body, base)
+        if depth > CONTACT_DEPTH:
             words = f"{body.name} beside the standard: it reaches {depth:.1f} mm into its base"
             yield Fault(key, place, words, way)
-        depth, _ = _into(body, table.corners(_SIDES))
-        if depth > TOUCHING:
+        depth, _ = _penetration(body, table.corners(_SIDES))
+        if depth > CONTACT_DEPTH:
             words = f"{body.name} on the table: it reaches {depth:.1f} mm into it"
             yield Fault(key, place, words, np.array([0.0, 0.0, depth]))
     if ball is not None:
         stem = Solid("stem", (ball.stem, ball.stem), True, table.high, ball.z, ball.x, ball.y)
         met = overlap(stem.corners(), base)
-        if met.depth > TOUCHING:
+        if met.depth > CONTACT_DEPTH:
             words = (
                 f"the ball beside the standard: its stem reaches {met.depth:.1f} mm into its base"
             )
@@ -202,8 +200,8 @@ def _of_bodies(brief: Brief, setup: Setup) -> Iterator[Fault]:
             yield Fault("workshop.ball.at_mm", place, words, np.append(met.aside, 0.0))
 
 
-def _into(body: Body, other: Array) -> tuple[float, Array]:
-    """How deep a body reaches into the hull of some corners, mm, and its way out (3,)."""
+def _penetration(body: Body, other: Array) -> tuple[float, Array]:
+    """Depth of a body inside the hull of some corners, mm, and its shortest way out (3,)."""
     if body.mesh is not None:
         return _extent(common_part(*body.mesh, other))
     met = [overlap(solid.corners(_SIDES), other) for solid in body.solids]
@@ -212,7 +210,7 @@ def _into(body: Body, other: Array) -> tuple[float, Array]:
 
 
 def _extent(common: Array) -> tuple[float, Array]:
-    """Smallest side of the box round what two bodies share, and the shorter way along x or y."""
+    """Smallest side of the box round a common part, and the shorter way along x or y."""
     if not len(common):
         return 0.0, np.zeros(3)
     sides = np.ptp(common, axis=0)
@@ -220,8 +218,10 @@ def _extent(common: Array) -> tuple[float, Array]:
     return float(sides.min()), np.eye(3)[axis] * sides[axis]
 
 
-def _in_standard(brief: Brief, standard: Standard, mesh: tuple[Array, Array]) -> Iterator[Fault]:
-    """Bodies in what stands on the base: faces, posts and balls, by their mesh."""
+def _faults_in_standard(
+    brief: Brief, standard: Standard, mesh: tuple[Array, Array]
+) -> Iterator[Fault]:
+    """Bodies that overlap faces, posts or balls, by the mesh of the standard."""
     for setup in brief.setups:
         T_table_artefact = setup.T_table_artefact
         T_face_artefact = inverse(table_face(T_table_artefact)) @ T_table_artefact
@@ -231,7 +231,7 @@ def _in_standard(brief: Brief, standard: Standard, mesh: tuple[Array, Array]) ->
             others = [own] if own else [(s.corners(_SIDES), None) for s in body.solids]
             common = np.concatenate([common_part(corners, mesh[1], *other) for other in others])
             depth, way = _extent(common)
-            if depth > TOUCHING:
+            if depth > CONTACT_DEPTH:
                 near = apply(inverse(T_face_artefact), common.mean(axis=0, keepdims=True))
                 met = min(standard.bodies, key=lambda n: standard.bodies[n].distance(near)[0])
                 words = f"{body.name} beside the standard: it reaches {depth:.1f} mm into {met}"
@@ -242,11 +242,11 @@ def _changes(brief: Brief, fault: Fault) -> Iterator[tuple[str, Brief]]:
     """Other places of a body, the nearest first, each with its words."""
     _, name, *_ = fault.key.split(".")
     if fault.key.startswith("setup."):
-        yield from _seats(brief, name)
+        yield from _other_seats(brief, name)
         return
     away = np.array(fault.found, dtype=float)
     ways = [fault.way, -fault.way, *np.eye(3)[:2], *-np.eye(3)[:2], np.append(away[:2], 0.0)]
-    for more in _FURTHER:
+    for more in _SHIFTS:
         for way in ways:
             length = float(np.linalg.norm(way))
             if length > 0.0:
@@ -269,8 +269,11 @@ def _with_body(brief: Brief, key: str, place: Array) -> Brief:
     return replace(brief, bodies=tuple(bodies))
 
 
-def _seats(brief: Brief, name: str) -> Iterator[tuple[str, Brief]]:
-    """A set-up on the face, towards the middle of the table as far as needed; or turned over."""
+def _other_seats(brief: Brief, name: str) -> Iterator[tuple[str, Brief]]:
+    """Set-ups on the face, moved towards the middle as far as needed, or turned over.
+
+    The required share of the way is bisected; 1 stays, 0 is the middle.
+    """
     setups = brief.setups
     k = next(k for k, setup in enumerate(setups) if setup.name == name)
     T = setups[k].T_table_artefact
@@ -283,7 +286,7 @@ def _seats(brief: Brief, name: str) -> Iterator[tuple[str, Brief]]:
             words = f"setup.{name}.rotation_deg = {_list(np.array(angles))}"
             yield words, _with_setup(brief, k, setup)
     for up in (0.0, height):
-        low, high, best = 0.0, 1.0, None  # the way to the middle, halved until it is known to 1 %
+        low, high, best = 0.0, 1.0, None  # share of the way that is kept
         for share in (1.0, 0.0, *[None] * _HALVES):
             share = 0.5 * (low + high) if share is None else share
             place = on_face.copy() if share == 1.0 else np.trunc(share * on_face)

@@ -1,4 +1,8 @@
-"""Which faces the probe can touch where they stand, alone and beside others."""
+"""Which faces the probe can touch, alone and beside each other.
+
+A few touches on every face stand for all. Whether two faces hide each other is estimated from the
+probe in contact alone, because the full check of every pair takes too long.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -15,9 +19,9 @@ from matstd.twin.machine import table_to_tool
 
 Which = NDArray[np.bool_]
 
-_WAY, _SAMPLES = 160.0, 8.0  # mm of the probe above its ball that is looked at, in steps
-_LEFT = 0.5  # of the touches on a face, that each of the others leaves at least
-_FEW = 6  # touches on a face by which it is judged beside others
+_LENGTH, _SAMPLES = 160.0, 8.0  # mm of the probe above its ball that are checked, in steps
+_FREE_SHARE = 0.5  # of the touches on a face that must stay free beside any other face
+_MAX_TOUCHES = 6  # touches per face for the comparison of pairs
 
 
 def touches_on(faces: Sequence[FreeformPatch], poses: Array) -> Requests:
@@ -26,15 +30,15 @@ def touches_on(faces: Sequence[FreeformPatch], poses: Array) -> Requests:
 
 
 def is_from_side(reach: ProbeReach, poses: Array) -> bool:
-    """Whether the tool axis never comes within half a right angle of the standard's z."""
+    """Whether the tool axis is never within 45 degrees of the standard's z."""
     up = np.tile([0.0, 0.0, 1.0], (len(poses), 1))
     at = Requests(np.full(len(poses), "FF1"), np.zeros_like(up), up, poses)
     axis = table_to_tool(reach.chain, reach.readings(at))[:, :3, 2]
     return bool((turn(inverse(reach.setup.T_table_artefact), axis)[:, 2] < np.sqrt(0.5)).all())
 
 
-def untouched(reach: ProbeReach, made: Standard, poses: Array) -> list[str]:
-    """Faces of a standard on which the probe finds no way to any of a few touches."""
+def untouchable_faces(reach: ProbeReach, made: Standard, poses: Array) -> list[str]:
+    """Faces of a standard on which none of a few touches is possible."""
     tried = touches_on(made.patches, poses)
     tried = tried[reach.is_reachable(tried)]
     there = set(tried[reach.is_clear(made, tried)].feature.tolist())
@@ -42,13 +46,13 @@ def untouched(reach: ProbeReach, made: Standard, poses: Array) -> list[str]:
 
 
 @dataclass(frozen=True, eq=False)
-class Seen:
-    """What the probe can touch of some faces, F.
+class ProbeAccess:
+    """Access of the probe to F faces.
 
     Attributes:
-        reached: Faces with a touch within angle and travels, (F,).
-        alone: Faces with one past the plate, the balls and their own pillars, (F,).
-        beside: Which of these leave each other half of some such touches at least, (F, F).
+        reached: Whether a touch is within angle and travels, (F,).
+        alone: Whether such a touch clears plate, balls and the own pillar, (F,).
+        beside: Whether two faces leave each other at least half of such touches, (F, F).
     """
 
     reached: Which
@@ -62,14 +66,10 @@ def mutually_probeable(
     faces: Sequence[FreeformPatch],
     balls: Sequence[DatumSphere],
     poses: Array,
-) -> Seen:
-    """What the probe can touch of some faces, each alone and two beside each other.
+) -> ProbeAccess:
+    """Access of the probe to faces, each alone and in pairs.
 
     Args:
-        reach: Machine, probe, set-up.
-        blank: On which they stand.
-        faces: Each at its place, named by its number.
-        balls: That stand there whatever face is chosen.
         poses: Table poses of the touches, (K, R), rad.
     """
     tried = touches_on(faces, poses)
@@ -82,15 +82,15 @@ def mutually_probeable(
     beside &= alone
     if alone.any():
         seen = np.flatnonzero(alone)
-        some = [on[k][:: -(-len(on[k]) // _FEW)] for k in seen]
+        some = [on[k][:: -(-len(on[k]) // _MAX_TOUCHES)] for k in seen]
         owner = np.repeat(np.arange(len(seen)), [len(rows) for rows in some])
         hides = in_the_way(
             reach, blank, [faces[k] for k in seen.tolist()], tried[np.concatenate(some)]
         )
         hidden = np.array([hides[:, owner == k].mean(axis=1) for k in range(len(seen))]).T
-        leaves = hidden <= 1.0 - _LEFT
+        leaves = hidden <= 1.0 - _FREE_SHARE
         beside[np.ix_(seen, seen)] |= leaves & leaves.T
-    return Seen(reached=reached, alone=alone, beside=beside)
+    return ProbeAccess(reached=reached, alone=alone, beside=beside)
 
 
 def _is_open(
@@ -100,7 +100,7 @@ def _is_open(
     balls: Sequence[DatumSphere],
     touches: Requests,
 ) -> Which:
-    """Touches at which the probe clears the plate, some balls and the pillar that it touches."""
+    """Touches at which the probe clears the plate, the balls and the touched pillar."""
     ball, axis = _approach(reach, touches)
     place, radius = reach.shape.stations()
     points, least = ball[:, None] + place[:, None] * axis[:, None], radius + reach.room
@@ -124,11 +124,11 @@ def _approach(reach: ProbeReach, touches: Requests) -> tuple[Array, Array]:
 def in_the_way(
     reach: ProbeReach, blank: Blank, faces: Sequence[FreeformPatch], touches: Requests
 ) -> Which:
-    """Whether a face stands in the way of the probe at a touch, (F, N)."""
+    """Whether each face obstructs the probe at each touch, (F, N)."""
     ball, axis = _approach(reach, touches)
     begin, points, radii = 0.0, list[Array](), list[Array]()
     for end, radius in reach.shape.cylinders:
-        for at in np.arange(begin, min(end, _WAY), _SAMPLES):
+        for at in np.arange(begin, min(end, _LENGTH), _SAMPLES):
             points.append(ball + at * axis)
             radii.append(np.full(len(ball), radius + reach.room))
         begin = end

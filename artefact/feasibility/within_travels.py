@@ -1,7 +1,7 @@
-"""Whether the machine reaches enough of the blank, and which change of the project would do if not.
+"""Whether the machine reaches enough of the blank, and which change of the project would help.
 
-A refusal names the travel or angle that binds and the nearest wishes that can be met, each of which
-was tried.
+A refusal names the binding travel or angle and the nearest feasible changes. Changes are tried in
+the order of their size, on few places and poses first; every named one passed the full check.
 """
 
 from collections.abc import Iterator
@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.artefact.brief import Brief
-from matstd.artefact.feasibility.standing import RISEN, stands
+from matstd.artefact.feasibility.standing import SEAT_TOLERANCE, stands
 from matstd.artefact.layout import with_spheres
 from matstd.artefact.reach import (
     ANGLE,
@@ -37,29 +37,27 @@ from matstd.twin.machine import Chain, linear_directions
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
-_RISER = 300.0  # mm above the table's face that a wish may lift a standard
+_RISER = 300.0  # mm above the table to which a change may raise the standard
 _POSES = 60  # table poses that are tried
-_PLACES_A_PATCH = 2  # reached, of a few hundred: with fewer no choice of patches was ever found
+_PLACES_A_PATCH = 2  # reached, of a few hundred: with fewer, no choice of patches was ever found
 _SHIFTS = (20.0, 50.0, 100.0, 200.0, 400.0)  # mm
-_SCALES = (1.0, 1.25, 1.5, 2.0, 3.0)  # of the shift by which single touches miss their travels
+_SCALES = (1.0, 1.25, 1.5, 2.0, 3.0)  # multiples of the shift by which touches miss their travels
 _LENGTHS = (-100.0, -50.0, -25.0, 25.0, 50.0, 100.0, 200.0)  # mm by which a probe may differ
-_WIDER = 6  # steps in which a rotary range is widened to its travel
+_WIDENING_STEPS = 6  # steps in which a rotary range is widened to its travel
 _TURNS = ((-90.0, 0.0, 0.0), (90.0, 0.0, 0.0), (0.0, 90.0, 0.0), (0.0, -90.0, 0.0))  # degrees
-_NAMED = 3  # wishes named in a refusal
-_ROUGH = 20  # table poses, and a third of the places, by which a wish is looked at first
-TRIED = "place or turn of the set-up, length of the probe or range of a rotary axis"
+_MAX_WISHES = 3  # wishes named in a refusal
+_FEW_POSES = 20  # table poses for the first check of a change, with a third of the places
+TRIED_CHANGES = "place or turn of the set-up, length of the probe or range of a rotary axis"
 """What `nearest_in_reach` changes."""
 
 
 @dataclass(frozen=True, eq=False)
 class Wish:
-    """A change of the project: its words, how large it is, and what is then asked of the machine.
+    """A change of the project with the machine and limits that follow from it.
 
     Attributes:
-        words: Key and value of the project file.
-        size: By which changes of one kind are ordered.
-        kind: What is changed; one wish of a kind is named.
-        reach: Machine, probe and set-up.
+        size: Orders the changes of one kind.
+        kind: What is changed; one change per kind is named.
         rotary: Limits of the rotary axes, (R, 2), rad.
     """
 
@@ -72,12 +70,12 @@ class Wish:
 
 @dataclass(frozen=True, eq=False)
 class Travels:
-    """What of a blank the machine reaches.
+    """The part of a blank that the machine reaches.
 
     Attributes:
-        tried: Places, table poses, and what is beyond which limit.
-        poses: Table poses to choose from, (K, R), rad: where Z can rise above the standard.
-        against: What binds, in words; empty where enough is reached.
+        tried: Places, table poses, and the distances beyond the limits.
+        poses: Candidate table poses, (K, R), rad, at which Z can rise above the standard.
+        against: Binding limit, in words; empty where enough is reached.
     """
 
     tried: PlacesInReach
@@ -86,17 +84,17 @@ class Travels:
 
 
 def travels(brief: Brief) -> Travels:
-    """What of a blank the machine reaches, at table poses where Z rises above the standard.
+    """Check what the machine reaches of a blank where Z can rise above the standard.
 
     Raises:
         NotReachable: Limits of a rotary axis without room to approach a reading from both sides.
     """
     wanted = brief.reach
     poses = poses_within(brief.chain, brief.rotary, brief.options.choice.poses)
-    places, enough = places_on(brief.blank), _enough(brief)
+    places, enough = places_on(brief.blank), _min_places(brief)
     tried = reach_of(wanted, *places, spread_poses(poses, _POSES))
     rises = np.ones(len(poses), dtype=bool)
-    if tried.places >= enough:  # whether Z rises is of no interest above what is not reached
+    if tried.places >= enough:  # Z need not rise above a blank that is out of reach
         to_rise, retract = _to_rise(brief, wanted, poses)
         rises = to_rise <= retract
         if rises.any():
@@ -115,29 +113,24 @@ def travels(brief: Brief) -> Travels:
         against = (
             f"{tried.places} of {len(tried.point)} places of such a standard are within reach, "
             f"{enough} have to be; {f'even at {at} ' if at else ''}"
-            f"{' and '.join(_asked(m, v) for m, v in asked)}"
+            f"{' and '.join(_limit_words(m, v) for m, v in asked)}"
         )
     return Travels(tried, poses[rises], against)
 
 
 def nearest_in_reach(brief: Brief, tried: PlacesInReach) -> tuple[str, ...]:
-    """Nearest changes of the project that bring enough within reach, in words; none if none does.
-
-    Args:
-        brief: Of which too little is reached.
-        tried: What is.
-    """
+    """Nearest changes of the project that bring enough places within reach, in words."""
     return tuple(wish.words for wish in _nearest(brief, tried))
 
 
-def _enough(brief: Brief) -> int:
+def _min_places(brief: Brief) -> int:
     return _PLACES_A_PATCH * brief.options.patches
 
 
 def _to_rise(brief: Brief, wanted: ProbeReach, poses: Array) -> tuple[Array, float]:
-    """Reading of Z (K,) that a visit of a pose asks for at least, and the one it retracts to, mm.
+    """Smallest reading of Z (K,) for a visit of each pose, and its retracted reading, mm.
 
-    By what every standard has: its base, and its highest sphere, taken over the middle.
+    Estimated from the base and the highest sphere, which every standard has.
     """
     programs, chain = brief.programs, wanted.chain
     middle = np.array([0.0, 0.0, brief.blank.fittings.highest_sphere])
@@ -146,40 +139,39 @@ def _to_rise(brief: Brief, wanted: ProbeReach, poses: Array) -> tuple[Array, flo
     tool = brief.probe.at_length(wanted.length)
     retract = chain.link("Z").range[1] - programs.retract
     to_rise = top_height(chain, poses, solid, tool) + programs.clearance
-    turns = np.flatnonzero(to_rise <= retract)  # the way to the others is of no use
-    home, ends = home_readings(chain), _beyond(brief.chain, poses)
+    turns = np.flatnonzero(to_rise <= retract)  # other poses cannot be used anyway
+    home, ends = home_readings(chain), _with_overshoot(brief.chain, poses)
     ways = [swing_height(chain, np.stack([home, ends[i]]), solid, tool)[0] for i in turns]
     turning = np.array(ways) + 0.5 * programs.clearance
     to_rise[turns] = np.maximum(to_rise[turns], turning)
     return to_rise, retract
 
 
-def _beyond(chain: Chain, poses: Array) -> Array:
-    """Poses (K, R) with the way beyond them from which they may be approached, where it exists."""
+def _with_overshoot(chain: Chain, poses: Array) -> Array:
+    """Poses (K, R) moved to the start of their approach, where the travel allows it."""
     travels = [chain.link(a).range for a in chain.rotary_axes]
     low, high = np.array(travels).reshape(-1, 2).T
     out = poses + OVERSHOOT * np.where(poses >= home_readings(chain), 1.0, -1.0)
-    beyond: Array = np.where((out >= low) & (out <= high), out, poses)
-    return beyond
+    return np.where((out >= low) & (out <= high), out, poses)
 
 
 def _fits(brief: Brief, wish: Wish) -> bool:
-    """Whether a changed project is within reach; by few places and poses first."""
+    """Whether a changed project is within reach; few places and poses are checked first."""
     lifted = replace(brief, riser=max(_RISER, brief.riser))
     if not stands(lifted, wish.reach.setup):
         return False
     grid = poses_within(brief.chain, wish.rotary, brief.options.choice.poses)
-    for some, step in ((spread_poses(grid, _ROUGH), 3), (spread_poses(grid, _POSES), 1)):
+    for some, step in ((spread_poses(grid, _FEW_POSES), 3), (spread_poses(grid, _POSES), 1)):
         point, normal = (v[::step] for v in places_on(brief.blank))
-        if reach_of(wish.reach, point, normal, some).places * step < _enough(brief):
+        if reach_of(wish.reach, point, normal, some).places * step < _min_places(brief):
             return False
     to_rise, retract = _to_rise(brief, wish.reach, some)
     good = some[to_rise <= retract]
-    return reach_of(wish.reach, point, normal, good).places >= _enough(brief)
+    return reach_of(wish.reach, point, normal, good).places >= _min_places(brief)
 
 
-def _asked(limit: Limit, value: float) -> str:
-    """What a limit would have to allow."""
+def _limit_words(limit: Limit, value: float) -> str:
+    """The value that a limit would have to allow, in words."""
     if limit.name == ANGLE:
         return (
             f"the probe would have to touch faces that look {np.ceil(value / DEG):.0f} degrees "
@@ -190,15 +182,15 @@ def _asked(limit: Limit, value: float) -> str:
 
 
 def _nearest(brief: Brief, tried: PlacesInReach) -> list[Wish]:
-    """The smallest change of every kind that would do."""
+    """The smallest feasible change of every kind."""
     found: dict[str, Wish] = {}
     wanted, rotary = brief.reach, brief.rotary
     wishes = [
-        *_moved(brief, tried),
-        *_wider(wanted, rotary),
-        *_longer(wanted, rotary),
-        *_turned(wanted, rotary),
-        *_mirrored(wanted, rotary),
+        *_moved_setups(brief, tried),
+        *_wider_ranges(wanted, rotary),
+        *_other_lengths(wanted, rotary),
+        *_turned_setups(wanted, rotary),
+        *_mirrored_travels(wanted, rotary),
     ]
     for wish in sorted(wishes, key=lambda w: w.size):
         try:
@@ -206,16 +198,16 @@ def _nearest(brief: Brief, tried: PlacesInReach) -> list[Wish]:
                 found[wish.kind] = wish
         except NotReachable:  # no room to approach a reading
             continue
-    return list(found.values())[:_NAMED]
+    return list(found.values())[:_MAX_WISHES]
 
 
-def _moved(brief: Brief, tried: PlacesInReach) -> Iterator[Wish]:
-    """Along the axes of the table, and the way by which touches miss their travels."""
+def _moved_setups(brief: Brief, tried: PlacesInReach) -> Iterator[Wish]:
+    """Set-ups moved along the axes of the table, and by the distance that touches miss."""
     wanted, rotary = brief.reach, brief.rotary
     chain, T = wanted.chain, wanted.setup.T_table_artefact
     ways = [(d, sign * s) for d in np.eye(3) for sign in (1.0, -1.0) for s in _SHIFTS]
     missed = np.zeros(3)
-    pose, asked = tried.wanting(_enough(brief)) if len(tried.poses) else (rotary[:, 0], [])
+    pose, asked = tried.wanting(_min_places(brief)) if len(tried.poses) else (rotary[:, 0], [])
     along = linear_directions(chain, readings_at(chain, pose[None]))[0]
     for limit, value in asked:
         if limit.name != ANGLE:
@@ -228,7 +220,7 @@ def _moved(brief: Brief, tried: PlacesInReach) -> Iterator[Wish]:
         setup = Setup(wanted.setup.name, moved)
         words = f"setup.{setup.name}.origin_mm = [{place}]"
         up = seat_height(moved, brief.blank.base.half_size) - brief.table.high
-        if up > max(RISEN, brief.riser):
+        if up > max(SEAT_TOLERANCE, brief.riser):
             words += f" with limits.riser_mm = {np.ceil(up):.0f}"
         yield Wish(
             words=words,
@@ -239,15 +231,15 @@ def _moved(brief: Brief, tried: PlacesInReach) -> Iterator[Wish]:
         )
 
 
-def _wider(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
+def _wider_ranges(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
     """One rotary axis with more of its travel."""
     for i, name in enumerate(wanted.chain.rotary_axes):
         ends = np.array(wanted.chain.link(name).range)
-        for step in range(1, _WIDER + 1):
+        for step in range(1, _WIDENING_STEPS + 1):
             wide = rotary.copy()
             for to in ((0, 1), (0,), (1,)):
                 wide = rotary.copy()
-                wide[i, to] += (ends[[*to]] - wide[i, to]) * step / _WIDER
+                wide[i, to] += (ends[[*to]] - wide[i, to]) * step / _WIDENING_STEPS
                 words = ", ".join(f"{v / DEG:.0f}" for v in wide[i])
                 size = float(np.abs(wide - rotary).sum() / DEG)
                 yield Wish(
@@ -259,7 +251,7 @@ def _wider(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
                 )
 
 
-def _longer(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
+def _other_lengths(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
     for more in _LENGTHS:
         if wanted.length + more > 4.0 * wanted.radius:
             words = f"probe.length_mm = {wanted.length + more:g}"
@@ -267,7 +259,7 @@ def _longer(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
             yield Wish(words=words, size=abs(more), kind="length", reach=other, rotary=rotary)
 
 
-def _turned(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
+def _turned_setups(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
     for angles in _TURNS:
         T = wanted.setup.T_table_artefact.copy()
         T[:3, :3] = fixed_xyz(np.array(angles) * DEG)
@@ -282,8 +274,8 @@ def _turned(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
         )
 
 
-def _mirrored(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
-    """Travels of axes that carry the workpiece, entered as motions of the table."""
+def _mirrored_travels(wanted: ProbeReach, rotary: Array) -> Iterator[Wish]:
+    """Reversed travels of workpiece axes, in case they were entered as table motions."""
     links = wanted.chain.links
     carried = [k for k in links if k.kind == "linear" and k.carries_workpiece]
     for some in [*([k] for k in carried), *[carried] * (len(carried) > 1)]:

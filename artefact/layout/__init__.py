@@ -1,6 +1,6 @@
-"""Bodies that can be made on a blank: pillars, posts and holes, whole standards, other artefacts.
+"""Bodies on a blank: pillars, posts and holes, whole standards, rival artefacts.
 
-In: a `Blank` with its limits. Out: upright candidates with smooth shapes, which of them stand
+In: a `Blank` with its limits. Out: upright candidates with smooth shapes, which of them fit
 beside each other, and rivals. A further rival is one more entry in `rivals`.
 """
 
@@ -9,7 +9,7 @@ from matstd.artefact.layout.post import post_stiffness
 from matstd.artefact.layout.rival_artefacts import rivals, with_spheres
 from matstd.artefact.layout.side_by_side import Pairs, beside_balls, most_side_by_side
 from matstd.artefact.layout.upright import (
-    SOFT,
+    DEFAULT_MODULUS,
     WALL_GAP,
     balls_fit,
     balls_on_posts,
@@ -22,7 +22,7 @@ from matstd.artefact.layout.upright import (
 )
 
 __all__ = [
-    "SOFT",
+    "DEFAULT_MODULUS",
     "WALL_GAP",
     "Blank",
     "Fittings",

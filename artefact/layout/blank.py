@@ -1,4 +1,4 @@
-"""What a standard is made from: base, fittings, material and limits."""
+"""The blank of a standard: base, fittings, material and limits."""
 
 from dataclasses import dataclass, field
 
@@ -7,11 +7,11 @@ from matstd.artefact.body import Base, Limits, Material
 
 @dataclass(frozen=True, slots=True)
 class Fittings:
-    """Spheres and holes that every standard gets, wherever there is room for them.
+    """Spheres and holes of every standard.
 
     Attributes:
         sphere_radius: Of the precision balls, mm.
-        highest_sphere: Centre of the highest above the seat, mm: the tool passes over it.
+        highest_sphere: Height of the highest centre above the seat, mm; the tool passes over it.
         post_radius: Of a post at the centre of its ball, mm.
         hole_radius: Of the through hole, mm (M10: 5.5).
         bore_radius: Of the counterbore, mm (M10: 9).
@@ -28,14 +28,10 @@ class Fittings:
 
 @dataclass(frozen=True, slots=True)
 class Blank:
-    """Everything of a standard that is not its patches.
+    """All of a standard but its patches.
 
     Attributes:
-        base: Plate.
-        fittings: Spheres and holes.
-        material: What it is made of.
         height: Of the blank above the seat, mm.
-        limits: Room that spheres and holes are given.
     """
 
     base: Base = field(default_factory=Base)

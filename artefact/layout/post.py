@@ -1,4 +1,4 @@
-"""How stiff the post under a ball is, and how wide its foot has to be.
+"""Stiffness of the post under a ball, and the foot that a stiffness requires.
 
 A post is a cone frustum of radius ``b`` at the ball's centre and ``a`` at its foot, ``L`` below.
 Under a force across it at the ball the compliance is the sum of bending, shear, and the turn of the
@@ -17,7 +17,7 @@ Reference:
 import numpy as np
 
 _SHEAR = 0.9
-_STEP = 0.1  # mm, of drawings
+_STEP = 0.1  # mm, resolution of drawings
 
 
 def post_stiffness(length: float, top: float, foot: float, modulus: float, poisson: float) -> float:
@@ -28,7 +28,6 @@ def post_stiffness(length: float, top: float, foot: float, modulus: float, poiss
         top: Radius at the ball's centre, mm.
         foot: Radius at the foot, mm.
         modulus: Young's, N/mm^2.
-        poisson: Poisson's ratio.
     """
     G = modulus / (2.0 * (1.0 + poisson))
     bending = 4.0 * length**3 / (3.0 * np.pi * modulus * foot**3 * top)
@@ -45,7 +44,6 @@ def post_foot(length: float, top: float, stiffness: float, modulus: float, poiss
         top: Radius at the ball's centre, mm.
         stiffness: Wanted, N/mm.
         modulus: Young's, N/mm^2.
-        poisson: Poisson's ratio.
     """
     foot = top + _STEP
     while post_stiffness(length, top, foot, modulus, poisson) < stiffness:

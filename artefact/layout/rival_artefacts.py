@@ -1,4 +1,4 @@
-"""Artefacts that people have, built as bodies that a probe must get round like any other."""
+"""Artefacts in use, modelled as bodies with the same obstacles to the probe as the standard."""
 
 from collections.abc import Sequence
 
@@ -12,19 +12,16 @@ from matstd.sensitivity.first_order import Box
 from matstd.twin.frames import Array, pose, rotation
 from matstd.twin.units import DEG
 
-_PROUD = 2.0  # mm by which the sides of the block stand out beyond its top
-_TALLEST = 40.0  # mm that the one face may rise above its plane
-_BENEATH = 5.0  # mm above mid-base, where columns end
+_SIDE_OFFSET = 2.0  # mm by which the sides of the block stand out beyond its top
+_MAX_RISE = 40.0  # mm that the one face may rise above its plane
+_COLUMN_END = 5.0  # mm above mid-base, where columns end
 
 
 def rivals(volume: Box, blank: Blank, rng: np.random.Generator) -> dict[str, Standard]:
-    """A five-sided block and one freeform face, as large as allowed.
-
-    Each fills the volume that the standard fills, on the same base.
+    """A five-sided block and one freeform face in the volume of the standard, on the same base.
 
     Args:
         volume: Box of the artefact frame, mm.
-        blank: Base, blank and limits of the standard.
         rng: Draws the shape of the freeform face.
     """
     return {
@@ -53,24 +50,24 @@ def _standard(
 
 
 def with_spheres(blank: Blank, centres: Sequence[Array]) -> Standard:
-    """Nothing but balls on posts, (3,) each, SPH1 ..."""
+    """A standard of balls on posts alone, with centres (3,), SPH1 ..."""
     spheres = tuple(ball_on_post(blank, f"SPH{i}", c) for i, c in enumerate(centres, 1))
     return _standard("SPHERES", blank, (), spheres)
 
 
 def _block(volume: Box, blank: Blank) -> tuple[FreeformPatch, ...]:
-    """Five plane faces: the top, and four sides that stand a little proud of it."""
+    """Five plane faces: the top, and four sides slightly outside it."""
     half, low, high = volume[1][0], blank.base.thickness, volume[1][2]
     depth = high - 0.5 * low
     faces = [_plane("TOP", pose(t=np.array([0.0, 0.0, high])), (half, half), depth)]
-    tall = 0.5 * (high - low) - _PROUD
+    tall = 0.5 * (high - low) - _SIDE_OFFSET
     middle = 0.5 * (low + high)
     for i in range(4):
         z, y = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
         R = rotation(i * 90 * DEG * z) @ rotation(90 * DEG * y)
-        centre = R @ np.array([0.0, 0.0, half + _PROUD]) + np.array([0.0, 0.0, middle])
+        centre = R @ np.array([0.0, 0.0, half + _SIDE_OFFSET]) + np.array([0.0, 0.0, middle])
         # x of the patch runs downwards, y along the side
-        faces.append(_plane(f"SIDE{i + 1}", pose(R, centre), (tall, half - _PROUD), half))
+        faces.append(_plane(f"SIDE{i + 1}", pose(R, centre), (tall, half - _SIDE_OFFSET), half))
     return tuple(faces)
 
 
@@ -83,5 +80,5 @@ def _one_face(volume: Box, blank: Blank, rng: np.random.Generator) -> FreeformPa
     (x0, y0, z0), (x1, y1, z1) = volume
     half, middle = (0.5 * (x1 - x0), 0.5 * (y1 - y0)), 0.5 * (z0 + z1)
     place = pose(t=np.array([0.5 * (x0 + x1), 0.5 * (y0 + y1), middle]))
-    heights = smooth_heights(half, blank.limits, rng, tallest=_TALLEST)
-    return graph_patch("FACE", place, half, heights, depth=middle - _BENEATH)
+    heights = smooth_heights(half, blank.limits, rng, tallest=_MAX_RISE)
+    return graph_patch("FACE", place, half, heights, depth=middle - _COLUMN_END)

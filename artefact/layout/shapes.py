@@ -1,4 +1,8 @@
-"""Smooth random shapes of freeform faces, as strong as cutter and probe allow."""
+"""Smooth random shapes of freeform faces, as pronounced as cutter and probe allow.
+
+A shape is a paraboloid plus one wave; it is scaled until its slope, height or concave radius
+reaches a limit, because larger differences of normals and heights carry more information.
+"""
 
 import numpy as np
 
@@ -7,40 +11,37 @@ from matstd.twin.frames import Array
 from matstd.twin.units import DEG
 
 CONTROL = 8
-"""Control heights of a patch each way: enough for one wave, too few for ripples."""
+"""Control heights of a patch in u and v: enough for one wave, too few for ripples."""
 
 _MARGIN = 1.15
-"""Shapes stay this far from the limits of curvature and slope, which are measured on grids."""
+"""Safety factor on the limits of curvature and slope, which are evaluated on grids."""
 
-_STEEPEST = 60.0 * DEG  # of any face, whatever the limits allow: a ball-end cutter still cleans it
-_TALLEST = 7.0  # what a shape may rise above its mean plane, mm
+_MAX_SLOPE = 60.0 * DEG  # of any face: a ball-end cutter can still finish it
+_MAX_RISE = 7.0  # rise of a shape above its mean plane, mm
 _PITCH = 2.5  # mm, of the grid on which shapes are scaled
 
 
 def steepest_slope(limits: Limits) -> float:
-    """Slope dh/du that a face takes at most, with a margin."""
-    return float(np.tan(min(limits.max_slope, _STEEPEST) / _MARGIN))
+    """Largest slope dh/du of a face, with a margin."""
+    return float(np.tan(min(limits.max_slope, _MAX_SLOPE) / _MARGIN))
 
 
 def smooth_heights(
     half_size: tuple[float, float],
     limits: Limits,
     rng: np.random.Generator,
-    tallest: float = _TALLEST,
+    tallest: float = _MAX_RISE,
     plane: tuple[float, float] = (0.0, 0.0),
 ) -> Array:
-    """Control heights of a random smooth shape on a plane, as strong as the limits allow.
+    """Control heights of a random smooth shape on a plane, as pronounced as the limits allow.
 
     A random bowl, dome or saddle with a random wave of one to two times the patch's length on it.
-    It is scaled until its slope or its smallest concave radius is a seventh from the limit, so
-    that the normals of a patch differ as much as a cutter and a probe can follow.
+    It is scaled until its slope or its smallest concave radius is 15 % from the limit.
 
     Args:
         half_size: Half sides of the face, mm.
-        limits: Of slope and concave radius.
         rng: Draws the shape.
-        tallest: What a shape may rise above its plane or sink below it, mm.
-        plane: Slopes of the plane along u and v.
+        tallest: Largest height above or below its plane, mm.
 
     Returns:
         Shape (`CONTROL`, `CONTROL`), mm, with mean zero.
@@ -51,7 +52,7 @@ def smooth_heights(
     ends = np.linspace(-1.0, 1.0, CONTROL)
     u, v = np.meshgrid(half_size[0] * ends, half_size[1] * ends, indexing="ij")
     size = float(np.mean(half_size))
-    bend = rng.uniform(-1.0, 0.6, 2)  # more domes than bowls: every normal of a dome is in the open
+    bend = rng.uniform(-1.0, 0.6, 2)  # more domes than bowls: every normal of a dome is accessible
     h = 0.5 * (bend[0] * u**2 + bend[1] * v**2 + rng.uniform(-0.7, 0.7) * u * v) / size
     direction, phase = rng.uniform(0.0, 2.0 * np.pi, 2)
     k = np.pi / (size * rng.uniform(1.0, 2.0))
@@ -66,9 +67,8 @@ def _strength(
 ) -> float:
     """Factor that brings a shape on a plane to its limits.
 
-    Slope and height are bounded by the triangle inequality; with ``w^2 = 1 + |grad h|^2`` the
-    curvatures are the eigenvalues of ``I^-1 II``, so for them the factor is bisected on a grid of
-    derivatives that is evaluated once.
+    The triangle inequality bounds slope and height. Curvature is not linear in the factor, so it
+    is bisected on a grid of derivatives that is evaluated once.
     """
     patch = graph_patch("trial", np.eye(4), half_size, heights)
     plane = graph_patch("plane", np.eye(4), half_size, slanted)

@@ -1,4 +1,4 @@
-"""How many of some bodies stand beside each other at most."""
+"""Largest sets of bodies that fit beside each other: a greedy search for a large clique."""
 
 from collections.abc import Sequence
 
@@ -18,17 +18,17 @@ def most_side_by_side(
     kind: NDArray[np.int64] | None = None,
     starts: int | None = None,
 ) -> list[int]:
-    """Sites all of which can stand beside each other: as many as wanted, else the most found.
+    """Sites that fit beside each other: as many as wanted, or the largest set found.
 
-    From sociable sites in turn, the next is always the one that leaves most others free: a lower
-    bound of the largest clique, which takes too long to find.
+    Starting from each site in turn, the next site is the one that leaves most others free. The
+    result is a lower bound of the largest clique, which takes too long to find.
 
     Args:
-        fits: Which sites can stand beside each other, (S, S).
-        wanted: How many of each kind; with so many the search ends.
-        kind: Of every site, (S,), those of the first kind are placed first; None for one kind.
-        starts: Most sociable sites from which it begins, None for all: 80 of 400 find as many in
-            ten of twelve blanks, and one less in the others.
+        fits: Which sites fit beside each other, (S, S).
+        wanted: Number of each kind; the search ends when all are found.
+        kind: Of every site, (S,); the first kind is placed first. None for one kind.
+        starts: Number of starting sites, those with most neighbours first; None for all. 80 of 400
+            find the same number on ten of twelve blanks, one less on the others.
     """
     kinds = np.zeros(len(fits), dtype=np.int64) if kind is None else kind
     most: list[int] = []
@@ -55,14 +55,11 @@ def beside_balls(
     blank: Blank,
     seen: Pairs | None = None,
 ) -> tuple[list[int], list[int]]:
-    """Faces and balls that stand on a blank together: as many as wanted, else the most found.
+    """Faces and balls that fit on a blank together: as many as wanted, or the largest set found.
 
     Args:
-        faces: Where they may stand.
-        balls: Where they may stand.
-        wanted: Number of faces and of balls.
-        blank: With its limits; the screws stand where they are farthest apart without balls.
-        seen: Which faces leave each other to the probe, (F, F); None for all.
+        blank: With its limits; screws are placed as without balls.
+        seen: Pairs of faces that can both be probed, (F, F); None for all.
     """
     kind = np.repeat([0, 1], [len(faces), len(balls)])
     fits = np.zeros((len(kind), len(kind)), dtype=bool)

@@ -1,8 +1,9 @@
-"""What can stand on a base: upright pillars with a freeform top, balls on posts, and screw holes.
+"""Bodies on a base: upright pillars with a freeform top, balls on posts, and screw holes.
 
-Everything is milled from above: walls are upright and parallel to the sides of the base, a face is
-a graph over its own rectangle, however much it leans. Between any two bodies a cutter passes,
-places are in tenths of a millimetre, and nothing stands out beyond the outline.
+Everything is milled from above: walls are upright and parallel to the sides of the base, and every
+face is a graph over its own rectangle. A cutter passes between any two bodies, positions are in
+tenths of a millimetre, and nothing extends beyond the outline. Candidates are drawn at random and
+kept if they meet these rules; the choice among them is made elsewhere.
 """
 
 from collections.abc import Sequence
@@ -30,41 +31,40 @@ from matstd.twin.units import UM
 Pairs = NDArray[np.bool_]
 
 WALL_GAP = 12.0
-"""Least gap between two bodies, mm: a cutter of 10 mm passes with its run-out."""
+"""Smallest gap between two bodies, mm: a cutter of 10 mm passes with its run-out."""
 
 POST_STIFFNESS = 18.0 / UM
-"""Least force across a ball per deflection of its post, N/mm: with plate and pads 10 are left."""
+"""Smallest lateral stiffness of a post, N/mm: with plate and pads 10 N/um remain."""
 
-SOFT = 70e3
-"""Modulus for which posts are drawn where that of the material is not known, N/mm^2: aluminium, the
-softest that standards are usually made of."""
+DEFAULT_MODULUS = 70e3
+"""Modulus for posts of an unknown material, N/mm^2: aluminium, the softest usual material."""
 
 TABLE_RIM = 8.0
-"""From the rim of a screw hole to the rim of the table at least, mm."""
+"""Smallest distance from the rim of a screw hole to that of the table, mm."""
 
-_FACES_SHARE = 0.17  # of the base that all freeform faces cover: with more no 13 balls fit beside
-_SIZES = (0.7, 1.2)  # sides of a face in those that give them all that share
-_LARGEST = 32.0  # half side of a face, mm: what a touch probe looks at as one surface
-_ABOVE = 10.0  # mm that the lowest edge of a face is above the base: fillet, and room for the ball
-_HIGHEST = 0.45  # of the blank's height, the middle of a face at most
+_FACES_SHARE = 0.17  # of the base covered by all freeform faces: with more, 13 balls do not fit
+_SIZES = (0.7, 1.2)  # sides of a face relative to equal squares
+_MAX_HALF_SIDE = 32.0  # half side of a face, mm
+_FACE_CLEARANCE = 10.0  # mm between base and lowest edge of a face: fillet, and room for the ball
+_MAX_FACE_SHARE = 0.45  # of the height of the blank: highest middle of a face
 _LEAN = (0.45, 0.65)
-"""Of the steepest slope that the mean plane of a face takes: what is wrong across the table is seen
-on slopes alone, but what the plane takes of the slope is lost to the curvature of the face. With
-0.5 to 0.85 the least radii of curvature are 28 to 73 mm instead of 19 to 36 mm, and the proof finds
-82 % instead of 79 % of what is wrong in whatever direction."""
+"""Slope of the mean plane of a face relative to the steepest slope. Only slopes show lateral
+errors, but slope of the plane is lost to the curvature of the face. With 0.5 to 0.85 the smallest
+radii of curvature are 28 to 73 mm instead of 19 to 36 mm, and the proof detects 82 % instead of 79
+% of the errors in any direction."""
 
-_LEAN_OUT, _OUT = (0.75, 0.95), 0.4
-"""Lean, and scatter of its direction about outwards (rad), where the probe comes from the side: it
-reaches what looks at it, and nothing must stand before that."""
+_SIDE_LEAN, _LEAN_SCATTER = (0.75, 0.95), 0.4
+"""Lean, and scatter of its direction about outwards (rad), where the probe approaches from the
+side: it reaches only faces that face it."""
 
-_LOWEST_BALL = 15.0  # mm between the base and a ball, for the probe to come beside it
-_HIGHEST_BALL = 0.7  # of the blank's height, centre of a ball at most
-_LEDGE = 1.0  # mm of the plate that is left outside the blend of a foot
-_TO_HOLE = 6.0  # mm between a counterbore and a body: fillet of its foot, and the key
+_MIN_BALL_GAP = 15.0  # mm between base and ball, for access of the probe
+_MAX_BALL_SHARE = 0.7  # of the height of the blank: highest centre of a ball
+_LEDGE = 1.0  # mm of the plate outside the fillet of a foot
+_HOLE_GAP = 6.0  # mm between counterbore and body: fillet of its foot, and the key
 _WALL = 5.0  # mm between a counterbore and the outline
-_APART = 60.0  # mm between two holes at least: nearer ones let a standard rock
-_STEP = 7.0  # mm, in which places of holes are tried
-_TRIES = 50  # draws for each place
+_MIN_HOLE_DISTANCE = 60.0  # mm, smallest distance of two holes: closer ones let the standard rock
+_STEP = 7.0  # mm, grid of candidate holes
+_MAX_DRAWS = 50  # random draws per place
 
 
 def freeform_faces(
@@ -77,46 +77,47 @@ def freeform_faces(
     from_side: bool = False,
     heaviest: float = np.inf,
 ) -> list[FreeformPatch]:
-    """Pillars of which some may be chosen, named by their numbers, evenly over the base.
+    """Candidate pillars, named by their numbers, distributed evenly over the base.
 
     Args:
-        blank: Base, height and limits.
-        faces: How many will be chosen: the more, the smaller they are.
-        count: How many are tried.
+        faces: Number that will be chosen; more faces are smaller.
         rng: Draws places, sizes and shapes.
         balls: On posts, beside which cutter and probe find room.
-        holes: Beside which the key does.
         from_side: Whether the probe comes from the side at every table pose, not from above.
-        heaviest: What a pillar may weigh, kg: it is drawn lower, and left out where it cannot be.
+        heaviest: Largest mass of a pillar, kg; heavier pillars are lowered or left out.
 
     Raises:
         NotBuildable: No pillar stands within the outline, or none is light enough.
     """
-    base, around = blank.base, _around(blank, balls, holes)
+    base, around = blank.base, _barred_circles(blank, balls, holes)
     out: list[FreeformPatch] = []
     side = np.sqrt(_FACES_SHARE * 4.0 * np.prod(base.half_size) / faces)
     steepest = steepest_slope(blank.limits)
-    smallest = blank.material.density * (min(side, 2.0 * _LARGEST) * _SIZES[0]) ** 2 * _ABOVE
+    smallest = (
+        blank.material.density
+        * (min(side, 2.0 * _MAX_HALF_SIDE) * _SIZES[0]) ** 2
+        * _FACE_CLEARANCE
+    )
     for _ in range(count if heaviest > smallest else 0):
-        half = np.round(np.minimum(0.5 * side * rng.uniform(*_SIZES, 2), _LARGEST), 1)
-        middle = _inside(blank, half, around, rng)
+        half = np.round(np.minimum(0.5 * side * rng.uniform(*_SIZES, 2), _MAX_HALF_SIDE), 1)
+        middle = _free_place(blank, half, around, rng)
         if middle is None:
             continue
         direction, lean = rng.uniform(0.0, 2.0 * np.pi), steepest * rng.uniform(*_LEAN)
         if from_side:  # heights fall outwards
-            direction = np.arctan2(-middle[1], -middle[0]) + rng.normal(0.0, _OUT)
-            lean = steepest * rng.uniform(*_LEAN_OUT)
+            direction = np.arctan2(-middle[1], -middle[0]) + rng.normal(0.0, _LEAN_SCATTER)
+            lean = steepest * rng.uniform(*_SIDE_LEAN)
         plane = (float(lean * np.cos(direction)), float(lean * np.sin(direction)))
         size = (float(half[0]), float(half[1]))
         heights = np.round(smooth_heights(size, blank.limits, rng, plane=plane), 6)
-        low = base.thickness + _ABOVE - float(heights.min())
+        low = base.thickness + _FACE_CLEARANCE - float(heights.min())
         tallest = base.thickness + heaviest / (blank.material.density * 4.0 * float(np.prod(half)))
         if low > tallest:
             continue
-        high = max(min(_HIGHEST * blank.height, blank.height - float(heights.max())), low)
+        high = max(min(_MAX_FACE_SHARE * blank.height, blank.height - float(heights.max())), low)
         high = min(high, tallest)
         origin = np.round([*middle, rng.uniform(low, high)], 1)
-        depth = float(origin[2]) - 0.5 * base.thickness + _ABOVE
+        depth = float(origin[2]) - 0.5 * base.thickness + _FACE_CLEARANCE
         out.append(graph_patch(f"{len(out)}", pose(t=origin), size, heights, depth=depth))
     if not out:
         a, b = (2.0 * v for v in base.half_size)
@@ -126,27 +127,29 @@ def freeform_faces(
 
 
 def least_mass(face: FreeformPatch, blank: Blank) -> float:
-    """What a pillar adds to the plate were it as low as its shape allows, kg."""
-    tall = _ABOVE - float(face.heights.min())  # control heights have mean zero
+    """Mass of a pillar at its lowest possible height, kg."""
+    tall = _FACE_CLEARANCE - float(face.heights.min())  # control heights have mean zero
     return float(blank.material.density * 4.0 * np.prod(face.half_size) * tall)
 
 
-def _around(blank: Blank, balls: Sequence[DatumSphere], holes: Sequence[MountingHole]) -> Array:
-    """Circles that no pillar may reach into: x, y and radius, (N, 3), mm."""
-    posts = [[*b.centre[:2], max(_widest(b) + WALL_GAP, _probe_room(blank))] for b in balls]
-    bores = [[h.x, h.y, h.bore_radius + _TO_HOLE] for h in holes]
+def _barred_circles(
+    blank: Blank, balls: Sequence[DatumSphere], holes: Sequence[MountingHole]
+) -> Array:
+    """Circles barred to pillars: x, y and radius, (N, 3), mm."""
+    posts = [[*b.centre[:2], max(_widest_radius(b) + WALL_GAP, _probe_room(blank))] for b in balls]
+    bores = [[h.x, h.y, h.bore_radius + _HOLE_GAP] for h in holes]
     return np.array(posts + bores, dtype=np.float64).reshape(-1, 3)
 
 
-def _inside(blank: Blank, half: Array, around: Array, rng: np.random.Generator) -> Array | None:
-    """A place for a rectangle within the outline, clear of some circles; None where none is."""
+def _free_place(blank: Blank, half: Array, around: Array, rng: np.random.Generator) -> Array | None:
+    """A random free place for a rectangle within the outline; None if none is found."""
     base, bare = blank.base, half
-    half = half + BLEND + _LEDGE  # the blend of its foot stands on the plate too
+    half = half + BLEND + _LEDGE  # the fillet of its foot needs plate too
     room = np.array(base.half_size) - half
     if room.min() < 0.0:
         return None
     corners = np.array(list(product((-1.0, 1.0), repeat=2))) * half
-    for _ in range(_TRIES):
+    for _ in range(_MAX_DRAWS):
         middle = np.round(rng.uniform(-room, room), 1)
         beyond = np.maximum(np.abs(around[:, :2] - middle) - bare, 0.0)
         if (np.hypot(*beyond.T) < around[:, 2]).any():
@@ -157,9 +160,9 @@ def _inside(blank: Blank, half: Array, around: Array, rng: np.random.Generator) 
 
 
 def ball_on_post(blank: Blank, name: str, centre: Array) -> DatumSphere:
-    """A bought ball on a post of the body that is as stiff as `POST_STIFFNESS`."""
+    """A bought ball on a milled post of at least `POST_STIFFNESS`."""
     fit, foot, material = blank.fittings, blank.base.thickness, blank.material
-    length, modulus = float(centre[2]) - foot, material.modulus or SOFT
+    length, modulus = float(centre[2]) - foot, material.modulus or DEFAULT_MODULUS
     radius = post_foot(length, fit.post_radius, POST_STIFFNESS, modulus, material.poisson)
     return DatumSphere(
         name=name,
@@ -172,10 +175,10 @@ def ball_on_post(blank: Blank, name: str, centre: Array) -> DatumSphere:
 
 
 def balls_on_posts(blank: Blank, count: int, rng: np.random.Generator) -> list[DatumSphere]:
-    """Balls of which some may be chosen, named by their numbers, evenly over base and height."""
+    """Candidate balls, named by their numbers, distributed evenly over base and height."""
     base, ball = blank.base, blank.fittings.sphere_radius
-    low = base.thickness + _LOWEST_BALL + ball
-    high = max(_HIGHEST_BALL * blank.height, low)
+    low = base.thickness + _MIN_BALL_GAP + ball
+    high = max(_MAX_BALL_SHARE * blank.height, low)
     half = np.array(base.half_size) - ball
     across = np.round(rng.uniform(-half, half, (count, 2)), 1)
     heights = np.round(rng.uniform(low, high, count), 1)
@@ -183,25 +186,24 @@ def balls_on_posts(blank: Blank, count: int, rng: np.random.Generator) -> list[D
         ball_on_post(blank, "", np.array([*xy, z])) for xy, z in zip(across, heights, strict=True)
     ]
     inset = -outline_distance(across, base.half_size, base.corner_radius)
-    balls = [b for b, room in zip(balls, inset, strict=True) if room >= _to_rim(b)]
+    balls = [b for b, room in zip(balls, inset, strict=True) if room >= _rim_distance(b)]
     return [ball_on_post(blank, f"{i}", b.centre) for i, b in enumerate(balls)]
 
 
-def _to_rim(ball: DatumSphere) -> float:
-    """From the axis of a post to the outline at least, mm."""
+def _rim_distance(ball: DatumSphere) -> float:
+    """Smallest distance from the axis of a post to the outline, mm."""
     return max(ball.radius, ball.foot_radius + BLEND) + _LEDGE
 
 
-def _widest(ball: DatumSphere) -> float:
+def _widest_radius(ball: DatumSphere) -> float:
     return max(ball.radius, ball.foot_radius)
 
 
 def holes_on(blank: Blank, balls: Sequence[DatumSphere] = ()) -> tuple[MountingHole, ...]:
-    """Three screw holes as far apart as base, table, its slots and some balls allow.
+    """Three screw holes as far apart as base, table, slots and balls allow.
 
-    Two stand on one slot, the third on another; the slots run along x, one through the middle. A
-    standard rests on the pads round its holes, so three of them never rock. Places are in tenths
-    of a millimetre, whatever the slots are.
+    Two are on one slot, the third on another; the slots run along x, one through the middle. The
+    standard rests on the pads round its holes, and three pads never rock.
 
     Raises:
         NotBuildable: Base, table and slots leave no room for them.
@@ -216,18 +218,18 @@ def holes_on(blank: Blank, balls: Sequence[DatumSphere] = ()) -> tuple[MountingH
     good &= np.hypot(*places.T) <= limits.table_radius - TABLE_RIM - fit.hole_radius
     for ball in balls:
         apart = np.hypot(*(places - ball.centre[:2]).T)
-        good &= apart >= _widest(ball) + fit.bore_radius + _TO_HOLE
+        good &= apart >= _widest_radius(ball) + fit.bore_radius + _HOLE_GAP
     mirrored = good.reshape(len(xs), -1)[::-1].reshape(-1)
     pair, third = places[good & mirrored & (places[:, 0] > 0.0)], places[good]
     legs = [np.linalg.norm(pair[:, None] * [s, 1.0] - third, axis=-1) for s in (-1.0, 1.0)]
     least = np.minimum(np.minimum(*legs), 2.0 * pair[:, :1])
-    least[np.abs(pair[:, 1:] - third[:, 1]) < _APART] = 0.0  # in a row they would rock
-    if least.max(initial=0.0) < _APART:
+    least[np.abs(pair[:, 1:] - third[:, 1]) < _MIN_HOLE_DISTANCE] = 0.0  # three in a row would rock
+    if least.max(initial=0.0) < _MIN_HOLE_DISTANCE:
         slots = f"limits.slot_pitch_mm = {pitch:g}" if limits.slot_pitch else "no slots"
         raise NotBuildable(
-            f"no three screw holes {_APART:g} mm apart, two in a row and one beside it, are within "
-            f"base ({2 * base.half_size[0]:g} x {2 * base.half_size[1]:g} mm) and table (diameter "
-            f"{2 * limits.table_radius:g} mm) with {slots}",
+            f"no three screw holes {_MIN_HOLE_DISTANCE:g} mm apart, two in a row and one beside "
+            f"it, are within base ({2 * base.half_size[0]:g} x {2 * base.half_size[1]:g} mm) "
+            f"and table (diameter {2 * limits.table_radius:g} mm) with {slots}",
             binding=["slots"] if limits.slot_pitch else [],
         )
     first, last = np.unravel_index(np.argmax(least + 1e-3 * (legs[0] + legs[1])), least.shape)
@@ -239,28 +241,34 @@ def holes_on(blank: Blank, balls: Sequence[DatumSphere] = ()) -> tuple[MountingH
 
 
 def least_gap(limits: Limits) -> float:
-    """Between two pillars, for the cutter and the probe's ball, mm."""
+    """Smallest gap between two pillars for cutter and probe ball, mm."""
     return max(WALL_GAP, 2.0 * limits.ball_radius + limits.gap)
 
 
 def faces_fit(
     faces: Sequence[FreeformPatch], holes: Sequence[MountingHole], limits: Limits
 ) -> Pairs:
-    """Which pillars can stand beside each other, (F, F); one over a hole fits beside nothing."""
+    """Which pillars fit beside each other, (F, F); one over a hole fits beside none."""
     middle = np.stack([p.T_artefact_patch[:2, 3] for p in faces])
     half = np.array([p.half_size for p in faces])
-    # the sum first: to the last bit the same for both of a pair, which may be just as far apart
+    # the sum first, so that the result is symmetric to the last bit
     beyond = np.abs(middle[:, None] - middle) - (half[:, None] + half)
     out: Pairs = np.linalg.norm(np.maximum(beyond, 0.0), axis=-1) >= least_gap(limits)
     for hole in holes:
-        blocked = _to_pillar(faces, np.array([[hole.x, hole.y]]))[0] < hole.bore_radius + _TO_HOLE
+        blocked = (
+            _distance_to_pillar(faces, np.array([[hole.x, hole.y]]))[0]
+            < hole.bore_radius + _HOLE_GAP
+        )
         out[blocked, :] = out[:, blocked] = False
     return out
 
 
 def balls_fit(balls: Sequence[DatumSphere], blank: Blank) -> Pairs:
-    """Which posts leave room for cutter and probe between them, (B, B)."""
-    across, widest = np.stack([b.centre[:2] for b in balls]), np.array([_widest(b) for b in balls])
+    """Which posts leave room for cutter and probe between each other, (B, B)."""
+    across, widest = (
+        np.stack([b.centre[:2] for b in balls]),
+        np.array([_widest_radius(b) for b in balls]),
+    )
     apart = np.linalg.norm(across[:, None] - across, axis=-1)
     least = np.maximum(widest[:, None] + widest + WALL_GAP, _probe_room(blank) + widest)
     return np.asarray(apart >= least)
@@ -272,18 +280,21 @@ def faces_beside(
     """Which pillars leave room for cutter and probe beside some posts, (F,)."""
     if not balls:
         return np.ones(len(faces), dtype=bool)
-    across, widest = np.stack([b.centre[:2] for b in balls]), np.array([_widest(b) for b in balls])
+    across, widest = (
+        np.stack([b.centre[:2] for b in balls]),
+        np.array([_widest_radius(b) for b in balls]),
+    )
     room = np.maximum(widest + WALL_GAP, _probe_room(blank))
-    return np.asarray((_to_pillar(faces, across) >= room[:, None]).all(axis=0))
+    return np.asarray((_distance_to_pillar(faces, across) >= room[:, None]).all(axis=0))
 
 
 def _probe_room(blank: Blank) -> float:
-    """From the centre of a ball to the next body, for the probe's ball to come between, mm."""
+    """Smallest distance from the centre of a ball to the next body, for the probe ball, mm."""
     limits = blank.limits
     return blank.fittings.sphere_radius + 2.0 * limits.ball_radius + limits.gap
 
 
-def _to_pillar(faces: Sequence[FreeformPatch], places: Array) -> Array:
+def _distance_to_pillar(faces: Sequence[FreeformPatch], places: Array) -> Array:
     """Distance of places (N, 2) from the walls of pillars, (N, F), mm."""
     middle = np.stack([p.T_artefact_patch[:2, 3] for p in faces])
     half = np.array([p.half_size for p in faces])

@@ -1,7 +1,7 @@
 """Designs a standard: patches, their shapes, table poses and touches by information.
 
-In: a `Brief`. Out: a `Placement`: the standard measured against every limit, its touches, the
-criterion they were chosen by, its rivals, and a certificate.
+In: a `Brief`. Out: a `Placement`: the standard checked against every limit, its touches, their
+criterion, its rivals, and a certificate.
 """
 
 from matstd.artefact.place.placement import Placement, design_standard

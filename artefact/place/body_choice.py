@@ -1,8 +1,8 @@
-"""Balls and faces of a standard: which of all candidates stand on the blank together.
+"""Choice of balls and faces of a standard among all candidates.
 
-The balls come first, because they identify; faces are drawn all over the room between them, and of
-those that hide nothing of the balls the most informative are taken. A body that breaks a limit
-is chosen again without the faces that are to blame.
+The balls come first, because they identify. Faces are drawn at random between them, and of those
+that hide fewest touches on the balls the most informative are taken. A body that violates a limit
+is chosen again without the faces that cause the violation.
 """
 
 from collections.abc import Sequence
@@ -18,12 +18,12 @@ from matstd.artefact.feasibility import (
     check_room,
     in_the_way,
     is_from_side,
-    light_enough,
+    lightest_room,
+    mass_per_face,
     mutually_probeable,
     room_among,
-    share_of_mass,
     touches_on,
-    untouched,
+    untouchable_faces,
 )
 from matstd.artefact.layout import (
     Blank,
@@ -44,13 +44,12 @@ Which = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
-class _Beside:
-    """Faces that stand beside some balls, named by their numbers: F.
+class _FacePool:
+    """Candidate faces beside some balls, named by their numbers: F.
 
     Attributes:
-        faces: The faces.
-        fits: Which of them can stand beside each other, (F, F).
-        hides: Share of the touches on the balls that each stands in the way of, (F,).
+        fits: Which of them fit beside each other, (F, F).
+        hides: Share of the touches on the balls that each face obstructs, (F,).
         poses: Table poses of these touches, (K, R), rad.
     """
 
@@ -61,40 +60,46 @@ class _Beside:
 
 
 @dataclass(frozen=True)
-class _Asked:
-    """What is asked of faces beyond room, once a body without it was refused.
+class _Demands:
+    """Requirements on faces that are added after a body was refused for lack of them.
 
     Attributes:
-        light: That they leave the standard within its mass.
-        seen: That the probe can touch them beside each other.
+        light: Faces keep the standard within its mass limit.
+        seen: Faces can be probed beside each other.
     """
 
     light: bool = False
     seen: bool = False
 
     def fewer(self, balls: list[DatumSphere]) -> list[DatumSphere]:
-        """The balls without the least informative: one, or half where each look takes seconds."""
+        """The balls without the last one, or half of them where each trial takes seconds."""
         return balls[: max(FEWEST_BALLS, len(balls) // 2)] if self.seen else balls[:-1]
 
 
-_REBUILDS = 8  # choices of faces tried before giving up
-_STARTS = 80  # of the search for faces side by side
+_REBUILDS = 8  # choices of faces before giving up
+_STARTS = 80  # starts of the search for faces side by side
 
-_HIDDEN = (0.0, 0.005, 0.01, 0.02, 0.05, 0.1, 1.0)  # of the touches, that a face may hide
-_POSES = 20  # at which touches on faces are looked at
+_HIDDEN_SHARES = (
+    0.0,
+    0.005,
+    0.01,
+    0.02,
+    0.05,
+    0.1,
+    1.0,
+)  # of the touches on balls that a face may hide, tried in this order
+_POSES = 20  # table poses for touches on faces
 
 
 @dataclass(frozen=True, eq=False)
 class BodyChoice:
-    """What bodies are chosen from.
+    """Candidates and criterion of the choice of bodies.
 
     Attributes:
         criterion: What faces are chosen for, without potential terms.
-        blank: On which they stand.
         tried: Number of random faces beside each choice of balls.
-        rng: Draws them.
-        room: Some faces and balls that stand side by side.
-        from_side: Whether the probe comes from the side at every table pose.
+        room: Faces and balls that are known to fit side by side.
+        from_side: Whether the probe approaches from the side at every table pose.
     """
 
     criterion: Criterion
@@ -113,29 +118,22 @@ class BodyChoice:
         count: int,
         proving: int,
     ) -> Standard:
-        """The best body of some balls with faces between them that meets every limit.
-
-        Of the faces those are taken first that stand in the way of fewest touches on the balls.
+        """Choose faces between balls such that the body meets every limit.
 
         Args:
-            name: Type of the standard.
-            serial: Of the piece.
-            balls: The most informative first; as many of them as leave room.
-            touches: On the balls, that shall stay possible.
-            count: Of the faces.
-            proving: Touches on all faces together.
+            balls: The most informative first; as many as leave room are used.
 
         Raises:
-            NotBuildable: No such body; what binds.
+            NotBuildable: No such body; names the binding limit.
         """
         wanted = name, serial, touches, count, max(4, proving // count)
         try:
-            return self._built(list(balls), *wanted)
+            return self._build(list(balls), *wanted)
         except NotBuildable:
-            # where the most informative balls leave no room, those that are known to leave some
-            return self._built(list(self.room.balls), *wanted)
+            # the most informative balls leave no room: use those that are known to fit
+            return self._build(list(self.room.balls), *wanted)
 
-    def _built(
+    def _build(
         self,
         balls: list[DatumSphere],
         name: str,
@@ -144,16 +142,18 @@ class BodyChoice:
         count: int,
         take: int,
     ) -> Standard:
-        """A body of some balls with faces between them, chosen again until no limit is broken."""
-        limits, asked = self.blank.limits, _Asked()
-        standing, holes = self._screwed(balls)
-        there, standing = self._beside(standing, holes, touches, count, asked)
+        """A body with faces between the balls, chosen again until no limit is violated."""
+        limits, asked = self.blank.limits, _Demands()
+        standing, holes = self._with_holes(balls)
+        there, standing = self._faces_between(standing, holes, touches, count, asked)
         refused, binding = "", list[str]()
         for _ in range(_REBUILDS):
-            chosen = self._chosen(there, count, take)
+            chosen = self._choose_faces(there, count, take)
             while len(chosen) < count and len(standing) > FEWEST_BALLS:
-                there, standing = self._beside(asked.fewer(standing), holes, touches, count, asked)
-                chosen = self._chosen(there, count, take)
+                there, standing = self._faces_between(
+                    asked.fewer(standing), holes, touches, count, asked
+                )
+                chosen = self._choose_faces(there, count, take)
             if len(chosen) < count:
                 raise NotBuildable(
                     f"only {len(chosen)} of {count} patches fit on the blank beside "
@@ -162,21 +162,23 @@ class BodyChoice:
                     fitting=len(chosen),
                 )
             faces = sorted((there.faces[k] for k in chosen), key=_azimuth_of_face)
-            made = self._put_together(name, serial, faces, standing, holes)
+            made = self._assembled(name, serial, faces, standing, holes)
             broken = [c for c in constraints(made, limits) if c.slack < 0.0]
             blamed = [c.features for c in broken]
-            blamed = blamed or [(f,) for f in untouched(self.criterion.reach, made, there.poses)]
+            blamed = blamed or [
+                (f,) for f in untouchable_faces(self.criterion.reach, made, there.poses)
+            ]
             if not blamed:
                 return made
             what = broken[0] if broken else f"no touch can be made on {blamed[0][0]}"
             refused, binding = f"; {what}", [c.name for c in broken]
             if "mass" in binding and not asked.light:
                 asked = replace(asked, light=True)
-                there, standing = self._beside(standing, holes, touches, count, asked)
+                there, standing = self._faces_between(standing, holes, touches, count, asked)
                 continue
             if not broken and not asked.seen:
                 asked = replace(asked, seen=True)
-                there.fits[:] &= self._seen(there.faces, standing, there.poses)
+                there.fits[:] &= self._probeable(there.faces, standing, there.poses)
             in_order = [int(face.name) for face in faces]
             for features in blamed:
                 _blame(there.fits, features, [p.name for p in made.patches], in_order)
@@ -184,13 +186,15 @@ class BodyChoice:
             f"no choice of {count} patches meets every limit{refused}", binding=binding
         )
 
-    def _seen(self, faces: list[FreeformPatch], balls: list[DatumSphere], poses: Array) -> Which:
+    def _probeable(
+        self, faces: list[FreeformPatch], balls: list[DatumSphere], poses: Array
+    ) -> Which:
         return mutually_probeable(self.criterion.reach, self.blank, faces, balls, poses).beside
 
-    def _screwed(
+    def _with_holes(
         self, balls: list[DatumSphere]
     ) -> tuple[list[DatumSphere], tuple[MountingHole, ...]]:
-        """Balls with screw holes beside them; the last is left out until there is room."""
+        """Balls and screw holes; balls are dropped from the end until the holes fit."""
         while True:
             try:
                 return balls, holes_on(self.blank, balls)
@@ -199,18 +203,18 @@ class BodyChoice:
                     raise
                 balls = balls[:-1]
 
-    def _beside(
+    def _faces_between(
         self,
         balls: list[DatumSphere],
         holes: tuple[MountingHole, ...],
         touches: Requests,
         count: int,
-        asked: "_Asked",
-    ) -> tuple["_Beside", list[DatumSphere]]:
-        """Faces between some balls, and the balls: the last goes until so many faces fit."""
+        asked: "_Demands",
+    ) -> tuple["_FacePool", list[DatumSphere]]:
+        """Candidate faces, and the balls: dropped from the end until enough faces fit."""
         poses = spread_poses(np.unique(touches.rotary, axis=0), _POSES)
         while True:
-            heaviest = share_of_mass(self.blank, balls, holes, count) if asked.light else np.inf
+            heaviest = mass_per_face(self.blank, balls, holes, count) if asked.light else np.inf
             try:
                 faces = freeform_faces(
                     self.blank, count, self.tried, self.rng, balls, holes, self.from_side, heaviest
@@ -222,42 +226,37 @@ class BodyChoice:
                 continue
             fits = faces_fit(faces, holes, self.blank.limits)
             if asked.seen:
-                fits &= self._seen(faces, balls, poses)
+                fits &= self._probeable(faces, balls, poses)
             if (
                 len(balls) <= FEWEST_BALLS
                 or len(most_side_by_side(fits, count, starts=_STARTS)) == count
             ):
                 reach = self.criterion.reach
                 hides = in_the_way(reach, self.blank, faces, touches).mean(axis=1)
-                return _Beside(faces, fits, hides, poses), balls
+                return _FacePool(faces, fits, hides, poses), balls
             balls = asked.fewer(balls)
 
-    def _chosen(self, there: "_Beside", count: int, take: int) -> list[int]:
-        """Of the faces that hide fewest touches those worth most; fewer where no other fits."""
+    def _choose_faces(self, there: "_FacePool", count: int, take: int) -> list[int]:
+        """The most informative of the faces that hide fewest touches; fewer where no more fit."""
         longest = list[int]()
-        for most in _HIDDEN:
+        for most in _HIDDEN_SHARES:
             free = np.flatnonzero(there.hides <= most)
             fits = there.fits[np.ix_(free, free)]
             found = most_side_by_side(fits, count, starts=_STARTS)
             if len(found) == count:
                 some = [there.faces[k] for k in free]
-                found = self._worth_most(some, fits, there.poses, count, take)
+                found = self._most_informative(some, fits, there.poses, count, take)
             if len(found) > len(longest):
                 longest = [int(free[i]) for i in found]
             if len(longest) == count:
                 break
         return longest
 
-    def rearranged(self, made: Standard, places: BallPlaces, touches: int) -> Standard | None:
-        """The same faces with the most informative balls beside them; None where a limit is broken.
+    def with_moved_balls(self, made: Standard, places: BallPlaces, touches: int) -> Standard | None:
+        """Choose the balls anew beside the same faces; None where a limit is violated.
 
-        The faces were put where they hide few touches on the balls; now the balls move to where
-        fewest of theirs are hidden.
-
-        Args:
-            made: Standard with faces and balls.
-            places: That balls may have.
-            touches: That will be made on all balls together.
+        The faces were placed to hide few touches on the balls; now the balls move to where fewest
+        of theirs are hidden.
         """
         faces = list(made.patches)
         free = [bool(faces_beside(faces, [ball], self.blank).all()) for ball in places.balls]
@@ -270,15 +269,15 @@ class BodyChoice:
             holes = holes_on(self.blank, balls)
         except NotBuildable:
             return None
-        again = self._put_together(made.name, made.serial, faces, balls, holes)
+        again = self._assembled(made.name, made.serial, faces, balls, holes)
         is_whole = len(balls) == len(made.spheres)
         broken = any(c.slack < 0.0 for c in constraints(again, self.blank.limits))
         return again if is_whole and not broken else None
 
-    def _worth_most(
+    def _most_informative(
         self, faces: list[FreeformPatch], fits: Which, poses: Array, count: int, take: int
     ) -> list[int]:
-        """The faces worth most; if their neighbours run out, begun from some that all fit."""
+        """The most informative faces; if too few fit beside them, starting from a set that fits."""
         wanted = touches_on(faces, poses)
         wanted = wanted[self.criterion.reach.is_reachable(wanted)]
         if not len(wanted):
@@ -293,7 +292,7 @@ class BodyChoice:
                 chosen = best_groups(objective, W, group, count, take, None, fits, begin)
         return chosen
 
-    def _put_together(
+    def _assembled(
         self,
         name: str,
         serial: str,
@@ -301,7 +300,7 @@ class BodyChoice:
         balls: list[DatumSphere],
         holes: tuple[MountingHole, ...],
     ) -> Standard:
-        """A standard of some faces and balls, each kind named around its middle."""
+        """A standard of faces and balls, numbered by their azimuth."""
         balls = sorted(balls, key=lambda b: _azimuth(b.centre))
         return Standard(
             name=name,
@@ -319,14 +318,12 @@ class BodyChoice:
 def body_choice(
     places: BallPlaces, poses: Array, faces: int, tried: int, rng: np.random.Generator
 ) -> BodyChoice:
-    """Candidates all over a blank.
+    """Candidates on a whole blank.
 
     Args:
-        places: That balls may have, on the same blank and for the same criterion.
-        poses: Table poses to choose from, (K, R), rad.
+        places: Candidate balls on the same blank and for the same criterion.
+        poses: Candidate table poses, (K, R), rad.
         faces: How many will be chosen: the more, the smaller they are.
-        tried: Number of random faces.
-        rng: Draws them.
 
     Raises:
         NotBuildable: No room for so many faces beside the fewest balls (fact `fitting`).
@@ -337,7 +334,7 @@ def body_choice(
     from_side = is_from_side(criterion.reach, few)
     all_faces = freeform_faces(blank, faces, tried, rng, from_side=from_side)
     room = room_among(all_faces, places.balls, faces, blank)
-    room = light_enough(room, all_faces, places.balls)
+    room = lightest_room(room, all_faces, places.balls)
     check_room(room)
     if not criterion.reach.is_reachable(touches_on(all_faces, few)).any():
         raise NotReachable(
@@ -358,7 +355,7 @@ def _azimuth(place: Array) -> float:
 
 
 def _blame(fits: Which, features: tuple[str, ...], names: list[str], chosen: list[int]) -> None:
-    """Keep the faces that violate a limit from being chosen so again."""
+    """Exclude the faces, or the pair of faces, that violate a limit."""
     guilty = [chosen[names.index(name)] for name in features if name in names]
     if len(guilty) == 2 and guilty[0] != guilty[1]:
         fits[guilty[0], guilty[1]] = fits[guilty[1], guilty[0]] = False

@@ -1,24 +1,23 @@
-"""Places that cover an area evenly: no part of it is far from all of them."""
+"""Places that cover an area evenly: greedy choice, then exchange of single places."""
 
 import numpy as np
 
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
-_SWEEPS = 4  # looks at every place for a better one; two or three move any
-_WORTH = 1e-9  # relative gain below which a place is not exchanged
+_SWEEPS = 4  # sweeps over all places; only two or three change any
+_MIN_GAIN = 1e-9  # relative gain below which a place is not exchanged
 
 
 def covering(area: Array, places: Array, count: int) -> IntArray:
-    """Those places whose squared distance from all points of an area is least on average.
+    """Places with the least mean squared distance from all points of an area.
 
-    Chosen one after the other, then exchanged one by one until none that is tried is better: a
-    local optimum, as evenly spread as the middles of cells of equal size.
+    A local optimum: chosen one after the other, then exchanged one by one.
 
     Args:
-        area: Points all over it, (S, D).
-        places: To choose from, (P, D).
-        count: How many, P at most.
+        area: Points of the area, (S, D).
+        places: Candidates, (P, D).
+        count: At most P.
 
     Returns:
         Their rows in `places`, (count,).
@@ -26,20 +25,20 @@ def covering(area: Array, places: Array, count: int) -> IntArray:
     apart = np.sum((area[:, None] - places) ** 2, axis=-1)
     chosen = np.zeros(0, dtype=np.int64)
     for _ in range(count):
-        chosen = np.append(chosen, _best_beside(apart, chosen)[0])
+        chosen = np.append(chosen, _best_addition(apart, chosen)[0])
     for _ in range(_SWEEPS):
         before = chosen.copy()
         for i in range(count):
-            best, cost = _best_beside(apart, np.delete(chosen, i))
-            if cost < apart[:, chosen].min(axis=1).sum() * (1.0 - _WORTH):
+            best, cost = _best_addition(apart, np.delete(chosen, i))
+            if cost < apart[:, chosen].min(axis=1).sum() * (1.0 - _MIN_GAIN):
                 chosen[i] = best
         if (chosen == before).all():
             break
     return chosen
 
 
-def _best_beside(apart: Array, chosen: IntArray) -> tuple[int, float]:
-    """The place that leaves least beside some others, and what it leaves."""
+def _best_addition(apart: Array, chosen: IntArray) -> tuple[int, float]:
+    """The place that reduces the cost most beside the chosen ones, and that cost."""
     near = apart[:, chosen].min(axis=1, initial=float(apart.max()))
     cost = np.minimum(near[:, None], apart).sum(axis=0)
     cost[chosen] = np.inf
@@ -48,14 +47,13 @@ def _best_beside(apart: Array, chosen: IntArray) -> tuple[int, float]:
 
 
 def even_shares(weight: Array, room: IntArray, count: int) -> IntArray:
-    """How many of `count` go to each of some areas, in proportion to weights as far as room is.
+    """Share `count` places among areas in proportion to weights, within the room of each.
 
-    One after the other, always to the area that has least for its weight (Sainte-Laguë).
+    The method of Sainte-Laguë: the next place goes to the area with least for its weight.
 
     Args:
         weight: Of each area, (F,).
         room: Most that each takes, (F,), no fewer than `count` together.
-        count: How many.
     """
     given = np.zeros(len(weight), dtype=np.int64)
     for _ in range(count):

@@ -1,8 +1,7 @@
 """Balls with faces between them, and the touches on the balls by which they identify.
 
-The balls are those of the best rival; faces are drawn beside them, again where they cost more than
-a little of the balls' information, and at last balls and table poses are chosen anew beside the
-faces that were found.
+The balls are those of the best rival. Faces are drawn beside them, and drawn again while they cost
+more than 1 % of the criterion. Finally balls and table poses are chosen anew beside the faces.
 """
 
 from contextlib import suppress
@@ -23,21 +22,24 @@ from matstd.artefact.worth import (
     TouchOptions,
     chosen_poses,
     chosen_touches_on,
-    mended_touches,
+    repaired_touches,
     touches_to_choose_from,
 )
 from matstd.information.selection import Certificate
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
 
-_BASES = 3  # sets of balls, at most
-_AGAIN, _LITTLE = 5, 1.01  # further draws of faces while they cost more than half a percent in µm
-_NEXT_TO_NOTHING = 1.005  # times what the balls alone leave
+_MAX_BASES = 3  # sets of balls, at most
+_MAX_REDRAWS, _GOOD_ENOUGH = (
+    5,
+    1.01,
+)  # further draws of faces, while they cost more (half a percent in µm)
+_NEGLIGIBLE_COST = 1.005  # of the value of the balls alone, up to which nothing more is tried
 
 
 @dataclass(frozen=True, eq=False)
 class Base:
-    """Balls to build on, touches on them, and the value of these where no face is in the way."""
+    """Balls to build on, touches on them, and the value of these without any face."""
 
     balls: tuple[DatumSphere, ...]
     touches: Requests
@@ -46,7 +48,7 @@ class Base:
 
 @dataclass(frozen=True, eq=False)
 class _Draw:
-    """A standard, the touches that can be made on its balls, a quick choice and its value."""
+    """A standard, the possible touches on its balls, a quick choice and its value."""
 
     standard: Standard
     poses: Array
@@ -57,7 +59,7 @@ class _Draw:
 
 @dataclass(frozen=True, eq=False)
 class Identifying:
-    """A standard with the touches that identify by it: those that can be made, the choice."""
+    """A standard with the possible touches on its balls, and the chosen ones."""
 
     standard: Standard
     poses: Array
@@ -73,7 +75,7 @@ def ball_bases(
     all_poses: Array,
     options: PlacementOptions,
 ) -> list[Base]:
-    """Those of the rivals, the best first, or as many balls as find room."""
+    """Balls of the rivals, the best first, or as many balls as fit."""
     of_balls = [
         r
         for r in rivals
@@ -94,16 +96,15 @@ def ball_bases(
     return [Base(body.spheres, tried, 0.0)]
 
 
-def identifying(
+def identifying_choice(
     criterion: Criterion, bodies: BodyChoice, bases: list[Base], options: PlacementOptions
 ) -> Identifying:
-    """Balls with faces between them, of some draws those that cost least, and their touches.
+    """Balls with the faces that cost least of some draws, and their touches.
 
-    What faces cost is first estimated by what they leave of the touches that were chosen on the
-    balls alone, filled up and exchanged: within half a percent of the whole search, in a tenth of
-    its time.
+    The cost of faces is first estimated from the touches on the balls alone that remain possible,
+    completed and exchanged: within half a percent of the whole search, in a tenth of its time.
     """
-    found = _drawn(criterion, bodies, bases, options)
+    found = _best_draw(criterion, bodies, bases, options)
     here = criterion.on(replace(found.standard, patches=()))
     chosen, nearness = chosen_touches_on(here, found.tried, options.choice, begin=found.chosen)
     return Identifying(
@@ -115,15 +116,15 @@ def identifying(
     )
 
 
-def _drawn(
+def _best_draw(
     criterion: Criterion, bodies: BodyChoice, bases: list[Base], options: PlacementOptions
 ) -> _Draw:
-    """The best of a few draws; one where it costs little or none compares."""
+    """The best of a few draws; a single one where it costs little or nothing compares."""
     best, alone = _draw(criterion, bodies, bases, options), bases[0].value
-    for _ in range(_AGAIN if alone else 0):
-        if best.value <= _LITTLE * alone:
+    for _ in range(_MAX_REDRAWS if alone else 0):
+        if best.value <= _GOOD_ENOUGH * alone:
             break
-        with suppress(NotBuildable, NotReachable):  # what the first draw found stays
+        with suppress(NotBuildable, NotReachable):  # the first draw stays
             again = _draw(criterion, bodies, bases, options)
             best = min(best, again, key=lambda draw: draw.value)
     return best
@@ -132,14 +133,13 @@ def _drawn(
 def _draw(
     criterion: Criterion, bodies: BodyChoice, bases: list[Base], options: PlacementOptions
 ) -> _Draw:
-    """The best balls that leave room for the faces, and the touches that are left on them.
+    """The best balls that leave room for the faces, and the touches that remain on them.
 
-    Where every ball of a base stays nothing better is looked for; where some had to go, the next
-    base is tried as well.
+    The next base is tried only where some balls had to be dropped.
     """
     best: _Draw | None = None
     choice, refused = options.choice, NotReachable("no ball")
-    for base in bases[:_BASES]:
+    for base in bases[:_MAX_BASES]:
         poses = np.unique(base.touches.rotary, axis=0)
         standard = bodies.standard(
             options.name, options.serial, base.balls, base.touches, options.patches, choice.proof
@@ -147,7 +147,7 @@ def _draw(
         here, reach = criterion.on(replace(standard, patches=())), criterion.reach
         tried = touches_to_choose_from(reach, standard, standard.spheres, poses, choice.touches)
         try:
-            chosen, value = mended_touches(here, tried, base.touches, choice)
+            chosen, value = repaired_touches(here, tried, base.touches, choice)
         except NotReachable as error:
             refused = error
             continue
@@ -160,7 +160,7 @@ def _draw(
     return best
 
 
-def rearranged(
+def with_moved_balls(
     criterion: Criterion,
     bodies: BodyChoice,
     places: BallPlaces,
@@ -171,11 +171,11 @@ def rearranged(
 ) -> Identifying:
     """The same faces with balls and table poses chosen anew beside them, if that is better.
 
-    Nothing is tried where the faces cost next to nothing of what the balls alone are worth.
+    Nothing is tried where the faces cost a negligible part of the value of the balls alone.
     """
-    if found.nearness.value <= _NEXT_TO_NOTHING * alone:
+    if found.nearness.value <= _NEGLIGIBLE_COST * alone:
         return found
-    standard = bodies.rearranged(found.standard, places, choice.touches)
+    standard = bodies.with_moved_balls(found.standard, places, choice.touches)
     if standard is None:
         return found
     bare = replace(standard, patches=())
@@ -198,7 +198,7 @@ def rearranged(
 def with_proof(
     choices: list[Identifying], reach: ProbeReach, count: int
 ) -> tuple[Identifying, Requests]:
-    """The first choice on whose faces touches enough can be made, or the last; those touches."""
+    """The first choice with enough possible touches on its faces, or the last; those touches."""
     for found in choices:
         on_faces = touches_on_faces(reach, found.standard, found.poses, count)
         if len(on_faces) >= count:

@@ -1,15 +1,14 @@
 """Chooses balls, freeform faces, table poses and touches by their information.
 
-Balls on posts identify: nothing determines a machine better than a ball whose centre is known
-to a few tenths of a micrometre, so all identifying touches are made on them. Freeform faces prove:
-they have slopes, curvatures and table poses of real work, they are touched beside the balls and
-held back from the identification, and a model that is wrong shows on them
-(`matstd.artefact.compare`).
+Balls on posts identify: a ball whose centre is known to a few tenths of a micrometre determines a
+machine better than any other feature, so all identifying touches are on balls. Freeform faces
+prove: they have the slopes, curvatures and table poses of real work, their touches are held out
+from the identification, and a wrong model shows on them (`matstd.artefact.compare`).
 
-Candidate faces and balls stand all over the blank; every touch that could be made on them at some
+Candidate faces and balls are spread over the blank; every touch that is possible on them at some
 table poses is a row ``n^T J`` times the shape functions of the expected errors. Balls, then faces
-between them, then poses, then single touches are chosen so that the tool point can be predicted
-best over the user's poses, and the finished body is measured against every limit.
+between them, then poses, then single touches are chosen such that the tool point is predicted best
+over the user's poses, and the finished body is checked against every limit.
 """
 
 from dataclasses import dataclass, replace
@@ -22,7 +21,7 @@ from matstd.artefact.compare import (
     Power,
     Rival,
     compare,
-    evaluated,
+    evaluate_rival,
     prior_rms,
     proof_power,
     random_lots,
@@ -33,8 +32,8 @@ from matstd.artefact.place.body_choice import body_choice
 from matstd.artefact.place.identifying import (
     Identifying,
     ball_bases,
-    identifying,
-    rearranged,
+    identifying_choice,
+    with_moved_balls,
     with_proof,
 )
 from matstd.artefact.place.proving import informative_touches, proving_touches
@@ -54,10 +53,10 @@ from matstd.twin.compute import Progress, silent
 from matstd.twin.frames import Array
 
 _CRITERION, _PLACES, _RIVALS, _CHOSEN = 1, 7, 72, 99
-"""Per cent of the time until criterion, places, rivals and the standard itself are there: on five
-axes 1, 6, 73 and 99.7 %, on three 1, 13, 71 and 99 %."""
+"""Per cent of the time until criterion, places, rivals and standard are complete: on five axes 1,
+6, 73 and 99.7 %, on three 1, 13, 71 and 99 %."""
 
-_FREE = 480  # free touches that judge what is visible, at least
+_MIN_FREE_TOUCHES = 480  # smallest number of free touches that decide which effects are visible
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,22 +64,22 @@ class Placement:
     """A standard and the touches it was designed for.
 
     Attributes:
-        standard: Measured against every limit; every patch names the errors it is for.
+        standard: Checked against every limit; every patch names the errors that it reveals.
         requests: The touches that identify, all on balls.
         proof: The touches that prove, all on freeform faces, at the same table poses.
-        criterion: What they were chosen by, on no body.
+        criterion: That chose them, on no body.
         prior_rms: Expected deviation of the tool point before any touch, rms, mm: over the probed
             volume, over the user's workspace.
         rivals: This standard first, then other artefacts at as many identifying touches.
-        certificate: How near the identifying touches are to the best choice among all that could be
-            made on the standard at its table poses and that crowd no pose more.
-        power: How surely the proving touches find a model wrong over the task: along the normals
-            of surfaces as steep as the faces, anywhere in the probed volume.
-        power_in_volume: The same of a model that is wrong there in whatever direction.
-        power_of_balls: That of as many further touches on the balls, which are no proof: what is
-            wrong with a ball went into the model.
-        power_exact: As `power`, were the places of the faces known exactly.
-        unreachable: Artefacts that are not compared: this machine can make no touch on them.
+        certificate: How near the identifying touches are to the best choice among all possible ones
+            at these table poses and quotas.
+        power: Of the proving touches to detect a wrong model along normals with the slopes of the
+            faces, anywhere in the probed volume.
+        power_in_volume: The same for errors in any direction.
+        power_of_balls: Of as many further touches on the balls, which are no proof: errors of a
+            ball went into the model.
+        power_exact: As `power`, with exactly known positions of the faces.
+        unreachable: Artefacts that are not compared: too few touches are possible on them.
     """
 
     standard: Standard
@@ -117,10 +116,9 @@ def design_standard(
 
     Args:
         brief: Machine, probe, set-up, blank, expected errors, and what is wanted.
-        rng: Draws poses, candidates and restarts.
         progress: Called with stage, done and total.
-        poses: Table poses to choose from, (K, R), rad, as `feasibility` finds them; None for a grid
-            over the workspace.
+        poses: Candidate table poses, (K, R), rad, from `feasibility`; None for a grid over the
+            workspace.
 
     Raises:
         NotBuildable: The blank is larger than the table, or no choice of faces and balls meets
@@ -147,20 +145,22 @@ def design_standard(
     places = ball_places(criterion.plain, blank, all_poses, rng)
     bodies = body_choice(places, all_poses, options.patches, options.sites, rng)
     progress("placement", _PLACES, 100)
-    library = _effects(criterion, max(choice.touches, _FREE), rng)
+    library = _visible_effects(criterion, max(choice.touches, _MIN_FREE_TOUCHES), rng)
     rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)
     progress("placement", _RIVALS, 100)
     bases = ball_bases(criterion.plain, rivals, places, all_poses, options)
-    first = identifying(criterion, bodies, bases, options)
-    found = rearranged(criterion, bodies, places, first, bases[0].value, all_poses, choice)
+    first = identifying_choice(criterion, bodies, bases, options)
+    found = with_moved_balls(criterion, bodies, places, first, bases[0].value, all_poses, choice)
     found, on_faces = with_proof([found, first], reach, choice.proof)
     on_body, here = criterion.on(found.standard), criterion.on(replace(found.standard, patches=()))
-    proof, powers = _proving(on_body, found, on_faces, choice.proof, library, rng)
+    proof, powers = _proof_and_powers(on_body, found, on_faces, choice.proof, library, rng)
     requests, tried = found.tried[found.chosen], found.tried
     standard = with_error_shares(criterion, found.standard, proof)
     progress("placement", _CHOSEN, 100)
     lots = random_lots(tried, len(requests), rng)
-    own = evaluated(f"standard {options.name}", here, requests, lots, library, len(tried), standard)
+    own = evaluate_rival(
+        f"standard {options.name}", here, requests, lots, library, len(tried), standard
+    )
     progress("placement", 100, 100)
     return Placement(
         standard=standard,
@@ -178,7 +178,7 @@ def design_standard(
     )
 
 
-def _proving(
+def _proof_and_powers(
     criterion: Criterion,
     found: Identifying,
     on_faces: Requests,
@@ -188,12 +188,12 @@ def _proving(
 ) -> tuple[Requests, tuple[Power, Power, Power, Power]]:
     """Touches that prove, and their powers.
 
-    Over the task, in the volume, that of the balls, and over the task were the faces known exactly.
+    Powers over the task, in the volume, of the balls, and over the task with exactly known faces.
     """
     standard, requests = found.standard, found.tried[found.chosen]
     proof = proving_touches(criterion, standard, on_faces, requests, count)
     others = found.tried[~found.chosen]
-    others = others if len(others) >= count else found.tried  # the same ones once more
+    others = others if len(others) >= count else found.tried  # too few others: repeat the same ones
     more = informative_touches(criterion, others, requests, min(count, len(others)))
     effects, normals = library.effects, task_normals(criterion, proof, rng)
     known = replace(criterion.calibration, patch=0.0, patch_tilt=0.0)
@@ -206,7 +206,7 @@ def _proving(
     )
 
 
-def _effects(criterion: Criterion, count: int, rng: np.random.Generator) -> Visibility:
-    """Effects of the library that touches taken at random could show."""
+def _visible_effects(criterion: Criterion, count: int, rng: np.random.Generator) -> Visibility:
+    """Effects of the library that random touches could show."""
     free = random_touches(criterion.reach, criterion.volume, criterion.rotary, count, rng)
     return visibility(criterion, free)

@@ -1,9 +1,8 @@
-"""Touches that prove a model: on freeform faces, which had no part in identifying it.
+"""Touches that prove a model, on freeform faces that did not identify it.
 
-A proof measures surfaces, not single points: every part of every face has a touch near it, as many
-on a square centimetre of one face as of another, so that what a model leaves is seen as a pattern.
-Where the touches lie is therefore chosen by how evenly they cover the faces; only at which table
-pose each is made is chosen by its information.
+A proof measures surfaces, not single points: touches cover all faces with equal density, so that
+residuals appear as a pattern. Their places are therefore chosen by even coverage; only the table
+pose of each touch is chosen by its information.
 """
 
 import numpy as np
@@ -17,14 +16,14 @@ from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
-_PLACES = 1.8  # on a face for each touch that is wanted on it
+_PLACES_PER_TOUCH = 1.8  # candidate places per wanted touch
 _EDGE = 3.0  # mm a touch stays away from the trimmed edge, at least
-_CROWDED = 1.25  # even shares of the touches that one table pose may have, if all can be had
+_POSE_CROWDING = 1.25  # touches of one table pose, relative to equal shares
 
 
 def touches_on_faces(reach: ProbeReach, standard: Standard, poses: Array, count: int) -> Requests:
-    """Touches that can be made, to choose `count` from: all over the faces, at every pose."""
-    pitch = int(np.ceil(np.sqrt(_PLACES * count / len(standard.patches))))
+    """Possible touches all over the faces at every pose, from which `count` are chosen."""
+    pitch = int(np.ceil(np.sqrt(_PLACES_PER_TOUCH * count / len(standard.patches))))
     grids = [each_at(face, _middles_of_cells(face, pitch), poses) for face in standard.patches]
     wanted = joined(grids)
     wanted = wanted[reach.is_reachable(wanted)]
@@ -40,13 +39,6 @@ def proving_touches(
 ) -> Requests:
     """Touches that cover the faces evenly, at the most informative table poses.
 
-    Args:
-        criterion: On the standard, faces and balls.
-        standard: With the faces.
-        tried: Touches to choose from, none of which identifies.
-        identifying: Touches that do.
-        count: How many prove.
-
     Raises:
         NotReachable: Too few can be made.
     """
@@ -54,8 +46,8 @@ def proving_touches(
     place = np.unique(tried.point, axis=0, return_inverse=True)[1].reshape(-1)
     kept = np.isin(place, _even_places(standard, tried, place, count))
     tried, place = tried[kept], np.unique(place[kept], return_inverse=True)[1]
-    selection, given = _beside(criterion, tried, identifying)
-    _at_poses(selection, given, place, tried.pose, count)
+    selection, given = _selection_after(criterion, tried, identifying)
+    _choose_poses(selection, given, place, tried.pose, count)
     return tried[selection.chosen[given:]]
 
 
@@ -64,23 +56,19 @@ def informative_touches(
 ) -> Requests:
     """Most informative touches beside the ones that identify.
 
-    Args:
-        criterion: On the standard, faces and balls.
-        tried: Touches to choose from.
-        identifying: Touches made anyway.
-        count: How many are chosen.
-
     Raises:
         NotReachable: Fewer can be made.
     """
     _check_enough(tried, count)
-    selection, given = _beside(criterion, tried, identifying)
+    selection, given = _selection_after(criterion, tried, identifying)
     fill(selection, given + count)
     return tried[selection.chosen[given:]]
 
 
-def _beside(criterion: Criterion, tried: Requests, identifying: Requests) -> tuple[Selection, int]:
-    """Touches to choose from behind those that are in; and the number of these."""
+def _selection_after(
+    criterion: Criterion, tried: Requests, identifying: Requests
+) -> tuple[Selection, int]:
+    """A selection that begins with the identifying touches, and the number of these."""
     given = len(identifying)
     start = np.arange(given + len(tried)) < given
     return Selection(
@@ -88,24 +76,22 @@ def _beside(criterion: Criterion, tried: Requests, identifying: Requests) -> tup
     ), given
 
 
-def _at_poses(
+def _choose_poses(
     selection: Selection, given: int, place: IntArray, pose: IntArray, count: int
 ) -> None:
-    """Choose touches at every place, the most informative at poses that have room.
+    """Choose touches at every place, the most informative at poses with room.
 
-    Places with the fewest such poses come first, so that something is left for them; where nothing
-    is, the least crowded pose takes one more.
+    Places with the fewest such poses come first, so that they still find one; if there is none,
+    the least crowded pose takes one more.
 
     Args:
-        selection: Is filled.
-        given: Number of its first rows, which are in.
+        given: Number of its first rows, which are already chosen.
         place: Of every other row, (N,).
         pose: Of every other row, (N,).
-        count: How many are chosen.
     """
     there = np.bincount(place)
     wanted, used = even_shares(np.ones(len(there)), there, count), np.zeros(pose.max() + 1, int)
-    most = np.ceil(_CROWDED * count / len(used))
+    most = np.ceil(_POSE_CROWDING * count / len(used))
     for _ in range(count):
         free = ~selection.chosen[given:] & (wanted[place] > 0)
         room = free & (used[pose] < most)
@@ -120,7 +106,7 @@ def _at_poses(
 
 
 def _even_places(standard: Standard, tried: Requests, place: IntArray, count: int) -> IntArray:
-    """Places of touches that cover the parts of the faces that can be touched."""
+    """Places that evenly cover the touchable parts of the faces."""
     first = np.unique(place, return_index=True)[1]
     on = [first[tried.feature[first] == face.name] for face in standard.patches]
     room = np.array([len(rows) for rows in on])
@@ -134,7 +120,7 @@ def _even_places(standard: Standard, tried: Requests, place: IntArray, count: in
 
 
 def _middles_of_cells(face: FreeformPatch, pitch: int) -> Array:
-    """Parameters of the middles of as many equal cells each way, (pitch^2, 2)."""
+    """Parameters of the middles of pitch x pitch equal cells, (pitch^2, 2)."""
     axes = [
         np.linspace(-1.0, 1.0, pitch) * min(half * (1.0 - 1.0 / pitch), half - _EDGE)
         for half in face.half_size

@@ -16,10 +16,8 @@ class Body:
     """A clamp, fixture or cover, in the frame of the table's face.
 
     Attributes:
-        name: Of the body.
         at: Middle of its lower side, or origin of its mesh, mm.
         half_size: Half sides of its outline, mm; of a disc its radius, twice.
-        is_disc: Whether the outline is a circle.
         height: Of a prism, mm.
         turn: About its own upright axis, rad.
         on: Axis whose body carries it; empty for the table.

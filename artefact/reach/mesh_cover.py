@@ -13,7 +13,7 @@ MOST_BOXES = 24
 """Of one mesh: two lines of a program's head each."""
 
 _SMALLEST_CUT = 4.0  # mm: a box with no side longer is not cut any further
-_ENOUGH = 0.85  # of a box filled by its two halves: no cut would take much off it
+_MIN_FILL = 0.85  # of a box filled by its two halves: no cut would take much off it
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,9 +34,7 @@ class DrawnBody:
         """Its boxes, numbered, as upright bodies.
 
         Args:
-            name: Of the body.
             T_face_mesh: Where it stands in the frame of the table's face, turned about z alone.
-            on: Axis that carries it.
         """
         return tuple(
             _box(low, high, f"{name}.{i}", T_face_mesh, on)
@@ -80,9 +78,9 @@ def _cover(triangles: Array, most: int) -> list[Array]:
         boxes.sort(key=_volume)
         whole = boxes.pop()
         halves = _halves(whole)
-        if len(halves) < 2 or sum(map(_volume, halves)) > _ENOUGH * _volume(whole):
+        if len(halves) < 2 or sum(map(_volume, halves)) > _MIN_FILL * _volume(whole):
             thirds = [part for half in halves for part in _halves(half)]
-            if len(thirds) < 2 or sum(map(_volume, thirds)) > _ENOUGH * _volume(whole):
+            if len(thirds) < 2 or sum(map(_volume, thirds)) > _MIN_FILL * _volume(whole):
                 done.append(whole)
                 continue
         boxes += halves

@@ -9,8 +9,10 @@ from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array, unit
 
 _GROWTH = 1.15  # ratio of neighbouring stations along the tool axis
-_THIN = 4.0  # mm: up to this radius a cylinder is a row of balls on its axis, beyond it is wrapped
-_COARSE = 0.3  # radius of the wrapping balls, in radii of the cylinder
+_MAX_THIN_RADIUS = (
+    4.0  # mm: up to this radius a cylinder is a row of balls on its axis, beyond it is wrapped
+)
+_WRAP_RATIO = 0.3  # radius of the wrapping balls, in radii of the cylinder
 _BLOCK = 200_000  # balls looked at together
 _PIECES = 6  # short cylinders in which the balls of a probe are gathered
 
@@ -65,7 +67,7 @@ class ProbeShape:
         """
         parts = []
         for low, high, radius in self._pieces():
-            if radius > _THIN:
+            if radius > _MAX_THIN_RADIUS:
                 parts.append(_wrap(low, high, radius))
             else:
                 place, cover = _row(low, high, radius, self.ball_radius)
@@ -98,7 +100,7 @@ def _wrap(low: float, high: float, radius: float) -> tuple[Array, Array]:
     A ball of radius rho that lies ``w = rho / sqrt 3`` below a surface covers a patch of half
     width w each way: the rings and rows are spaced by 2 w at most.
     """
-    w = _COARSE * radius / np.sqrt(3.0)
+    w = _WRAP_RATIO * radius / np.sqrt(3.0)
     rings = [(r, low + w) for r in np.linspace(0.0, radius - w, int(np.ceil(0.5 * radius / w)) + 1)]
     rows_up = int(np.ceil((high - low) / (2.0 * w)))
     rings += [(radius - w, low + w + 2.0 * w * k) for k in range(1, rows_up)]
@@ -110,7 +112,7 @@ def _wrap(low: float, high: float, radius: float) -> tuple[Array, Array]:
             np.column_stack([ring * np.cos(angle), ring * np.sin(angle), np.full(count, height)])
         )
     centres = np.concatenate(balls)
-    return centres, np.full(len(centres), _COARSE * radius)
+    return centres, np.full(len(centres), _WRAP_RATIO * radius)
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,11 +142,7 @@ def clearance(
         standard: In the artefact frame.
         centre: Ball centres, shape (N, 3), artefact frame, mm.
         tool_axis: From the tip to the spindle, artefact frame, shape (N, 3) or (3,).
-        probe: Stylus, stem and body.
         enough: Room beyond which the exact figure does not matter, mm.
-
-    Returns:
-        Room and the nearest body.
     """
     centre = np.atleast_2d(centre)
     axis = unit(np.broadcast_to(tool_axis, centre.shape))

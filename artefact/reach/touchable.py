@@ -21,7 +21,7 @@ Mask = NDArray[np.bool_]
 
 _WORDS = "U200"  # of a reason
 _LIFT = 400.0  # mm the ball comes down from, far above any standard
-_WIDER = 1.0  # mm added to the ball on its way down
+_DESCENT_MARGIN = 1.0  # mm added to the ball on its way down
 ROUNDING = (
     1e-9  # mm or rad: a reading at the very end of a travel is inside, whatever its last digit
 )
@@ -67,14 +67,11 @@ class ProbeReach:
     """Machine, probe and place of the standard, with the room that a touch is given.
 
     Attributes:
-        setup: Where the standard stands.
-        shape: The probe from its ball upwards.
         length: Gauge point to ball centre, mm.
         steepest: Largest angle between a surface's normal and the tool axis, rad.
         room: Smallest gap between the probe above its ball and anything solid, mm.
         standoff: Gap between ball and surface at the start of a touch, mm.
         search: How far beyond the expected contact the travel must reach, mm.
-        workshop: What stands there beside the standard.
     """
 
     chain: Chain
@@ -178,20 +175,18 @@ class ProbeReach:
 
     def is_reachable(self, wanted: Requests) -> Mask:
         """Touches within the angle to the tool axis and within every travel, (N,)."""
-        good: Mask = self._lean(wanted) >= np.cos(self.steepest)
+        good: Mask = self._cosine(wanted) >= np.cos(self.steepest)
         for gap in self.gaps:
-            good &= (self._outside(self.readings(wanted, gap)) == 0.0).all(axis=1)
+            good &= (self._excess(self.readings(wanted, gap)) == 0.0).all(axis=1)
         return good
 
     def is_clear(self, standard: Standard, wanted: Requests) -> Mask:
         """Touches with room for the probe, a free way down and nothing in front of them, (N,)."""
-        good: Mask = self._obstructions(standard, wanted) == ""
-        return good
+        return self._obstructions(standard, wanted) == ""
 
     def has_room(self, standard: Standard, wanted: Requests) -> Mask:
         """Touches at which nothing comes near the probe above its ball, (N,)."""
-        good: Mask = self._room(standard, wanted, 0.0).distance >= self.room
-        return good
+        return self._room(standard, wanted, 0.0).distance >= self.room
 
     def against(self, standard: Standard, wanted: Requests) -> str:
         """What is against touches none of which has room, or that are none, in words."""
@@ -221,7 +216,7 @@ class ProbeReach:
         """Between ball and surface at the start of a touch, at the contact, at the search's end."""
         return (self.standoff, 0.0, -self.search)
 
-    def _lean(self, wanted: Requests) -> Array:
+    def _cosine(self, wanted: Requests) -> Array:
         """Cosine of the angle between normal and tool axis, (N,)."""
         poses = self._pose_kinematics(wanted)
         axis = poses.T_table_tool[poses.index, :3, 2]
@@ -230,21 +225,20 @@ class ProbeReach:
         )
         return cosine
 
-    def _outside(self, q: Array) -> Array:
+    def _excess(self, q: Array) -> Array:
         """How far readings (N, A) are beyond the ends of their travels, (N, A), mm and rad."""
         low, high = np.array([self.chain.link(name).range for name in self.chain.axes]).T
-        beyond: Array = np.maximum(np.maximum(low - q, q - high) - ROUNDING, 0.0)
-        return beyond
+        return np.maximum(np.maximum(low - q, q - high) - ROUNDING, 0.0)
 
     def _out_of_reach(self, one: Requests) -> str:
         """Why one touch is not within angle and travels."""
-        cosine = float(self._lean(one)[0])
+        cosine = float(self._cosine(one)[0])
         if cosine < np.cos(self.steepest):
             angle = np.arccos(np.clip(cosine, -1.0, 1.0)) / DEG
             return f"the surface leans {angle:.1f} degrees from the tool axis"
         for gap in self.gaps:
             q = self.readings(one, gap)
-            for i in np.flatnonzero(self._outside(q)[0]):
+            for i in np.flatnonzero(self._excess(q)[0]):
                 link = self.chain.link(self.chain.axes[i])
                 unit, word = (1.0, "mm") if link.kind == "linear" else (DEG, "degrees")
                 value, low, high = q[0, i] / unit, link.range[0] / unit, link.range[1] / unit
@@ -291,7 +285,7 @@ class ProbeReach:
         """What the ball meets on its way down to the start."""
         up = turn(inverse(self.setup.T_table_artefact), self._retreat(wanted))
         start = wanted.point + (self.radius + self.standoff) * wanted.normal
-        met = contact(standard, start + _LIFT * up, -up, self.radius + _WIDER, _LIFT)
+        met = contact(standard, start + _LIFT * up, -up, self.radius + _DESCENT_MARGIN, _LIFT)
         words = [
             f"on its way down the ball {_met(what, name)}" if what != Meeting.NOTHING else ""
             for what, name in zip(met.meeting, met.feature, strict=True)
@@ -320,8 +314,7 @@ class ProbeReach:
         along = linear_directions(chain, zero)[0].T @ table_to_tool(chain, zero)[0, :3, 2]
         best = int(np.argmax(np.abs(along)))
         poses = self._pose_kinematics(wanted)
-        up: Array = np.sign(along[best]) * poses.along[poses.index, :, best]
-        return up
+        return np.sign(along[best]) * poses.along[poses.index, :, best]
 
 
 def _met(what: Meeting, name: str) -> str:

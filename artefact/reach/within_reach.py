@@ -62,8 +62,7 @@ class PlacesInReach:
     @property
     def reached(self) -> Mask:
         """Which place is reached at which pose, (N, K)."""
-        good: Mask = (self.beyond == 0.0).all(axis=2)
-        return good
+        return (self.beyond == 0.0).all(axis=2)
 
     @property
     def places(self) -> int:
@@ -113,7 +112,6 @@ def reach_of(reach: ProbeReach, point: Array, normal: Array, poses: Array) -> Pl
     """What a machine reaches of places on a blank, by angle and travels alone.
 
     Args:
-        reach: Machine, probe, set-up.
         point: Places, artefact frame, (N, 3), mm.
         normal: Outward unit normals, (N, 3).
         poses: Rotary readings, (K, R), rad.

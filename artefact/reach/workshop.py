@@ -31,9 +31,7 @@ class Solid:
     """One body, in the frame of the table's face: at the table's origin, z out of the face.
 
     Attributes:
-        name: Of the body.
         half_size: Half sides of its outline, mm; of a disc its radius, twice.
-        is_disc: Whether the outline is a circle.
         low: Height of its lower face, mm.
         high: Height of its upper face, mm.
         x: Of its middle, mm.
@@ -103,8 +101,6 @@ class Workshop:
     """Everything solid that is not the standard.
 
     Attributes:
-        table: Its face carries the standard.
-        bodies: Clamps, fixtures, covers.
         ball: By which the probe is watched; None where there is none.
     """
 
@@ -173,16 +169,10 @@ def clearance_in_workshop(
 
     Args:
         standard: In the artefact frame.
-        T_table_artefact: Where it stands.
         T_table_tool: Of which the rotation gives the tool axis, shape (N, 4, 4).
         centre: Ball centres, table frame, shape (N, 3), mm.
-        probe: Stylus, stem and body.
-        workshop: Table and other bodies.
         T_still_table: Their frames, as `still_frames` gives them.
         enough: Room beyond which the exact figure does not matter, mm.
-
-    Returns:
-        Room and the nearest body.
     """
     T_artefact_table = inverse(T_table_artefact)
     axis = turn(T_artefact_table, T_table_tool[:, :3, 2])

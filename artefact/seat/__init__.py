@@ -4,7 +4,7 @@ In: base, table and bodies in the frame of the table's face. Out: distances in m
 """
 
 from matstd.artefact.seat.seating import (
-    TOUCHING,
+    CONTACT_DEPTH,
     base_corners,
     common_part,
     middle_room,
@@ -15,7 +15,7 @@ from matstd.artefact.seat.seating import (
 )
 
 __all__ = [
-    "TOUCHING",
+    "CONTACT_DEPTH",
     "base_corners",
     "common_part",
     "middle_room",

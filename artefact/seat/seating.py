@@ -11,7 +11,7 @@ from matstd.artefact.body import Base, outline_distance
 from matstd.artefact.reach import Solid, table_face
 from matstd.twin.frames import Array, apply, inverse
 
-TOUCHING = 0.1
+CONTACT_DEPTH = 0.1
 """Depth up to which bodies count as touching, mm: a clamp lies on what it holds."""
 
 _ARC = 17  # corners of the hull on each rounded corner: 0.03 mm inside one of 25 mm
@@ -127,7 +127,6 @@ def common_part(
     Args:
         corners: Of the mesh, shape (V, 3), mm.
         triangles: Of the mesh, shape (F, 3).
-        other: Corners of the other.
         other_triangles: Of the other; None for the hull of its corners.
     """
     import manifold3d

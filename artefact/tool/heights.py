@@ -20,7 +20,7 @@ _SWING = 25
 """Samples of every axis that turns in a move: all turn, in no order that is known. Half a turn is
 cut every 7 degrees, between which nothing within 300 mm of an axis rises by 0.6 mm."""
 
-_CLOSER = 97  # samples where the first ones do not decide: a sixteenth of that rise
+_FINE_SWING = 97  # samples where the first ones do not decide: a sixteenth of that rise
 
 
 class SolidHull(NamedTuple):
@@ -82,7 +82,6 @@ def top_height(chain: Chain, rotary: Array, solid: SolidHull, probe: Probe) -> A
     Args:
         rotary: Readings of the rotary axes, shape (V, R), rad.
         solid: What stands on the table, table frame.
-        probe: In the spindle.
 
     Returns:
         Shape (V,), mm.
@@ -101,8 +100,7 @@ def top_height(chain: Chain, rotary: Array, solid: SolidHull, probe: Probe) -> A
     below = (up_in_tool @ probe.outline().T).min(axis=1)
     below = np.minimum(below, -probe.radius)
     gauge_to_ball = np.array([0.0, 0.0, -probe.length])
-    level: Array = highest - below - np.einsum("vi,vi->v", up, apply(T_table_tool, gauge_to_ball))
-    return level
+    return highest - below - np.einsum("vi,vi->v", up, apply(T_table_tool, gauge_to_ball))
 
 
 def swing_height(
@@ -116,7 +114,6 @@ def swing_height(
     Args:
         path: Rotary readings in order, shape (W, R), rad.
         solid: What stands on the table, table frame.
-        probe: In the spindle.
         allowed: Reading of Z that must not be exceeded, mm.
 
     Returns:
@@ -125,15 +122,15 @@ def swing_height(
     arms = _arms(chain, solid, probe)
     highest = np.empty(len(path) - 1)
     for i, (start, end) in enumerate(pairwise(path)):
-        for samples in (_SWING, _CLOSER):
-            met, rise = _swung(chain, start, end - start, samples, solid, probe, arms)
+        for samples in (_SWING, _FINE_SWING):
+            met, rise = _swing_maximum(chain, start, end - start, samples, solid, probe, arms)
             highest[i] = met + rise
             if met > allowed or highest[i] <= allowed:
                 break
     return highest
 
 
-def _swung(
+def _swing_maximum(
     chain: Chain,
     start: Array,
     turn_by: Array,

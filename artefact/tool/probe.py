@@ -19,7 +19,6 @@ class Probe:
     """Probe with a ball stylus along the tool axis, mm.
 
     Attributes:
-        radius: Of the ball.
         length: From the spindle gauge point to the ball centre.
         stack: (end, radius) of its cylinders from the ball centre up to the gauge point: stylus,
             stem, body, holder. Where not given, a stylus of two thirds of the ball and half the

@@ -15,7 +15,7 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Family, parse_symbol
 from matstd.twin.model import Effect, Model, traits
 
-NAMED = 4
+ERRORS_PER_PATCH = 4
 """Errors named for a patch."""
 
 
@@ -81,7 +81,7 @@ def error_shares(
         mine = by_error[labels == name].mean(axis=0)
         share = mine / mine.sum()
         stands_out = share * np.log(np.maximum(share, 1e-12) / np.maximum(overall, 1e-12))
-        best = np.argsort(-stands_out, kind="stable")[:NAMED]
+        best = np.argsort(-stands_out, kind="stable")[:ERRORS_PER_PATCH]
         best = best[np.argsort(-share[best], kind="stable")]
         out[name] = tuple(ErrorShare(str(names[i]), round(float(share[i]), 4)) for i in best)
     return out

@@ -30,10 +30,6 @@ class BallPlaces:
     """Balls of which some are chosen.
 
     Attributes:
-        balls: B of them.
-        criterion: What they are chosen for.
-        blank: On which they stand.
-        touches: On them, N.
         W: Their rows, (N, R).
         group: Ball of every row, (N,).
         fits: Which of them stand beside each other, (B, B).
@@ -54,7 +50,6 @@ class BallPlaces:
 
         Args:
             count: Of balls, at most.
-            touches: That will be made on all of them together.
             clear: Touches that nothing stands in the way of, (N,); None for all.
         """
         rows = slice(None) if clear is None else clear
@@ -72,9 +67,7 @@ def ball_places(
 
     Args:
         criterion: What they are chosen for, without potential terms.
-        blank: Base, balls, posts and limits.
         poses: Table poses to choose from, (K, R), rad.
-        rng: Draws the places that are tried.
 
     Raises:
         NotReachable: The machine reaches no touch on any of them.

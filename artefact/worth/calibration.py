@@ -59,7 +59,6 @@ class Calibration:
 
         Args:
             body: What is touched; touches on other features have zeros.
-            wanted: The touches.
         """
         out = []
         for patch in body.patches:

@@ -10,7 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.artefact.reach import Requests
-from matstd.artefact.worth.potential import VISIBLE, column_slices, library, residual_after
+from matstd.artefact.worth.potential import (
+    MIN_VISIBLE_SHARE,
+    column_slices,
+    library_effects,
+    residual_after,
+)
 from matstd.artefact.worth.touch_criterion import Criterion
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, columns
@@ -21,37 +26,34 @@ class Visibility:
     """Effects that touches with any points and normals could show.
 
     Attributes:
-        effects: With a survival above `VISIBLE` in the free touches.
+        effects: With a survival above `MIN_VISIBLE_SHARE` in the free touches.
     """
 
     effects: tuple[Effect, ...]
 
     def shown(self, criterion: Criterion, chosen: Requests) -> int:
         """How many of the effects some touches show."""
-        return int(np.sum(survival(criterion, list(self.effects), chosen) > VISIBLE))
+        return int(np.sum(survival(criterion, list(self.effects), chosen) > MIN_VISIBLE_SHARE))
 
 
 def visibility(criterion: Criterion, free: Requests) -> Visibility:
     """Effects of the library that could be seen by touches without any artefact in the way.
 
     Args:
-        criterion: Machine and geometric model.
         free: As many random points and normals as an artefact has touches, or more.
     """
     touches = criterion.reach.touches(free)
-    tried = library(touches)
+    tried = library_effects(touches)
     left = survival(criterion, tried, free)
-    return Visibility(tuple(e for e, s in zip(tried, left, strict=True) if s > VISIBLE))
+    return Visibility(tuple(e for e, s in zip(tried, left, strict=True) if s > MIN_VISIBLE_SHARE))
 
 
 def survival(criterion: Criterion, effects: list[Effect], chosen: Requests) -> Array:
     """Share of the length of every effect's signature that the geometric model cannot imitate.
 
     Args:
-        criterion: Machine and geometric model.
         effects: E effects of any numbers of parameters; the shares of their columns are averaged by
             their squares.
-        chosen: The touches.
 
     Returns:
         Shape (E,), 0 to 1; 0 for an effect that moves nothing here.

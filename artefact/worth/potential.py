@@ -18,24 +18,24 @@ from matstd.twin.library import proposals
 from matstd.twin.model import Effect, columns, is_tunable
 from matstd.twin.record import Touches
 
-VISIBLE = 0.3
+MIN_VISIBLE_SHARE = 0.3
 """Share of the length of a signature that must survive the geometric model."""
 
-_HOPELESS = 0.1  # share that survives free touches, below which no design helps
+_MIN_FREE_SURVIVAL = 0.1  # share that survives free touches, below which no design helps
 _OF_FEATURES = ("artefact-form",)  # belong to one feature of one artefact: nothing to compare
-_DEPENDENT = 1e-8  # relative singular value below which a direction is rounding
+_RANK_TOLERANCE = 1e-8  # relative singular value below which a direction is rounding
 
 
-def library(touches: Touches) -> list[Effect]:
+def library_effects(touches: Touches) -> list[Effect]:
     """Effects of the library that some touches could be asked about, their inner parameters set."""
     return [
-        _tuned(effect, touches)
+        _with_middle_values(effect, touches)
         for effect in proposals(touches)
         if effect.name.split("(")[0] not in _OF_FEATURES
     ]
 
 
-def _tuned(effect: Effect, touches: Touches) -> Effect:
+def _with_middle_values(effect: Effect, touches: Touches) -> Effect:
     """An effect with its inner parameters in the middle of their grids."""
     if not is_tunable(effect):
         return effect
@@ -52,9 +52,8 @@ def residual_after(C: Array, W: Array) -> Array:
     """Signatures (N, C) without what the rows of a model (N, P) can imitate of them."""
     length = np.maximum(np.linalg.norm(W, axis=0), 1e-300)
     U, s, _ = np.linalg.svd(W / length, full_matrices=False)
-    U = U[:, s > _DEPENDENT * s[0]]
-    left: Array = C - U @ (U.T @ C)
-    return left
+    U = U[:, s > _RANK_TOLERANCE * s[0]]
+    return C - U @ (U.T @ C)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +61,6 @@ class Potential:
     """Potential terms of a design.
 
     Attributes:
-        effects: That they stand for.
         names: Effect of every term, (Q,).
         mix: Terms as combinations of the effects' columns, (C, Q).
         imitation: What the model's rows imitate of them over free touches, (R, Q).
@@ -80,26 +78,23 @@ class Potential:
         """Columns of the potential terms at some touches, (N, Q).
 
         Args:
-            touches: The touches.
             reduced: Rows of the model in the directions that matter, (N, R).
         """
         signatures = columns(list(self.effects), touches) @ self.mix
-        out: Array = signatures - reduced @ self.imitation
-        return out
+        return signatures - reduced @ self.imitation
 
 
 def potential(touches: Touches, reduced: Array, count: int) -> Potential:
     """Potential terms of a machine and a model.
 
-    The prior standard deviation is such that `count` touches in which a share `VISIBLE` of the
-    signature survives take half of its variance away.
+    The prior standard deviation is such that `count` touches in which the share `MIN_VISIBLE_SHARE`
+    of the signature survives halve its variance.
 
     Args:
         touches: Free touches: points anywhere, any normals.
         reduced: Rows of the model at them in the directions that matter, whitened, (N, R).
-        count: Number of touches of the design.
     """
-    tried = library(touches)
+    tried = library_effects(touches)
     C = columns(tried, touches)
     left, n = residual_after(C, reduced), len(touches)
     effects, names, mixes = [], [], []
@@ -108,13 +103,13 @@ def potential(touches: Touches, reduced: Array, count: int) -> Potential:
         if whole <= 0.0:
             continue
         _, s, Vt = np.linalg.svd(left[:, mine] * np.sqrt(n / whole), full_matrices=False)
-        if np.sum(s**2) / n < _HOPELESS**2:
+        if np.sum(s**2) / n < _MIN_FREE_SURVIVAL**2:
             continue
         effects.append(effect)
         names.append(effect.name)
         strongest = Vt[:1].T * np.sqrt(n / whole * np.sum(s**2)) / s[0]  # with the size of all
         mixes.append(strongest)
-    sd = 1.0 / (VISIBLE * np.sqrt(count))
+    sd = 1.0 / (MIN_VISIBLE_SHARE * np.sqrt(count))
     mix = np.zeros((sum(len(m) for m in mixes), len(names)))
     row = column = 0
     for m in mixes:
@@ -122,5 +117,5 @@ def potential(touches: Touches, reduced: Array, count: int) -> Potential:
         row, column = row + len(m), column + m.shape[1]
     signatures = columns(effects, touches) @ mix
     length = np.maximum(np.linalg.norm(reduced, axis=0), 1e-300)
-    imitation = np.linalg.lstsq(reduced / length, signatures, rcond=_DEPENDENT)[0]
+    imitation = np.linalg.lstsq(reduced / length, signatures, rcond=_RANK_TOLERANCE)[0]
     return Potential(tuple(effects), tuple(names), mix, imitation / length[:, None])

@@ -37,14 +37,14 @@ from matstd.twin.units import DEG
 Surfaces = Sequence[FreeformPatch | DatumSphere]
 
 _PITCHES = (5, 9, 15)  # points each way on a face
-_CHOICE = (
+_CANDIDATES_PER_TOUCH = (
     2.0  # touches that can be made, for each that is wanted, on the coarsest grid that will do
 )
-_DRAWN = 1000  # touches looked at together
-_CROWDED = 1.6  # even shares of the touches that one table pose may have
+_LOT = 1000  # touches looked at together
+_POSE_CROWDING = 1.6  # even shares of the touches that one table pose may have
 _EDGE = 3.0  # mm a touch stays away from the trimmed edge of a face
 _OVERSHOOT = 6.0 * DEG  # left at the ends of a rotary travel, to approach readings from both sides
-_NEAR = 2e-3  # relative gap to which the relaxed optimum is sought
+_RELAXED_GAP = 2e-3  # relative gap to which the relaxed optimum is sought
 _SPHERE_LOWEST = -5.0 * DEG  # elevation of the lowest touches on a datum sphere
 
 
@@ -54,7 +54,6 @@ class TouchOptions:
 
     Attributes:
         touches: Number of touches that identify.
-        poses: Number of table poses.
         proof: Number of touches that prove, on faces that identified nothing.
     """
 
@@ -70,7 +69,6 @@ def poses_within(chain: Chain, rotary: Array, wanted: int) -> Array:
     that the whole grid holds many different readings of each.
 
     Args:
-        chain: The machine.
         rotary: Smallest and largest readings of the rotary axes, (R, 2), rad.
         wanted: Number of poses that will be chosen; the grid has about six times as many.
 
@@ -169,8 +167,7 @@ def chosen_poses(
     chosen = best_groups(
         criterion.objective, criterion.rows(tried), group.reshape(-1), options.poses, take
     )
-    picked: Array = seen[sorted(chosen)]
-    return picked
+    return seen[sorted(chosen)]
 
 
 def touches_to_choose_from(
@@ -182,7 +179,7 @@ def touches_to_choose_from(
     """
     tried = clear_touches(reach, standard, touches_at(surfaces, poses, _PITCHES[0]))
     for pitch in _PITCHES[1:]:
-        if len(tried) >= _CHOICE * count:
+        if len(tried) >= _CANDIDATES_PER_TOUCH * count:
             break
         tried = clear_touches(reach, standard, touches_at(surfaces, poses, pitch))
     return tried
@@ -206,10 +203,12 @@ def some_touches(
     tried = tried[criterion.reach.is_reachable(tried)]
     tried = tried[rng.permutation(len(tried))]
     found: list[Requests] = []
-    lot = min(_DRAWN, int(2.0 * _CHOICE * options.touches))  # about half of those drawn can be made
+    lot = min(
+        _LOT, int(2.0 * _CANDIDATES_PER_TOUCH * options.touches)
+    )  # about half of those drawn can be made
     for rows in blocks(len(tried), lot):
         found.append(tried[rows][criterion.reach.is_clear(standard, tried[rows])])
-        if sum(map(len, found)) >= _CHOICE * options.touches:
+        if sum(map(len, found)) >= _CANDIDATES_PER_TOUCH * options.touches:
             break
     made = sum(map(len, found))
     if not made:
@@ -221,7 +220,7 @@ def pose_quota(tried: Requests, count: int) -> Quota:
     """No table pose may have much more than its even share of the touches, if all can be had."""
     pose = tried.pose
     there = np.bincount(pose)
-    most = int(np.ceil(_CROWDED * count / len(there)))
+    most = int(np.ceil(_POSE_CROWDING * count / len(there)))
     while np.minimum(there, most).sum() < min(count, len(tried)):
         most += 1
     return Quota(pose, np.full(len(there), most))
@@ -239,9 +238,6 @@ def chosen_touches_on(
     The relaxed optimum comes first; its heaviest touches are exchanged until nothing is gained.
 
     Args:
-        criterion: What they are chosen for.
-        tried: Touches that can be made.
-        options: How many of them.
         rounds: Most looks at all candidates on the way to the relaxed optimum; exchanges follow.
         begin: A choice that is known, (N,): it stays where nothing better is found; None for none.
 
@@ -254,7 +250,7 @@ def chosen_touches_on(
     n, quotas = options.touches, _pose_quotas(tried, options)
     W = criterion.rows(tried)
     start = heaviest(np.linalg.norm(W, axis=1), n, quotas)
-    best = relaxed(criterion.objective, W, n, start, _NEAR, quotas, rounds)
+    best = relaxed(criterion.objective, W, n, start, _RELAXED_GAP, quotas, rounds)
     choice = rounded(criterion.objective, W, best.weight, n, most=n // 2, quotas=quotas)
     if begin is not None:
         choice = min(
@@ -265,16 +261,13 @@ def chosen_touches_on(
     )
 
 
-def mended_touches(
+def repaired_touches(
     criterion: Criterion, tried: Requests, like: Requests, options: TouchOptions
 ) -> tuple[Mask, float]:
     """A choice made where nothing stood in the way: what is left of it, filled up and exchanged.
 
     Args:
-        criterion: What touches are chosen for.
-        tried: Touches that can be made, N.
         like: That were chosen on the same features, whatever these were called.
-        options: How many are wanted.
 
     Returns:
         The choice, (N,), and its value.

@@ -53,8 +53,6 @@ class Criterion:
     """Worth of touches on a machine.
 
     Attributes:
-        reach: Machine, probe, set-up.
-        model: Errors that are expected.
         prior_sd: Their standard deviations with the set-up free, (P,).
         noise: Standard deviation of one touch, mm.
         rotary: Smallest and largest reading of every rotary axis, (R, 2), rad.
@@ -63,9 +61,7 @@ class Criterion:
         tip_volume: Deviation of the tip per unit of every parameter at them, (M, 3, P).
         tip_user: The same at poses over the user's workspace, (M, 3, P).
         objectives: What touches can be chosen for, by the names in `CRITERIA`.
-        name: The one that they are chosen for.
         potential: Effects that may be there or not, which touches shall show; None for none.
-        calibration: How well the features of a body are known.
         body: Whose features they are; None while there is none, so that none is uncertain.
     """
 
@@ -104,7 +100,7 @@ class Criterion:
     def on(self, body: Standard) -> "Criterion":
         """The same criterion for touches on a body whose features are known by calibration."""
         assert self.body is None
-        count = self.calibration.columns(body, _none(self.reach)).shape[1]
+        count = self.calibration.columns(body, _no_touches(self.reach)).shape[1]
         if not count:
             return replace(self, body=body)
         objectives = {key: with_potential(one, count, 0.0) for key, one in self.objectives.items()}
@@ -195,21 +191,18 @@ def criterion_for(
     """Criterion of a machine, a blank and a user's workspace.
 
     Args:
-        reach: Machine, probe, set-up.
         model: Errors that are expected, with their prior standard deviations.
         blank: Blank of the standard: it bounds the probed volume.
         workspace: Where the user works; the limits of its rotary axes are those of table poses.
         noise: Standard deviation of one touch, mm.
-        rng: Draws the poses.
         options: What touches are chosen for; None for the I-criterion alone.
-        touches: Number of touches that will be chosen.
         population: From which machines are drawn, that of the model; None for the default one.
 
     """
     options = options or CriterionOptions()
     volume = _probed_volume(blank)
     rotary = np.array([workspace.limit(n) for n in reach.chain.rotary_axes]).reshape(-1, 2)
-    at = _at(reach, volume, workspace, rng)
+    at = _poses_to_judge(reach, volume, workspace, rng)
     tips = [model.tip_columns(poses) for poses in at]
     prior_sd = _with_free_setup(model)
     scatter = random_touches(reach, volume, rotary, _SCATTER, rng)
@@ -218,7 +211,7 @@ def criterion_for(
     G = np.concatenate(tips)
     objectives = five_criteria(G, W, prior_sd)
     if options.robust_machines:
-        scales = _scales(reach, model, population, options.robust_machines, rng)
+        scales = _drawn_error_scales(reach, model, population, options.robust_machines, rng)
         objectives = {
             key: robust(one, scales, options.robust_share) for key, one in objectives.items()
         }
@@ -228,7 +221,7 @@ def criterion_for(
         terms = potential(free, reduced, touches)
         rows = np.concatenate([reduced, terms.rows(free, reduced)], axis=1)[:touches]
         objectives = {
-            key: _sharing(one, rows, len(terms), options.potential)
+            key: _with_potential_share(one, rows, len(terms), options.potential)
             for key, one in objectives.items()
         }
     return Criterion(
@@ -248,13 +241,15 @@ def criterion_for(
     )
 
 
-def _none(reach: ProbeReach) -> Requests:
+def _no_touches(reach: ProbeReach) -> Requests:
     """No touches."""
     rotary = np.zeros((0, len(reach.chain.rotary_axes)))
     return Requests(np.zeros(0, dtype=np.str_), np.zeros((0, 3)), np.zeros((0, 3)), rotary)
 
 
-def _sharing(objective: DesignCriterion, rows: Array, count: int, share: float) -> DesignCriterion:
+def _with_potential_share(
+    objective: DesignCriterion, rows: Array, count: int, share: float
+) -> DesignCriterion:
     """An objective of which potential terms have some share after touches taken at random."""
     R = objective.size
     value = objective.value(rows[:, :R].T @ rows[:, :R])
@@ -263,7 +258,7 @@ def _sharing(objective: DesignCriterion, rows: Array, count: int, share: float) 
     return with_potential(objective, count, share / (1.0 - share) * value / hidden)
 
 
-def _scales(
+def _drawn_error_scales(
     reach: ProbeReach,
     model: Model,
     population: Population | None,
@@ -292,7 +287,7 @@ def _probed_volume(blank: Blank) -> Box:
     )
 
 
-def _at(
+def _poses_to_judge(
     reach: ProbeReach, volume: Box, workspace: Workspace, rng: np.random.Generator
 ) -> list[Touches]:
     """Poses over the probed volume and over the user's workspace."""
@@ -331,7 +326,6 @@ def random_touches(
     """Touches with random points in a box and random normals, at random poses, all reachable.
 
     Args:
-        reach: Machine, probe, set-up.
         volume: Box in the artefact frame, mm.
         rotary: Limits of every rotary axis (R, 2), from which readings are drawn evenly, rad.
         count: Number of touches; fewer where the machine reaches fewer.

@@ -27,7 +27,6 @@ class TouchCurve:
     """Error left on one artefact against the number of touches.
 
     Attributes:
-        name: Of the artefact.
         designed: Number of touches that it was designed with.
         counts: Numbers of touches, (K,), the designed one among them.
         rms: Predicted root mean square of the unknown tool point deviation over the probed volume,
@@ -49,8 +48,6 @@ def touch_curve(
 
     Args:
         criterion: Machine, noise, poses that are predicted, on the artefact.
-        name: Of the artefact.
-        touches: That it was designed with.
         counts: Numbers of touches to look at; the designed one is added.
 
     Raises:
@@ -90,5 +87,4 @@ def touch_curve(
 def _form(criterion: Criterion, tip: Array, directions: Array) -> Array:
     """Mean square of the tool point's deviation in the directions that matter, (R, R), mm^2."""
     scaled = (tip * criterion.prior_sd).reshape(-1, len(criterion.prior_sd)) @ directions
-    mean: Array = scaled.T @ scaled / len(tip)
-    return mean
+    return scaled.T @ scaled / len(tip)

@@ -10,12 +10,12 @@ from itertools import product
 import numpy as np
 
 from matstd.artefact.body import BLEND, FreeformPatch, Standard
-from matstd.artefact.brief import FINISHING
+from matstd.artefact.brief import FINISHING_RADIUS
 from matstd.cad_out.details import Details
 from matstd.twin.frames import Array
 from matstd.twin.units import DEG
 
-RADIUS, OVERHANG = FINISHING, 60.0
+RADIUS, OVERHANG = FINISHING_RADIUS, 60.0
 """Of the finishing ball-end mill, and its overhang from the holder: 10 D, mm."""
 
 LONGER = (80.0, 100.0, 120.0)

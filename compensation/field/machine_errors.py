@@ -102,7 +102,10 @@ class MachineErrors:
         at = state.touches(chain, middle, 0.0)
         counts = [len(theta) for _, theta in known]
         is_kept = [_is_of_machine(effect, at) for effect, _ in known]
-        is_tool = [not k and _moves_tip(e, at) for (e, _), k in zip(known, is_kept, strict=True)]
+        is_tool = [
+            not kept and any(term.where.moves_tip for term in effect.terms(at))
+            for (effect, _), kept in zip(known, is_kept, strict=True)
+        ]
         own, tool = (root[np.repeat(rows, counts).astype(bool)] for rows in (is_kept, is_tool))
         shared = _row_space(tool)
         return cls(
@@ -291,10 +294,6 @@ def _row_space(rows: Array) -> Array:
         return np.zeros((rows.shape[1], 0))
     _, strength, basis = np.linalg.svd(rows, full_matrices=False)
     return basis[strength > 1e-12 * strength[0]].T
-
-
-def _moves_tip(effect: Effect, at: Touches) -> bool:
-    return any(term.where.moves_tip for term in effect.terms(at))
 
 
 def _moves_axis(chain: Chain, where: Where) -> bool:

@@ -55,7 +55,7 @@ def reported_set(final: SearchState) -> ReportedSet:
         if sized.effect.name in final.chances:
             classes.append(ConfusionClass(sized, (), ()))
             continue
-        found = _class_of(state, i)
+        found = confusion_class(state.pool, state.effects[i], _others(state, i), state.fixed)
         if not final.is_weighed and found.effect.name != sized.effect.name:
             state, tests = _tried(state, tests, i, _beside(state, i, found.sized))
         named, alike = periods_alike(state.effects[i], _others(state, i), _base(state, i))
@@ -119,11 +119,6 @@ def _place(state: SearchState, member: Member, sized: ScaledEffect) -> int:
     if pool.variants[member.variant].name == sized.effect.name:
         return member.variant
     return next(i for i, e in enumerate(pool.variants) if e.name == sized.effect.name)
-
-
-def _class_of(state: SearchState, i: int) -> ConfusionClass:
-    """Confusion class of one member beside the others."""
-    return confusion_class(state.pool, state.effects[i], _others(state, i), state.fixed)
 
 
 def _others(state: SearchState, i: int) -> tuple[ScaledEffect, ...]:

@@ -14,7 +14,6 @@ from matstd.diagnosis.answer.trend import SingleChange, Trend, run_errors, singl
 from matstd.diagnosis.answer.verdict import Diagnosis
 from matstd.diagnosis.fit import Fit, Prior, fit_run
 from matstd.diagnosis.geometry import (
-    GeometryRow,
     changed_runs,
     changing,
     geometry_rows,
@@ -67,7 +66,9 @@ def _shown(
     A quantity says so while all the others may change as well; or all of them together; or one
     effect by itself, which a crash or a shim is likelier to be than a hundred at once.
     """
-    shown = {*_since_model(free.geometry.rows), *changed_runs(free.fit)}
+    shown = set(changed_runs(free.fit))
+    if any(row.has_changed_since_model for row in free.geometry.rows):
+        shown.add(0)
     alone: dict[int, SingleChange] = {}
     for run in (i for i in possible if i not in shown):
         without, beside = (_fit(task, free, since) for since in (shown, {*shown, run}))
@@ -98,11 +99,6 @@ def _evidence(fit: Fit) -> float:
     spread = float(np.log(np.abs(np.diag(fit.solution.R))).sum())
     size = int(fit.used.sum()) * float(np.log(fit.noise.factor))
     return -size - spread - 0.5 * fit.solution.objective
-
-
-def _since_model(rows: Sequence[GeometryRow]) -> list[int]:
-    """The first run, where it differs from an earlier model."""
-    return [0] if any(row.has_changed_since_model for row in rows) else []
 
 
 def _apart(fit: Fit, since: Sequence[int]) -> Fit:

@@ -111,7 +111,7 @@ def _best(base: EffectSet, family: _Family) -> list[Effect]:
         along = g[members]
         drop = np.einsum("bk,bk->b", along, np.linalg.solve(part, along[..., None])[..., 0])
         log_det = base.log_det + np.linalg.slogdet(part)[1]
-        evidence = log_evidence(complement, base.objective - drop, log_det)
+        evidence = log_evidence(base.objective - drop, log_det, complement.count, complement.stated)
         i = int(np.argmax(evidence))
         if evidence[i] > top:
             best, top = members[i], float(evidence[i])

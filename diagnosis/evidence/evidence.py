@@ -85,7 +85,8 @@ class EffectSet:
     @cached_property
     def evidence(self) -> float:
         """Logarithm of the evidence up to a constant; the size of the noise is integrated out."""
-        return float(log_evidence(self.complement, self.objective, self.log_det))
+        space = self.complement
+        return float(log_evidence(self.objective, self.log_det, space.count, space.stated))
 
     @cached_property
     def dof(self) -> float:
@@ -124,21 +125,25 @@ class EffectSet:
         the noise that the first one leaves, not beside that of the model without either.
         """
         left = self.held_out
-        return float(log_evidence(self.complement, left.squared, left.log_det))
+        space = self.complement
+        return float(log_evidence(left.squared, left.log_det, space.count, space.stated))
 
 
 def log_evidence(
-    complement: ResidualSpace, objective: Array | float, log_det: Array | float
+    objective: Array | float, log_det: Array | float, count: float, stated: float
 ) -> Array:
     """Logarithm of the evidence up to a constant, with a scale-free noise.
 
     ``-(n + nu)/2 log(objective + nu s^2) - log_det/2``: the marginal likelihood of a normal linear
     model whose noise has an inverse chi-squared prior of nu degrees of freedom about the stated
     size s, in units of the size that the starting model leaves.
+
+    Args:
+        count: Number n of independent observations.
+        stated: ``nu s^2``.
     """
-    n = complement.count
-    objective = np.maximum(objective, 1e-9) + complement.stated
-    return -0.5 * (n + PRIOR_DOF) * np.log(objective) - 0.5 * np.asarray(log_det)
+    objective = np.maximum(objective, 1e-9) + stated
+    return -0.5 * (count + PRIOR_DOF) * np.log(objective) - 0.5 * np.asarray(log_det)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -237,7 +242,8 @@ def _scaled_evidence(effects: EffectSet, values: Array, along: Array) -> tuple[A
     wide = squares * values
     drop = (squares * along / (1.0 + wide)).sum(axis=2)
     log_det = effects.log_det + np.log1p(wide).sum(axis=2)
-    tried = log_evidence(effects.complement, effects.objective - drop, log_det)
+    space = effects.complement
+    tried = log_evidence(effects.objective - drop, log_det, space.count, space.stated)
     best = np.argmax(tried, axis=0)
     return np.max(tried, axis=0), scales[best]
 

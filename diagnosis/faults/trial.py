@@ -14,7 +14,7 @@ from itertools import islice
 
 import numpy as np
 
-from matstd.diagnosis.evidence import Progress, quiet
+from matstd.diagnosis.evidence import Progress, log_evidence, quiet
 from matstd.diagnosis.faults.suspects import (
     Fault,
     Suspect,
@@ -231,15 +231,10 @@ def _evidence(run: Run, free: Sequence[Effect], at: Array) -> tuple[float, Array
         phi = solution.phi[-count:]
         objective += float(((phi + at / sd_free) ** 2 - phi**2).sum())
     log_det = 2.0 * float(np.log(np.abs(np.diag(solution.R))).sum())
-    evidence = _log_evidence(objective, log_det, n)
+    evidence = float(log_evidence(objective, log_det, n, PRIOR_DOF))
     u = sd_free * np.sqrt((solution.root[-count:] ** 2).sum(axis=1)) if count else np.zeros(0)
     theta = sd_free * solution.phi[-count:] if count else np.zeros(0)
     return evidence, theta, u
-
-
-def _log_evidence(objective: float, log_det: float, n: int) -> float:
-    """As `evidence.log_evidence`: normal linear model, the size of the noise integrated out."""
-    return -0.5 * (n + PRIOR_DOF) * float(np.log(max(objective, 1e-9) + PRIOR_DOF)) - 0.5 * log_det
 
 
 def _description_fault(

@@ -107,7 +107,7 @@ def _instant(value: object) -> float | None:
 
 
 def _numbers(text: str) -> list[float]:
-    """Numbers behind the time: one, or a count and so many; words of alarms behind them go."""
+    """Numbers after the time: one, or a count and that many; words of alarms are dropped."""
     out: list[float] = []
     for word in text.split():
         try:

@@ -123,9 +123,8 @@ class LargestVariance(_Largest):
 
     def mixed(self, roots: Array, share: Array) -> Array:
         """Mean over the poses that are among the worst."""
-        loud = (
-            share > _MIN_WEIGHT_RATIO * share.max()
-        )  # what is left out makes the sum less than one: no harm
+        # what is left out makes the sum less than one: no harm
+        loud = share > _MIN_WEIGHT_RATIO * share.max()
         flat = np.moveaxis(roots[loud] * np.sqrt(share[loud])[:, None, None], 1, 0)
         flat = flat.reshape(self.size, -1)
         return np.asarray(flat @ flat.T, dtype=np.float64)
@@ -195,7 +194,7 @@ class Determinant:
 
 
 Measure = MeanVariance | LargestVariance | LargestEigenvalue | Determinant
-"""What is left unknown of one machine; smaller is better."""
+"""Remaining uncertainty of one machine; smaller is better."""
 
 
 def _joined(K: Array, count: int, worth: float) -> Array:

@@ -54,7 +54,7 @@ class Freedom:
     parameter: str  # that can be left out
     unit: str
     alike: tuple[Term, ...]  # what imitates it exactly; nothing for a parameter that moves no touch
-    # what makes them alike; None where nothing is known of the parameters
+    # what makes them alike, or None
     reason: Reason | None = None
     resolution: Resolution = Resolution.UNTRIED  # measurement that would distinguish them
     resolved_by: str = ""  # name of the tried touches that would

@@ -118,7 +118,7 @@ class _Groups:
         return out
 
     def _falls(self, top: IntArray, reach: Array, tangent: Tangent) -> Array:
-        """By how much the tangent falls with the rows of every group, (groups,)."""
+        """Fall of the tangent with the rows of every group, (groups,)."""
         there = (top >= 0)[:, :, None]
         w, v = np.where(there, self.W[top], 0.0), np.where(there, reach[top], 0.0)
         return tangent.group_fall(v, np.eye(self.take) + v @ np.swapaxes(w, 1, 2))

@@ -82,7 +82,7 @@ class Selection:
         self._sweep(information)
 
     def _sweep(self, information: Array) -> None:
-        """Inverses, leverages and numerators anew, along the tangent as it is."""
+        """Recompute inverses, leverages and numerators along the present tangent."""
         self._machines = [
             _Machine(prior + information, tangent, self.W)
             for prior, tangent in zip(self.criterion.prior, self._tangents, strict=True)

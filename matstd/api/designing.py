@@ -118,7 +118,7 @@ class Project:
         from matstd.probe_paths.stations import feeds_of
         from matstd.report.pages import printer, write_design_page
         from matstd.stages.design import design
-        from matstd.stages.refusals import NO_ROOM, REFUSED, refusals
+        from matstd.stages.refusals import REFUSED_REACH, REFUSED_ROOM, refusals
         from matstd.stages.sheets import write_sheets
         from matstd.twin.files import results_folder
         from matstd.workers import connected
@@ -127,7 +127,7 @@ class Project:
         printed_by = printer() if pdf else None
         leftovers = (*REPORT_FILES, *SHEET_FILES)
         with (
-            results_folder(out, force, leftovers, [REFUSED, NO_ROOM]) as folder,
+            results_folder(out, force, leftovers, [REFUSED_REACH, REFUSED_ROOM]) as folder,
             refusals(brief, folder, out),
             connected(scheduler) as workers,
         ):

@@ -11,12 +11,12 @@ from matstd.artefact.body import Standard, write_standard
 from matstd.artefact.brief import Task, read_task
 from matstd.artefact.certify import (
     Allowed,
-    Calibrated,
-    calibrated,
+    CalibrationFit,
     check_places,
     dmis_program,
-    judged,
+    fit_calibration,
     read_cmm_points,
+    with_verdicts,
 )
 from matstd.artefact.worth import Calibration as KnownPlaces
 from matstd.diagnosis.files import SavedModel, check_machine, read_model, write_uncertainty
@@ -25,7 +25,7 @@ from matstd.diagnosis.task import TaskUncertainty, Visits
 from matstd.report.pages import write_uncertainty_page
 from matstd.report.task import measured_sentence, refusal_sentence, task_lines
 from matstd.report.words import remark_sentence
-from matstd.stages.budgets import PLAIN, budgets
+from matstd.stages.budgets import UNCORRECTED, budgets
 from matstd.twin.display import Displayed
 from matstd.twin.errors import BadArgument, DesignError, NotConforming
 from matstd.twin.model import Model
@@ -53,7 +53,7 @@ def standard_of(standard: Standard | str | Path) -> Standard:
 
 
 @dataclass(frozen=True, repr=False)
-class Calibration(Calibrated, Displayed):
+class Calibration(CalibrationFit, Displayed):
     """A calibrated standard and what its calibration found; `calibrate` returns it.
 
     Attributes:
@@ -125,8 +125,8 @@ def calibrate(
     if not 0.0 <= body_u <= 20.0:
         raise BadArgument("body_u_K", f"{body_u:g}", "0 to 20 K")
     nominal = as_designed(standard)
-    found = calibrated(nominal, read_cmm_points(points, nominal), u, u_feature)
-    found, causes = judged(nominal, found, Allowed(CALIBRATED, u_feature, body_u))
+    found = fit_calibration(nominal, read_cmm_points(points, nominal), u, u_feature)
+    found, causes = with_verdicts(nominal, found, Allowed(CALIBRATED, u_feature, body_u))
     refusal = ""
     if any(v.is_refused for v in found.verdicts):
         refusal = f"{points}: {refusal_sentence(found.verdicts, causes)}"
@@ -250,7 +250,7 @@ def uncertainty(
         check_places(piece, one.touches, name)
     remarks = [f"{name}: {r}" for name, one in zip(names, seen, strict=True) for r in one.remarks]
     remarks += piece.remarks
-    models: dict[str, tuple[Model, Prior] | None] = {PLAIN: None}
+    models: dict[str, tuple[Model, Prior] | None] = {UNCORRECTED: None}
     if model is not None:
         saved = model if isinstance(model, SavedModel) else read_model(model, runs=seen)
         called = saved.source.run if isinstance(model, SavedModel) else str(model)

@@ -8,7 +8,7 @@ import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.artefact.brief import Brief, Task
-from matstd.artefact.certify import like_task, misplaced, on_faces
+from matstd.artefact.certify import displaced_features, like_task, on_faces
 from matstd.artefact.reach import Requests
 from matstd.artefact.worth import Calibration
 from matstd.diagnosis.fit import Prior, fit_run
@@ -20,10 +20,10 @@ from matstd.twin.model import Model
 from matstd.twin.record import Run
 from matstd.twin.units import UM, URAD
 
-PLAIN = "as measured"
+UNCORRECTED = "as measured"
 """Results that no model corrects."""
 
-CLAMPED = (50.0 * UM, 200.0 * URAD)
+CLAMPING_SCATTER = (50.0 * UM, 200.0 * URAD)
 """How far from where it is believed a standard stands in a virtual visit, mm and rad: less than
 the room between a touch and the edge of its face."""
 
@@ -54,10 +54,6 @@ def places_of(
     """What several visits found at the places of a task, without and with models.
 
     Args:
-        runs: Visits to one standard.
-        standard: As calibrated.
-        known: How well.
-        task: What is measured.
         models: What results are corrected with, by name; None for nothing.
 
     Raises:
@@ -95,15 +91,15 @@ def virtual_budgets(
     visit. The model is identified from the balls of the first.
     """
     known = brief.options.criterion.calibration
-    true = misplaced(standard, known, rng)
+    true = displaced_features(standard, known, rng)
     stands = [
         replace(machine, setup_error=pose(rotation(rng.normal(0.0, b, 3)), rng.normal(0.0, a, 3)))
-        for a, b in [CLAMPED] * brief.study.visits
+        for a, b in [CLAMPING_SCATTER] * brief.study.visits
     ]
     runs = [c.run for c in visits(programs, true, stands, rng, calibrated=standard)]
     held_back = np.where(on_faces(standard, runs[0].touches), "test", "train")
     fit = fit_run(replace(runs[0], split=held_back), brief.population.expected())
     count = len(fit.model.parameters)
     learnt = fit.model, Prior(fit.theta[:count], np.zeros((count, count)))
-    models = {PLAIN: None, "with the identified model": learnt}
+    models = {UNCORRECTED: None, "with the identified model": learnt}
     return budgets(runs, standard, known, brief.task, models)

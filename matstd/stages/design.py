@@ -63,8 +63,6 @@ def design(brief: Brief, folder: Path, progress: Progress, workers: Workers = No
     """Run all stages and write their files into a folder.
 
     Args:
-        brief: What is designed, for which machine.
-        folder: Empty folder.
         progress: Called with stage, done and total.
         workers: Draw the random machines of the maps; None for this process.
 
@@ -221,7 +219,7 @@ def _prove(
     population = brief.population
     errors = drawn_errors(population, rng_errors)
     machine = _twin(brief, errors)
-    campaign = _held_back(
+    campaign = _with_split(
         simulate(programs, placement.standard, machine, rng_noise), placement.standard
     )
     fit = fit_run(campaign.run, population.expected())
@@ -249,7 +247,7 @@ def _twin(brief: Brief, errors: list[tuple[Effect, Array]]) -> VirtualMachine:
     )
 
 
-def _held_back(campaign: Campaign, standard: Standard) -> Campaign:
+def _with_split(campaign: Campaign, standard: Standard) -> Campaign:
     """A campaign whose touches on freeform faces prove and do not identify."""
     on_face = np.isin(campaign.run.touches.feature, [p.name for p in standard.patches])
     run = replace(campaign.run, split=np.where(on_face, "test", "train"))

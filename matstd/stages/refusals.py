@@ -10,7 +10,7 @@ from matstd.twin.errors import DesignError, NotBuildable, NotReachable
 REACH, ROOM = "reach.png", "room.png"
 """Pictures of what the machine reaches, and of the patches that fit side by side."""
 
-REFUSED, NO_ROOM = "reach-refused.png", "room-refused.png"
+REFUSED_REACH, REFUSED_ROOM = "reach-refused.png", "room-refused.png"
 """The same pictures, all that a refused run leaves in its folder."""
 
 _KEYS = {
@@ -36,25 +36,23 @@ def refusals(brief: Brief, folder: Path, out: str | Path) -> Iterator[None]:
     """Make whatever stops a design one line that helps.
 
     Args:
-        brief: What is designed.
         folder: In which it is; the picture of what is reached lies there.
-        out: Where a picture goes of what stops it.
     """
     try:
         yield
     except NotBuildable as error:
         reason = f"{brief.path}: {error}; {_what_helps(error)}"
-        seen = _left(folder / ROOM, Path(out) / NO_ROOM, "what fits")
+        seen = _keep_picture(folder / ROOM, Path(out) / REFUSED_ROOM, "what fits")
         raise NotBuildable(reason + seen) from error
     except NotReachable as error:
         reason = str(error)
         if not reason.startswith(str(brief.path)):
             reason = f"{brief.path}: {reason}; change workspace, setup or probe.length_mm"
-        seen = _left(folder / REACH, Path(out) / REFUSED, "what is reached")
+        seen = _keep_picture(folder / REACH, Path(out) / REFUSED_REACH, "what is reached")
         raise NotReachable(reason + seen) from error
 
 
-def _left(picture: Path, there: Path, shows: str) -> str:
+def _keep_picture(picture: Path, there: Path, shows: str) -> str:
     """Leave a picture to the user if there is one, and say so."""
     if not picture.exists():
         return ""

@@ -20,9 +20,7 @@ def write_sheets(
     """Write a sheet for every station, and the programs that go with it.
 
     Args:
-        folder: To be made.
         stations: In their order.
-        feeds: Of the programs.
         printed_by: Prints a sheet as PDF; None for no PDF.
         raised: By how much dry runs are raised, mm.
     """

@@ -24,14 +24,9 @@ def study_project(
     """Data, pictures and page of a study, written into a folder.
 
     Args:
-        brief: Machine and errors.
         poses_file: Where the machines are looked at; None for poses of the project's workspace.
-        folder: Empty folder.
         progress: Called with stage, done and total.
         workers: Who draws the machines; None for this process.
-
-    Returns:
-        The study, and what could not be drawn.
 
     Raises:
         BadFile: Poses of several tool lengths.

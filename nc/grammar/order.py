@@ -94,7 +94,7 @@ class _Run:
         return (ends[-1] if ends else len(self.list)) - 1
 
     def _next(self, at: int, block: Block) -> int | None:
-        """Index of the next block where this one only says so; None where it does something."""
+        """Index of the next block if this one only controls the flow; None for other blocks."""
         bare = block.bare
         if match := _LABEL.fullmatch(bare):
             back = self.flow.end() if match[1] == "0" else None

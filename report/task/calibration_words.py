@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from matstd.artefact.body import Material, Verdict
-from matstd.artefact.certify import Calibrated, CommonCause
-from matstd.artefact.layout import SOFT
+from matstd.artefact.certify import CalibrationFit, CommonCause
+from matstd.artefact.layout import DEFAULT_MODULUS
 from matstd.report.numbers import digits, um
 from matstd.twin.units import GPA, T_REF, UM, URAD
 
@@ -14,7 +14,7 @@ _NAMED = 3  # characteristics that a refusal names
 _WARM = 15.0  # K about 20 degC, within which pieces are measured
 
 
-def calibration_lines(found: Calibrated) -> list[str]:
+def calibration_lines(found: CalibrationFit) -> list[str]:
     """The largest deviation, every feature with its uncertainty, assumptions."""
     known = found.standard.known
     assert known is not None
@@ -101,7 +101,7 @@ def modulus_words(material: Material) -> str:
     if material.modulus is None:
         return (
             f"unknown: no modulus is stated for '{material.name}'; state material.modulus_MPa. "
-            f"Posts are designed for {SOFT / GPA:g} GPa, sag is not corrected"
+            f"Posts are designed for {DEFAULT_MODULUS / GPA:g} GPa, sag is not corrected"
         )
     return (
         f"{material.modulus / GPA:g} GPa, Poisson's ratio {material.poisson:g} of "

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from matstd.artefact.compare import ERROR, RISK, WANTED, Rival, WorstRegions
+from matstd.artefact.compare import DETECTION_POWER, FALSE_ALARM, MODEL_ERROR, Rival, WorstRegions
 from matstd.artefact.place import Placement
 from matstd.artefact.worth import CriterionOptions
 from matstd.diagnosis.answer import Proof
@@ -158,12 +158,13 @@ def proof_sentence(placement: Placement) -> str:
     balls, of_all = placement.power_of_balls, percent(float(anywhere.power.mean()))
     return (
         f"Proof: {faces.touches} touches on the {len(placement.standard.patches)} freeform faces, "
-        f"not used for identification, detect a model that is wrong by {um(ERROR)} rms on surfaces "
-        f"of the same slopes, anywhere in the probed volume, with an average power of "
-        f"{percent(float(faces.power.mean()))} at {percent(RISK)} risk ({percent(WANTED)} or more "
-        f"for {faces.found} of {len(faces.effects)} effects of the library). For errors of this "
-        f"size in any direction the power is {of_all} ({anywhere.found} of "
-        f"{len(anywhere.effects)} effects). The same number of further touches on the balls would "
+        f"not used for identification, detect a model that is wrong by {um(MODEL_ERROR)} rms "
+        f"on surfaces of the same slopes, anywhere in the probed volume, with an average power of "
+        f"{percent(float(faces.power.mean()))} at {percent(FALSE_ALARM)} risk "
+        f"({percent(DETECTION_POWER)} or more for {faces.found} of {len(faces.effects)} effects "
+        f"of the library). For errors of this size in any direction the power is {of_all} "
+        f"({anywhere.found} of {len(anywhere.effects)} "
+        f"effects). The same number of further touches on the balls would "
         f"detect {balls.found} of these, but they share the calibration on which the model rests, "
         "and no ball resembles the surface of a workpiece."
     )
@@ -176,7 +177,7 @@ def blind_spots(placement: Placement) -> str:
     the uncertainty of its calibrated position does.
     """
     faces, exact = placement.power, placement.power_exact
-    weak = np.flatnonzero(faces.power < WANTED)
+    weak = np.flatnonzero(faces.power < DETECTION_POWER)
     if not len(weak):
         return ""
     order = weak[np.argsort(faces.power[weak])]
@@ -189,9 +190,10 @@ def blind_spots(placement: Placement) -> str:
     else:
         cause = "the touches are hardly sensitive to these effects, whatever the calibration"
     return (
-        f"Power below {percent(WANTED)}: {', '.join(named)}{more}. With exactly known positions of "
-        f"the faces, {exact.found} of {len(exact.effects)} effects would be detected with "
-        f"{percent(WANTED)} or more, {percent(float(exact.power.mean()))} on average: {cause}."
+        f"Power below {percent(DETECTION_POWER)}: {', '.join(named)}{more}. With exactly known "
+        f"positions of the faces, {exact.found} of {len(exact.effects)} effects would be "
+        f"detected with {percent(DETECTION_POWER)} or more, "
+        f"{percent(float(exact.power.mean()))} on average: {cause}."
     )
 
 

@@ -95,7 +95,7 @@ def _window(
     most: int,
     result: Callable[[Any], Result],
 ) -> Iterator[Result]:
-    """Keep at most so many jobs under way; results in order."""
+    """Keep at most `most` jobs under way; results in order."""
     todo = iter(jobs)
     waiting: deque[Any] = deque()
     try:

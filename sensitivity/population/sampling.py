@@ -114,7 +114,7 @@ class Population:
         """The same without errors that are stated to be zero.
 
         Args:
-            free: Letters of the links whose set-up stays all the same: "w", "t" or both.
+            free: Letters of the links whose set-up is kept in any case: "w", "t" or both.
         """
         return Model(
             self.chain,

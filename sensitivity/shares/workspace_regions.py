@@ -184,7 +184,7 @@ def _outer(workspace: Workspace, axis: str) -> Squeeze:
 
 
 def _poses(workspace: Workspace, readings: dict[str, Squeeze]) -> Array:
-    """Poses of a region, spread evenly without chance, (N, A); none where nothing is in reach."""
+    """Poses of a region, spread evenly without chance, (N, A); empty where none is reachable."""
     chain = workspace.chain
     found = np.zeros((0, len(chain.axes)))
     for attempt in range(_TRIES):

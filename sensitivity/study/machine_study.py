@@ -101,7 +101,7 @@ class Study(Tabular):
 
     @property
     def tail(self) -> tuple[float, float]:
-        """By how much the sampled 95 % quantile differs from the closed one: mean and worst.
+        """Difference of the sampled 95 % quantile from the closed one: mean and worst.
 
         As shares of the closed one; what is beyond the sampling error is not normal in its shape.
         """

@@ -19,7 +19,7 @@ def check(**limits: float) -> None:
     ("limits", "told"),
     [
         ({"min_concave_radius_mm": 0.5}, "a radius that the ball fits into"),
-        ({"min_concave_radius_mm": 2.9}, "found 2.9, expected 3 mm or more, which a finishing"),
+        ({"min_concave_radius_mm": 2.9}, "found 2.9, expected 3 mm or more: a finishing"),
         ({"slot_pitch_mm": 0.01}, "found 0.01, expected 20 mm or more, or 0"),
     ],
 )

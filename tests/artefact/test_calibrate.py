@@ -10,7 +10,7 @@ import pytest
 
 from matstd.artefact.body.spline import greville
 from matstd.artefact.body.standard_file import read_standard, write_standard
-from matstd.artefact.certify.calibration_fit import calibrated, fitted_ball
+from matstd.artefact.certify.calibration_fit import fit_calibration, fitted_ball
 from matstd.artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
 from matstd.artefact.certify.dmis import APPROACH, dmis_program
 from matstd.artefact.tool.probe import Probe
@@ -95,7 +95,7 @@ def written(path: Path, rows, stamp: str = "", unit: str = "mm", scale: float = 
 def found(nominal, tmp_path_factory):
     path = tmp_path_factory.mktemp("cmm") / "cmm.csv"
     written(path, cmm_rows(nominal, np.random.default_rng(1)), nominal.fingerprint)
-    return calibrated(nominal, read_cmm_points(path, nominal), NOISE, 0.2 * UM)
+    return fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, 0.2 * UM)
 
 
 def aligned_truth(nominal) -> np.ndarray:
@@ -193,7 +193,7 @@ def measured(true, nominal, rng):
         line=np.arange(len(rows)),
         remarks=(),
     )
-    return calibrated(nominal, cmm, NOISE, 0.2 * UM).standard
+    return fit_calibration(nominal, cmm, NOISE, 0.2 * UM).standard
 
 
 def test_the_planted_errors_are_no_longer_seen(golden, nominal) -> None:
@@ -254,7 +254,7 @@ def test_points_that_do_not_do(nominal, tmp_path, spoil, told) -> None:
     rows = spoil(cmm_rows(nominal, np.random.default_rng(3), per_face=22))
     path = written(tmp_path / "cmm.csv", rows, nominal.fingerprint)
     with pytest.raises((BadFile, NotEnoughData), match=told):
-        calibrated(nominal, read_cmm_points(path, nominal), NOISE, NOISE)
+        fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, NOISE)
 
 
 def test_units_and_stamps(nominal, tmp_path, capsys) -> None:
@@ -281,7 +281,7 @@ def test_units_and_stamps(nominal, tmp_path, capsys) -> None:
     ]
     listed = written(tmp_path / "all.csv", [*by_hand, *rows], nominal.fingerprint)
     assert call(listed, "--force") == 0
-    assert "3 points on DATUM_A, DATUM_B, DATUM_C align nothing" in capsys.readouterr().out
+    assert "3 points on DATUM_A, DATUM_B, DATUM_C are not used" in capsys.readouterr().out
     nominal_file = str(tmp_path / "standard.toml")
     both = ["calibrate", nominal_file, "--program", "--cad", str(tmp_path / "c"), "-o", str(out)]
     assert main([*both, "--force"]) == 2
@@ -379,7 +379,7 @@ def test_dust_is_left_out_and_told(nominal, tmp_path) -> None:
         for k in (at[3], at[-1]):
             rows[k] = (rows[k][0], *(np.add(rows[k][1:], [0.0, 0.0, chip])))
         path = written(tmp_path / "cmm.csv", rows, nominal.fingerprint)
-        made.append(calibrated(nominal, read_cmm_points(path, nominal), NOISE, NOISE))
+        made.append(fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, NOISE))
     clean, dusty = made
     assert clean.remarks == ()
     assert [r.split(":")[0] for r in dusty.remarks] == ["SPH2", "FF1"]

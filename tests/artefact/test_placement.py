@@ -16,7 +16,7 @@ from matstd.artefact.layout.blank import Blank
 from matstd.artefact.place.placement import design_standard
 from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
 from matstd.artefact.reach.touchable import ProbeReach
-from matstd.artefact.worth.potential import library
+from matstd.artefact.worth.potential import library_effects
 from matstd.artefact.worth.touch_choice import TouchOptions, poses_within
 from matstd.artefact.worth.touch_criterion import CriterionOptions
 from matstd.information.criteria.posterior import Posterior
@@ -150,7 +150,7 @@ def test_the_power_of_the_faces_is_that_of_a_drawn_test(placement, reach, of_tas
         return (theta - seen @ estimate.T) @ Wp.T + place @ Cp.T + noise + shift_after
 
     scatter = np.cov(left(0.0, 0.0, 20000).T)
-    (effect,) = [e for e in library(reach.touches(before)) if e.name == "periodic(EXX)"]
+    (effect,) = [e for e in library_effects(reach.touches(before)) if e.name == "periodic(EXX)"]
     mix = rng.normal(size=len(effect.parameters))
     rows = [columns([effect], reach.touches(t)) @ mix / criterion.noise for t in (before, after)]
     tip = criterion.tip_volume * criterion.prior_sd

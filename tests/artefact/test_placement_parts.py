@@ -31,7 +31,7 @@ from matstd.artefact.reach.probe_clearance import ProbeShape
 from matstd.artefact.reach.touchable import ProbeReach, Requests, joined
 from matstd.artefact.worth.attribution import error_shares
 from matstd.artefact.worth.potential import residual_after
-from matstd.artefact.worth.touch_choice import TouchOptions, chosen_touches_on, mended_touches
+from matstd.artefact.worth.touch_choice import TouchOptions, chosen_touches_on, repaired_touches
 from matstd.artefact.worth.touch_criterion import random_touches
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import fixed_xyz, pose
@@ -355,7 +355,7 @@ def test_a_draw_of_faces_that_fails_costs_nothing_of_what_the_first_found(monkey
 
         monkeypatch.setattr(identifying, "_draw", one)
         base = SimpleNamespace(value=alone)
-        return identifying._drawn(None, None, [base], None).value, len(list(ends))
+        return identifying._best_draw(None, None, [base], None).value, len(list(ends))
 
     alone = 1.0
     assert drawn(1.5, None, 1.3, 1.4, None, 1.35, 1.2) == (1.3, 1)  # no more than six
@@ -373,12 +373,12 @@ def test_what_is_left_of_a_choice_is_filled_up_and_exchanged_under_the_shares_of
     like = tried[chosen]
     # all that was chosen can still be made, under other names: it stays, or betters itself
     named = replace(tried, feature=np.full(120, "SPH9"))
-    again, value = mended_touches(criterion, named, like, options)
+    again, value = repaired_touches(criterion, named, like, options)
     assert value <= nearness.value * (1.0 + 1e-9)
     # a few are hidden: as many touches again, no pose crowded, near what the whole search finds
     open_ = np.ones(120, dtype=bool)
     open_[np.flatnonzero(chosen)[::6]] = False
-    again, value = mended_touches(criterion, tried[open_], like, options)
+    again, value = repaired_touches(criterion, tried[open_], like, options)
     rows = criterion.rows(tried[open_][again])
     assert value == pytest.approx(criterion.objective.value(rows.T @ rows), rel=1e-9)
     assert again.sum() == 30
@@ -389,7 +389,7 @@ def test_what_is_left_of_a_choice_is_filled_up_and_exchanged_under_the_shares_of
     known = chosen_touches_on(criterion, tried[open_], options, begin=again)[1]
     assert known.value == pytest.approx(min(value, searched.value), rel=1e-9)
     with pytest.raises(NotReachable, match="29 touches can be made on the standard, 30 are"):
-        mended_touches(criterion, tried[:29], like, options)
+        repaired_touches(criterion, tried[:29], like, options)
 
 
 def test_what_a_model_imitates_does_not_depend_on_the_units_of_its_parameters():

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from matstd.artefact.body.freeform import graph_patch
-from matstd.artefact.feasibility.room import check_room, light_enough, room_among
-from matstd.artefact.feasibility.touched import mutually_probeable, touches_on, untouched
+from matstd.artefact.feasibility.room import check_room, lightest_room, room_among
+from matstd.artefact.feasibility.touched import mutually_probeable, touches_on, untouchable_faces
 from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.rival_artefacts import with_spheres
 from matstd.artefact.layout.side_by_side import most_side_by_side
@@ -61,14 +61,14 @@ def test_pillars_weigh_what_they_may():
 def test_the_lightest_standard_is_told_and_can_be_built(reach):
     rng = np.random.default_rng(3)
     faces, balls = freeform_faces(Blank(), 4, 50, rng), balls_on_posts(Blank(), 40, rng)
-    refused = light_enough(room_among(faces, balls, 4, heavy(19.0)), faces, balls)
+    refused = lightest_room(room_among(faces, balls, 4, heavy(19.0)), faces, balls)
     assert not refused.is_light
     with pytest.raises(NotBuildable, match=r"lightest standard found weighs .* limit 19 kg") as why:
         check_room(refused)
     assert why.value.facts["binding"] == ["mass"]
     assert mass_of(Blank()) < refused.least
     blank = heavy(np.ceil(10.0 * refused.least) / 10.0)
-    check_room(light_enough(room_among(faces, balls, 4, blank), faces, balls))
+    check_room(lightest_room(room_among(faces, balls, 4, blank), faces, balls))
     made = built(BodyChoice(SimpleNamespace(reach=reach), blank, 80, rng, refused, False))
     assert mass_of(blank, made.patches, made.spheres) < blank.limits.max_mass
 
@@ -86,13 +86,15 @@ def built(choice: BodyChoice):
     balls = list(choice.room.balls)
     poses = AROUND if choice.from_side else np.array([[0.0, a] for a in (-1.5, 0.0, 1.5)])
     touches = joined([each_at(ball, sphere_grid(4), poses) for ball in balls])
-    return choice._built(balls, "trial", "", touches, choice.room.wanted, 4)
+    return choice._build(balls, "trial", "", touches, choice.room.wanted, 4)
 
 
 @pytest.fixture(autouse=True)
 def alike(monkeypatch):
     monkeypatch.setattr(
-        BodyChoice, "_chosen", lambda _, there, count, __: most_side_by_side(there.fits, count)
+        BodyChoice,
+        "_choose_faces",
+        lambda _, there, count, __: most_side_by_side(there.fits, count),
     )
 
 
@@ -101,9 +103,9 @@ def test_faces_that_a_probe_from_the_side_touches_are_chosen():
     faces = freeform_faces(STEEP, 6, 50, rng, from_side=True)
     balls = [b for b in balls_on_posts(STEEP, 30, rng) if b.centre[2] < 75.0]
     room = room_among(faces, balls, 6, STEEP)
-    assert untouched(FROM_SIDE, room.standard, AROUND)  # side by side is not enough
+    assert untouchable_faces(FROM_SIDE, room.standard, AROUND)  # side by side is not enough
     made = built(BodyChoice(SimpleNamespace(reach=FROM_SIDE), STEEP, 50, rng, room, True))
-    assert not untouched(FROM_SIDE, made, AROUND)
+    assert not untouchable_faces(FROM_SIDE, made, AROUND)
 
 
 def test_a_face_behind_a_tall_pillar_is_seen_beside_a_low_one_only():
@@ -131,7 +133,7 @@ def test_what_is_seen_alone_is_what_the_touches_say_whatever_number_a_ball_has()
     assert {b.name for b in balls} <= {f.name for f in faces}
     seen = mutually_probeable(FROM_SIDE, STEEP, faces, balls, AROUND)
     bare = with_spheres(STEEP, [b.centre for b in balls])
-    alone = [not untouched(FROM_SIDE, replace(bare, patches=(f,)), AROUND) for f in faces]
+    alone = [not untouchable_faces(FROM_SIDE, replace(bare, patches=(f,)), AROUND) for f in faces]
     assert 0 < sum(alone) < len(faces)
     np.testing.assert_array_equal(seen.alone, alone)
     within = FROM_SIDE.is_reachable(touches_on(faces, AROUND)).reshape(len(faces), -1)

@@ -316,8 +316,8 @@ def test_keys_of_older_projects_are_read_and_named(tmp_path: Path) -> None:
     criterion = project.options.criterion
     assert (criterion.robust_machines, criterion.robust_share) == (8, 0.5)
     assert [remark.removeprefix(f"{path}: ") for remark in project.remarks] == [
-        "standard.drawn_machines is called standard.robust_machines now, and read as that",
-        "standard.worst_share is called standard.robust_share now, and read as that",
+        "standard.drawn_machines is now called standard.robust_machines and was read as such",
+        "standard.worst_share is now called standard.robust_share and was read as such",
     ]
 
 

@@ -18,7 +18,7 @@ from matstd.artefact.reach.face_of_table import standing_remarks, table_face
 from matstd.artefact.reach.touchable import Requests
 from matstd.artefact.reach.within_reach import ANGLE, places_on, reach_of
 from matstd.cli import main
-from matstd.stages.refusals import NO_ROOM, REFUSED, refusals
+from matstd.stages.refusals import REFUSED_REACH, REFUSED_ROOM, refusals
 from matstd.twin.errors import BadFile, NotBuildable, NotReachable
 from matstd.twin.frames import fixed_xyz, pose
 from matstd.twin.units import DEG
@@ -124,9 +124,9 @@ def test_a_refused_command_leaves_its_picture_alone(
         assert main(["design", str(path), "-o", str(out)]) == 2
         # beside lines of progress, which a slow machine is told
         (told,) = re.findall(r"(?m)^matstd .*", capsys.readouterr().err)
-        assert f"{out / REFUSED} shows what is reached" in told
-        assert [p.name for p in out.iterdir()] == [REFUSED]
-        assert (out / REFUSED).read_bytes().startswith(b"\x89PNG")
+        assert f"{out / REFUSED_REACH} shows what is reached" in told
+        assert [p.name for p in out.iterdir()] == [REFUSED_REACH]
+        assert (out / REFUSED_REACH).read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(
@@ -186,7 +186,7 @@ def test_patches_that_do_not_fit_are_told_with_a_picture(
     for _ in range(2):
         assert main(["design", str(path), "-o", str(out)]) == 2
         (told,) = re.findall(r"(?m)^matstd .*", capsys.readouterr().err)
-        assert [p.name for p in out.iterdir()] == [NO_ROOM]
+        assert [p.name for p in out.iterdir()] == [REFUSED_ROOM]
     assert re.search(r"only 1 of 6 patches fit on the blank side by side", told)
     assert re.search(r"; limits\.gap_mm = \d+ would do; ", told)
 
@@ -204,7 +204,7 @@ def test_patches_that_do_not_fit_are_told_with_a_picture(
 )
 def test_what_would_do_does(tmp_path, monkeypatch, name, limits, told, wish) -> None:
     """A tenth of the usual places are tried: what is refused is, and the wish that is met."""
-    monkeypatch.setattr(side_by_side, "_fewer", lambda *_: ())
+    monkeypatch.setattr(side_by_side, "_fewer_patches", lambda *_: ())
     path = changed(tmp_path, name, {r"\Z": f"\n[limits]\n{limits}\n"}, {})
     project = read_project(path)
     project = replace(project, options=replace(project.options, sites=40))

@@ -21,12 +21,12 @@ INSTANTS = 600
 
 
 def thinned(instants: Array, most: int) -> Array:
-    """Instants at even steps, so many at most."""
+    """Instants at even steps, at most `most` of them."""
     return instants[:: int(np.ceil(len(instants) / most)) or 1]
 
 
 def between(times: Array, on_each_side: int) -> Array:
-    """Instants between two ascending times, with so many of them on either side."""
+    """Instants between ascending times, with so many times on either side at least."""
     middle = 0.5 * (times[1:] + times[:-1])
     inside: Array = middle[on_each_side - 1 : len(middle) - on_each_side + 1]
     return inside

@@ -58,7 +58,7 @@ def run_text(run: Run, machine: str) -> str:
 
 
 def _body_line(touches: Touches) -> str:
-    """Line of the head that states the size of the standard; empty where nothing is stated.
+    """Line of the head with the size of the standard, if stated.
 
     Raises:
         ShapeMismatch: Several standards.

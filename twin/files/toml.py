@@ -223,7 +223,7 @@ def _expected(error: Any, model: type[BaseModel], steps: list[str]) -> str:
 
 
 def _list(field: FieldInfo) -> str:
-    """A list as the annotation of a field has it: of so many values, if it has a length."""
+    """Description of the list that a field expects, with its length where that is fixed."""
     items = next(_items(field.annotation), (Ellipsis,))
     return "a list in brackets" if Ellipsis in items else f"a list of {len(items)} values"
 

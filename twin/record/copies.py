@@ -27,7 +27,7 @@ more often."""
 
 
 def without_copies(run: Run) -> Run:
-    """The run without copied rows, and a remark that says so; the run itself if there are none.
+    """The run without copied rows, with a remark; the run itself if there are none.
 
     A row that occurs twice, its time included, is a copy; without times only if more rows do than
     the resolution of the reading explains by chance. Rows that agree with earlier ones in all

@@ -150,7 +150,7 @@ def round_step(values: Array) -> float:
 
 
 def lagged(touches: Touches, drive: Array, tau: float, steps: bool = False) -> Array:
-    """`first_order_lag` of a drive (N,) that was recorded at the touches, in every run anew."""
+    """`first_order_lag` of a drive (N,) recorded at the touches, for each run separately."""
     out = np.empty_like(drive)
     for i in range(len(touches.runs)):
         own = touches.run == i

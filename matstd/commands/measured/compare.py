@@ -10,7 +10,7 @@ from matstd.options import add_measured, asked_printer, pitches, starting_model
 if TYPE_CHECKING:
     from matstd.api.comparing import Comparison
 
-CLEAR = 2.0
+MIN_UNCERTAINTIES = 2.0
 """Standard uncertainties from which a region is off on average, and does not merely scatter."""
 
 
@@ -67,7 +67,7 @@ def _report(args: argparse.Namespace, found: Comparison, arm: str) -> None:
         say(promise_sentence(found, saved.source.held_out_um * UM, saved.left_out))
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
-        is_off = abs(region.mean) > CLEAR * region.u
+        is_off = abs(region.mean) > MIN_UNCERTAINTIES * region.u
         size = mean if is_off else f"{microns(region.rms)} rms"
         say(f"{region_words(region.conditions)}: {size} ({int(region.rows.sum())} touches)")
     for line, is_first in console_lines(found.run.touches, found.geometry, found.faults):

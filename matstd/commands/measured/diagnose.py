@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from matstd.api.diagnosing import Diagnosis
     from matstd.diagnosis.answer import Step
 
-WIDE = 40
+CELL_WIDTH = 40
 """Width in characters of a cell of words, so that the table of figures fits beside them."""
 
 LISTS = (
@@ -93,7 +93,7 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
     right = ("p", "fitted µm", "held out µm", "chi²/dof")
     numbers = [Column(in_own_unit(word), justify="right", no_wrap=True) for word in right]
-    words = [Column(word, overflow="fold", max_width=WIDE) for word in ("effect", "size")]
+    words = [Column(word, overflow="fold", max_width=CELL_WIDTH) for word in ("effect", "size")]
     table = Table(*words, *numbers, box=None)
     for step in result.steps:
         table.add_row(*_row(step))

@@ -170,14 +170,7 @@ def add_planted(parser: argparse.ArgumentParser) -> None:
 def planted_machine(
     args: argparse.Namespace, machine: str | Path, control: str, sensors: str | None = None
 ) -> VirtualMachine:
-    """The machine as it really is, with what the options of `add_planted` plant in it.
-
-    Args:
-        args: The options.
-        machine: Its nominal kinematics.
-        control: Its control.
-        sensors: What drives effects, by the clock.
-    """
+    """The machine as it really is, with what the options of `add_planted` plant in it."""
     from matstd.api.effects import register_effects
     from matstd.api.probing import virtual_machine
     from matstd.twin.units import UM
