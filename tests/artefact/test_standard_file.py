@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from matstd.artefact.body.freeform import ErrorShare
+from matstd.artefact.body.sag import Sag
 from matstd.artefact.body.standard_file import read_standard, write_standard
 from matstd.twin.errors import BadFile, DesignError
 
@@ -137,3 +138,15 @@ def test_the_uncertainty_of_the_expansion_is_kept(standard, tmp_path):
     (tmp_path / "bad.toml").write_text(text.replace("1.05e-05", "11.5"), encoding="utf-8")
     with pytest.raises(BadFile, match=r"material.expansion_1_K: found 11.5"):
         read_standard(tmp_path / "bad.toml")
+
+
+def test_a_sag_of_a_feature_that_there_is_not_is_refused(standard, tmp_path):
+    sag = Sag("measured", "-Z", 0.1, {"FF1": np.diag([0.0, 0.0, 0.002])})
+    text = text_of(replace(standard, sag=sag), tmp_path)
+    found = read_standard(tmp_path / "good.toml").sag.per_weight["FF1"]
+    np.testing.assert_allclose(found, np.diag([0.0, 0.0, 0.002]), atol=1e-9)
+    head, there, tail = text.partition("[sag")
+    path = tmp_path / "bad.toml"
+    path.write_text(head + there + tail.replace("FF1", "NONE"))
+    with pytest.raises(BadFile, match=r"sag\.um\.NONE: found NONE, expected one of FF1"):
+        read_standard(path)

@@ -342,3 +342,19 @@ def test_a_corner_beside_the_tool(frame, tmp_path):
     assert len(arcs) == 1
     np.testing.assert_allclose(arcs[0].arc.centre, [52.0, 18.0])
     assert np.hypot(*(arcs[0].start[k] - [52.0, 18.0])) == pytest.approx(3.0)
+
+
+def test_another_kind_of_cycle_keeps_levels_and_forgets_the_dwell(frame, tmp_path):
+    lines = "G21 G17 G90 G94 G98\nG0 X0 Y0 Z20\nG82 X10 Y10 Z-8 R2 P0.5 F200\nG83 X20 Q3\nG80\nM2\n"
+    found = program(lines, frame, tmp_path, "a.ngc")
+    np.testing.assert_allclose(ours(found), [[10.0, 10.0, 2.0, -8.0, 20.0], [20, 10, 2, -8, 20]])
+    blocks = [m.cycle.block for m in found.motions if m.cycle and m.cycle.block]
+    assert ["P0.5" in block for block in blocks] == [True, False]
+    assert ["Q3" in block for block in blocks] == [False, True]
+
+
+def test_a_call_with_a_height_goes_there_first(frame, tmp_path):
+    found = program(f"{START}{DRILL}L X+20 Y+10 Z+6 FMAX M99\n", frame, tmp_path)
+    columns = [frame.chain.axis_index(a) for a in "XYZ"]
+    assert [20.0, 10.0, 6.0] in [m.end[columns].tolist() for m in found.motions]
+    assert len(ours(found)) == 1

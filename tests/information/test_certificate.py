@@ -10,7 +10,7 @@ from matstd.information.criteria.design_criterion import DesignCriterion
 from matstd.information.criteria.measures import Determinant, MeanVariance
 from matstd.information.selection.bound import slope
 from matstd.information.selection.certificate import certificate, rounded
-from matstd.information.selection.relaxation import _worth_looking_at, relaxed
+from matstd.information.selection.relaxation import _candidates_to_search, relaxed
 from matstd.information.selection.shares import largest_sum
 from matstd.information.selection.touch_selection import Selection, exchange, fill
 from matstd.twin.errors import DesignError
@@ -118,6 +118,6 @@ def test_every_cell_keeps_its_best_candidates():
     gain = np.array([9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 0.1, 0.3, 0.2])
     cell = np.array([0, 0, 0, 0, 0, 0, 1, 1, 1])
     nothing = np.array([], dtype=np.int64)
-    assert _worth_looking_at(gain, nothing, 1, 0 * cell).tolist() == [0, 1]
-    assert _worth_looking_at(gain, np.array([8]), 1, 0 * cell).tolist() == [0, 1, 8]
-    assert _worth_looking_at(gain, nothing, 1, cell).tolist() == [0, 1, 2, 3, 4, 6, 7, 8]
+    assert _candidates_to_search(gain, nothing, 1, 0 * cell).tolist() == [0, 1]
+    assert _candidates_to_search(gain, np.array([8]), 1, 0 * cell).tolist() == [0, 1, 8]
+    assert _candidates_to_search(gain, nothing, 1, cell).tolist() == [0, 1, 2, 3, 4, 6, 7, 8]

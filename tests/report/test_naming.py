@@ -2,6 +2,7 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from made_up import made_up
 
@@ -13,6 +14,7 @@ from matstd.report.effects.naming import (
     rival_words,
     words_of_name,
 )
+from matstd.report.identifiability.identification_file import identification_table
 from matstd.twin.library.catalogue import parse_effect
 
 LAGS = ["thermal-lag(EZZ)", "thermal-lag(EZY)", "thermal-lag(EZX)", "thermal-lag(EZB)"]
@@ -100,3 +102,35 @@ def test_plans_say_what_they_tell_apart() -> None:
     periods = ("periodic(EXX)@10", "periodic(EXX)@5,3.333")
     plan = SimpleNamespace(touches=touches, distinguishes=periods, periods_of="periodic(EXX)")
     assert plan_words(plan).startswith("the periods 10, 5, 3.333 mm of positioning error of X")
+
+
+def test_an_identification_has_the_units_of_its_names():
+    """2 ± 1 µrad and 4 ± 0.5 µm, of three touches of which the one of line 5 is a gross error."""
+    fit = SimpleNamespace(
+        parameters=(),
+        used=np.array([True, False, True]),
+        run=SimpleNamespace(line=np.array([4, 5, 6])),
+        gross=SimpleNamespace(rows=np.array([1])),
+        rms=0.002,
+        test_rms=0.003,
+        noise=SimpleNamespace(factor=1.5),
+    )
+    known = SimpleNamespace(
+        found=SimpleNamespace(parameters=2, rank=2, condition_prior=3.0),
+        effective=1.5,
+        determined=[
+            SimpleNamespace(name="tilt", value=2e-6, u=1e-6, unit="rad"),
+            SimpleNamespace(name="place", value=0.004, u=0.0005, unit="mm"),
+        ],
+        combinations=[],
+        freedoms=[],
+    )
+    table = identification_table(fit, known)
+    assert [(d["name"], d["unit"]) for d in table["determined"]] == [
+        ("tilt", "µrad"),
+        ("place", "µm"),
+    ]
+    assert [d["value"] for d in table["determined"]] == pytest.approx([2.0, 4.0])
+    assert [d["u"] for d in table["determined"]] == pytest.approx([1.0, 0.5])
+    assert (table["touches"], table["gross_errors"]) == (2, [5])
+    assert (table["rms_um"], table["test_rms_um"]) == pytest.approx((2.0, 3.0))

@@ -188,3 +188,18 @@ def test_a_class_that_makes_no_kind_is_one_line(
     with pytest.raises(BadFile, match=expected) as caught:
         library.load_user_effects(path)
     assert "\n" not in str(caught.value)
+
+
+class Plain:
+    """An effect without arguments."""
+
+    kind = name = "plain"
+
+
+def test_a_class_without_fields_takes_no_arguments() -> None:
+    kind = Kind.of(Plain, formula="E = a", units="a: µm")
+    assert (kind.word, kind.usage) == ("plain", "plain")
+    assert isinstance(kind.make(CHAIN, []), Plain)
+    assert [type(effect) for effect in kind.propose(touches())] == [Plain]
+    with pytest.raises(UnknownEffect, match="'plain\\(X\\)': expected plain"):
+        kind.make(CHAIN, ["X"])
