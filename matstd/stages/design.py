@@ -89,15 +89,15 @@ def design(brief: Brief, folder: Path, progress: Progress, workers: Workers = No
         write_identifiability(folder / "identifiability.json", known)
         where, maps_in = (brief.workspace, brief.study.poses), folder / "sensitivity"
         study, maps = study_and_maps(brief, *where, maps_in, rng, progress, workers)
-        progress("STEP and STL", 0, 1)
         making = making_of(placement.standard, stiffness)
         write_making(folder / "making.json", making)
-        conformity = cad.result()
+        progress("probing programs", 0, 1)
+        stations = make_stations(plans, dialects_of(brief), feeds_of(brief))
+        paths = all_programs(stations).write(folder / "programs")
+        tried = _on_twins(brief, placement, paths, folder, rng, progress)
+        progress("STEP and STL", 0, 1)
+        conformity = cad.result()  # the last: the kernel takes as long as all of these
     _draw(brief, placement.standard, conformity, folder)
-    progress("probing programs", 0, 1)
-    stations = make_stations(plans, dialects_of(brief), feeds_of(brief))
-    paths = all_programs(stations).write(folder / "programs")
-    tried = _on_twins(brief, placement, paths, folder, rng, progress)
     return Design(
         brief=brief,
         study=study,

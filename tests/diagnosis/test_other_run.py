@@ -90,7 +90,8 @@ def test_a_slip_of_one_run_is_not_predicted_for_another(visits, tmp_path, capsys
     assert "it is not applied here" in said
     assert any(told in remark for remark in found["remarks"])
     # what the model says of a run with such a slip is what the slip did to this one
-    again = re.search(r"had a slip of the set-up of the same size as that run, an error of ([\d.]+) µm", said)
+    same = r"had a slip of the set-up of the same size as that run, an error of ([\d.]+) µm"
+    again = re.search(same, said)
     assert again
     assert float(again[1]) == pytest.approx(before, rel=0.03)
 
