@@ -97,7 +97,7 @@ def door_lines() -> list[str]:
         text = described.docstring if described else ""
         lines.append(f"| `{signature(name, thing)}` | {first_line(text)} |")
         if getattr(thing, "__module__", "").startswith("matstd.api"):
-            for method in vars(thing) if inspect.isclass(thing) else ():
+            for method in methods(thing):
                 function = getattr(thing, method)  # a class method without its class
                 if inspect.isroutine(function) and not method.startswith("_"):
                     said = first_line(inspect.getdoc(function) or "")
@@ -105,6 +105,13 @@ def door_lines() -> list[str]:
             body = inspect.cleandoc(text).replace("\n", "\n    ")
             long += [f"#### {name}", "", f"    {body}".replace("    \n", "\n"), ""]
     return [*lines, "", *long]
+
+
+def methods(thing: object) -> list[str]:
+    """Names in a class of the door and in the classes of the door that it extends, these first."""
+    classes = reversed(thing.__mro__) if inspect.isclass(thing) else ()
+    ours = [c for c in classes if c.__module__.startswith("matstd.api")]
+    return list(dict.fromkeys(name for c in ours for name in vars(c)))
 
 
 def first_line(docstring: str) -> str:

@@ -18,7 +18,7 @@ def most_side_by_side(
     kind: NDArray[np.int64] | None = None,
     starts: int | None = None,
 ) -> list[int]:
-    """Sites that fit beside each other: as many as wanted, or the largest set found.
+    """Sites that fit beside each other: the number wanted, or the largest set found.
 
     Starting from each site in turn, the next site is the one that leaves most others free. The
     result is a lower bound of the largest clique, which takes too long to find.
@@ -55,7 +55,7 @@ def beside_balls(
     blank: Blank,
     seen: Pairs | None = None,
 ) -> tuple[list[int], list[int]]:
-    """Faces and balls that fit on a blank together: as many as wanted, or the largest set found.
+    """Faces and balls that fit on a blank together: the number wanted, or the largest set found.
 
     Args:
         blank: With its limits; screws are placed as without balls.

@@ -121,7 +121,7 @@ class BodyChoice:
         """Choose faces between balls such that the body meets every limit.
 
         Args:
-            balls: The most informative first; as many as leave room are used.
+            balls: The most informative first; those that leave room for the faces are used.
 
         Raises:
             NotBuildable: No such body; names the binding limit.

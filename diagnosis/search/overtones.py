@@ -36,7 +36,7 @@ def with_overtones(
 
 
 def _combs(complement: ResidualSpace, effect: Effect, period: float) -> Iterator[Effect]:
-    """One period with two sines and more, as many as the readings resolve."""
+    """One period with two or more sines, up to the number that the readings resolve."""
     wave, with_sines = _wave(effect), traits(original_of(effect)).with_sines
     assert wave is not None
     assert with_sines is not None

@@ -8,24 +8,18 @@ import numpy as np
 
 from matstd.api.arm import FOUND, write_found_arm
 from matstd.api.runs import GEOMETRY, Runs, StartingModel, starting_run
+from matstd.api.saved import REPORT_FILES, Saveable
 from matstd.diagnosis import answer
 from matstd.diagnosis.evidence import Progress, quiet
 from matstd.diagnosis.files import SavedModel, write_comparison, write_residuals
-from matstd.report.pages import Printer, printer, write_compare_page, write_pdf
+from matstd.report.pages import Printer, write_compare_page, write_pdf
 from matstd.report.words import remark_sentence, structure_words
-from matstd.twin.files import results_folder
 from matstd.twin.record import without_copies
 from matstd.twin.words import deviations_in
 
-REPORT_FILES = ("report.html", "report.pdf", "tables.xlsx", "tables/*.csv")
-"""Files of a page that not every run of a command leaves."""
-
-SOMETIMES = (FOUND, "pictures/*.png", *REPORT_FILES)
-"""Files that not every comparison leaves."""
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Comparison(answer.Comparison):
+class Comparison(Saveable, answer.Comparison):
     """A run against a model, with what it was made from; `compare` returns it.
 
     Attributes:
@@ -38,36 +32,12 @@ class Comparison(answer.Comparison):
         ('T_spindle_degC',)
     """
 
+    sometimes = (FOUND, "pictures/*.png", *REPORT_FILES)
     saved: SavedModel | None = None
     title: str = ""
 
-    def save(self, folder: str | Path, pdf: bool = False, force: bool = False) -> Path:
-        """Write comparison.json, residuals.csv and the page into a folder, whole or not at all.
-
-        Args:
-            folder: New or empty.
-            pdf: Print the page into report.pdf, too.
-            force: Replace the results of an earlier run.
-        """
-        printed_by = printer() if pdf else None
-        with results_folder(folder, force, SOMETIMES) as place:
-            self.write(place)
-            self.write_page(place, printed_by)
-        return Path(folder)
-
-    def page(self, folder: str | Path, pdf: bool = False, force: bool = False) -> Path:
-        """Write report.html with its pictures and tables into a folder; arguments as of `save`."""
-        printed_by = printer() if pdf else None
-        with results_folder(folder, force, SOMETIMES) as place:
-            self.write_page(place, printed_by)
-        return Path(folder) / "report.html"
-
     def write(self, folder: Path) -> str:
-        """Write the results, without a page, into a folder that is there.
-
-        Returns:
-            A line on the machine of a serial arm as it was found; "" for any other machine.
-        """
+        """Write comparison.json and residuals.csv into an existing folder; as of `Saveable`."""
         with deviations_in(self.run.touches.deviation_unit):
             write_comparison(
                 folder / "comparison.json",
@@ -79,7 +49,7 @@ class Comparison(answer.Comparison):
             return "" if self.saved else write_found_arm(folder, self.fit, self.title)
 
     def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
-        """Write the page into a folder that is there."""
+        """Write the page into an existing folder."""
         reported = self.saved.reported if self.saved else None
         with deviations_in(self.run.touches.deviation_unit):
             write_compare_page(self, folder, self.title, np.random.default_rng(0), reported)

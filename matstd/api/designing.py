@@ -113,7 +113,7 @@ class Project:
             NotReachable: Travels that do not reach the standard, with the nearest wishes.
             NotBuildable: Limits that no standard meets, with the nearest wishes.
         """
-        from matstd.api.comparing import REPORT_FILES
+        from matstd.api.saved import REPORT_FILES
         from matstd.options import SHEET, SHEET_FILES, print_report
         from matstd.probe_paths.stations import feeds_of
         from matstd.report.pages import printer, write_design_page
@@ -159,7 +159,7 @@ class Project:
             scheduler: Address of a Dask scheduler whose workers draw the random machines.
             pdf: Whether the report is printed into report.pdf too.
         """
-        from matstd.api.comparing import REPORT_FILES
+        from matstd.api.saved import REPORT_FILES
         from matstd.options import print_report
         from matstd.report.pages import printer
         from matstd.stages.study_run import study_project

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from matstd.api.arm import FOUND, write_found_arm
-from matstd.api.comparing import REPORT_FILES
 from matstd.api.runs import GEOMETRY, Runs, StartingModel, is_learnt_from, starting_run
+from matstd.api.saved import REPORT_FILES, Saveable
 from matstd.diagnosis import answer
 from matstd.diagnosis.choice import candidate_effects
 from matstd.diagnosis.evidence import Progress, quiet
@@ -21,10 +21,10 @@ from matstd.diagnosis.files import (
     write_diagnosis,
 )
 from matstd.diagnosis.fit import Fit
-from matstd.report.pages import Printer, printer, write_diagnosis_page, write_pdf
+from matstd.report.pages import Printer, write_diagnosis_page, write_pdf
 from matstd.report.words import remark_sentence
 from matstd.twin.errors import BadArgument
-from matstd.twin.files import results_folder, write_whole
+from matstd.twin.files import write_whole
 from matstd.twin.library import is_visible, kinds, parse_effect, try_effect, users_files
 from matstd.twin.model import Effect
 from matstd.twin.record import Run
@@ -34,12 +34,9 @@ from matstd.twin.words import deviations_in
 if TYPE_CHECKING:
     from matstd.api.compensating import Compensation
 
-SOMETIMES = ("next_measurement_*.csv", FOUND, "pictures/*.png", *REPORT_FILES)
-"""Files that not every diagnosis leaves."""
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Diagnosis(answer.Diagnosis):
+class Diagnosis(Saveable, answer.Diagnosis):
     """What a model lacks, with what it was made from; `diagnose` returns it.
 
     Attributes:
@@ -55,6 +52,7 @@ class Diagnosis(answer.Diagnosis):
         ('missing effect', ['thermal-lag'])
     """
 
+    sometimes = ("next_measurement_*.csv", FOUND, "pictures/*.png", *REPORT_FILES)
     before: SavedModel | None = None
     title: str = ""
     named: int = 0
@@ -71,8 +69,8 @@ class Diagnosis(answer.Diagnosis):
         made_with = f"material-standard {versions()['material-standard']}"
         is_all = self.learnt is self.fit and self.choice is not None
         promised = self.choice.best.error if is_all and self.choice else None
-        told = {s.effect.name: s.reported for s in self.steps if s.effect is not None}
-        return model_text(self.learnt, self.title, self.before, made_with, promised, told)
+        reported = {s.effect.name: s.reported for s in self.steps if s.effect is not None}
+        return model_text(self.learnt, self.title, self.before, made_with, promised, reported)
 
     @property
     def model(self) -> SavedModel:
@@ -89,33 +87,8 @@ class Diagnosis(answer.Diagnosis):
 
         return compensate(self, **options)
 
-    def save(self, folder: str | Path, pdf: bool = False, force: bool = False) -> Path:
-        """Write diagnosis.json, model.toml and the page into a folder, whole or not at all.
-
-        Args:
-            folder: New or empty.
-            pdf: Print the page into report.pdf, too.
-            force: Replace the results of an earlier run.
-        """
-        printed_by = printer() if pdf else None
-        with results_folder(folder, force, SOMETIMES) as place:
-            self.write(place)
-            self.write_page(place, printed_by)
-        return Path(folder)
-
-    def page(self, folder: str | Path, pdf: bool = False, force: bool = False) -> Path:
-        """Write report.html with its pictures and tables into a folder; arguments as of `save`."""
-        printed_by = printer() if pdf else None
-        with results_folder(folder, force, SOMETIMES) as place:
-            self.write_page(place, printed_by)
-        return Path(folder) / "report.html"
-
     def write(self, folder: Path) -> str:
-        """Write the results, without a page, into a folder that is there.
-
-        Returns:
-            A line on the machine of a serial arm as it was found; "" for any other machine.
-        """
+        """Write diagnosis.json, model.toml and plans of touches; as of `Saveable`."""
         with deviations_in(self.run.touches.deviation_unit):
             sentences = [remark_sentence(r) for r in self.remarks]
             write_diagnosis(folder / "diagnosis.json", self, sentences)
@@ -125,7 +98,7 @@ class Diagnosis(answer.Diagnosis):
             return write_found_arm(folder, self.fit, self.title)
 
     def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
-        """Write the page into a folder that is there."""
+        """Write the page into an existing folder."""
         with deviations_in(self.run.touches.deviation_unit):
             write_diagnosis_page(self, folder, self.title, np.random.default_rng(0))
             if printed_by is not None:

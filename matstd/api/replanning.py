@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.api.comparing import REPORT_FILES
+from matstd.api.saved import REPORT_FILES
 from matstd.artefact.body import Standard, read_standard
 from matstd.artefact.reach import DatumBall
 from matstd.options import SHEET, SHEET_FILES

@@ -55,7 +55,7 @@ def write_compare_page(
     folder: str | Path,
     title: str,
     rng: np.random.Generator,
-    told: Mapping[str, Sequence[Reported]] | None = None,
+    reported: Mapping[str, Sequence[Reported]] | None = None,
 ) -> Path:
     """Write `report.html` and its pictures into a folder.
 
@@ -64,7 +64,7 @@ def write_compare_page(
         folder: For the page.
         title: Name of the run file.
         rng: Shuffles residuals, to show what chance produces.
-        told: Numbers of effects as the model file keeps them, by name.
+        reported: Numbers of effects as the model file keeps them, by name.
     """
     page = Page(
         title=f"Comparison of {title}",
@@ -72,7 +72,7 @@ def write_compare_page(
         lead=comparison_sentence(found),
         key=_key(found),
         sections=[
-            _opening(found, told or {}),
+            _opening(found, reported or {}),
             region_section(found.where, "Where the model fails"),
             Section(pictures=on_standard(found.run.touches, ("measured − predicted", found.fit))),
             *geometry_sections(found.run.touches, found.geometry),
@@ -111,10 +111,10 @@ def _key(found: Comparison) -> list[KeyFigure]:
     ]
 
 
-def _opening(found: Comparison, told: Mapping[str, Sequence[Reported]]) -> Section:
+def _opening(found: Comparison, reported: Mapping[str, Sequence[Reported]]) -> Section:
     """What was fitted, mistakes in the description, remarks."""
     fitted = _FITTED.format(count=len(found.fit.parameters))
-    learnt = learnt_lines(found.learnt, told) if found.learnt else []
+    learnt = learnt_lines(found.learnt, reported) if found.learnt else []
     return Section(
         sentences=[_PREDICTED if found.is_prediction else fitted, *learnt],
         notes=[

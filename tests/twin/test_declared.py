@@ -158,7 +158,7 @@ def test_a_users_declared_effect_passes(own_register, tmp_path: Path, head: str)
     [
         ('reading("X")', 'readings("X")', f"line {LINE + 1}: found AttributeError: .*readings"),
         ('"EZZ"', '"EZW"', "found unknown error parameter 'EZW'"),
-        ("def amounts", "def amount", "found NotImplementedError"),
+        ("def amounts", "def amount", r"found \w+ has no method amounts\(self, touches\)"),
         ("** 2)),)", "** 2)),) * 2", "found a term of parameter 1, expected 0 to 0"),
         ("(-100.0, 0.0, 100.0)", "(1.0, 0.0)", "bump.inner, grid of place: found .1. 0.., expect"),
         ("10 * UM", "0.0", "bump.parameters, size: found sd = 0, expected the size it may have"),

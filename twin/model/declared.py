@@ -21,6 +21,7 @@ from typing import Any, ClassVar, NamedTuple, Self, get_type_hints
 
 import numpy as np
 
+from matstd.twin.errors import DesignError
 from matstd.twin.fields import Argument, Refuse
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Where
@@ -146,7 +147,7 @@ class Declared:
 
     def amounts(self, touches: Touches) -> Amounts:
         """Per unit of each parameter at every touch, (N,) each."""
-        raise NotImplementedError
+        raise DesignError(f"{type(self).__name__} has no method amounts(self, touches)")
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """The amounts at their entry."""

@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Compare; the folder appears whole or not at all."""
-    from matstd.api.comparing import SOMETIMES, compare
+    from matstd.api.comparing import Comparison, compare
     from matstd.api.effects import register_effects
     from matstd.progress import stages, turns
     from matstd.twin.files import results_folder
@@ -33,7 +33,7 @@ def run(args: argparse.Namespace) -> int:
 
     register_effects(*args.effects)
     model, pitch, printed_by = starting_model(args), pitches(args), asked_printer(args)
-    with results_folder(args.output, args.force, SOMETIMES) as folder, stages() as show:
+    with results_folder(args.output, args.force, Comparison.sometimes) as folder, stages() as show:
         found = compare(args.run_file, model, pitch=pitch, progress=turns(show))
         arm = found.write(folder)
         if not args.no_report:

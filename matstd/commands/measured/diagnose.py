@@ -51,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Diagnose; the folder appears whole or not at all."""
-    from matstd.api.diagnosing import SOMETIMES, diagnose
+    from matstd.api.diagnosing import Diagnosis, diagnose
     from matstd.api.effects import register_effects
     from matstd.progress import stages, turns
     from matstd.twin.files import results_folder
@@ -59,7 +59,7 @@ def run(args: argparse.Namespace) -> int:
 
     register_effects(*args.effects)
     model, pitch, printed_by = starting_model(args), pitches(args), asked_printer(args)
-    with results_folder(args.output, args.force, SOMETIMES) as folder, stages() as show:
+    with results_folder(args.output, args.force, Diagnosis.sometimes) as folder, stages() as show:
         found = diagnose(
             args.run_files,
             model,

@@ -79,7 +79,7 @@ def _of_first_probe(files: list[Path]) -> list[Path]:
 
 
 def _output_folder(args: argparse.Namespace) -> Path:
-    """The folder, which is there and holds nothing that nobody asked to replace."""
+    """An existing folder without files that the user did not ask to replace."""
     from pathlib import Path
 
     from matstd.twin.errors import DesignError
