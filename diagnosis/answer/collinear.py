@@ -7,8 +7,8 @@ import numpy as np
 from matstd.diagnosis.answer.verdict import Step
 from matstd.diagnosis.evidence import MIN_OWN_SHARE, ResidualSpace, ScaledEffect
 from matstd.diagnosis.fit import Reported, Role
+from matstd.diagnosis.regression import FALSE_ALARM
 from matstd.diagnosis.remarks import NotSignificant
-from matstd.diagnosis.search import FALSE_ALARM
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
 

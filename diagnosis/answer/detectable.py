@@ -8,7 +8,7 @@ from scipy.special import chdtri
 
 from matstd.diagnosis.evidence import EffectSet, ScaledEffect, Signatures, projected
 from matstd.diagnosis.fit import inner_unit
-from matstd.diagnosis.search import FALSE_ALARM
+from matstd.diagnosis.regression import FALSE_ALARM
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, inner_values
 from matstd.twin.record import Touches

@@ -10,7 +10,8 @@ from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 
 FALSE_ALARM = 1e-3
-"""Probability that a run without gross errors is said to have one."""
+"""Probability that noise is taken for a gross error, a structure, a region, an edge or an effect:
+of each kind of test, all its trials together."""
 
 MAX_ACCIDENT_SHARE = 0.05
 """Share of touches up to which an outlier is an accident by itself; more must look like

@@ -16,13 +16,10 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.regression import BoolArray, f_tail
+from matstd.diagnosis.regression import FALSE_ALARM, BoolArray, f_tail
 from matstd.diagnosis.residual.patterns import variables
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
-
-FALSE_ALARM = 1e-3
-"""Probability that noise is said to have a region."""
 
 MAX_CONDITIONS = 3
 """Most conditions that are joined."""

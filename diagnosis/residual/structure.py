@@ -14,15 +14,12 @@ from scipy.spatial import cKDTree
 from scipy.special import ndtr
 
 from matstd.diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
-from matstd.diagnosis.regression import PRIOR_DOF
+from matstd.diagnosis.regression import FALSE_ALARM, PRIOR_DOF
 from matstd.diagnosis.residual.crowds import crowds
 from matstd.diagnosis.residual.pattern_tests import PatternTests, TestedPattern
 from matstd.diagnosis.residual.waves import Wave, best_wave
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
-
-FALSE_ALARM = 1e-3
-"""Probability, all tests together, that white noise is said to have structure."""
 
 MIN_MATERIAL_SHARE = 0.01
 """Share of the squared residual that a pattern must hold to count. In ten thousand rows less is

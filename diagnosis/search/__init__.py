@@ -16,7 +16,6 @@ from matstd.diagnosis.search.search_loop import (
     search_until_stable,
 )
 from matstd.diagnosis.search.selection import (
-    FALSE_ALARM,
     MAX_LISTED,
     MIN_LOG_EVIDENCE_GAIN,
     MOST_SETS,
@@ -28,7 +27,6 @@ from matstd.diagnosis.search.selection import (
 from matstd.diagnosis.search.task import FREEDOM, DiagnosisTask
 
 __all__ = [
-    "FALSE_ALARM",
     "FREEDOM",
     "MAX_LISTED",
     "MIN_LOG_EVIDENCE_GAIN",

@@ -12,13 +12,10 @@ import numpy as np
 from scipy.special import gammaln
 
 from matstd.diagnosis.evidence import ScaledEffect
-from matstd.diagnosis.regression import BoolArray, GrossErrors
+from matstd.diagnosis.regression import FALSE_ALARM, BoolArray, GrossErrors
 from matstd.twin.frames import Array
 from matstd.twin.model import inner_values
 from matstd.twin.record import IntArray, Touches
-
-FALSE_ALARM = 1e-3
-"""Probability, all edges and lengths together, that accidents form such a group at an edge."""
 
 MAX_EDGE_LENGTH = 8
 """Touches from an edge that are looked at; a slip farther inside is a crowd to begin with."""

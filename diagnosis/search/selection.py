@@ -24,13 +24,11 @@ from matstd.diagnosis.evidence import (
     quiet,
     score_all,
 )
+from matstd.diagnosis.regression import FALSE_ALARM
 from matstd.diagnosis.search.instants import p_by_instants
 from matstd.diagnosis.search.nested import contains
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
-
-FALSE_ALARM = 1e-3
-"""Probability, all candidates and grids together, that a run without a hidden effect gets one."""
 
 MIN_LOG_EVIDENCE_GAIN = 3.0
 """Least gain of log evidence, and of held-out log density, of an effect: odds of twenty to one."""

@@ -8,7 +8,8 @@ import pytest
 from matstd.diagnosis.evidence.effect_signatures import ResidualSpace
 from matstd.diagnosis.evidence.evidence import EffectSet
 from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.residual.structure import FALSE_ALARM, Shape, find_structure
+from matstd.diagnosis.regression.gross import FALSE_ALARM
+from matstd.diagnosis.residual.structure import Shape, find_structure
 from matstd.twin.model.model import Model
 from matstd.twin.units import UM
 
