@@ -33,6 +33,7 @@ PARTS = (
     "effects",
     "words",
     "geometry",
+    "verdict",
     "identifiability",
     "task",
     "maps",
