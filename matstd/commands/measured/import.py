@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from matstd.options import add_output, seen_from
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from matstd.importers import Sheet
@@ -63,6 +64,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--sheet", metavar="NAME", help="sheet of a workbook (default: the first with data)"
+    )
+    parser.add_argument(
+        "--table",
+        metavar="N",
+        type=int,
+        help="number of the table in a file with several (default: the one with most readings)",
     )
     add_output(parser, "RUN.csv", "overwrite existing outputs")
 
@@ -170,14 +177,13 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from matstd.console import say
-    from matstd.importers import read_sheet
     from matstd.twin.errors import DesignError
     from matstd.twin.files import refuse_to_overwrite
 
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)
     names = [n.strip() for n in args.columns.split(",")] if args.columns else ()
-    sheets = [read_sheet(path, args.sheet, names) for path in args.files]
+    sheets = [_chosen(args, path, names) for path in args.files]
     if args.in_order is not None and not (args.arm or args.part or args.standard):
         raise DesignError("--in-order: expected with --arm, --part or --standard alone")
     if len(sheets) > 1 and not (args.part or args.standard):
@@ -191,6 +197,27 @@ def run(args: argparse.Namespace) -> int:
     else:
         _measured(args, sheets, output)
     return 0
+
+
+def _chosen(args: argparse.Namespace, path: str, names: Sequence[str]) -> Sheet:
+    """The table that `--table` names, or of which most can be read; others are listed."""
+    from matstd.commands.measured.kinds import readings_of
+    from matstd.console import say
+    from matstd.importers import read_sheet
+    from matstd.importers.sheets import listed_tables, most_read, read_tables
+
+    if args.table is not None:
+        return read_sheet(path, args.sheet, names, args.table)
+    tables = read_tables(path, args.sheet, names)
+    reader, axis = readings_of(args)
+    if reader is None or len(tables) == 1:
+        sheet = read_sheet(path, args.sheet, names) if len(tables) > 1 else tables[0]
+    else:
+        sheet = most_read(tables, reader, axis)
+    if len(tables) > 1:
+        say(f"- tables of {path}: {listed_tables(tables)}")
+        say(f"- table {sheet.number} is read; --table chooses another")
+    return sheet
 
 
 def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:

@@ -7,12 +7,37 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Callable
 
     from matstd.importers import Sheet
     from matstd.importers.instruments import PositioningTest
     from matstd.importers.points import Meaning
     from matstd.twin.machine import Chain
     from matstd.twin.record import Run
+
+
+def readings_of(args: argparse.Namespace) -> tuple[Callable[[Sheet], int] | None, str]:
+    """Number of readings of a table for this kind of import, and its axis.
+
+    None with a mapping file, for which any table may be meant.
+    """
+    from matstd.importers import read_circle, read_positioning
+    from matstd.importers.arms import read_arm
+    from matstd.importers.points import read_points
+
+    if args.component or args.positioning:
+        name = args.component or ""
+        axis = name[-1:] or args.positioning
+        named = (args.target, args.actual)
+        return lambda t: len(read_positioning(t, axis, args.unit, named, name).target), axis
+    if args.circle:
+        plane, radius = args.circle.upper(), args.radius or 1.0
+        return lambda t: len(read_circle(t, plane, radius, args.unit).angle), ""
+    if args.arm:
+        return lambda t: int(read_arm(t).shots.sum()), ""
+    if args.part or args.standard:
+        return lambda t: len(read_points(t, args.unit).line), ""
+    return None, ""
 
 
 def positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
