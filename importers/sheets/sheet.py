@@ -108,6 +108,10 @@ class Sheet:
     def column(self, name: str) -> int:
         """Index of a column by its whole name or its name without unit; raises BadFile."""
         for names in (self.columns, self.names):
+            if names.count(name) > 1:
+                twice = [self.columns[i] for i, other in enumerate(names) if other == name]
+                found = f"{name!r} in columns {' and '.join(map(repr, twice[:2]))}"
+                raise BadFile(self.path, "header", found, "one column of that name")
             if name in names:
                 return names.index(name)
         expected = f"one of {', '.join(self.columns)}"

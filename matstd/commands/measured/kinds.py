@@ -127,7 +127,8 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """An arm under a tracker as a run."""
     from matstd.console import say
     from matstd.importers import import_arm, read_sheet
-    from matstd.twin.units import UM
+    from matstd.importers.arms import oriented
+    from matstd.twin.units import UM, URAD
 
     found = import_arm(
         sheet,
@@ -137,6 +138,7 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         is_modified=args.modified,
         couplings=args.coupled,
         reflector=args.reflector,
+        u_angle=None if args.u_urad is None else _uncertainty(args, "u_urad", URAD),
     )
     pairs = zip(found.joints, found.chain.programmed_axes, strict=True)
     say(f"- axes: {', '.join(f'{column} is {axis}' for column, axis in pairs)}")
@@ -145,6 +147,13 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         at = ", ".join(f"{v:.3f}" for v in place)
         say(f"- {name} at ({at}) mm of the tool frame, as {how}")
     say("- the tracker's frame is the set-up")
+    for name, moved in found.fixed.items():
+        say(
+            f"- {name} does not move with the arm (range {moved / UM:.3g} µm): its motion is "
+            "imported as columns in µm and may drive effects"
+        )
+    if args.u_urad is None and oriented(sheet) is not None:
+        say("- orientations of the target are not used: --u-urad states their standard uncertainty")
     if found.mistake is not None:
         words, left = found.mistake
         say(
