@@ -74,6 +74,7 @@ EXCUSED = {
     "twin/library/trial.py": "the unit that a refusal of a user's effect expects",
     "artefact/compare/alternatives.py": "names of other set-ups, shown as they are",
     "artefact/feasibility/standing.py": "what is wrong with a body, put into one refusal",
+    "artefact/brief/contradictions.py": "refusals that are collected before they are raised",
     "artefact/feasibility/within_travels.py": "what binds, put into one refusal",
     "artefact/reach/touchable.py": "reason that a refusal counts",
     "cad_out/details/tolerances.py": "general notes of the drawing and the STEP file",
