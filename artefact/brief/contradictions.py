@@ -105,7 +105,6 @@ def body_faults(
     limits: LimitsTable,
     material: MaterialTable,
     ball_mm: float,
-    room_mm: float,
     table: tuple[str, float],
     path: Path,
 ) -> Iterator[BadFile]:
@@ -113,11 +112,9 @@ def body_faults(
 
     Args:
         ball_mm: Radius of the ball of the probe.
-        room_mm: Radius of the disc about the axis of the standard that lies on the table.
         table: The key that states the size of the table, and its smaller side.
     """
-    sides, room = blank.base_mm, 2.0 * room_mm
-    key, width = table
+    sides, (key, width) = blank.base_mm, table
     if width < LEAST_SIDE:
         smallest = f"{LEAST_SIDE:g} x {LEAST_SIDE:g} x {LEAST_HEIGHT:g} mm"
         yield BadFile(
@@ -129,9 +126,8 @@ def body_faults(
         )
     if min(sides) < LEAST_SIDE:
         yield BadFile(path, "blank.base_mm", list(sides), f"sides of {LEAST_SIDE:g} mm or more")
-    elif max(sides) > room and width >= LEAST_SIDE:
-        place = "" if room == width else " at its place in the set-up"
-        expected = f"sides no larger than the table{place}, {room:g} mm ({key})"
+    elif max(sides) > width >= LEAST_SIDE:
+        expected = f"sides no larger than the table, {width:g} mm ({key})"
         yield BadFile(path, "blank.base_mm", list(sides), expected)
     if ball_mm > limits.min_concave_radius_mm:
         yield BadFile(

@@ -49,11 +49,14 @@ from matstd.twin.files import (
 )
 from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
-from matstd.twin.units import DEG, UM, URAD
+from matstd.twin.units import DEG, UM, URAD, meant_in_radians
 
 MAX_READING = 1e6
 """Largest plausible reading, mm or degrees; larger integers may not convert to floats."""
 
+
+LEAST_WORKSPACE = 5.0
+"""Smallest range of a linear axis that is of interest, mm: less is one in metres."""
 
 RENAMED_KEYS = {
     "standard.drawn_machines": "standard.robust_machines",
@@ -192,13 +195,13 @@ def _resolved(table: ProjectTable, path: Path, remarks: tuple[str, ...]) -> Brie
         face = _table_face(table, path)
         bodies = _bodies(table, chain, path)
     if face is not None:
-        # screws and pads must stand on the table in every set-up
-        room = min(middle_room(face, setup.T_table_artefact) for setup in setups)
         known = (table_key(shop), 2.0 * min(face.half_size))
         ball = probes[0].radius if probes else 0.0
-        faults += body_faults(table.blank, table.limits, table.material, ball, room, known, path)
+        faults += body_faults(table.blank, table.limits, table.material, ball, known, path)
     faults.refuse()
     assert face is not None
+    # screws and pads must stand on the table in every set-up
+    room = min(middle_room(face, setup.T_table_artefact) for setup in setups)
     limits = table.limits.limits(probes[0].radius, room)
     return Brief(
         chain=chain,
@@ -345,8 +348,26 @@ def _workspace(
                 [low, high],
                 f"within the travel {travel[0] / factor:g} to {travel[1] / factor:g}",
             )
+        _check_unit(axis, (low, high), (travel[0] / factor, travel[1] / factor), path)
         out[axis] = (low * factor, high * factor)
     return out, poses
+
+
+def _check_unit(
+    axis: str, stated: tuple[float, float], travel: tuple[float, float], path: Path
+) -> None:
+    """Refuse a workspace in metres or radians; units of the file."""
+    low, high = stated
+    key, found = f"workspace.{axis}", [low, high]
+    width = f"{high - low:.3g}"
+    if axis[0] in "ABC":
+        meant = meant_in_radians(low, high)
+        if meant is not None and travel[0] <= meant[0] and meant[1] <= travel[1]:
+            ends = f"[{meant[0]:g}, {meant[1]:g}]"
+            raise BadFile(path, key, found, f"degrees, not {width}; is it in radians, {ends}?")
+    elif 0.0 < high - low < LEAST_WORKSPACE:
+        ends = f"[{1e3 * low:g}, {1e3 * high:g}]"
+        raise BadFile(path, key, found, f"mm, not {width} of them; is it in metres, {ends}?")
 
 
 def _pair(value: Any, path: Path, key: str) -> tuple[float, float]:

@@ -18,7 +18,7 @@ def check(**limits: float) -> None:
     given = checked(LimitsTable, limits, "project.toml", "limits")
     table = ("limits.table_radius_mm", 320.0)
     path = Path("project.toml")
-    Faults(body_faults(BlankTable(), given, MaterialTable(), 1.0, 160.0, table, path)).refuse()
+    Faults(body_faults(BlankTable(), given, MaterialTable(), 1.0, table, path)).refuse()
 
 
 @pytest.mark.parametrize(
@@ -61,3 +61,32 @@ def test_all_limits_are_named_at_once_with_the_keys_of_the_file(tmp_path):
 def test_a_renamed_key_is_refused_by_the_name_that_was_written(tmp_path):
     with pytest.raises(BadFile, match=r"standard\.density_kg_m3: found 7\.8, expected a number fr"):
         read_project(project(tmp_path, "[standard]\ndensity_kg_m3 = 7.8\n"))
+
+
+@pytest.mark.parametrize(
+    ("workspace", "words"),
+    [
+        ("X = [-0.2, 0.2]", r"workspace\.X: .*not 0\.4 of them; is it in metres, \[-200, 200\]\?"),
+        ("B = [-1.57, 0.35]", r"workspace\.B: .*is it in radians, \[-90, 20\]\?"),
+    ],
+)
+def test_a_workspace_in_other_units_is_refused(tmp_path, workspace, words):
+    with pytest.raises(BadFile, match=words):
+        read_project(project(tmp_path, f"[workspace]\n{workspace}\n"))
+
+
+@pytest.mark.parametrize("workspace", ["X = [0.0, 0.0]", "B = [-1.5, 0.5]", "X = [-5.0, 5.0]"])
+def test_a_narrow_workspace_is_read(tmp_path, workspace):
+    read_project(project(tmp_path, f"[workspace]\n{workspace}\n"))
+
+
+@pytest.mark.parametrize(
+    ("material", "words"),
+    [
+        ("density_kg_m3 = 7.8", r"density_kg_m3: found 7\.8, expected a number from 500 to 23000"),
+        ("expansion_1_K = 11.5", r"expansion_1_K: found 11\.5, .* from 0 to 0\.0003 1/K"),
+    ],
+)
+def test_figures_of_a_material_in_other_units_are_refused(tmp_path, material, words):
+    with pytest.raises(BadFile, match=words):
+        read_project(project(tmp_path, f"[material]\n{material}\n"))

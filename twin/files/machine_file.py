@@ -7,6 +7,7 @@ from pydantic import Field, Strict
 
 from matstd.twin.errors import BadFile, BadValue, UnknownAxis
 from matstd.twin.files.keys import Table, checked
+from matstd.twin.files.machine_checks import machine_slips
 from matstd.twin.files.toml import check_format, parse_toml, read_text
 from matstd.twin.machine import Axis, Chain, make_chain
 from matstd.twin.units import DEG
@@ -103,4 +104,8 @@ def read_machine(path: str | Path) -> Chain:
     """Machine from its file; raises BadFile."""
     data = parse_toml(read_text(path), path)
     check_format(data, "machine/1", path)
-    return checked(MachineFile, data, path).made(path)
+    chain = checked(MachineFile, data, path).made(path)
+    slips = [BadFile.of(path, slip) for slip in machine_slips(chain)]
+    if slips:
+        raise BadFile.several(slips)
+    return chain
