@@ -35,6 +35,7 @@ PARTS = (
     "effects",
     "words",
     "geometry",
+    "verdict",
     "identifiability",
     "task",
     "maps",

@@ -207,7 +207,7 @@ def promise_sentence(
         others: Effects of another run in the model, which the promise excludes.
     """
     word = "worse than promised" if found.rms > BROKEN * promised else "as good as promised"
-    expected = rms(found.u[found.counted])
+    expected = found.expected
     elsewhere = ""
     if expected > BROKEN * promised:
         elsewhere = (
