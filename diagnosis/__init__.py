@@ -24,6 +24,7 @@ new effect needs nothing here.
 """
 
 PARTS = (
+    "policy",
     "regression",
     "fit",
     "geometry",

@@ -89,7 +89,9 @@ export class Touched {
     this.needles();
     const { limit } = shown, { unit } = this.data;
     const scale = element("i", { class: "scale" });
-    this.legend.replaceChildren(`−${digits(limit, 2)}`, scale, `+${digits(limit, 2)} ${unit}`);
+    const hasGross = this.data.touches.state.values.includes(1);
+    this.legend.replaceChildren(`−${digits(limit, 2)}`, scale, `+${digits(limit, 2)} ${unit}`,
+      ...(hasGross ? [element("i", { class: "gross" }), "gross error"] : []));
     this.legend.title = "measured minus predicted; the scale is that of the starting model";
   }
 
