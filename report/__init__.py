@@ -18,6 +18,7 @@ number in a result.
     maps    sensitivities and volumetric error over a workspace or along a path
     plots   plans, proofs, residuals, effects
     scenes  pictures in three dimensions, rendered in a process of their own
+    machine a machine that moves, with its errors and a program, on a page
     drawing the sheet for the workshop, PDF and SVG
     pages   the pages: results as lists of sections
     compensation
@@ -40,6 +41,7 @@ PARTS = (
     "maps",
     "plots",
     "scenes",
+    "machine",
     "drawing",
     "pages",
     "compensation",

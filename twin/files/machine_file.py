@@ -75,10 +75,32 @@ class MachineFile(MachineTables):
     """The whole file."""
 
     format: str
+    bodies: dict[str, str] | None = None
 
 
 def read_machine(path: str | Path) -> Chain:
     """Machine from its file; raises BadFile."""
+    return _read(path).made(path)
+
+
+def read_bodies(path: str | Path) -> dict[str, Path]:
+    """Drawings of a machine's bodies by link: an axis, `w`, `t`, or `f` for the foundation.
+
+    They are seen from the machine file. Nothing but a picture depends on them.
+
+    Raises:
+        BadFile: A file of another kind, or a body of a link that the machine does not have.
+    """
+    tables = _read(path)
+    known = ["f", *(link.name for link in tables.made(path).links)]
+    drawings = tables.bodies or {}
+    for name in drawings:
+        if name not in known:
+            raise BadFile(path, "bodies", name, f"one of {', '.join(known)}")
+    return {name: Path(path).parent / file for name, file in drawings.items()}
+
+
+def _read(path: str | Path) -> MachineFile:
     data = parse_toml(read_text(path), path)
     check_format(data, "machine/1", path)
-    return checked(MachineFile, data, path).made(path)
+    return checked(MachineFile, data, path)
