@@ -17,6 +17,8 @@ number in a result.
     task    calibration of a standard, uncertainty of a measuring task
     maps    sensitivities and volumetric error over a workspace or along a path
     plots   plans, proofs, residuals, effects
+    run_view
+            the live view of a run: effects to switch, and the error with them
     scenes  pictures in three dimensions, rendered in a process of their own
     machine a machine that moves, with its errors and a program, on a page
     drawing the sheet for the workshop, PDF and SVG
@@ -40,6 +42,7 @@ PARTS = (
     "task",
     "maps",
     "plots",
+    "run_view",
     "scenes",
     "machine",
     "drawing",
