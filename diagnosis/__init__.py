@@ -23,6 +23,7 @@ new effect needs nothing here.
 """
 
 PARTS = (
+    "policy",
     "regression",
     "fit",
     "geometry",

@@ -7,6 +7,7 @@ number in a result.
 
     style   paper, colours and labels of every picture
     layout  sections of a page, and how they become HTML, CSV and PDF
+    live    data and scripts of pages that move
     effects titles of effects
     words   sentences, for pages and for the console
     geometry
@@ -30,6 +31,7 @@ it with its caption. A new sentence is a function in `words`.
 PARTS = (
     "style",
     "layout",
+    "live",
     "effects",
     "words",
     "geometry",

@@ -5,7 +5,7 @@ look-alikes, `sizes` numbers that rest on the touches alone, `detectable` what t
 shown, `next_measurement` touches that distinguish look-alikes, `proof` compares with a known truth.
 """
 
-from matstd.diagnosis.answer.ambiguity import MAX_LOG_ODDS_CONFUSED, ConfusionClass
+from matstd.diagnosis.answer.ambiguity import ConfusionClass
 from matstd.diagnosis.answer.comparison import Comparison, GroupResidual, compare
 from matstd.diagnosis.answer.detectable import Detectable
 from matstd.diagnosis.answer.next_measurement import Plan
@@ -15,7 +15,6 @@ from matstd.diagnosis.answer.trend import RunErrors, Trend
 from matstd.diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
 
 __all__ = [
-    "MAX_LOG_ODDS_CONFUSED",
     "Candidate",
     "Comparison",
     "ConfusionClass",

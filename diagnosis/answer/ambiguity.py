@@ -16,17 +16,11 @@ from matstd.diagnosis.evidence import (
     score_all,
     signatures,
 )
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.search import refined
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 from matstd.twin.record import Touches
-
-MAX_LOG_ODDS_CONFUSED = float(np.log(100.0))
-"""Log odds below which two effects are not distinguished."""
-
-MAX_EVIDENCE_LOSS = 15.0
-"""Rivals whose evidence on the grid is this far behind that of the named effect on its own grid are
-not refined."""
 
 MAX_RIVALS = 40
 """Most rivals that are refined, the most likely first; a larger class would not help a reader."""
@@ -149,7 +143,7 @@ def confusion_class(
     rivals = [Rival(found, 0.0, 1.0)]
     explained = _explained(base, found)
     for variant in _ranked(
-        pool, scores.evidence, min(top, _on_grid(base, found)) - MAX_EVIDENCE_LOSS
+        pool, scores.evidence, min(top, _on_grid(base, found)) - POLICY.log_odds_ruled_out
     ):
         candidate = pool.variants[variant]
         if candidate.name in names:
@@ -194,7 +188,7 @@ def _ordered(found: Sequence[Rival], prior: dict[str, float]) -> ConfusionClass:
     head = min(found, key=rank)
     rest = sorted((r for r in found if r is not head), key=rank)
     shifted = [Rival(r.sized, r.log_odds - head.log_odds, r.overlap) for r in rest]
-    close = tuple(r for r in shifted if r.log_odds < MAX_LOG_ODDS_CONFUSED)
+    close = tuple(r for r in shifted if r.log_odds < POLICY.log_odds_alike)
     return ConfusionClass(
-        head.sized, close, tuple(r for r in shifted if r.log_odds >= MAX_LOG_ODDS_CONFUSED)
+        head.sized, close, tuple(r for r in shifted if r.log_odds >= POLICY.log_odds_alike)
     )

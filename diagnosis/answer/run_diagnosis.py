@@ -39,6 +39,7 @@ from matstd.diagnosis.evidence import (
 from matstd.diagnosis.faults import description_faults
 from matstd.diagnosis.fit import Fit, Prior, prior_for
 from matstd.diagnosis.geometry import learnt_geometry
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors
 from matstd.diagnosis.remarks import Remark, SearchEnded, remarks
 from matstd.diagnosis.residual import Region, Structure, find_structure, regions
@@ -61,14 +62,6 @@ from matstd.twin.record import Run, Touches, with_commanded, without_copies
 MAX_PERIODS_PLANNED = 8
 """Most periods that a plan of touches distinguishes, the longest ones."""
 
-MAX_P_BESIDE_MEMORY = 1e-4
-"""Probability by chance below which a pattern is reported beside noise with memory. A memory is an
-approximate model, and the residual of real parts never follows it exactly."""
-
-MAX_COVERED_RATIO = 0.7
-"""Residual over stated uncertainty below which a pattern is reported but no effect counts as
-missing, since the stated uncertainty allows for it. Scatter of a run of a hundred touches does not
-reach so low."""
 
 MAX_DEPENDENCES = 2
 """Most patterns that `depends_on` reports, one after the other."""
@@ -206,12 +199,12 @@ def _result(
 def _beyond_doubt(left: Sequence[Structure], fit: Fit) -> tuple[Structure, ...]:
     """Patterns that stand however the noise remembers."""
     is_modelled = fit.memory is not None and fit.memory.is_filtered
-    return tuple(s for s in left if not is_modelled or s.p_value < MAX_P_BESIDE_MEMORY)
+    return tuple(s for s in left if not is_modelled or s.p_value < POLICY.p_beside_memory)
 
 
 def _is_covered(fit: Fit) -> bool:
     """Whether the whole residual is well within the stated uncertainty of a touch."""
-    return float(np.std(fit.residual[fit.used] / fit.run.u[fit.used])) < MAX_COVERED_RATIO
+    return float(np.std(fit.residual[fit.used] / fit.run.u[fit.used])) < POLICY.noise_ratio_covered
 
 
 def _significant_effects(
