@@ -14,8 +14,9 @@ user. `accuracy` says how well the run repeats itself and what a model promises.
 effects that are not in the model on what the fit leaves, and says how much a set of them explains;
 `faults` tries what users get wrong in a description. `residual` tests what is left for structure,
 and finds regions where a model fails. `search` finds sets of effects, `choice` takes the one that
-predicts best, `answer` turns it into a verdict with sizes and look-alikes. `task` evaluates visits
-to calibrated features for a user's measuring task. `files` reads and writes models and results.
+predicts best, `answer` turns it into a verdict with sizes and look-alikes. `reduced` keeps
+what the error of any set of effects follows from, without the touches. `task` evaluates visits to
+calibrated features for a user's measuring task. `files` reads and writes models and results.
 `drift` has laws of thermal drift from logs.
 
 Where to add things: a test for structure is a module of `residual` and a `Shape`; something a user
@@ -36,6 +37,7 @@ PARTS = (
     "search",
     "choice",
     "answer",
+    "reduced",
     "task",
     "files",
     "drift",

@@ -20,6 +20,7 @@ from matstd.report.pages.run_sections import (
     residual_sections,
     run_foot,
 )
+from matstd.report.run_view import comparison_step, comparison_view
 from matstd.report.verdict import promise_words, repeatability_words
 from matstd.report.words import (
     comparison_sentence,
@@ -83,6 +84,8 @@ def write_compare_page(
             outlier_section(found.fit),
         ],
         foot=run_foot(found.run, title),
+        next=comparison_step(found, title),
+        live=comparison_view(found, title),
     )
     path = Path(folder) / PAGE
     write_page(path, page)
