@@ -69,16 +69,29 @@ def _named(one: NamedEffect, step: Step) -> str:
     weight = f"explains {percent(one.share)} of the excess ({microns(one.explained)} rms)"
     doubt = "" if one.is_headline else ", not certain by itself"
     by_name = ", added by name" if step.is_named else ""
-    inside = ", ".join(word for word in (size, weight, f"p = {p_value(one.p_value)}") if word)
+    inside = ", ".join(word for word in (size, weight, _chance(one.p_value)) if word)
     return f"{effect_words(one.effect)}: {inside}{doubt}{by_name}{_rival(one)}"
 
 
+def _chance(p: float) -> str:
+    """`p = 0.02`, or `p < 1e-12`."""
+    words = p_value(p)
+    return f"p {words}" if words.startswith("<") else f"p = {words}"
+
+
 def _rival(one: NamedEffect) -> str:
-    if one.runner_up is None:
-        return ""
-    name, odds = one.runner_up.effect.name, one.runner_up.log_odds
-    alike = " (not distinguished)" if odds < POLICY.log_odds_alike else ""
-    return f"; closest rival {name}, odds {odds_words(odds)}{alike}"
+    """The closest rival, and a cause that nobody recorded, each with its odds."""
+    rivals = []
+    if one.runner_up is not None:
+        rivals.append((f"closest rival {one.runner_up.effect.name}", one.runner_up.log_odds))
+    if one.against_drift is not None:
+        rivals.append(("a slow drift without a recorded cause", one.against_drift))
+    return "".join(f"; {name}, {_odds(odds)}" for name, odds in rivals)
+
+
+def _odds(log_odds: float) -> str:
+    alike = " (not distinguished)" if log_odds < POLICY.log_odds_alike else ""
+    return f"odds {odds_words(log_odds)}{alike}"
 
 
 def odds_words(log_odds: float) -> str:
@@ -102,7 +115,7 @@ def _nothing_named(result: Diagnosis) -> str:
     if not result.candidates:
         return "none; no effect of the library applies to these touches"
     best = result.candidates[0]
-    return f"none; closest by itself {best.effect}, p = {p_value(best.p_value)}"
+    return f"none; closest by itself {best.effect}, {_chance(best.p_value)}"
 
 
 def _remains(part: Remainder, repeats: Repeatability) -> str:
