@@ -13,6 +13,7 @@ from matstd.diagnosis.geometry import LearntGeometry
 from matstd.diagnosis.residual import Shape, Structure
 from matstd.report.verdict import part_lines
 from matstd.report.verdict.part_words import odds_words
+from matstd.report.words import verdict_sentence
 from matstd.twin.frames import apply
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.machine import tip
@@ -182,3 +183,19 @@ def test_an_expansion_beyond_all_materials_is_not_found(hidden):
         run = replace(hidden, touches=t, deviation=hidden.deviation + alpha * column)
         found.append([e.name for e in diagnose(run, candidates=[effect]).found])
     assert found == [[effect.name], []]
+
+
+def test_the_headline_names_only_what_is_certain(hidden):
+    """Two laws are found; the one that is no more than a tenth of the noise is only counted."""
+    t = hidden.touches
+    effects = [parse_effect(f"backlash({axis})", t.chain) for axis in "XY"]
+    column = Model(t.chain, effects).columns(t) @ np.array([8.0 * UM, 6.0 * UM])
+    found = diagnose(replace(hidden, deviation=hidden.deviation + column), candidates=effects)
+    both = [f"backlash({axis})" for axis in "XY"]
+    assert sorted(e.name for e in found.found) == both
+    assert all(name in verdict_sentence(found) for name in both)
+    small = tuple(replace(n, is_headline=n.effect.name == both[0]) for n in found.parts.named)
+    one = replace(found, parts=replace(found.parts, named=small))
+    assert both[1] not in verdict_sentence(one)
+    assert "one effect: " in verdict_sentence(one)
+    assert "(one effect not certain or too small to name)" in verdict_sentence(one)
