@@ -33,13 +33,14 @@ def part_lines(result: Diagnosis) -> list[tuple[str, str]]:
     """Heading and words of every part, in the order in which they are read."""
     parts = result.parts
     steps = {s.effect.name: s for s in result.steps if s.effect is not None}
+    before = result.promise_before if steps else None
     named = [_named(one, steps[one.effect.name]) for one in parts.named]
     return [
         ("geometry", _geometry(parts.geometry)),
         ("named effects", "; ".join(named) or _nothing_named(result)),
         ("what remains", _remains(parts.remains, parts.repeatability)),
         ("repeatability", repeatability_words(parts.repeatability, parts.remains.scatter)),
-        ("error to expect", promise_words(result.promise, result.promise_before)),
+        ("error to expect", promise_words(result.promise, before)),
     ]
 
 
@@ -154,7 +155,7 @@ def repeatability_words(found: Repeatability, scatter: float) -> str:
 
 def promise_words(after: Promise, before: Promise | None = None) -> str:
     """Errors to expect at other places and at the same touches; and where the model fails."""
-    fall = "" if before is None or before is after else f"{microns(before.elsewhere)} → "
+    fall = "" if before is None else f"{microns(before.elsewhere)} → "
     fails = [d for d in after.domains if d.ratio > HOLDS]
     words = (
         f"{fall}{microns(after.elsewhere)} at other places within the probed range, "
