@@ -6,9 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.api.arm import FOUND, write_found_arm
 from matstd.api.runs import GEOMETRY, Runs, StartingModel, starting_run
-from matstd.api.saved import REPORT_FILES, Saveable
+from matstd.api.saved import FOUND, REPORT_FILES, Saveable, write_found_arm
 from matstd.diagnosis import answer
 from matstd.diagnosis.evidence import Progress, quiet
 from matstd.diagnosis.files import SavedModel, write_comparison, write_residuals

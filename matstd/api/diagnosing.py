@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from matstd.api.arm import FOUND, write_found_arm
 from matstd.api.runs import GEOMETRY, Runs, StartingModel, is_learnt_from, starting_run
-from matstd.api.saved import REPORT_FILES, Saveable
+from matstd.api.saved import FOUND, REPORT_FILES, Saveable, write_found_arm
 from matstd.diagnosis import answer
 from matstd.diagnosis.choice import candidate_effects
 from matstd.diagnosis.evidence import Progress, quiet

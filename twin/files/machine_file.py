@@ -98,14 +98,40 @@ class MachineFile(MachineTables):
 
     format: str = Field(examples=["machine/1"])
     """kind and version of the file, `"machine/1"`"""
+    bodies: dict[str, str] | None = None
+    """drawings of the bodies of the machine for `matstd show`. The key is a link (an axis, `w`,
+    `t`, or `f` for the foundation), the value an STL, OBJ, PLY or STEP file seen from the machine
+    file, in mm, machine frame with every axis at zero. Links without a drawing are plain solids.
+    No result depends on it"""
 
 
 def read_machine(path: str | Path) -> Chain:
     """Machine from its file; raises BadFile."""
-    data = parse_toml(read_text(path), path)
-    check_format(data, "machine/1", path)
-    chain = checked(MachineFile, data, path).made(path)
+    chain = _read(path).made(path)
     slips = [BadFile.of(path, slip) for slip in machine_slips(chain)]
     if slips:
         raise BadFile.several(slips)
     return chain
+
+
+def read_bodies(path: str | Path) -> dict[str, Path]:
+    """Drawings of a machine's bodies by link: an axis, `w`, `t`, or `f` for the foundation.
+
+    They are seen from the machine file. Nothing but a picture depends on them.
+
+    Raises:
+        BadFile: A file of another kind, or a body of a link that the machine does not have.
+    """
+    tables = _read(path)
+    known = ["f", *(link.name for link in tables.made(path).links)]
+    drawings = tables.bodies or {}
+    for name in drawings:
+        if name not in known:
+            raise BadFile(path, "bodies", name, f"one of {', '.join(known)}")
+    return {name: Path(path).parent / file for name, file in drawings.items()}
+
+
+def _read(path: str | Path) -> MachineFile:
+    data = parse_toml(read_text(path), path)
+    check_format(data, "machine/1", path)
+    return checked(MachineFile, data, path)

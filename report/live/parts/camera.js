@@ -19,7 +19,7 @@ export class OrbitCamera {
   fit(low, high) {
     const size = Math.hypot(...high.map((v, k) => v - low[k])) || 1;
     this.start.at = low.map((v, k) => (v + high[k]) / 2);
-    this.start.far = 1.25 * size;
+    this.start.far = 0.95 * size;
     this.size = size;
     this.reset();
   }

@@ -34,7 +34,7 @@ void main() {
   float away = length(gl_PointCoord - 0.5);
   if (away > 0.5) discard;
   if (first > 0u) { seen = vec4(tint, 1.0); return; }
-  seen = vec4(away > 0.4 ? 0.45 * tint : tint, opacity);
+  seen = vec4(away > 0.4 ? 0.7 * tint : tint, opacity);
 }`];
 
 const LINES = [`#version 300 es
