@@ -194,7 +194,9 @@ def _result(
             task.prior if task.is_known else None,
             steps[0].fit if len(steps) > 1 else None,
         ),
-        faults=description_faults(steps[0].fit, progress),
+        faults=description_faults(
+            steps[0].fit, progress, [s.effect for s in steps[1:] if s.effect is not None]
+        ),
         remarks=(*not_significant(steps), *_remarks(steps, final)),
         nearest=nearest(task, beside, gross, steps[-1].fit, candidates, depends_on)
         if unexplained
