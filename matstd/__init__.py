@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matstd.api.drifting import DriftLaws, DriftPrediction, learn_drift, predict_drift
     from matstd.api.effects import register_effects
     from matstd.api.evaluating import Evaluation, evaluate
+    from matstd.api.learning import LearntLaws, learn
     from matstd.api.machines import (
         machine_file,
         machine_names,
@@ -60,6 +61,7 @@ _PLACES = {
     "api.diagnosing": ("Diagnosis", "diagnose"),
     "api.drifting": ("DriftLaws", "DriftPrediction", "learn_drift", "predict_drift"),
     "api.effects": ("register_effects",),
+    "api.learning": ("LearntLaws", "learn"),
     "api.machines": (
         "machine_file",
         "machine_names",
@@ -115,6 +117,7 @@ __all__ = [
     "Effect",
     "Evaluation",
     "Fit",
+    "LearntLaws",
     "Model",
     "NotEnoughData",
     "ProgramOptions",
@@ -134,6 +137,7 @@ __all__ = [
     "compensate",
     "diagnose",
     "evaluate",
+    "learn",
     "learn_drift",
     "machine_file",
     "machine_names",

@@ -207,6 +207,7 @@ RESULTS = {
         "diagnosis/files/geometry_table.py",
         "diagnosis/files/fault_table.py",
     ],
+    "law.json": ["diagnosis/files/law_file.py", "diagnosis/laws/policy.py"],
     "uncertainty.json": ["diagnosis/files/uncertainty_file.py"],
     "identification.json": ["report/identifiability/identification_file.py"],
     "identifiability.json": [

@@ -34,6 +34,7 @@ from matstd.twin.effects import (
 )
 from matstd.twin.elastic import body, stiffness, tool_point
 from matstd.twin.errors import BadFile, DesignError, UnknownEffect
+from matstd.twin.laws import KIND as LAW
 from matstd.twin.library.trial import users_fault
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Kind, Title, columns, is_tunable, own_title
@@ -315,5 +316,6 @@ for _kind in (
     artefact.SLIP,
     artefact_form.KIND,
     artefact.DRIFT,
+    LAW,
 ):
     register(_kind)
