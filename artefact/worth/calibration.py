@@ -33,14 +33,16 @@ class Calibration:
         patch: Of each coordinate of a freeform patch, mm.
         patch_tilt: Of each rotation of a patch, rad.
         ball: Of each coordinate of the centre of a datum sphere, mm.
+        form: Of the surface of a face at a point, beside its place; points nearby share it, mm.
     """
 
     patch: float = 1.0 * UM
     patch_tilt: float = 10.0 * URAD
     ball: float = 0.3 * UM
+    form: float = 0.3 * UM
 
     def __post_init__(self) -> None:
-        if min(self.patch, self.patch_tilt, self.ball) < 0.0:
+        if min(self.patch, self.patch_tilt, self.ball, self.form) < 0.0:
             raise DesignError(f"calibration {self}, expected uncertainties from zero up")
 
     @staticmethod
