@@ -231,6 +231,7 @@ RESULTS = {
         "diagnosis/files/fault_table.py",
         "diagnosis/files/parts_table.py",
     ],
+    "law.json": ["diagnosis/files/law_file.py", "diagnosis/laws/policy.py"],
     "uncertainty.json": ["diagnosis/files/uncertainty_file.py"],
     "identification.json": ["report/identifiability/identification_file.py"],
     "identifiability.json": [
