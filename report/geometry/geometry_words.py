@@ -35,6 +35,9 @@ USUAL = (Quantity.SQUARENESS, Quantity.SCALE, *ARM)
 SPANS = (Quantity.STRAIGHTNESS, Quantity.ANGULAR, Quantity.ROTARY_MOTION)
 """Curves, reported by their peak to valley."""
 
+CLEAR = 2.0
+"""Standard uncertainties from which on a quantity is worth a line on the console."""
+
 NOTED = 8
 """Quantities reported on the console."""
 
@@ -171,17 +174,18 @@ def _value(value: float, u: float, factor: float, unit: str) -> str:
 
 
 def noted_lines(geometry: LearntGeometry) -> list[str]:
-    """The most important quantities: those that changed or exceed their expected size.
+    """The largest quantities, by what they do at the tool; changed ones stand first.
 
-    Without any, squareness and scales, zeros of joints and lengths of links, the clearest first;
-    without these, all that the run determines.
+    Lines of rotary axes always, of the others those that changed, exceed their expected size or
+    are clear of their uncertainty. Without any, squareness and scales, zeros of joints and lengths
+    of links; without these, all that the run determines.
     """
+    known = [r for r in geometry.rows if r.is_determined]
     noted = [r for r in geometry.rows if r.has_changed or _is_beyond(r) or _is_of_arm(r)]
-    if not noted:
-        known = [r for r in geometry.rows if r.is_determined]
-        noted = [r for r in known if _is_usual(r)] or known
+    noted += [r for r in known if r not in noted and (_is_line(r) or _is_clear(r))]
+    noted = noted or [r for r in known if _is_usual(r)] or known
     by_size = sorted(noted, key=lambda r: (not r.has_changed, -r.at_ends.value))
-    lines = [_noted(r) for i, r in enumerate(by_size) if i < NOTED or r.is_far]
+    lines = [_noted(r) for i, r in enumerate(by_size) if i < NOTED or r.is_far or _is_line(r)]
     more = len(noted) - len(lines)
     lines += [f"and {more} more in the table"] if more > 0 else []
     if any(step.rung is Rung.MODEL for step in geometry.ladder) and not any(
@@ -213,6 +217,22 @@ def _rotary(rows: Sequence[GeometryRow]) -> str:
     )
 
 
+def determined_comment(geometry: LearntGeometry) -> str:
+    """The determined quantities as comments at the head of a model file.
+
+    An estimate of one parameter shares what set-up and other parameters imitate; the quantities
+    here are those of the console and the page.
+    """
+    known = [line for line in geometry_lines(geometry) if line.is_determined]
+    if not known:
+        return ""
+    head = (
+        "# What the run determines, as reported. The estimates below are parameters, whose\n"
+        "# indistinguishable parts (of the set-up, of each other) are shared out by the prior.\n"
+    )
+    return head + "".join(f"#   {line.name}: {line.value}\n" for line in known) + "\n"
+
+
 def far_lines(geometry: LearntGeometry) -> list[str]:
     """Lines of rotary axes far from their position in the machine file."""
     return [_noted(row) for row in geometry.rows if row.is_far]
@@ -230,6 +250,20 @@ def _noted(row: GeometryRow) -> str:
 
 def _is_beyond(row: GeometryRow) -> bool:
     return row.is_beyond_expected or row.is_far
+
+
+def _is_line(row: GeometryRow) -> bool:
+    """Whether it is the position of a rotary axis, the first that is asked of a five-axis machine.
+
+    Arms have many lines and small uses of each: there these are the lengths and zeros.
+    """
+    is_place = row.quantity is Quantity.ROTARY_LINE and row.unit == "mm"
+    return is_place and row.is_determined
+
+
+def _is_clear(row: GeometryRow) -> bool:
+    """Whether it exceeds its uncertainty by more than chance."""
+    return row.is_determined and abs(row.estimate.value) > CLEAR * row.estimate.u
 
 
 def _is_of_arm(row: GeometryRow) -> bool:
