@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from matstd.diagnosis.fit import Fit, fit_run
+from matstd.diagnosis.laws.library import LibraryEffect, nearest_of_library
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
 from matstd.diagnosis.laws.search import Searched, search_law
 from matstd.diagnosis.laws.space import Space
@@ -50,6 +51,7 @@ class LearntLaw:
         score: Log evidence that it gains, all charges taken off.
         curve: That of the best law without a formula.
         rivals: Other laws, the nearest first; those within the policy's odds are its class.
+        library: The effect of the library that explains most of the same; None without any.
     """
 
     law: Law
@@ -57,6 +59,12 @@ class LearntLaw:
     score: float
     curve: float
     rivals: tuple[Rival, ...]
+    library: LibraryEffect | None = None
+
+    @property
+    def is_in_library(self) -> bool:
+        """Whether an effect with a cause explains as much."""
+        return self.library is not None and self.library.score > self.score
 
     def members(self, policy: LawPolicy) -> list[tuple[Law, float]]:
         """Laws that cannot be told apart, with their shares of a prediction."""
@@ -177,7 +185,7 @@ def learn_laws(
         if best.score < policy.min_score or not predicts_better(current, fit, policy):
             refused = best
             break
-        laws.append(best)
+        laws.append(replace(best, library=nearest_of_library(searched.space)))
         current = fit
     tangent = fitted(run, start, [one.law for one in laws], True) if laws else start
     return Learning(

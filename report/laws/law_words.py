@@ -199,6 +199,19 @@ def rival_sentence(one: LearntLaw) -> str:
     return ""
 
 
+def library_sentence(one: LearntLaw) -> str:
+    """How the law compares with the best effect of the library; empty where none is near."""
+    if one.library is None:
+        return ""
+    name, odds = one.library.effect.name, one.score - one.library.score
+    if odds < 0.0:
+        return (
+            f"The library explains it better: {name} (odds {odds_words(-odds)}). Take that effect: "
+            f'matstd diagnose --add "{name}".'
+        )
+    return f"The nearest effect of the library is {name} (odds {odds_words(odds)} for the law)."
+
+
 def odds_words(log_odds: float) -> str:
     """`40 : 1`."""
     if log_odds > math.log(1e6):
