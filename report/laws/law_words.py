@@ -11,7 +11,7 @@ from matstd.diagnosis.laws import (
     amplitudes,
     places,
 )
-from matstd.report.numbers import digits, microns, span, with_uncertainty
+from matstd.report.numbers import digits, microns, with_uncertainty
 from matstd.twin.laws import Carrier, Driver, Law
 from matstd.twin.units import DEG, MINUTE, UM, URAD
 from matstd.twin.words import listed
@@ -65,10 +65,6 @@ _SHAPES = {
     "play": "a play that follows",
     "curve": "a smooth curve without a formula",
 }
-_PLACE_NAMES = {
-    "x0": "at", "x1": "from", "x2": "to", "w": "width", "wa": "fast", "wb": "slow", "p": "exponent",
-    "period": "period", "phase": "phase", "k": "waves a turn", "length": "correlation length",
-}  # fmt: skip
 _LOOKS = {
     ("bump", "linear"): "It looks like a hose or a cable chain, or a worn place of a guide.",
     ("plateau", "linear"): "It looks like a worn zone of a scale or of a guide.",
@@ -246,8 +242,3 @@ def second_run_sentence(second: SecondRun) -> str:
     if second.is_better:
         return f"{words}."
     return f"{words}: the law does not hold there. Do not use it to predict."
-
-
-def span_words(seconds: float) -> str:
-    """A span of time."""
-    return span(seconds)
