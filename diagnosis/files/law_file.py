@@ -81,6 +81,12 @@ def _law(learning: Learning, one: LearntLaw, effect: str) -> dict[str, Any]:
         "parameters": [_place(p) for p in places(learning, one.law)],
         "log_evidence": one.score,
         "log_evidence_of_curve": one.curve if np.isfinite(one.curve) else None,
+        "library": None
+        if one.library is None
+        else {
+            "effect": one.library.effect.name,
+            "log_odds_against": one.score - one.library.score,
+        },
         "class": [{"law": law.name, "share": share} for law, share in one.members(policy)],
         "rivals": [
             {"law": r.law.name, "parameters": _plain(r.law), "log_odds_against": r.log_odds}

@@ -93,9 +93,8 @@ def curve_of(learning: Learning, law: Law, factor: int, x: Array) -> tuple[Array
         ]
     )
     covariance = fit.covariance[np.ix_(rows, rows)]
-    other = _other_factor(learning, law, factor, theta)
+    other = _other_factor(learning, law, factor)
     S = _values(law, factor, x, law.places, other)
-    slope = [S]
     weights = theta.reshape(law.carrier.count, -1)
     way = int(np.argmax(np.abs(weights).sum(axis=1)))
     pick = np.zeros((law.carrier.count, S.shape[1]))
@@ -116,7 +115,7 @@ def curve_of(learning: Learning, law: Law, factor: int, x: Array) -> tuple[Array
     return value, np.sqrt(np.maximum(np.einsum("np,pk,nk->n", A, covariance, A), 0.0))
 
 
-def _other_factor(learning: Learning, law: Law, factor: int, theta: Array) -> Array | None:
+def _other_factor(learning: Learning, law: Law, factor: int) -> Array | None:
     """Columns of the other factor where it acts most, (coefficients,); None without one."""
     if len(law.factors) == 1:
         return None
@@ -125,7 +124,6 @@ def _other_factor(learning: Learning, law: Law, factor: int, theta: Array) -> Ar
     own = law.places[start : start + len(other.shape.places)]
     x = other.driver.values(learning.after.run.touches)
     S = np.stack(other.shape.values(x, *own), axis=1)
-    del theta
     return np.asarray(S[int(np.argmax(np.abs(S).sum(axis=1)))])
 
 

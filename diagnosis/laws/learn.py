@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from matstd.diagnosis.fit import Fit, fit_run
+from matstd.diagnosis.laws.library import LibraryEffect, nearest_of_library
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
 from matstd.diagnosis.laws.search import Searched, search_law
 from matstd.diagnosis.laws.space import Space
@@ -50,6 +51,7 @@ class LearntLaw:
         score: Log evidence that it gains, all charges taken off.
         curve: That of the best law without a formula.
         rivals: Other laws, the nearest first; those within the policy's odds are its class.
+        library: The effect of the library that explains most of the same; None without any.
     """
 
     law: Law
@@ -57,6 +59,12 @@ class LearntLaw:
     score: float
     curve: float
     rivals: tuple[Rival, ...]
+    library: LibraryEffect | None = None
+
+    @property
+    def is_in_library(self) -> bool:
+        """Whether an effect with a cause explains as much."""
+        return self.library is not None and self.library.score > self.score
 
     def members(self, policy: LawPolicy) -> list[tuple[Law, float]]:
         """Laws that cannot be told apart, with their shares of a prediction."""
@@ -167,7 +175,8 @@ def learn_laws(
         run = with_commanded(without_copies(run))
         start = fit_run(run, model or ordinary_model(run.touches.chain))
     run = start.run
-    current, laws, refused = start, [], None
+    current, refused = start, None
+    laws: list[LearntLaw] = []
     for _ in range(policy.most_laws if int(start.used.sum()) >= MIN_TOUCHES else 0):
         searched = search_law(Space.of(current), policy)
         best = _learnt(searched)
@@ -177,7 +186,7 @@ def learn_laws(
         if best.score < policy.min_score or not predicts_better(current, fit, policy):
             refused = best
             break
-        laws.append(best)
+        laws.append(replace(best, library=nearest_of_library(searched.space)))
         current = fit
     tangent = fitted(run, start, [one.law for one in laws], True) if laws else start
     return Learning(
@@ -225,7 +234,7 @@ def _usual(law: Law, alike: Sequence[Carrier]) -> Carrier:
 def predicts_better(before: Fit, after: Fit, policy: LawPolicy) -> bool:
     """Whether touches left out, by poses and by times, are predicted better with a law."""
     for groups in (pose_groups(before), time_groups(before)):
-        was, now = _error(before, groups), _error(after, _same(groups, before, after))
+        was, now = _error(before, groups), _error(after, _same(groups, after))
         if now > (1.0 - policy.least_gain) * was:
             return False
     return True
@@ -242,14 +251,13 @@ def time_groups(fit: Fit) -> list[IntArray]:
     return list(np.array_split(np.flatnonzero(fit.used), TIME_BLOCKS))
 
 
-def _same(groups: Sequence[IntArray], before: Fit, after: Fit) -> list[IntArray]:
-    """The same blocks; the rows that only the other fit uses join the block before them."""
-    del before
+def _same(groups: Sequence[IntArray], after: Fit) -> list[IntArray]:
+    """The same blocks of rows, as far as another fit uses them."""
     return [g[after.used[g]] for g in groups]
 
 
 def _error(fit: Fit, groups: Sequence[IntArray]) -> float:
-    """Robust error of rows left out block by block, mm: the median would not see a corner."""
+    """Root mean square error of rows left out block by block, mm."""
     place = np.full(len(fit.used), -1)
     place[fit.used] = np.arange(int(fit.used.sum()))
     inside = [place[g][place[g] >= 0] for g in groups]
@@ -269,6 +277,6 @@ def _held_out(before: Fit, after: Fit, laws: Sequence[Law]) -> list[HeldOut]:
             order = rows[np.argsort(x, kind="stable")]
             blocks[driver.name] = list(np.array_split(order, PLACE_BLOCKS))
     return [
-        HeldOut(what, _error(before, groups), _error(after, _same(groups, before, after)))
+        HeldOut(what, _error(before, groups), _error(after, _same(groups, after)))
         for what, groups in blocks.items()
     ]

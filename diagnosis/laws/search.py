@@ -19,7 +19,6 @@ from matstd.diagnosis.laws.formulas import (
 )
 from matstd.diagnosis.laws.policy import LawPolicy
 from matstd.diagnosis.laws.screening import (
-    LENGTHS,
     Bearer,
     Field,
     Found,
@@ -104,7 +103,7 @@ def _worth(found: Sequence[Found], beside: Sequence[Found], share: float, most: 
     """Those whose curve comes near the best of all, of every variable a few carriers."""
     top = max([f.evidence for f in (*found[:1], *beside[:1])], default=0.0)
     count: dict[tuple[str, ...], int] = {}
-    out = []
+    out: list[Found] = []
     for f in found:
         names = tuple(d.name for d in f.drivers)
         if len(out) >= most or f.evidence < share * top or f.evidence <= 0.0:
@@ -220,6 +219,3 @@ def _curve_candidate(space: Space, bearer: Bearer, law: Law, score: float) -> Ca
     return Candidate(
         bearer=bearer, law=law, explained=0.0, parameters=len(law.parameters), score=score
     )
-
-
-__all__ = ["LENGTHS", "Searched", "search_law"]

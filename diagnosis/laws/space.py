@@ -6,7 +6,7 @@ residual ``r = M y``. Columns of many laws share Q, so that thousands of them ar
 matrices.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -30,7 +30,6 @@ class Space:
         Q: Basis of the model, (N + P, P): rows of the data, then of the prior.
         residual: Residual over the stated uncertainty, (N + P,).
         dof: Degrees of freedom left.
-        weight: Factor on a row that counts for less than one observation.
     """
 
     touches: Touches
@@ -119,26 +118,3 @@ class Space:
         along = vectors.T @ (W.T @ self.residual)
         is_own = values > 1e-7
         return float((along[is_own] ** 2 / values[is_own]).sum())
-
-    def with_columns(self, C: Array) -> "Space":
-        """The model with these columns (N, K) in it, without a prior."""
-        own = self.own(C)
-        norm = np.linalg.norm(own, axis=0)
-        kept = norm > np.sqrt(MIN_OWN) * np.linalg.norm(C, axis=0)
-        U, s, _ = np.linalg.svd(own[:, kept] / norm[kept], full_matrices=False)
-        U = U[:, s > 1e-4]
-        residual = self.residual - U @ (U.T @ self.residual)
-        Q = np.hstack([self.Q, U])
-        return replace(self, Q=Q, residual=residual, dof=max(self.dof - U.shape[1], 1.0))
-
-    def without_rows(self, rows: BoolArray) -> "Space":
-        """The same model fitted to the other rows; `rows` is (N,) of those used."""
-        kept = np.concatenate([~rows, np.ones(len(self.Q) - len(rows), dtype=bool)])
-        Q = np.linalg.qr(self.Q[kept])[0]
-        residual = self.residual[kept]
-        residual = residual - Q @ (Q.T @ residual)
-        used = self.used.copy()
-        used[np.flatnonzero(self.used)[rows]] = False
-        n = int((~rows).sum())
-        dof = n - float((Q[:n] ** 2).sum())
-        return replace(self, used=used, u=self.u[~rows], Q=Q, residual=residual, dof=max(dof, 1.0))

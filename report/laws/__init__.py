@@ -5,6 +5,7 @@ from matstd.report.laws.law_page import write_law_page
 from matstd.report.laws.law_words import (
     held_out_sentence,
     law_sentence,
+    library_sentence,
     looks_like,
     no_law_sentence,
     rival_sentence,
@@ -16,6 +17,7 @@ __all__ = [
     "effect_text",
     "held_out_sentence",
     "law_sentence",
+    "library_sentence",
     "looks_like",
     "no_law_sentence",
     "rival_sentence",

@@ -13,6 +13,7 @@ from matstd.report.laws.law_words import (
     formula_words,
     held_out_sentence,
     law_sentence,
+    library_sentence,
     looks_like,
     no_law_sentence,
     odds_words,
@@ -103,7 +104,8 @@ def _law_sections(learning: Learning, one: LearntLaw, number: int) -> list[Secti
         draw_law(learning, law),
     )
     table = Table(("parameter", "value"), numbers, "Numbers of the law")
-    first = [f"**{formula_words(law)}**", *filter(None, [looks_like(law), rival_sentence(one)])]
+    said = [looks_like(law), rival_sentence(one), library_sentence(one)]
+    first = [f"**{formula_words(law)}**", *filter(None, said)]
     return [
         Section(
             f"Law {number}" if several else "The law",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from matstd.diagnosis.laws import Learning, curve_of, partial_residual
 from matstd.report.laws.law_words import variable_words
@@ -64,13 +65,13 @@ def _panel(ax: Any, learning: Learning, law: Law, k: int) -> None:
     plain(ax)
 
 
-def _put_back(learning: Learning, law: Law, k: int) -> tuple[Array, Array]:
+def _put_back(learning: Learning, law: Law, k: int) -> tuple[Array, NDArray[np.bool_]]:
     """Residual with the law put back, per unit of its lever, and which touches see it; rows used.
 
     The lever is what the touch shows of the law's value on the curve that is drawn.
     """
     fit = learning.after
-    both, own = partial_residual(learning, law)
+    both, _ = partial_residual(learning, law)
     x = law.factors[k].driver.values(fit.run.touches)
     value, _ = curve_of(learning, law, k, x)
     C = columns([law], fit.run.touches)
@@ -85,7 +86,6 @@ def _put_back(learning: Learning, law: Law, k: int) -> tuple[Array, Array]:
         lever = np.divide(felt, value, out=np.zeros_like(felt), where=np.abs(value) > 0.05 * size)
     seen = np.abs(lever) > MIN_LEVER * float(np.abs(lever).max(initial=1e-300))
     out = np.divide(both, lever, out=np.zeros_like(both), where=seen)
-    del own
     return out[fit.used], seen[fit.used]
 
 

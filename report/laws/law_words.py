@@ -11,7 +11,7 @@ from matstd.diagnosis.laws import (
     amplitudes,
     places,
 )
-from matstd.report.numbers import digits, microns, span, with_uncertainty
+from matstd.report.numbers import digits, microns, with_uncertainty
 from matstd.twin.laws import Carrier, Driver, Law
 from matstd.twin.units import DEG, MINUTE, UM, URAD
 from matstd.twin.words import listed
@@ -65,10 +65,6 @@ _SHAPES = {
     "play": "a play that follows",
     "curve": "a smooth curve without a formula",
 }
-_PLACE_NAMES = {
-    "x0": "at", "x1": "from", "x2": "to", "w": "width", "wa": "fast", "wb": "slow", "p": "exponent",
-    "period": "period", "phase": "phase", "k": "waves a turn", "length": "correlation length",
-}  # fmt: skip
 _LOOKS = {
     ("bump", "linear"): "It looks like a hose or a cable chain, or a worn place of a guide.",
     ("plateau", "linear"): "It looks like a worn zone of a scale or of a guide.",
@@ -199,6 +195,19 @@ def rival_sentence(one: LearntLaw) -> str:
     return ""
 
 
+def library_sentence(one: LearntLaw) -> str:
+    """How the law compares with the best effect of the library; empty where none is near."""
+    if one.library is None:
+        return ""
+    name, odds = one.library.effect.name, one.score - one.library.score
+    if odds < 0.0:
+        return (
+            f"The library explains it better: {name} (odds {odds_words(-odds)}). Take that effect: "
+            f'matstd diagnose --add "{name}".'
+        )
+    return f"The nearest effect of the library is {name} (odds {odds_words(odds)} for the law)."
+
+
 def odds_words(log_odds: float) -> str:
     """`40 : 1`."""
     if log_odds > math.log(1e6):
@@ -233,8 +242,3 @@ def second_run_sentence(second: SecondRun) -> str:
     if second.is_better:
         return f"{words}."
     return f"{words}: the law does not hold there. Do not use it to predict."
-
-
-def span_words(seconds: float) -> str:
-    """A span of time."""
-    return span(seconds)

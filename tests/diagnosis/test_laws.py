@@ -29,6 +29,7 @@ def test_a_law_is_found_with_its_carrier_variable_and_shape(stylus) -> None:
     (*_, truth), _, found = stylus
     (one,) = found.laws
     assert one.law.name == "law(bias,step time)"
+    assert not one.is_in_library
     (size,), (instant,) = amplitudes(found, one.law), places(found, one.law)
     hidden = truth["hidden"][0]["amplitude"] * UM
     assert abs(size.value - hidden) < 3.0 * size.u < 0.2 * hidden

@@ -14,6 +14,9 @@ from simulator_case import Ordinary, read_back, visible_size
 from simulator_effects import SMALL, Hidden, unit_of
 from simulator_experiment import MACHINES, STATED_NOISE, random_experiment
 
+MOST_DRAWS = 20
+"""Places that are drawn for a law until an amplitude that machines have makes it visible."""
+
 
 class Family(NamedTuple):
     """What a law moves, of what it depends, and how it looks."""
@@ -159,12 +162,17 @@ def law_case(rng, label, family=None, signal_to_noise=(15.0, 60.0), poses=10):
     second.errors = first.errors
     hidden, truth = [], {"hidden": [], "machine": label, "noise_um": STATED_NOISE * 1e3}
     if family is not None:
-        law = families(rng, first.machine)[family]
-        effect = Hidden(f"?{family}", "unknown", law.act)
         plain = run_text(first, probe(first, [], np.zeros(len(first.time))), False)
         ordinary = Ordinary(read_back(plain, MACHINES[label]).touches)
-        per_unit, _ = visible_size(first, effect, ordinary, STATED_NOISE)
-        effect.amplitude = rng.uniform(*signal_to_noise) / max(per_unit, 1e-9)
+        for _ in range(MOST_DRAWS):
+            law = families(rng, first.machine)[family]
+            effect = Hidden(f"?{family}", "unknown", law.act)
+            per_unit, _ = visible_size(first, effect, ordinary, STATED_NOISE)
+            effect.amplitude = rng.uniform(*signal_to_noise) / max(per_unit, 1e-9)
+            if effect.amplitude < effect.largest:
+                break
+        else:
+            raise ValueError(f"{family} is never visible on {label}")
         hidden.append(effect)
         truth["hidden"].append(
             {

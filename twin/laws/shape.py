@@ -114,10 +114,22 @@ def _one(function: Callable[..., Array]) -> Values:
 
 
 def _shape(
-    word: str, formula: str, code: str, function: Callable[..., Array], *places: str, **more: bool
+    word: str,
+    formula: str,
+    code: str,
+    function: Callable[..., Array],
+    *places: str,
+    jumps: bool = False,
+    remembers: bool = False,
 ) -> Shape:
     return Shape(
-        word=word, formula=formula, code=(code,), values=_one(function), places=places, **more
+        word=word,
+        formula=formula,
+        code=(code,),
+        values=_one(function),
+        places=places,
+        jumps=jumps,
+        remembers=remembers,
     )
 
 

@@ -63,6 +63,7 @@ def _report(args: argparse.Namespace, found: LearntLaws) -> None:
     from matstd.report.laws import (
         held_out_sentence,
         law_sentence,
+        library_sentence,
         looks_like,
         no_law_sentence,
         rival_sentence,
@@ -74,7 +75,8 @@ def _report(args: argparse.Namespace, found: LearntLaws) -> None:
         say(no_law_sentence(found), style="bold")
     for one in found.laws:
         say(sentence(law_sentence(found, one)), style="bold")
-        for line in filter(None, [rival_sentence(one), looks_like(one.law)]):
+        said = [rival_sentence(one), library_sentence(one), looks_like(one.law)]
+        for line in filter(None, said):
             say(f"- {line}")
     if found.laws:
         say(f"- {held_out_sentence(found)}")

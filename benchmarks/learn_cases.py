@@ -1,0 +1,193 @@
+"""Scores `matstd learn` on cases with a law outside the library: carrier, variables, second run.
+
+    python benchmarks/learn_cases.py DIR [DIR ...]          folders of cases: run.csv, run_test.csv
+    python benchmarks/learn_cases.py --make 17 --seed 1     exactly simulated, a family each
+    python benchmarks/learn_cases.py --empty 20 --seed 1    nothing hidden: no law may be found
+
+The second run is judged with the set-ups and the ordinary model refitted there: what the learnt law
+leaves of it, against what is left without any law and what the true law leaves (of simulated cases
+the same run without the law; else the stated noise).
+"""
+
+import argparse
+import json
+import sys
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
+
+from simulator_case import Ordinary  # noqa: E402  (found through the path above)
+from simulator_experiment import MACHINES  # noqa: E402
+from simulator_laws import FAMILIES, law_case  # noqa: E402
+
+from matstd.diagnosis.laws import Learning, learn_laws  # noqa: E402
+from matstd.twin.files import read_run  # noqa: E402
+from matstd.twin.laws import carrier_of  # noqa: E402
+from matstd.twin.record import Run, without_copies  # noqa: E402
+from matstd.twin.units import UM  # noqa: E402
+
+WITHIN, ALIKE = 1.1, 0.999
+"""Ratio to the error of the true law that is right; cosine of carriers that are one class."""
+
+NAMES = {"since_setup": "since-setup", "since_pose": "since-pose", "rpm": "rpm"}
+
+
+@dataclass
+class Score:
+    """What came out of one case."""
+
+    name: str
+    truth: str
+    found: str
+    carrier: bool
+    variables: bool
+    family: bool
+    none: float
+    learnt: float
+    true: float
+    seconds: float
+
+    @property
+    def is_predicted(self) -> bool:
+        return self.learnt < WITHIN * self.true
+
+    @property
+    def is_half(self) -> bool:
+        return self.learnt**2 - self.true**2 < 0.5 * (self.none**2 - self.true**2)
+
+
+def left_of(run: Run, deviation: np.ndarray, ordinary: Ordinary) -> float:
+    """Root mean square that no ordinary model with free set-ups explains, µm."""
+    left = ordinary.left(deviation)
+    return float(np.sqrt(left @ left / (len(run) - ordinary.rank))) / UM
+
+
+def variable(name: str) -> str:
+    """A variable of a truth as laws name it."""
+    return NAMES.get(name, "T-" + name[2:] if name.startswith("T_") else name)
+
+
+def is_alike(found: Learning, name: str) -> bool:
+    """Whether the carrier that was found does what another one does at every touch."""
+    law, touches = found.laws[0].law, found.before.run.touches
+    if name.startswith("shift") and law.carrier.name.startswith("shift"):
+        return True
+    try:
+        hidden = carrier_of(name, touches.chain).columns(touches)
+    except (LookupError, ValueError):
+        return False
+    own = law.carrier.columns(touches)
+    if hidden.shape != own.shape:
+        return False
+    size = np.linalg.norm(own) * np.linalg.norm(hidden)
+    return bool(abs(float((own * hidden).sum())) > ALIKE * size)
+
+
+def score(folder: Path) -> Score:
+    truth = json.loads((folder / "truth.json").read_text())
+    run, second = (without_copies(read_run(folder / f)) for f in ("run.csv", "run_test.csv"))
+    began = time.process_time()
+    found = learn_laws(run)
+    seconds = time.process_time() - began
+    ordinary = Ordinary(second.touches)
+    none = left_of(second, second.deviation, ordinary)
+    learnt = left_of(second, second.deviation - found.predicted(second), ordinary)
+    free = folder / "run_test_free.csv"
+    true = truth["noise_um"]
+    if free.exists():
+        plain = without_copies(read_run(free))
+        true = left_of(plain, plain.deviation, Ordinary(plain.touches))
+    hidden = truth["hidden"][0] if truth["hidden"] else None
+    names = [one.law.name for one in found.laws]
+    right = [False] * 3
+    if hidden is not None and found.laws:
+        law = found.laws[0].law
+        families = hidden.get("shapes") or [hidden.get("shape", "")]
+        family = "*".join(sorted(f.shape.word for f in law.factors))
+        alike = [hidden["carrier"], *(a[0] for a in hidden.get("carriers_alike", []))]
+        right = [
+            any(is_alike(found, name) for name in alike),
+            {f.driver.name for f in law.factors} == {variable(v) for v in hidden["variables"]},
+            family in ["*".join(sorted(words.split("*"))) for words in families],
+        ]
+    elif hidden is None:
+        right = [not names] * 3
+    told = "-" if hidden is None else f"{hidden['family']} {hidden['carrier']}"
+    return Score(folder.name, told, ", ".join(names) or "-", *right, none, learnt, true, seconds)
+
+
+def make(families: list[str | None], seed: int, into: Path) -> list[Path]:
+    """Simulated cases, a machine after the other."""
+    out = []
+    for i, family in enumerate(families):
+        label = list(MACHINES)[(seed + i) % len(MACHINES)]
+        label = "hsm600u" if family == "harmonic_by_direction" else label
+        texts = law_case(np.random.default_rng([seed, i]), label, family)
+        folder = into / f"{family or 'empty'}_{label}_{i}"
+        folder.mkdir(parents=True)
+        for name, text in zip(("run", "run_test", "run_test_free"), texts, strict=False):
+            (folder / f"{name}.csv").write_text(text)
+        (folder / "machine.toml").write_text(MACHINES[label])
+        (folder / "truth.json").write_text(json.dumps(texts[3]))
+        out.append(folder)
+    return out
+
+
+def show(one: Score) -> None:
+    marks = "".join(
+        m if ok else "-"
+        for m, ok in zip("CVF", (one.carrier, one.variables, one.family), strict=True)
+    )
+    verdict = "ok" if one.is_predicted else "half" if one.is_half else "poor"
+    verdict = "WORSE" if one.learnt > 1.02 * one.none else verdict
+    print(
+        f"{one.name:32} {marks} {verdict:5} none {one.none:6.2f} learnt {one.learnt:6.2f} "
+        f"true {one.true:5.2f} µm {one.seconds:5.1f} s  {one.truth} -> {one.found}",
+        flush=True,
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("folders", nargs="*", type=Path)
+    parser.add_argument("--make", type=int, default=0, help="number of simulated cases")
+    parser.add_argument("--empty", type=int, default=0, help="number of cases with nothing hidden")
+    parser.add_argument("--seed", type=int, default=1)
+    a = parser.parse_args()
+    with tempfile.TemporaryDirectory() as scratch:
+        folders = [
+            f for d in a.folders for f in ([d] if (d / "run.csv").exists() else sorted(d.iterdir()))
+        ]
+        folders = [f for f in folders if (f / "run_test.csv").exists()]
+        named = [FAMILIES[i % len(FAMILIES)] for i in range(a.make)]
+        folders += make([*named, *[None] * a.empty], a.seed, Path(scratch))
+        scores = []
+        for folder in folders:
+            scores.append(score(folder))
+            show(scores[-1])
+    laws = [s for s in scores if s.truth != "-"]
+    empty = [s for s in scores if s.truth == "-"]
+    counts = {
+        "carrier": [s.carrier for s in laws],
+        "variables": [s.variables for s in laws],
+        "family": [s.family for s in laws],
+        "second run within 10 %": [s.is_predicted for s in laws],
+        "half of the excess": [s.is_half for s in laws],
+        "worse than none": [s.learnt > 1.02 * s.none for s in laws],
+    }
+    seconds = [s.seconds for s in scores]
+    print(
+        f"{len(laws)} laws: {', '.join(f'{name} {sum(v)}' for name, v in counts.items())}; false "
+        f"laws in {sum(s.found != '-' for s in empty)} of {len(empty)} empty runs; processor "
+        f"{np.median(seconds):.1f} s, at most {max(seconds):.1f} s"
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,68 @@
+"""Whether the library explains what a law does: its effects, weighed by the same evidence."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from matstd.diagnosis.evidence import tuned_variants
+from matstd.diagnosis.laws.space import MIN_OWN, Space
+from matstd.twin.frames import Array
+from matstd.twin.library import proposals
+from matstd.twin.model import Effect, columns, inner_values, traits
+
+MOST_VARIANTS = 40
+"""Points of the grid of one effect: a law that lies between them loses little."""
+
+CHARGE = 5.0
+"""Log evidence that choosing one of some hundred effects costs."""
+
+
+class LibraryEffect(NamedTuple):
+    """The effect of the library that explains most of what a model leaves."""
+
+    effect: Effect
+    score: float  # log evidence, parameters and the choice charged
+
+
+def nearest_of_library(space: Space) -> LibraryEffect | None:
+    """The best effect of the library beside the laws; None where it proposes none.
+
+    Tables and effects that could imitate any other are left out: they are curves, too.
+    """
+    best: LibraryEffect | None = None
+    for effect in proposals(space.touches):
+        own = traits(effect)
+        if own.is_table or own.is_shrunk:
+            continue
+        variants = tuned_variants(effect, space.touches)
+        variants = variants[:: max(1, -(-len(variants) // MOST_VARIANTS))]
+        explained, which = _best(space, variants)
+        count = len(effect.parameters) + len(inner_values(variants[0], space.touches))
+        score = float(space.gained(np.array(explained))) - space.charge(count) - CHARGE
+        if best is None or score > best.score:
+            best = LibraryEffect(variants[which], score)
+    return best
+
+
+def _best(space: Space, variants: list[Effect]) -> tuple[float, int]:
+    """Most squared residual that a variant explains, and its number."""
+    k = len(variants[0].parameters)
+    C = space.white(columns(variants, space.touches))
+    size = np.linalg.norm(C, axis=0)
+    C = C / np.maximum(size, 1e-300)
+    U = space.basis.T @ C
+    b = (C.T @ space.r).reshape(-1, k)
+    shape = (len(variants), k)
+    G = _gram(C, *shape) - _gram(U, *shape)
+    values, vectors = np.linalg.eigh(G)
+    along = np.einsum("gab,ga->gb", vectors, b) ** 2
+    seen = values > MIN_OWN
+    explained = np.where(seen, along / np.where(seen, values, 1.0), 0.0).sum(axis=1)
+    which = int(np.argmax(explained))
+    return float(explained[which]), which
+
+
+def _gram(C: Array, count: int, k: int) -> Array:
+    """Inner products of the columns of every variant, (count, k, k)."""
+    blocks = C.reshape(len(C), count, k)
+    return np.einsum("nga,ngb->gab", blocks, blocks)
