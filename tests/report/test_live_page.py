@@ -238,8 +238,8 @@ def held_out(run_):
 @pytest.mark.parametrize(
     "odd",
     [
-        one_touch_a_feature,
         with_an_empty_column,
+        pytest.param(one_touch_a_feature, marks=pytest.mark.slow),
         pytest.param(without_poses, marks=pytest.mark.slow),
         pytest.param(without_places, marks=pytest.mark.slow),
         pytest.param(held_out, marks=pytest.mark.slow),
