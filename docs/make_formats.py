@@ -10,7 +10,7 @@ import re
 from enum import Enum
 from pathlib import Path
 
-from matstd.twin.files import Table, keys_of
+from matstd.twin.files.keys import Table, keys_of
 from matstd.twin.text import toml_value
 
 FOLDER = Path(__file__).parent / "formats"

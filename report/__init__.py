@@ -40,6 +40,7 @@ PARTS = (
     "effects",
     "words",
     "geometry",
+    "verdict",
     "identifiability",
     "task",
     "maps",

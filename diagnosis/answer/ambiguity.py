@@ -22,6 +22,10 @@ from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 from matstd.twin.record import Touches
 
+LISTED_FAR = 2
+"""Candidates that are refined where all rivals are far behind: the effect itself and one that says
+how far."""
+
 MAX_RIVALS = 40
 """Most rivals that are refined, the most likely first; a larger class would not help a reader."""
 
@@ -70,6 +74,11 @@ class ConfusionClass:
     def effect(self) -> Effect:
         """The named effect itself."""
         return self.sized.effect
+
+    @property
+    def runner_up(self) -> Rival | None:
+        """The next best explanation, however far behind."""
+        return next(iter((*self.rivals, *self.distinguished)), None)
 
     def headed(self, sized: ScaledEffect) -> "ConfusionClass":
         """The class with another of its members named: the one that was weighed."""
@@ -168,7 +177,8 @@ def _ranked(pool: Signatures, evidence: Array, least: float) -> list[int]:
     order = np.argsort(-evidence, kind="stable")
     _, first = np.unique(pool.owner[order], return_index=True)
     ranked = order[np.sort(first)]
-    return [int(v) for v in ranked if evidence[v] > least][:MAX_RIVALS]
+    close = [int(v) for v in ranked if evidence[v] > least][:MAX_RIVALS]
+    return close if len(close) > 1 else [int(v) for v in ranked[:LISTED_FAR]]
 
 
 def _explained(without: EffectSet, sized: ScaledEffect) -> Array:

@@ -95,6 +95,15 @@ def weakest(steps: Sequence[Step], is_weighed: bool) -> str | None:
     return out
 
 
+def is_significant(step: Step) -> bool:
+    """Whether an effect exceeds its own uncertainty, or needs not to."""
+    size = _size(step.reported)
+    many = step.effect is not None and len(step.effect.parameters) > MAX_SIZED_PARAMETERS
+    if size is None or not size.u or many or step.p_value < POLICY.certain_p:
+        return True
+    return abs(size.value) >= POLICY.significant_ratio * size.u
+
+
 def _size(numbers: Sequence[Reported]) -> Reported | None:
     """The number that says how large an effect is."""
     return next((n for n in numbers if n.role is Role.SIZE), None)

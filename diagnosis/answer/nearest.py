@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from matstd.diagnosis.accuracy import Repeatability
 from matstd.diagnosis.answer.verdict import Candidate, Dependence, Offer
 from matstd.diagnosis.evidence import ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
@@ -76,19 +77,15 @@ def named_probability(before: Fit, after: Fit) -> float:
     return float(f_probability(drop, k, after.solution.objective, after.solution.dof))
 
 
-def to_repeat(fit: Fit) -> IntArray:
+def to_repeat(fit: Fit, repeats: Repeatability) -> IntArray:
     """Rows to repeat where the noise would have to be doubtfully large; empty where it need not.
+
+    Where repeats are known they have decided: what exceeds them is no noise.
 
     The largest residual of each of the worst poses: a fault of the model comes again there, noise
     does not.
     """
-    noise = fit.noise
-    is_shown = (
-        noise.replicates is not None
-        and noise.replicates_dof >= POLICY.repeat_dof
-        and noise.factor < POLICY.repeat_ratio * noise.replicates
-    )
-    if noise.factor <= POLICY.credible_noise or is_shown:
+    if fit.noise.factor <= POLICY.credible_noise or repeats.known is not None:
         return np.zeros(0, dtype=np.int64)
     touches = fit.run.touches
     off = np.where(fit.used, np.abs(fit.residual) / fit.run.u, -1.0)

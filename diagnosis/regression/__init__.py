@@ -19,7 +19,13 @@ from matstd.diagnosis.regression.memory import (
     likely_memory,
     whitener,
 )
-from matstd.diagnosis.regression.noise import PRIOR_DOF, Noise, noise_factor, replicate_factor
+from matstd.diagnosis.regression.noise import (
+    PRIOR_DOF,
+    Noise,
+    noise_factor,
+    replicate_factor,
+    replicate_groups,
+)
 
 __all__ = [
     "PRIOR_DOF",
@@ -37,6 +43,7 @@ __all__ = [
     "likely_memory",
     "noise_factor",
     "replicate_factor",
+    "replicate_groups",
     "robust_scale",
     "shots",
     "solve",

@@ -22,7 +22,7 @@ from matstd.cad_out.details import datum_touches, details_of, engraved_on
 from matstd.cad_out.making import Stiffness, making_of, stiffness_of, with_sag, write_making
 from matstd.cad_out.meshes import read_stl
 from matstd.cad_out.verify import Conformity, export_standard
-from matstd.diagnosis.answer import probed_volume, prove, seen_from
+from matstd.diagnosis.accuracy import probed_volume, prove, seen_from
 from matstd.diagnosis.files import write_uncertainty
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.task import TaskUncertainty, Visits

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.artefact.brief import Brief
-from matstd.diagnosis.answer import prove, seen_from
+from matstd.diagnosis.accuracy import prove, seen_from
 from matstd.diagnosis.fit import Fit
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect

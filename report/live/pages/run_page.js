@@ -57,6 +57,7 @@ function changed() {
   shown.now = board.errors();
   shown.residual = board.residuals(shown.now);
   painted();
+  effects.turn = null;  // what switches would bring is out of date
   effects.show(shown.now);
   ladder();
   place.dataset.milliseconds = (performance.now() - begun).toFixed(1);
