@@ -15,7 +15,6 @@ from matstd.twin.files.sensor_file import SensorRecord, read_sensors
 from matstd.twin.files.table import CsvTable
 from matstd.twin.files.toml import check_format, parse_toml, read_any_text, read_text
 from matstd.twin.files.whole import (
-    refuse_own_input,
     refuse_to_overwrite,
     write_whole,
     written_whole,
@@ -42,7 +41,6 @@ __all__ = [
     "read_sensors",
     "read_text",
     "reading_columns",
-    "refuse_own_input",
     "refuse_to_overwrite",
     "results_folder",
     "write_run",
