@@ -142,6 +142,7 @@ _AFTER: dict[str, Callable[[Namespace], Step]] = {
 }
 
 WITHOUT = {
+    "examples": "what was copied decides: `args.next`",
     "diagnose": "its verdict decides: `args.next`",
     "serve": "ends when it is stopped",
     "contributions": "its page is the end of a question",
