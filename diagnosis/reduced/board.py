@@ -1,7 +1,7 @@
 """A run with effects to switch: what was found, what could have been, and the error of any set."""
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -38,8 +38,11 @@ MOST_PARAMETERS = 12
 """Parameters of an effect above which it is offered only where it was found."""
 
 MOST_TOUCHES = 3000
-"""Touches from which others are ranked by an even choice of them, and only found effects have
-their inner parameters moved."""
+"""Touches from which others are ranked by an even choice of them, at a few points of their grids
+and without the many periods that waves may have; their inner parameters then stay."""
+
+FEW = 3
+"""Points of a grid, of a long run."""
 
 MOST_COLUMNS = 20
 """Stored columns above which no further inner parameter is moved: their number counts squared."""
@@ -147,8 +150,9 @@ def _board(
         for name, group in alike.items()
         for s in group
     ]
-    room = MOST_SWITCHES - len(switches) - len(others)
-    others += [(s, ()) for s in _best(ResidualSpace.of(start), library, max(room, 0))]
+    others = others[: max(MOST_SWITCHES - len(switches), 0)]
+    room = max(MOST_SWITCHES - len(switches) - len(others), 0)
+    others += [(s, ()) for s in _best(ResidualSpace.of(start), library, room)]
     for sized, same in others:
         sd = np.array([p.sd for p in sized.effect.parameters]) * FREEDOM * sized.scale
         width = sum(s.columns.shape[1] for s in switches)
@@ -187,9 +191,14 @@ def _best(space: ResidualSpace, library: Sequence[Effect], count: int) -> list[S
     ]
     if not offered or not count:
         return []
-    if len(space.u) > MOST_TOUCHES:
+    is_long = len(space.u) > MOST_TOUCHES
+    if is_long:
         space = space.thinned(MOST_TOUCHES)
-    pool = signatures(space, scanned_grids(offered, space), len(offered))
+        offered = [e for e in offered if traits(e).wave is None]
+    grids = scanned_grids(offered, space)
+    if is_long:
+        grids = [replace(g, variants=g.variants[:: -(-len(g.variants) // FEW)]) for g in grids]
+    pool = signatures(space, grids, len(offered))
     scores = score_all(EffectSet(space, np.zeros((len(space.residual), 0))), pool)
     out: list[ScaledEffect] = []
     kinds: dict[str, int] = {}

@@ -1,5 +1,6 @@
 """The geometry of the machine in words: estimates, their effect over the travel, changes."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from matstd.diagnosis.geometry import (
@@ -93,6 +94,8 @@ def quantity_name(row: GeometryRow) -> str:
         case Quantity.ROTARY_LINE:
             line = f"line of {axis}"
             words = f"tilt of the {line} about {about}" if about else f"{line} in {letter}"
+        case Quantity.ROTARY_ZERO:
+            words = f"zero of {axis}"
         case Quantity.ROTARY_MOTION if letter == axis[0]:
             words = f"positioning of {axis}"
         case Quantity.ROTARY_MOTION:
@@ -118,9 +121,13 @@ def _line(row: GeometryRow) -> GeometryLine:
             is_noted=False,
         )
     notes = []
-    if row.is_beyond_expected or row.is_far:
-        size = row.usual if row.is_far and row.usual is not None else row.expected
-        notes.append(f"larger than expected (± {digits(size / factor, 2)} {unit})")
+    if row.is_far:
+        notes.append(
+            f"{digits(row.times_usual, 2)} times what is usual (± {expected}): the machine file or "
+            "the set-up is wrong"
+        )
+    elif row.is_beyond_expected:
+        notes.append(f"larger than expected (± {expected})")
     if row.has_changed and row.change is not None:
         notes.append(f"changed by {_value(row.change.value, row.change.u, factor, unit)}")
     is_noted = bool(notes)
@@ -188,6 +195,26 @@ def noted_lines(geometry: LearntGeometry) -> list[str]:
             0, "the geometry differs from the model, but no single quantity changed beyond chance"
         )
     return lines
+
+
+def rotary_lines(geometry: LearntGeometry) -> list[str]:
+    """Line and zero of every rotary axis with what is usual of them, one sentence for each axis."""
+    rows = [r for r in geometry.rows if r.usual is not None]
+    return [
+        _rotary([r for r in rows if r.axes == axes]) for axes in dict.fromkeys(r.axes for r in rows)
+    ]
+
+
+def _rotary(rows: Sequence[GeometryRow]) -> str:
+    """`line and zero of C: EX0C 12.3 ± 1.0 µm, ..., EC0C not determined (usual: ± 64 µm, ...)`."""
+    parts = [f"{r.symbol} {value_words(r) if r.is_determined else 'not determined'}" for r in rows]
+    sizes = {}
+    for row in rows:
+        unit, factor = _UNITS[row.unit]
+        sizes[unit] = f"± {digits(row.expected / factor, 2)} {unit}"
+    return (
+        f"line and zero of {rows[0].axes[0]}: {', '.join(parts)}; usual {', '.join(sizes.values())}"
+    )
 
 
 def determined_comment(geometry: LearntGeometry) -> str:

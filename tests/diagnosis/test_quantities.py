@@ -151,3 +151,21 @@ def test_compliances_of_the_tool_are_two_quantities() -> None:
     for name, true in (("sideways", 0.8), ("along", 0.2)):
         assert numbers[name].role is Role.SIZE
         assert abs(numbers[name].value - true) < 3.5 * numbers[name].u
+
+
+def test_play_and_a_compliance_of_two_sides_are_told_from_the_mean_compliance() -> None:
+    """A hinge by hand: 0.06 µm/N pulled, 0.10 µm/N pushed, 4 µm of play between."""
+    t = made_up("hmc1995", 300)
+    load = np.linspace(-200.0, 200.0, 300)
+    t = replace(t, force=load[:, None] * [0.0, 0.0, 1.0])
+    moved = np.where(load > 0.0, 0.10 * UM, 0.06 * UM) * load + 2.0 * UM * np.sign(load)
+    noise = np.random.default_rng(6).normal(0.0, U, len(t))
+    # along z, as the normals see it: a tool that yields upwards finds the surface lower
+    run = Run(t, -moved * t.normal_table[:, 2] + noise, np.full(len(t), U))
+    effects = [parse_effect(f"{kind}(Z)", t.chain) for kind in ("stiffness", "load-play")]
+    fit = fit_run(run, Model(t.chain, tuple(effects)))
+    numbers = {r.quantity: r for e in effects for r in reported(fit, e)}
+    truth = {"compliance": 0.08, "play": 4.0, "difference_of_compliance": 0.04}
+    for name, true in truth.items():
+        assert numbers[name].role is Role.SIZE
+        assert abs(numbers[name].value - true) < 3.5 * numbers[name].u, name

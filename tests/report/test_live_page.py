@@ -1,6 +1,7 @@
 """The live page of a run in a real browser: its figures against fits, what a user does on it."""
 
 import json
+import re
 from dataclasses import replace
 from functools import partial
 
@@ -15,7 +16,7 @@ from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.reduced import compared_board, diagnosed_board
 from matstd.report.layout import Page, write_page
-from matstd.report.run_view import diagnosis_view, run_view
+from matstd.report.run_view import Framed, diagnosis_view, run_view
 from matstd.report.run_view.touched_bodies import touched_bodies
 from matstd.twin.effects.backlash import KIND as BACKLASH
 from matstd.twin.library.ordinary import ordinary_model
@@ -274,3 +275,32 @@ def test_what_was_touched_is_drawn_from_its_points(diagnosis):
         own = t.point[t.feature == name]
         away = near(body.reshape(-1, 1, 3)[:: len(body) // 20 + 1] - own).min(axis=1)
         assert away.max() < 25.0
+
+
+def test_in_a_notebook_the_view_stands_in_a_frame(browser, diagnosis, tmp_path):
+    framed = Framed("run.csv", "One effect is missing.", diagnosis_view(diagnosis, "run.csv"))
+    path = tmp_path / "notebook.html"
+    path.write_text(f"<!DOCTYPE html><title>n</title>{framed._repr_html_()}", encoding="utf-8")
+    opened(browser, path)
+    browser.switch_to.frame(0)
+    assert run(browser, "return document.getElementById('live').dataset.isReady") == "true"
+    held_out = diagnosis.fit.test_rms / UM
+    assert run(browser, FIGURES)[1] == pytest.approx(held_out)
+    browser.switch_to.default_content()
+    assert faults(browser) == []
+    assert framed.save(tmp_path / "alone.html").read_text(encoding="utf-8") == framed.page
+
+
+def test_without_scripts_and_in_print_the_still_report_is_whole(browser, page):
+    """The view is hidden until its script fills it; what is folded by the script opens in print."""
+    text = page.read_text(encoding="utf-8")
+    assert re.search(r'<section id="live"[^>]* hidden', text)
+    assert '<details class="still" open>' in text
+    opened(browser, page)
+    still = "return [document.querySelector('details.still').open, LIVE]"
+    seen = "getComputedStyle(document.getElementById('live')).display"
+    assert run(browser, still.replace("LIVE", seen)) == [False, "grid"]
+    run(browser, "dispatchEvent(new Event('beforeprint'))")
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
+    assert run(browser, still.replace("LIVE", seen)) == [True, "none"]
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": ""})

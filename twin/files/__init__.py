@@ -6,7 +6,7 @@ stood there and what was expected. Writers write whole files or none.
 
 from matstd.twin.files.error_file import errors_toml, read_errors
 from matstd.twin.files.folder import results_folder
-from matstd.twin.files.keys import Table, checked, keys_of
+from matstd.twin.files.keys import Table, checked
 from matstd.twin.files.machine_file import MachineTables, Pair, Vector, read_bodies, read_machine
 from matstd.twin.files.pose_file import read_poses, reading_columns
 from matstd.twin.files.run_file import SetupTable, read_run
@@ -31,7 +31,6 @@ __all__ = [
     "check_format",
     "checked",
     "errors_toml",
-    "keys_of",
     "parse_toml",
     "read_any_text",
     "read_bodies",

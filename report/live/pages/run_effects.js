@@ -124,15 +124,24 @@ export class EffectList {
     return capital(`${parts.join(", ")}; ${share}`);
   }
 
-  /** Beside every switch the error of held-out touches that it leads to. */
+  /** Beside every switch the error of held-out touches that it leads to, one after the other. */
   scents() {
-    for (const [one, row] of this.rows) {
-      const heldOut = this.board.scent(one);
-      row.scent.textContent = `${one.isOn ? "without it" : "with it"} ${fixed(heldOut, 3)} `
-        + this.data.unit;
-      row.scent.title = "error of held-out touches after this switch";
-    }
-    this.place.dataset.scents = "true";
+    const turn = this.turn = {}, rows = [...this.rows];
+    const next = () => {
+      if (turn !== this.turn) return;  // another switch came between
+      const begun = performance.now();
+      while (rows.length && performance.now() - begun < 12) this.scent(...rows.shift());
+      if (rows.length) setTimeout(next);
+      else this.place.dataset.scents = "true";
+    };
+    next();
+  }
+
+  scent(one, row) {
+    const heldOut = this.board.scent(one);
+    row.scent.textContent = `${one.isOn ? "without it" : "with it"} ${fixed(heldOut, 3)} `
+      + this.data.unit;
+    row.scent.title = "error of held-out touches after this switch";
   }
 }
 
