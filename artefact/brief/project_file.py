@@ -9,13 +9,12 @@ from pydantic import Field
 
 from matstd.artefact.brief.brief import Brief, StudySettings
 from matstd.artefact.brief.errors_table import ErrorsTable, expected_errors
+from matstd.artefact.brief.material_table import MaterialTable
 from matstd.artefact.brief.standard_tables import (
     BlankTable,
     LimitsTable,
-    MaterialTable,
     StandardTable,
     check_body,
-    check_material,
     check_standard,
 )
 from matstd.artefact.brief.task_file import Task, read_task
@@ -72,11 +71,15 @@ class CalibrationTable(Table):
     patch_um: float = Field(default=1.0, ge=0.0)
     patch_urad: float = Field(default=10.0, ge=0.0)
     ball_um: float = Field(default=0.3, ge=0.0)
+    scale_ppm: float = Field(default=1.0, ge=0.0, le=1000.0)
 
     def calibration(self) -> Calibration:
         """In base units."""
         return Calibration(
-            patch=self.patch_um * UM, patch_tilt=self.patch_urad * URAD, ball=self.ball_um * UM
+            patch=self.patch_um * UM,
+            patch_tilt=self.patch_urad * URAD,
+            ball=self.ball_um * UM,
+            scale=self.scale_ppm * 1e-6,
         )
 
 
@@ -86,6 +89,8 @@ class SimulationTable(Table):
     noise_um: float = Field(default=1.0, gt=0.0)
     machines: int = Field(default=3, ge=1, le=50)
     visits: int = Field(default=10, ge=2, le=50)
+    body_degC: float = Field(default=22.0, ge=0.0, le=50.0)  # noqa: N815
+    body_u_K: float = Field(default=0.3, ge=0.0, le=20.0)  # noqa: N815
 
 
 class ProjectTable(Table):
@@ -133,10 +138,8 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     check_standard(table.standard, path)
     first_probe = checked_probe(table.probe, path).probe()
     face = _table_face(table, path)
-    check_material(table.material, path)
-    check_body(
-        table.blank, table.limits, table.material, first_probe.radius, min(face.half_size), path
-    )
+    material = table.material.material(path)
+    check_body(table.blank, table.limits, material, first_probe.radius, min(face.half_size), path)
     setups = _setups(table, path)
     # screws and pads must stand on the table in every set-up
     room = min(middle_room(face, setup.T_table_artefact) for setup in setups)
@@ -153,15 +156,18 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         table=face,
         bodies=_bodies(table, chain, path),
         ball=None if shop.ball is None else shop.ball.ball(face.high),
-        blank=table.blank.blank(table.material.material(), limits),
+        blank=table.blank.blank(material, limits),
         overhang=table.limits.overhang_mm,
         riser=table.limits.riser_mm,
+        first_mode=table.limits.first_mode_Hz,
         programs=shop.settings(table.control),
         study=study,
         seed=table.seed,
         down=wanted.down,
         author=wanted.author,
         organisation=wanted.organisation,
+        approved=wanted.approved,
+        date=wanted.date,
         path=path,
         machine_path=machine_path,
         remarks=remarks,
@@ -185,6 +191,8 @@ def _study(table: ProjectTable, poses: int, path: Path) -> StudySettings:
         tolerance=wanted.tolerance_um * UM,
         machines=proof.machines,
         visits=proof.visits,
+        body_temperature=proof.body_degC,
+        body_u=proof.body_u_K,
     )
 
 

@@ -14,7 +14,7 @@ from matstd.artefact.layout import Blank, Fittings
 from matstd.artefact.worth import Calibration, CriterionOptions, TouchOptions
 from matstd.twin.errors import BadFile
 from matstd.twin.files import Pair, Table
-from matstd.twin.units import DEG, KG_M3
+from matstd.twin.units import DEG
 
 BASE_THICKNESS = 30.0
 """Thickness of the plate of every standard, mm."""
@@ -25,9 +25,6 @@ CORNER_RADIUS = 25.0
 
 FEWEST_PATCHES = 3
 """Smallest number of patches of a standard."""
-
-STEEL = "X40Cr14 (1.2083), hardened"
-"""Material of the default density and expansion."""
 
 FINISHING_RADIUS = 3.0
 """Radius of the finishing ball-end mill, mm; smaller concave radii cannot be made."""
@@ -48,6 +45,8 @@ class StandardTable(Table):
     serial: str = ""
     author: str = "not stated"
     organisation: str = "not stated"
+    approved: str = Field(default="not stated", max_length=28)
+    date: str = Field(default="not stated", max_length=18)
     patches: int = Field(default=6, ge=FEWEST_PATCHES, le=16)
     balls: int = Field(default=13, ge=3, le=25)
     touches: int = Field(default=480, ge=100, le=2000)
@@ -78,28 +77,6 @@ class StandardTable(Table):
         )
 
 
-class MaterialTable(Table):
-    """`[material]` of the standard."""
-
-    name: str = STEEL
-    density_kg_m3: float = Field(default=7800.0, gt=0.0)
-    expansion_1_K: float = Field(default=10.5e-6, ge=0.0, lt=1e-3)  # noqa: N815
-    expansion_u_1_K: float | None = Field(default=None, ge=0.0, lt=1e-3)  # noqa: N815
-    modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6)  # noqa: N815
-    poisson: float = Field(default=0.3, gt=0.0, lt=0.5)
-
-    def material(self) -> Material:
-        """In base units, with the usual modulus of a known name where none is stated."""
-        return Material(
-            self.name,
-            self.density_kg_m3 * KG_M3,
-            self.expansion_1_K,
-            u_expansion=self.expansion_u_1_K,
-            modulus=self.modulus_MPa,
-            poisson=self.poisson,
-        ).with_usual_modulus()
-
-
 class BlankTable(Table):
     """`[blank]`: sides of the base and height of the whole, mm."""
 
@@ -128,6 +105,7 @@ class LimitsTable(Table):
     slot_pitch_mm: float = Field(default=0.0, ge=0.0)
     overhang_mm: float | None = Field(default=None, ge=0.0)
     riser_mm: float = Field(default=0.0, ge=0.0)
+    first_mode_Hz: float = Field(default=0.0, ge=0.0, le=10_000.0)  # noqa: N815
 
     def limits(self, ball_radius: float, table_radius: float) -> Limits:
         """In base units.
@@ -174,29 +152,13 @@ def check_standard(wanted: StandardTable, path: Path) -> None:
         )
 
 
-def check_material(material: MaterialTable, path: Path) -> None:
-    """Reject another material with the default density or expansion.
-
-    Raises:
-        BadFile: The key that is missing.
-    """
-    for key in ("density_kg_m3", "expansion_1_K"):
-        if material.name != STEEL and key not in material.model_fields_set:
-            raise BadFile(
-                path,
-                f"material.{key}",
-                f"no value beside name = '{material.name}'",
-                f"that of this material; the default is that of {STEEL}",
-            )
-
-
 _TABLE_KEYS = "workshop.table or limits.table_radius_mm"
 
 
 def check_body(
     blank: BlankTable,
     limits: LimitsTable,
-    material: MaterialTable,
+    material: Material,
     ball_mm: float,
     table_radius_mm: float,
     path: Path,
@@ -244,7 +206,7 @@ def check_body(
             f"{limits.slot_pitch_mm:g}",
             f"{_MIN_SLOT_PITCH:g} mm or more, or 0 where screws may stand anywhere",
         )
-    base = sides[0] * sides[1] * BASE_THICKNESS * material.density_kg_m3 * KG_M3
+    base = sides[0] * sides[1] * BASE_THICKNESS * material.density
     if base > limits.max_mass_kg:
         raise BadFile(
             path,

@@ -75,6 +75,7 @@ class BodyTable(Table):
     expansion_u_1_K: float | None = None  # noqa: N815
     body_degC: float | None = None  # noqa: N815
     body_u_K: float | None = None  # noqa: N815
+    scale_u_ppm: float | None = None
 
 
 class HeadTable(Table):
