@@ -8,12 +8,14 @@ measure next), and model and result files. It needs no standard and no CAD.
     result = diagnose(read_run("run.csv"))
     result.verdict, [step.effect for step in result.steps], result.fit.test_rms
 
-`regression` solves with a prior and knows what noise does, `fit` estimates a model's parameters
-with it, `geometry` states what they mean to a machine's user. `evidence` projects effects that are
-not in the model on what the fit leaves, and says how much a set of them explains; `faults` tries
-what users get wrong in a description. `residual` tests what is left for structure, and finds
-regions where a model fails. `search` finds sets of effects, `choice` takes the one that predicts
-best, `answer` turns it into a verdict with sizes and look-alikes. `task` evaluates visits to
+`policy` has every threshold of a decision. `regression` solves with a prior and knows what noise
+does, `fit` estimates a model's parameters with it, `geometry` states what they mean to a machine's
+user. `accuracy` says how well the run repeats itself and what a model promises. `evidence` projects
+effects that are not in the model on what the fit leaves, and says how much a set of them explains;
+`faults` tries what users get wrong in a description. `residual` tests what is left for structure,
+and finds regions where a model fails. `search` finds sets of effects, `choice` takes the one that
+predicts best, `answer` turns it into a verdict with sizes and look-alikes. `reduced` keeps
+what the error of any set of effects follows from, without the touches. `task` evaluates visits to
 calibrated features for a user's measuring task. `files` reads and writes models and results.
 `drift` has laws of thermal drift from logs.
 
@@ -23,8 +25,10 @@ new effect needs nothing here.
 """
 
 PARTS = (
+    "policy",
     "regression",
     "fit",
+    "accuracy",
     "geometry",
     "evidence",
     "faults",
@@ -33,6 +37,7 @@ PARTS = (
     "search",
     "choice",
     "answer",
+    "reduced",
     "task",
     "files",
     "drift",

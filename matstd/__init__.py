@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from matstd.api.probing import Simulation, simulate, virtual_machine
     from matstd.api.replanning import Replanned, replan
     from matstd.api.runs import read_run
+    from matstd.api.showing import MachinePage, show
     from matstd.api.standards import (
         Calibration,
         TaskBudget,
@@ -71,6 +72,7 @@ _PLACES = {
     "api.probing": ("Simulation", "simulate", "virtual_machine"),
     "api.replanning": ("Replanned", "replan"),
     "api.runs": ("read_run",),
+    "api.showing": ("MachinePage", "show"),
     "api.standards": (
         "Calibration",
         "TaskBudget",
@@ -115,6 +117,7 @@ __all__ = [
     "Effect",
     "Evaluation",
     "Fit",
+    "MachinePage",
     "Model",
     "NotEnoughData",
     "ProgramOptions",
@@ -145,6 +148,7 @@ __all__ = [
     "register_effects",
     "replan",
     "sensitivities",
+    "show",
     "simulate",
     "uncertainty",
     "virtual_machine",

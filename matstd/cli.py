@@ -36,6 +36,7 @@ FOLDERS = {
     },
     "machine": {
         "volumetric": "exact deviation of the tool point in the table frame, one row per pose",
+        "show": "one page on which a machine moves, with its errors and a program",
         "machines": "list the included machines; print a machine file with the source of every "
         "figure",
         "new": "write a commented minimal file: machine, project, run or effect",

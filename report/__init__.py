@@ -7,6 +7,7 @@ number in a result.
 
     style   paper, colours and labels of every picture
     layout  sections of a page, and how they become HTML, CSV and PDF
+    live    data and scripts of pages that move
     effects titles of effects
     words   sentences, for pages and for the console
     geometry
@@ -16,7 +17,10 @@ number in a result.
     task    calibration of a standard, uncertainty of a measuring task
     maps    sensitivities and volumetric error over a workspace or along a path
     plots   plans, proofs, residuals, effects
+    run_view
+            the live view of a run: effects to switch, and the error with them
     scenes  pictures in three dimensions, rendered in a process of their own
+    machine a machine that moves, with its errors and a program, on a page
     drawing the sheet for the workshop, PDF and SVG
     pages   the pages: results as lists of sections
     compensation
@@ -30,14 +34,18 @@ it with its caption. A new sentence is a function in `words`.
 PARTS = (
     "style",
     "layout",
+    "live",
     "effects",
     "words",
     "geometry",
+    "verdict",
     "identifiability",
     "task",
     "maps",
     "plots",
+    "run_view",
     "scenes",
+    "machine",
     "drawing",
     "pages",
     "compensation",

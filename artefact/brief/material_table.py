@@ -1,12 +1,9 @@
 """`[material]` of a project file: stated values, completed by the usual ones of the name."""
 
-from pathlib import Path
-
 from pydantic import Field
 
 from matstd.artefact.body import Material
 from matstd.twin.elastic import material_names
-from matstd.twin.errors import BadFile
 from matstd.twin.files import Table
 from matstd.twin.units import KG_M3
 
@@ -18,38 +15,46 @@ class MaterialTable(Table):
     """`[material]` of the standard."""
 
     name: str = STEEL
-    density_kg_m3: float | None = Field(default=None, gt=0.0)
-    expansion_1_K: float | None = Field(default=None, ge=0.0, lt=1e-3)  # noqa: N815
-    expansion_u_1_K: float | None = Field(default=None, ge=0.0, lt=1e-3)  # noqa: N815
-    modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6)  # noqa: N815
+    """name, for the drawing"""
+    density_kg_m3: float | None = Field(default=None, ge=500.0, le=23e3, examples=[7800.0])
+    """density. Default: that of the name, see below"""
+    expansion_1_K: float | None = Field(default=None, ge=0.0, le=3e-4, examples=[10.5e-6])  # noqa: N815
+    """coefficient of expansion about 20 °C, 1/K. Default: that of the name"""
+    expansion_u_1_K: float | None = Field(default=None, ge=0.0, le=3e-4, examples=[1e-6])  # noqa: N815
+    """its standard uncertainty, 1/K. Default: that of the name, of a stated expansion a tenth"""
+    modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6, examples=[200e3])  # noqa: N815
+    """Young's modulus. Default: that of the name"""
     poisson: float = Field(default=0.3, gt=0.0, lt=0.5)
+    """Poisson's ratio, for a stated modulus"""
     hardness: str = Field(default="", max_length=40)
+    """hardness, for the drawing. Default: that of the name"""
 
-    def material(self, path: Path) -> Material:
-        """In base units; what is not stated has the usual value of the name.
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """Keys that a name without usual values has to state, and does not."""
+        if Material.usual_of(self.name) is not None:
+            return ()
+        needed = ("density_kg_m3", "expansion_1_K")
+        return tuple(key for key in needed if getattr(self, key) is None)
 
-        Raises:
-            BadFile: Density or expansion of a name without usual values.
-        """
+    @property
+    def density(self) -> float:
+        """Stated or usual density, kg/mm3; 0 where there is none."""
+        if self.density_kg_m3 is not None:
+            return self.density_kg_m3 * KG_M3
         usual = Material.usual_of(self.name)
-        for key in ("density_kg_m3", "expansion_1_K"):
-            if usual is None and getattr(self, key) is None:
-                raise BadFile(
-                    path,
-                    f"material.{key}",
-                    f"no value beside name = '{self.name}'",
-                    f"that of this material, or a name with usual values: {_names()}",
-                )
-        density, expansion, u = self.density_kg_m3, self.expansion_1_K, self.expansion_u_1_K
-        if usual is not None:
-            density = usual.density / KG_M3 if density is None else density
-            if expansion is None:
-                expansion, u = usual.expansion, usual.u_expansion if u is None else u
-        assert density is not None
-        assert expansion is not None
+        return 0.0 if usual is None else usual.density
+
+    def material(self) -> Material:
+        """In base units, of a table in which nothing is missing."""
+        usual = Material.usual_of(self.name)
+        expansion, u = self.expansion_1_K, self.expansion_u_1_K
+        if expansion is None:
+            assert usual is not None
+            expansion, u = usual.expansion, usual.u_expansion if u is None else u
         return Material(
             self.name,
-            density * KG_M3,
+            self.density,
             expansion,
             u_expansion=u,
             modulus=self.modulus_MPa,
@@ -58,5 +63,6 @@ class MaterialTable(Table):
         ).with_usual_modulus()
 
 
-def _names() -> str:
+def names_with_values() -> str:
+    """Names of materials with usual values."""
     return ", ".join(name.replace("-", " ") for name in material_names())

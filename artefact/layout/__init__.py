@@ -20,6 +20,7 @@ from matstd.artefact.layout.upright import (
     least_gap,
     least_mass,
 )
+from matstd.artefact.layout.wavy import Wave, wavy_face
 
 __all__ = [
     "DEFAULT_MODULUS",
@@ -27,6 +28,7 @@ __all__ = [
     "Blank",
     "Fittings",
     "Pairs",
+    "Wave",
     "balls_fit",
     "balls_on_posts",
     "beside_balls",
@@ -40,5 +42,6 @@ __all__ = [
     "most_side_by_side",
     "post_stiffness",
     "rivals",
+    "wavy_face",
     "with_spheres",
 ]

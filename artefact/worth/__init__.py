@@ -21,6 +21,7 @@ from matstd.artefact.worth.touch_choice import (
     poses_within,
     repaired_touches,
     some_touches,
+    sphere_grid,
     touches_to_choose_from,
 )
 from matstd.artefact.worth.touch_criterion import (
@@ -53,6 +54,7 @@ __all__ = [
     "repaired_touches",
     "setup_parameters",
     "some_touches",
+    "sphere_grid",
     "touch_curve",
     "touches_to_choose_from",
     "visibility",

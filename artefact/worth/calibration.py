@@ -35,15 +35,18 @@ class Calibration:
         ball: Of each coordinate of the centre of a datum sphere, mm.
         scale: Of all lengths, relative, one error that every feature shares. It is no column: with
             the temperature it belongs to the body of a run (`Body`), which every fit has.
+        form: Of the surface of a face at a point, beside its place; points nearby share it, mm.
     """
 
     patch: float = 1.0 * UM
     patch_tilt: float = 10.0 * URAD
     ball: float = 0.3 * UM
     scale: float = 1e-6
+    form: float = 0.3 * UM
 
     def __post_init__(self) -> None:
-        if min(self.patch, self.patch_tilt, self.ball, self.scale) < 0.0:
+        sizes = (self.patch, self.patch_tilt, self.ball, self.scale, self.form)
+        if min(sizes) < 0.0:
             raise DesignError(f"calibration {self}, expected uncertainties from zero up")
 
     @staticmethod

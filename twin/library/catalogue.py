@@ -32,7 +32,7 @@ from matstd.twin.effects import (
     probe,
     servo_lag,
 )
-from matstd.twin.elastic import body, stiffness, tool_point
+from matstd.twin.elastic import body, load_play, stiffness, tool_point
 from matstd.twin.errors import BadFile, DesignError, UnknownEffect
 from matstd.twin.library.trial import users_fault
 from matstd.twin.machine import Chain
@@ -306,6 +306,7 @@ for _kind in (
     joint_sag.KIND,
     servo_lag.KIND,
     stiffness.KIND,
+    load_play.KIND,
     body.KIND,
     tool_point.KIND,
     probe.LOBING,

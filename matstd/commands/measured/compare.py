@@ -49,6 +49,7 @@ def _report(args: argparse.Namespace, found: Comparison, arm: str) -> None:
     from matstd.console import say
     from matstd.report.geometry import console_lines
     from matstd.report.numbers import microns, signed
+    from matstd.report.verdict import promise_words, repeatability_words
     from matstd.report.words import (
         comparison_sentence,
         learnt_lines,
@@ -65,6 +66,9 @@ def _report(args: argparse.Namespace, found: Comparison, arm: str) -> None:
             say(line)
     elif saved is not None and saved.source.held_out_um > 0.0:
         say(promise_sentence(found, saved.source.held_out_um * UM, saved.left_out))
+    say(f"- repeatability: {repeatability_words(found.repeatability, found.scatter)}")
+    if found.promise is not None:
+        say(f"- error to expect: {promise_words(found.promise)}")
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
         is_off = abs(region.mean) > MIN_UNCERTAINTIES * region.u

@@ -87,10 +87,13 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     from matstd.console import console, say
     from matstd.report.effects import plan_words, rival_words
     from matstd.report.geometry import console_lines
+    from matstd.report.verdict import part_lines
     from matstd.report.words import remark_sentence, scanned_sentence, verdict_sentence
     from matstd.twin.words import in_own_unit
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
+    for name, line in part_lines(result):
+        say(f"- {name}: {line}")
     right = ("p", "fitted µm", "held out µm", "chi²/dof")
     numbers = [Column(in_own_unit(word), justify="right", no_wrap=True) for word in right]
     words = [Column(word, overflow="fold", max_width=CELL_WIDTH) for word in ("effect", "size")]

@@ -1,0 +1,30 @@
+"""How surely touches and scans show smooth effects of a machine that no model has.
+
+In: a `Measurement` of touches and points of scans on a standard. Out: a `HiddenPower`, signal and
+power of fields over the workspace and of short errors of one axis, in every direction.
+"""
+
+from matstd.artefact.hidden.scan_lines import Scan, scanned
+from matstd.artefact.hidden.smooth_effects import (
+    HiddenEffect,
+    HiddenPower,
+    Measurement,
+    hidden_effects,
+    hidden_power,
+    measured_together,
+    possible_places,
+    touched,
+)
+
+__all__ = [
+    "HiddenEffect",
+    "HiddenPower",
+    "Measurement",
+    "Scan",
+    "hidden_effects",
+    "hidden_power",
+    "measured_together",
+    "possible_places",
+    "scanned",
+    "touched",
+]

@@ -1,0 +1,86 @@
+"""Points of a scan on a face, and what they are worth beside single touches.
+
+The probe follows lines over the face and a point is recorded every few hundredths of a second.
+Points of one line share part of their noise, ``exp(-distance / memory)``: a thousand points are not
+a thousand measurements. For a design the points of a stretch of line are one mean, with
+
+    var = u^2 / k^2 sum_ij r^|i - j|,   r = exp(-pitch / memory)
+
+that is as good as independent of the next where the stretch is a few times the memory.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from matstd.artefact.body import FreeformPatch
+from matstd.artefact.hidden.smooth_effects import Measurement
+from matstd.artefact.reach import ProbeReach, Requests, joined
+from matstd.artefact.worth import each_at
+from matstd.twin.frames import Array
+from matstd.twin.units import UM
+
+_STRETCH = 8.0  # mm of line in one mean: less than half of the narrowest effect that is asked for
+_EDGE = 3.0  # mm that lines stay away from the trimmed edge
+
+
+@dataclass(frozen=True)
+class Scan:
+    """How a face is scanned.
+
+    Attributes:
+        between: Distance of two lines, mm.
+        pitch: Distance of two recorded points on a line, mm.
+        u: Standard uncertainty of a point by its noise, mm.
+        memory: Distance over which that noise falls to 1/e, mm.
+        feed: Mm/min.
+    """
+
+    between: float = 5.0
+    pitch: float = 2.5
+    u: float = 2.0 * UM
+    memory: float = 1.0
+    feed: float = 1000.0
+
+    @property
+    def u_of_mean(self) -> float:
+        """Standard uncertainty of the mean of a stretch, mm."""
+        k = max(1, round(_STRETCH / self.pitch))
+        i = np.arange(k)
+        alike = np.exp(-self.pitch / self.memory) ** np.abs(i[:, None] - i) if self.memory else 1.0
+        total = float(np.sum(alike)) if self.memory else float(k)
+        return self.u * np.sqrt(total) / k
+
+    def points(self, face: FreeformPatch) -> int:
+        """Number of recorded points on a face."""
+        a, b = (2.0 * (half - _EDGE) for half in face.half_size)
+        return int((a // self.between + 1) * (b // self.pitch + 1))
+
+    def minutes(self, face: FreeformPatch) -> float:
+        """Duration of the lines and of the ways between them, min: slopes are followed."""
+        a, b = (2.0 * (half - _EDGE) for half in face.half_size)
+        longer = float(np.mean(1.0 / np.cos(face.slope(face.grid(4.0)))))
+        return ((a // self.between + 1) * b * longer + a) / self.feed
+
+
+def scanned(
+    face: FreeformPatch, scan: Scan, poses: Array, reach: ProbeReach, clear: bool = True
+) -> Measurement:
+    """Means of the stretches of a scan that machine and probe can make, at some table poses.
+
+    Args:
+        poses: Table poses at which the face is scanned, (K, R), rad.
+        clear: Whether angle and travel are asked for; False where they are known to do.
+    """
+    a, b = (half - _EDGE for half in face.half_size)
+    # as many means a length across the lines as along them: neighbours of several lines are one too
+    across = max(1, round(_STRETCH / scan.between))
+    u = np.arange(-a, a + 1e-9, across * scan.between)
+    v = np.arange(-b, b + 1e-9, _STRETCH)
+    grid = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    lots = [each_at(face, grid, pose[None]) for pose in poses]
+    wanted: Requests = joined(lots)
+    if clear:
+        wanted = wanted[reach.is_reachable(wanted)]
+    sd = scan.u_of_mean / np.sqrt(across)
+    return Measurement(wanted, np.full(len(wanted), sd), np.zeros(len(wanted)))

@@ -1,0 +1,279 @@
+"""How surely measurements on a standard show a smooth effect of the machine that nobody named.
+
+Such an effect displaces the tool along one linear axis. It is a short error of one axis, a bump
+over its reading, or a field over the readings of all linear axes, as if such bumps were everywhere:
+
+    f(touch) = n^T a_d g(q),   a_d direction of axis d in the frame of the normal n
+    bump     g = A exp(-4 ln 2 (q_i - q_0)^2 / w^2)       w full width at half of the height
+    field    cov(g(q), g(q')) = size^2 exp(-2 ln 2 |q - q'|^2 / w^2)
+
+Both are `SIZE` rms over the volume of the standard. Set-up, the errors of the model and the
+calibration with the form of the faces explain what they can of it; what is left is tested as one
+smooth field (`matstd.information.power`) of which place, direction and width are not known.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import ProbeReach, Requests, joined
+from matstd.artefact.worth import Criterion
+from matstd.information.power import FieldTest, decorrelated, field_test, low_rank
+from matstd.sensitivity.first_order import Box
+from matstd.twin.frames import Array, turn
+from matstd.twin.machine import linear_directions
+from matstd.twin.record import IntArray
+from matstd.twin.units import UM
+
+FIELD_WIDTHS, BUMP_WIDTHS = (40.0, 25.0), (40.0, 20.0)
+"""Full widths at half of the height of the effects that are asked for, mm: what a carriage or a
+nut of a ball screw averages over."""
+
+SIZE = 2.0 * UM
+"""Root mean square of an effect over the volume of the standard, mm."""
+
+FALSE_ALARM = 0.05
+"""Probability of finding one where there is none."""
+
+FORM_LENGTH = 6.0
+"""Distance over which form errors of a calibrated face remain alike, mm: pitch of its points."""
+
+_BUMP, _FIELD = 4.0 * np.log(2.0), 2.0 * np.log(2.0)  # in the exponents above
+_PLACES = 40  # at which a bump may be, averaged
+_LEFT_OUT = 1e-2  # share of the variance of a field that its factor may leave out
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """Touches and points of scans as they will be measured.
+
+    Attributes:
+        u: Standard uncertainty of every row by its noise alone, (N,), mm.
+        memory: Correlation of its noise with that of the row before, (N,); 0 for touches.
+    """
+
+    touches: Requests
+    u: Array
+    memory: Array
+
+    def __len__(self) -> int:
+        return len(self.touches)
+
+
+def touched(touches: Requests, noise: float) -> Measurement:
+    """Single touches with independent noise, mm."""
+    return Measurement(touches, np.full(len(touches), noise), np.zeros(len(touches)))
+
+
+def measured_together(parts: Sequence[Measurement]) -> Measurement:
+    """Several lots as one, in their order."""
+    return Measurement(
+        joined([part.touches for part in parts]),
+        np.concatenate([part.u for part in parts]),
+        np.concatenate([part.memory for part in parts]),
+    )
+
+
+@dataclass(frozen=True)
+class HiddenEffect:
+    """Effects of one kind that a machine may have.
+
+    Attributes:
+        axes: Linear axes over whose readings it varies: one for a bump, all for a field.
+        direction: Linear axis along which it displaces the tool.
+        width: Full width at half of the height, mm.
+    """
+
+    axes: tuple[str, ...]
+    direction: str
+    width: float
+
+    @property
+    def is_bump(self) -> bool:
+        """Whether it is a short error of one axis."""
+        return len(self.axes) == 1
+
+
+@dataclass(frozen=True, eq=False)
+class HiddenPower:
+    """How surely some measurements show hidden effects.
+
+    Attributes:
+        effects: Kinds of effects, K of them.
+        signal: Root of the mean noncentrality of each, (K,): in how many standard deviations it
+            would show to a test that knew it.
+        power: Probability of detection by the test of smooth fields, at a risk of `FALSE_ALARM`,
+            (K,).
+    """
+
+    effects: tuple[HiddenEffect, ...]
+    signal: Array
+    power: Array
+
+    @property
+    def worst(self) -> int:
+        """The kind that shows least."""
+        return int(np.argmin(self.power))
+
+
+def hidden_effects(reach: ProbeReach) -> tuple[HiddenEffect, ...]:
+    """Every kind of effect of a machine: fields, then bumps of each of its linear axes."""
+    linear = tuple(reach.chain.linear_axes)
+    kinds = [(linear, width) for width in FIELD_WIDTHS]
+    kinds += [((name,), width) for name in linear for width in BUMP_WIDTHS]
+    return tuple(HiddenEffect(axes, along, width) for axes, width in kinds for along in linear)
+
+
+def possible_places(
+    reach: ProbeReach, volume: Box, poses: Array, rng: np.random.Generator
+) -> Array:
+    """Readings of the linear axes at which bumps may sit, (K, 3), mm.
+
+    At random points of the volume that a standard fills, at random table poses of those at which it
+    is measured: the same for every artefact that is compared.
+    """
+    low, high = np.array(volume)
+    point = rng.uniform(low, high, (_PLACES, 3))
+    at = poses[rng.integers(0, len(poses), _PLACES)]
+    normal = np.tile([0.0, 0.0, 1.0], (_PLACES, 1))
+    return _linear(reach, reach.readings(Requests(np.full(_PLACES, ""), point, normal, at)))
+
+
+def hidden_power(
+    criterion: Criterion,
+    measured: Measurement,
+    places: Array,
+    effects: Sequence[HiddenEffect] = (),
+) -> HiddenPower:
+    """How surely some measurements show effects that no model has.
+
+    Args:
+        criterion: On the standard, whose calibration counts.
+        places: Where bumps may be, readings of the linear axes, (K, 3), mm.
+        effects: Of which the power is wanted; empty for all. The test knows nothing of them.
+    """
+    effects = tuple(effects) or hidden_effects(criterion.reach)
+    at = _At.of(criterion.reach, measured)
+    test, fields = _field_test(criterion, at), {}
+    signals, powers = [], []
+    for effect in effects:
+        if effect.is_bump:
+            f = at.decorrelated(at.bumps(effect, places))
+            signals.append(np.sqrt(np.mean(test.signal(f) ** 2)))
+            powers.append(float(test.power(f).mean()))
+            continue
+        if effect.width not in fields:
+            fields[effect.width] = at.field(effect.width)
+        F = at.decorrelated(at.along(effect) * fields[effect.width])
+        signals.append(np.sqrt(np.sum(test.signal(F) ** 2)))
+        powers.append(test.power_of_field(F))
+    return HiddenPower(effects, np.array(signals), np.array(powers))
+
+
+@dataclass(frozen=True, eq=False)
+class _At:
+    """Readings (N, 3) and directions along the normals (N, 3) of some measurements."""
+
+    measured: Measurement
+    axes: tuple[str, ...]
+    q: Array
+    lever: Array
+
+    @staticmethod
+    def of(reach: ProbeReach, measured: Measurement) -> "_At":
+        """The measurements on a machine."""
+        readings = reach.readings(measured.touches)
+        along = linear_directions(reach.chain, readings)
+        normal = turn(reach.setup.T_table_artefact, measured.touches.normal)
+        return _At(
+            measured=measured,
+            axes=tuple(reach.chain.linear_axes),
+            q=_linear(reach, readings),
+            lever=np.einsum("nim,ni->nm", along, normal),
+        )
+
+    def decorrelated(self, columns: Array) -> Array:
+        """Columns in mm in units of independent noise."""
+        return decorrelated(columns, self.measured.u, self.measured.memory)
+
+    def along(self, effect: HiddenEffect) -> Array:
+        """Deviation per displacement along the direction of an effect, (N, 1)."""
+        return self.lever[:, [self.axes.index(effect.direction)]]
+
+    def bumps(self, effect: HiddenEffect, places: Array) -> Array:
+        """Deviations of a bump at every place, `SIZE` rms over the range of the places, (N, K)."""
+        own = self.axes.index(effect.axes[0])
+        q, centre = self.q[:, own], places[:, own]
+        span = max(float(np.ptp(centre)), effect.width)
+        # the square of the bump has the integral A^2 w sqrt(pi / (8 ln 2))
+        peak = SIZE * np.sqrt(span / (effect.width * np.sqrt(np.pi / (2.0 * _BUMP))))
+        bump = peak * np.exp(-_BUMP * (q[:, None] - centre) ** 2 / effect.width**2)
+        return np.asarray(self.along(effect) * bump)
+
+    def field(self, width: float) -> Array:
+        """Factor of the covariance of a field along one direction, (N, M), mm."""
+        n = len(self.q)
+
+        def column(i: int) -> Array:
+            square = _squares(self.q, self.q[i])
+            return np.asarray(SIZE**2 * np.exp(-_FIELD * square / width**2))
+
+        return low_rank(np.full(n, SIZE**2), column, _LEFT_OUT)[0]
+
+    def any_field(self) -> Array:
+        """Factor of the covariance of any effect: every kind as probable as every other, (N, M)."""
+        widths = [(self.q, w) for w in FIELD_WIDTHS]
+        widths += [(self.q[:, [i]], w) for i in range(len(self.axes)) for w in BUMP_WIDTHS]
+        size = SIZE**2 / len(widths)
+
+        def column(i: int) -> Array:
+            alike = sum(np.exp(-_FIELD * _squares(q, q[i]) / w**2) for q, w in widths)
+            return np.asarray(size * alike * (self.lever @ self.lever[i]))
+
+        return low_rank(SIZE**2 * np.sum(self.lever**2, axis=1), column, _LEFT_OUT)[0]
+
+
+def _field_test(criterion: Criterion, at: _At) -> FieldTest:
+    """The test for any effect beside all that the model and the calibration explain."""
+    touches = at.measured.touches
+    explained = [criterion.noise * criterion.whitened(touches)]
+    if criterion.body is not None:
+        explained.append(criterion.calibration.columns(criterion.body, touches))
+        explained.append(form_columns(criterion.body, touches, criterion.calibration.form))
+    B = at.decorrelated(np.concatenate(explained, axis=1))
+    return field_test(B, at.decorrelated(at.any_field()), FALSE_ALARM)
+
+
+def form_columns(body: Standard, touches: Requests, u: float) -> Array:
+    """Form errors of the calibrated faces as columns of unit priors, (N, Q), mm.
+
+    Points of one face share them at every table pose, as far as they are close to each other.
+    """
+    out = []
+    for patch in body.patches if u > 0.0 else ():
+        rows: IntArray = np.flatnonzero(touches.feature == patch.name)
+        if not len(rows):
+            continue
+        point = touches.point[rows]
+
+        def column(i: int, at: Array = point) -> Array:
+            square = _squares(at, at[i])
+            return np.asarray(u**2 * np.exp(-0.5 * square / FORM_LENGTH**2))
+
+        own = low_rank(np.full(len(rows), u**2), column, _LEFT_OUT)[0]
+        columns = np.zeros((len(touches), own.shape[1]))
+        columns[rows] = own
+        out.append(columns)
+    return np.concatenate(out, axis=1) if out else np.zeros((len(touches), 0))
+
+
+def _linear(reach: ProbeReach, readings: Array) -> Array:
+    """Readings of the linear axes alone, (N, 3)."""
+    return readings[:, [reach.chain.axis_index(name) for name in reach.chain.linear_axes]]
+
+
+def _squares(points: Array, place: Array) -> Array:
+    """Squares of the distances of points (N, D) from a place (D,), (N,)."""
+    return np.asarray(np.sum((points - place) ** 2, axis=-1))

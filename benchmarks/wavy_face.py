@@ -1,0 +1,196 @@
+"""Effects that no model has: balls, small faces, a plane and a wavy face, touched or scanned.
+
+    OMP_NUM_THREADS=1 python benchmarks/wavy_face.py [--project machines/vertical] [--poses 1]
+        [--touches 300] [--size MM] [--slope DEG] [--form-um U]
+
+For every layout the signal (root of the noncentrality) and the power at 5 % risk of effects of 2 µm
+rms: fields over all linear axes (40 and 25 mm) and short errors of one axis (40 and 20 mm), along
+X, Y and Z; set-up, ordinary geometry and calibration with its form are projected out. Balls come
+from the optimiser of the design. 49 of them leave no room for a cutter between their posts: they
+are placed with only the balls clear of each other. A minute of processor time.
+"""
+
+import argparse
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from matstd.artefact.body import FreeformPatch, Standard, graph_patch
+from matstd.artefact.brief import Brief, read_project
+from matstd.artefact.hidden import (
+    HiddenPower,
+    Measurement,
+    Scan,
+    hidden_power,
+    measured_together,
+    possible_places,
+    scanned,
+    touched,
+)
+from matstd.artefact.layout import (
+    Wave,
+    faces_beside,
+    faces_fit,
+    freeform_faces,
+    most_side_by_side,
+    wavy_face,
+    with_spheres,
+)
+from matstd.artefact.reach import Requests, joined, spread_poses
+from matstd.artefact.worth import (
+    BallPlaces,
+    Criterion,
+    ball_places,
+    criterion_for,
+    each_at,
+    poses_within,
+    sphere_grid,
+)
+from matstd.twin.frames import Array
+from matstd.twin.units import DEG, UM
+
+EXAMPLES = Path(__file__).parents[1] / "examples"
+HEAD = "field 40 mm: X Y Z         25 mm: X Y Z         bumps 40 mm: X Y Z     20 mm: X Y Z"
+
+
+class Bench:
+    """One machine, and layouts measured on it with equally many touches."""
+
+    def __init__(self, brief: Brief, poses: int, touches: int, form: float) -> None:
+        rng = np.random.default_rng(brief.seed)
+        self.brief, self.touches, self.rng = brief, touches, rng
+        plain = replace(brief.options.criterion, potential=0.0)
+        plain = replace(plain, calibration=replace(plain.calibration, form=form))
+        self.criterion: Criterion = criterion_for(
+            brief.reach,
+            brief.population.expected("w"),
+            brief.blank,
+            brief.workspace,
+            brief.noise,
+            rng,
+            plain,
+            touches,
+            brief.population,
+        )
+        possible = poses_within(brief.chain, brief.rotary, max(poses, 8))
+        self.poses = spread_poses(possible, poses)
+        self.balls: BallPlaces = ball_places(self.criterion, brief.blank, possible, rng)
+        self.places = possible_places(
+            brief.reach, self.criterion.volume, self.poses, np.random.default_rng(1)
+        )
+
+    def some(self, on: list[Requests], count: int) -> Measurement:
+        """Touches that can be made, spread over their surfaces."""
+        tried = joined(on)
+        tried = tried[self.brief.reach.is_reachable(tried)]
+        order = np.random.default_rng(2).permutation(len(tried))[:count]
+        return touched(tried[order], self.brief.noise)
+
+    def on_balls(self, body: Standard, count: int) -> Measurement:
+        """Touches on its balls."""
+        grid = sphere_grid(60)
+        return self.some([each_at(s, grid, self.poses) for s in body.spheres], count)
+
+    def on_faces(self, body: Standard, count: int) -> Measurement:
+        """Touches on its faces."""
+        side = int(np.ceil(np.sqrt(2.0 * count / len(body.patches))))
+        return self.some([each_at(f, middles(f, side), self.poses) for f in body.patches], count)
+
+    def show(self, name: str, body: Standard, measured: Measurement) -> HiddenPower:
+        """Print the figures of a layout; bumps of X, Y and Z are averaged by their squares."""
+        start = time.process_time()
+        found = hidden_power(self.criterion.on(body), measured, self.places)
+        columns = []
+        for width, bump in ((40.0, False), (25.0, False), (40.0, True), (20.0, True)):
+            for along in self.brief.chain.linear_axes:
+                mine = [
+                    i
+                    for i, e in enumerate(found.effects)
+                    if (e.width, e.is_bump, e.direction) == (width, bump, along)
+                ]
+                signal = np.sqrt(np.mean(found.signal[mine] ** 2))
+                columns.append(f"{signal:4.1f};{min(found.power[mine].mean(), 0.999):.2f}"[:9])
+        seconds = time.process_time() - start
+        print(f"{name:42s} {'  '.join(columns)}  {seconds:.0f} s", flush=True)
+        return found
+
+
+def middles(face: FreeformPatch, side: int) -> Array:
+    """Middles of side x side cells of a face, (side^2, 2)."""
+    axes = [np.linspace(-1.0, 1.0, side) * half * (1.0 - 1.0 / side) for half in face.half_size]
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+
+
+def small_faces(bench: Bench, body: Standard) -> tuple[FreeformPatch, ...]:
+    """Six small faces beside the balls of a body, as the design draws them."""
+    blank = bench.brief.blank
+    faces = freeform_faces(blank, 6, 400, np.random.default_rng(3), body.spheres)
+    beside = faces_beside(faces, body.spheres, blank)
+    faces = [f for f, good in zip(faces, beside, strict=True) if good]
+    chosen = most_side_by_side(faces_fit(faces, (), blank.limits), 6)
+    return tuple(replace(faces[k], name=f"FF{i}") for i, k in enumerate(chosen, 1))
+
+
+def flat(face: FreeformPatch) -> FreeformPatch:
+    """A face with the mean plane of another."""
+    j = face.jet(face.grid())
+    slope = np.mean(j.hu), np.mean(j.hv)
+    blank = graph_patch(face.name, face.T_artefact_patch, face.half_size, np.zeros((8, 8)))
+    poles = blank.poles @ blank.T_artefact_patch[:3, :3] - blank.T_artefact_patch[:3, 3]
+    heights = slope[0] * poles[..., 0] + slope[1] * poles[..., 1]
+    return replace(blank, heights=heights, depth=face.depth)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--project", default="machines/vertical")
+    parser.add_argument("--poses", type=int, default=1)
+    parser.add_argument("--touches", type=int, default=300)
+    parser.add_argument("--size", type=float, default=240.0, help="side of plane and wavy face, mm")
+    parser.add_argument("--slope", type=float, default=45.0, help="of the wavy face, degrees")
+    parser.add_argument("--wavelength", type=float, default=60.0, help="of the wavy face, mm")
+    parser.add_argument("--form-um", type=float, default=0.3, help="of the calibrated faces")
+    args = parser.parse_args()
+    brief = read_project(EXAMPLES / f"{args.project}.toml")
+    bench = Bench(brief, args.poses, args.touches, args.form_um * UM)
+    print(
+        f"{brief.chain.name}, {len(bench.poses)} table poses, {args.touches} touches: signal;power"
+    )
+    print(f"{'':42s} {HEAD}")
+    bodies = {}
+    for count in (13, 25, 49):
+        places = bench.balls
+        if count > 25:
+            across = np.array([b.centre[:2] for b in places.balls])
+            apart = np.linalg.norm(across[:, None] - across, axis=-1)
+            places = replace(places, fits=apart > 2.0 * brief.blank.fittings.sphere_radius)
+        balls = places.best(count, args.touches)
+        bodies[count] = body = with_spheres(brief.blank, [b.centre for b in balls])
+        bench.show(f"{len(balls)} balls", body, bench.on_balls(body, args.touches))
+    body, half = bodies[13], args.touches // 2
+    faces = small_faces(bench, body)
+    for name, some in (("small faces", faces), ("flat pads there", tuple(map(flat, faces)))):
+        both = replace(body, patches=some)
+        lots = [bench.on_balls(both, half), bench.on_faces(both, half)]
+        bench.show(f"13 balls + {len(some)} {name}", both, measured_together(lots))
+    limits = replace(brief.blank.limits, max_slope=60.0 * DEG)
+    side = (0.5 * args.size, 0.5 * args.size)
+    wave = Wave((0.0, 0.0), side, args.wavelength, args.slope * DEG)
+    face = wavy_face("FF1", replace(brief.blank, limits=limits), wave)
+    for name, one in (("plane", flat(face)), ("wavy face", face)):
+        both = replace(body, patches=(one,))
+        on_balls = bench.on_balls(both, half)
+        touches = measured_together([on_balls, bench.on_faces(both, args.touches - half)])
+        bench.show(f"13 balls + {name}, touched", both, touches)
+        scan = Scan()
+        lines = scanned(one, scan, bench.poses, brief.reach)
+        words = f"{scan.points(one)} points, {scan.minutes(one):.0f} min"
+        bench.show(
+            f"13 balls + {name}, scanned, {words}", both, measured_together([on_balls, lines])
+        )
+
+
+if __name__ == "__main__":
+    main()
