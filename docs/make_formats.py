@@ -10,7 +10,7 @@ import re
 from enum import Enum
 from pathlib import Path
 
-from matstd.twin.files.keys import Table, keys_of
+from matstd.twin.files import Table
 from matstd.twin.text import toml_value
 
 FOLDER = Path(__file__).parent / "formats"
@@ -50,7 +50,7 @@ def default_of(model: type[Table], key: str) -> str:
 def rows(model: type[Table]) -> str:
     """One row per key: its name, its default, what it is and its range."""
     out = ""
-    for name, key in keys_of(model).items():
+    for name, key in model.keys().items():
         cells = [f"`{name}`", default_of(model, name), key.range, key.about]
         out += f"| {' | '.join(cells)} |\n"
     return out

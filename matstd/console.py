@@ -38,8 +38,3 @@ def say_each(lines: Iterable[object]) -> None:
     """Several lines, each as an item of a list."""
     for line in lines:
         say(f"- {line}")
-
-
-def say_next(command: str, why: str = "") -> None:
-    """The command that follows this one, filled in; the last line of every command."""
-    say(f"next: {command}{f'   ({why})' if why else ''}", style="bold")

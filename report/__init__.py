@@ -26,6 +26,7 @@ number in a result.
     compensation
             what compensation corrects and what remains, with its page
     drift   laws of a thermal drift, with their page
+    laws    laws that were learnt, with their page and their Python file
 
 A new picture is a function from a result to a figure (`maps`, `plots`); a section of a page lists
 it with its caption. A new sentence is a function in `words`.
@@ -50,5 +51,6 @@ PARTS = (
     "pages",
     "compensation",
     "drift",
+    "laws",
 )
 """From bottom to top: each imports only from those before it."""

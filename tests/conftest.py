@@ -62,6 +62,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
     return TogetherScheduling(config, log)
 
 
+def pytest_report_header() -> str:
+    """Whether the live pages are driven."""
+    from browser import MISSING, is_here
+
+    return "pages are driven in Chromium" if is_here() else MISSING
+
+
 DOT = b64decode(
     "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=="
 )

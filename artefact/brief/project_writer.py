@@ -5,7 +5,7 @@ from typing import get_args
 
 from matstd.artefact.brief.project_file import ProjectTable
 from matstd.artefact.brief.workshop_tables import TableTable
-from matstd.twin.files import SetupTable, Table, keys_of
+from matstd.twin.files import SetupTable, Table
 from matstd.twin.text import toml_value
 
 COMMENT = 46
@@ -24,7 +24,7 @@ def project_text(tables: Mapping[str, Mapping[str, object]]) -> str:
     out = ""
     for name, values in tables.items():
         out += f"\n[{name}]\n" if name else ""
-        known = keys_of(_model(name)) if name != "workspace" else {}
+        known = _model(name).keys() if name != "workspace" else {}
         for key, value in values.items():
             unit = "degrees" if key[0] in "ABC" else "mm"
             what = f"readings of interest, {unit}" if name == "workspace" else known[key].short

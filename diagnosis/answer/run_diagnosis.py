@@ -165,7 +165,8 @@ def _result(
     last = steps[-1].fit
     repeats = repeatability(last)
     repeat = to_repeat(last, repeats)
-    faults = description_faults(steps[0].fit, progress)
+    named = [s.effect for s in steps[1:] if s.effect is not None]
+    faults = description_faults(steps[0].fit, progress, named)
     geometry = learnt_geometry(
         last, task.prior if task.is_known else None, steps[0].fit if len(steps) > 1 else None
     )

@@ -23,7 +23,7 @@ from matstd.diagnosis.geometry.arm_links import arm_functionals
 from matstd.diagnosis.geometry.quantities import Functional, Quantity, geometric_effects
 from matstd.twin.frames import Array
 from matstd.twin.machine import LETTERS, Chain, Family, Link, tip
-from matstd.twin.model import Model
+from matstd.twin.model import Model, traits
 from matstd.twin.record import Touches, at_poses
 
 POINTS = 21
@@ -248,6 +248,8 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
             weights=weights,
             lever=reach if component >= 3 else 1.0,
         )
+    if not link.is_joint:
+        yield from _zero(fit, link, reach)
     for component, curve in sorted(_curves(fit, _along_axis(fit, axis), link).items()):
         is_angle = component >= 3
         weights = _peak_to_valley(curve, theta)
@@ -261,6 +263,23 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
             weights=weights,
             lever=reach if is_angle else 1.0,
         )
+
+
+def _zero(fit: Fit, link: Link, reach: float) -> Iterator[Functional]:
+    """Zero of a rotary axis; where a turned standard or a tilted neighbour does the same, open."""
+    for start, effect in geometric_effects(fit):
+        symbol = traits(effect).ordinary_constant
+        if symbol and symbol.link == link.name and symbol.component == link.own_component:
+            weights = np.zeros(len(fit.model.parameters))
+            weights[start] = 1.0
+            yield Functional(
+                quantity=Quantity.ROTARY_ZERO,
+                symbol=symbol.name,
+                axes=(link.name,),
+                unit="rad",
+                weights=weights,
+                lever=reach,
+            )
 
 
 def _line_of(fit: Fit, axis: str) -> dict[int, Array]:

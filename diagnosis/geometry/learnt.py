@@ -39,6 +39,9 @@ from matstd.diagnosis.geometry.rows import (
 from matstd.twin.frames import Array
 from matstd.twin.model import Model
 
+LOCATIONS = (Quantity.ROTARY_LINE, Quantity.ROTARY_ZERO)
+"""Quantities that one location error is named by, whose usual size is expected of them."""
+
 MIN_SHARED_CORRELATION = 0.3
 """Correlation of estimates from which a parameter is named as one that a quantity is shared with;
 four parameters that share one direction evenly have a third each."""
@@ -153,7 +156,9 @@ def _row(
     sd = float(np.linalg.norm(one.weights @ fit.prior.root[:machine, :machine]))
     values = [_of(fit, w) for w in every]
     is_known = [e.u * MIN_DETERMINED_RATIO < sd for e in values]
-    expected = expected_size(fit, one.weights, stated)
+    usual = _usual(fit, one) if one.quantity in LOCATIONS else None
+    # what all errors may add up to at a line is no size that a line of such a machine has
+    expected = usual or expected_size(fit, one.weights, stated)
     # a residual that widens what is expected makes no size of what the run leaves open
     is_known = [k and _is_size(e, expected) for k, e in zip(is_known, values, strict=True)]
     fitted = set(fit.run.touches.run[fit.used])
@@ -184,7 +189,7 @@ def _row(
         change=change,
         course=course if steps else (),
         steps=tuple(steps),
-        usual=_usual(fit, one) if one.quantity is Quantity.ROTARY_LINE else None,
+        usual=usual,
     )
 
 

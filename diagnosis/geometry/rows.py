@@ -54,8 +54,7 @@ class GeometryRow:
         course: The same in every run, in their order, where there are several; None in a run that
             does not determine it.
         steps: What changed into every run but the first; None where either is not determined.
-        usual: Of the line of a rotary axis the usual size of the one error that it is named by;
-            `expected` has what all errors of the machine may add up to.
+        usual: Of the line or zero of a rotary axis the usual size of the error that it is named by.
         u_model: What the choice of the model contributes to the uncertainty of the estimate.
     """
 
@@ -77,10 +76,15 @@ class GeometryRow:
 
     @property
     def is_far(self) -> bool:
-        """Whether it is the line of a rotary axis that is not where the machine file has it."""
+        """Whether it is a line or zero of a rotary axis far from where the machine file has it."""
         if self.usual is None or not self.is_determined:
             return False
         return abs(self.estimate.value) > MIN_FAR_LINE * max(self.usual, self.estimate.u)
+
+    @property
+    def times_usual(self) -> float:
+        """Size over the usual one of a line or zero of a rotary axis; 0 of other quantities."""
+        return abs(self.estimate.value) / self.usual if self.usual else 0.0
 
     @property
     def at_ends(self) -> Estimate:

@@ -150,8 +150,9 @@ def _board(
         for name, group in alike.items()
         for s in group
     ]
-    room = MOST_SWITCHES - len(switches) - len(others)
-    others += [(s, ()) for s in _best(ResidualSpace.of(start), library, max(room, 0))]
+    others = others[: max(MOST_SWITCHES - len(switches), 0)]
+    room = max(MOST_SWITCHES - len(switches) - len(others), 0)
+    others += [(s, ()) for s in _best(ResidualSpace.of(start), library, room)]
     for sized, same in others:
         sd = np.array([p.sd for p in sized.effect.parameters]) * FREEDOM * sized.scale
         width = sum(s.columns.shape[1] for s in switches)

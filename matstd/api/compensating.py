@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from matstd.api.diagnosing import Diagnosis
-from matstd.api.effects import register_effects
 from matstd.api.known_errors import drives_stated, machine_errors, with_added, with_unknowns
+from matstd.api.runs import register_effects
 from matstd.compensation import field
 from matstd.compensation.field import Datum, MachineErrors, Share, State, datum_of, sample_workspace
 from matstd.compensation.part_programs import Frame, Program, read_loads, read_part_program

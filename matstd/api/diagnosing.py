@@ -20,6 +20,7 @@ from matstd.diagnosis.files import (
     write_diagnosis,
 )
 from matstd.diagnosis.fit import Fit
+from matstd.report.geometry import determined_comment
 from matstd.report.pages import Printer, write_diagnosis_page, write_pdf
 from matstd.report.run_view import Framed, diagnosis_view
 from matstd.report.words import remark_sentence, verdict_sentence
@@ -92,7 +93,7 @@ class Diagnosis(Saveable, answer.Diagnosis):
         with deviations_in(self.run.touches.deviation_unit):
             sentences = [remark_sentence(r) for r in self.remarks]
             write_diagnosis(folder / "diagnosis.json", self, sentences)
-            write_whole(folder / "model.toml", self.model_text)
+            write_whole(folder / "model.toml", determined_comment(self.geometry) + self.model_text)
             for i, plan in enumerate(self.plans, start=1):
                 write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
             return write_found_arm(folder, self.fit, self.title)

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from matstd.api.compensating import ProgramOptions, within_travel
-from matstd.api.effects import register_effects
 from matstd.api.known_errors import drives_stated, machine_errors, with_added, with_unknowns
 from matstd.api.machines import chain_of
+from matstd.api.runs import register_effects
 from matstd.api.standards import standard_of
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import Workshop

@@ -4,8 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-from matstd.api.effects import register_effects
-from matstd.api.runs import Runs, is_learnt_from, listed, read_run
+from matstd.api.runs import Runs, is_learnt_from, listed, read_run, register_effects
 from matstd.artefact import body
 from matstd.artefact.body import Standard, write_standard
 from matstd.artefact.brief import Task, read_task

@@ -53,6 +53,11 @@ class Table(BaseModel):
         extra="forbid", allow_inf_nan=False, strict=True, frozen=True, populate_by_name=True
     )
 
+    @classmethod
+    def keys(cls) -> "dict[str, Key]":
+        """Its keys in their order, by their names in the file."""
+        return keys_of(cls)
+
 
 Fault = Callable[[Sequence[str], str, str], BadFile]
 """Makes a fault of the steps to a key, what stood there and what was expected."""

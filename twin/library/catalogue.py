@@ -34,6 +34,7 @@ from matstd.twin.effects import (
 )
 from matstd.twin.elastic import body, load_play, stiffness, tool_point
 from matstd.twin.errors import BadFile, DesignError, UnknownEffect
+from matstd.twin.laws import KIND as LAW
 from matstd.twin.library.trial import users_fault
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Kind, Title, columns, is_tunable, own_title
@@ -316,5 +317,6 @@ for _kind in (
     artefact.SLIP,
     artefact_form.KIND,
     artefact.DRIFT,
+    LAW,
 ):
     register(_kind)

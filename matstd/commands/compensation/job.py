@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Sequence
 
 from matstd.api.compensating import Compensation, ProgramOptions, compensate
-from matstd.api.effects import register_effects
+from matstd.api.runs import register_effects
 from matstd.compensation.field import State
 from matstd.console import say_each
 from matstd.options import named_numbers

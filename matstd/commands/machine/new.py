@@ -111,7 +111,7 @@ def _check_table(args: argparse.Namespace) -> None:
 
 def _written(args: argparse.Namespace, text: str) -> None:
     """Write a template, and the machine file that it names."""
-    from matstd.console import say, say_next
+    from matstd.console import say
     from matstd.twin.files import write_whole
 
     output = Path(args.output)
@@ -121,18 +121,11 @@ def _written(args: argparse.Namespace, text: str) -> None:
     if args.kind in NEEDS_MACHINE and not machine.exists():
         write_whole(machine, template("machine"))
         say(f"{machine}: its machine file; replace the numbers by those of your machine")
-    nexts = {
-        "machine": f"matstd new project --machine {output} -o project.toml",
-        "project": f"matstd design {output} -o OUT",
-        "run": f"matstd diagnose {output} -o OUT",
-        "effect": f"matstd effects --effects {output}",
-    }
-    say_next(nexts[args.kind])
 
 
 def _proposed(args: argparse.Namespace) -> int:
     """Write a project that suits a machine."""
-    from matstd.console import say, say_each, say_next
+    from matstd.console import say, say_each
     from matstd.stages.proposal import propose
     from matstd.twin.files import write_whole
 
@@ -151,7 +144,6 @@ def _proposed(args: argparse.Namespace) -> int:
         "room are checked"
     )
     say_each(_gains(found))
-    say_next(f"matstd design {output} -o OUT")
     return 0
 
 

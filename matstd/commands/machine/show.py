@@ -61,7 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the page."""
-    from matstd.api.effects import register_effects
+    from matstd.api.runs import register_effects
     from matstd.api.showing import show
     from matstd.commands.compensation.job import machine_state, named_readings, program_options
     from matstd.console import say, say_assumed

@@ -172,8 +172,8 @@ def planted_machine(
     args: argparse.Namespace, machine: str | Path, control: str, sensors: str | None = None
 ) -> VirtualMachine:
     """The machine as it really is, with what the options of `add_planted` plant in it."""
-    from matstd.api.effects import register_effects
     from matstd.api.probing import virtual_machine
+    from matstd.api.runs import register_effects
     from matstd.twin.units import UM
 
     register_effects(*args.effects)

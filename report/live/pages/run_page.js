@@ -28,7 +28,8 @@ function sized() {
 function laidOut() {
   const theme = element("button", { type: "button", id: "theme" });
   const again = element("button", {
-    type: "button", id: "again", text: "as found", title: "every effect as the command left it",
+    type: "button", id: "again", title: "every effect as the command left it",
+    text: board.switches.some(s => s.isFound) ? "as found" : "all off",
     onclick: () => { board.reset(); effects.refresh(); changed(); },
   });
   const figures = element("p", { class: "figures", role: "status", "aria-live": "polite" });

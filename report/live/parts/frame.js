@@ -55,7 +55,7 @@ export class Frame {
     c.fillStyle = colour("soft");
     c.textAlign = "right";
     c.textBaseline = "middle";
-    const up = ticks(...this.y, Math.max(2, Math.floor(this.high / 45)));
+    const up = ticks(...this.y, Math.max(3, Math.floor(this.high / 32)));
     for (const v of up.at) {
       const p = Math.round(this.py(v)) + 0.5;
       c.beginPath();
