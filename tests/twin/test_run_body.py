@@ -189,7 +189,7 @@ def test_the_scale_of_the_cmm_is_one_error_of_all_runs_of_a_standard(tmp_path: P
         (f"{STEEL}, body_degC = 295.0", r"standard.body_degC: found 295 \(in kelvin\?\)"),
         (f"{STEEL}, body_degC = 80.0", r"standard.body_degC: found 80 \(of another body\?\)"),
         (f"{STEEL}, body_degC = 25.0, body_u_K = -0.5", "standard.body_u_K: found -0.5"),
-        ("body_degC = 25.0", "standard.expansion_1_K: found nothing, expected this key"),
+        ("body_degC = 25.0", "standard.expansion_1_K: found nothing, expected a number in 1/K"),
         (f"{STEEL}, body_C = 25.0", "standard.body_C: found an unknown key"),
     ],
 )
