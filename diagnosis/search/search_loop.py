@@ -33,6 +33,7 @@ from matstd.diagnosis.evidence import (
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import PatternTests, Structure, find_structure
+from matstd.diagnosis.search.budget import Budget
 from matstd.diagnosis.search.domains import by_time
 from matstd.diagnosis.search.edges import unexplained_near_slip, without
 from matstd.diagnosis.search.overtones import with_overtones
@@ -40,7 +41,7 @@ from matstd.diagnosis.search.refine import refined_set
 from matstd.diagnosis.search.restore_outliers import restore_predicted_outliers
 from matstd.diagnosis.search.screened import best_set, scaled
 from matstd.diagnosis.search.screening import Library
-from matstd.diagnosis.search.selection import Budget, EffectSubset, Search
+from matstd.diagnosis.search.selection import EffectSubset, Search
 from matstd.diagnosis.search.task import DiagnosisTask
 from matstd.twin.effects import repeat
 from matstd.twin.frames import Array
