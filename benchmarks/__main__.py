@@ -39,6 +39,7 @@ RUNS: dict[str, tuple[str, ...]] = {
     "real_records": (),
     "standard_temperature": (),
     "live_page": (),
+    "machine_page": (),
 }
 """Scripts and their arguments; the unseen cases, which have to be made first, come after them."""
 

@@ -55,7 +55,7 @@ def made(touches: int, folder: Path):
     from matstd.diagnosis.answer import compare, diagnose
     from matstd.diagnosis.reduced import compared_board, diagnosed_board
     from matstd.report.layout import Page, write_page
-    from matstd.report.run_view import run_view
+    from matstd.report.run_view import Told, run_view
 
     run = simulated(folder, touches)
     is_long = len(run) > LONG
@@ -63,7 +63,7 @@ def made(touches: int, folder: Path):
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     start = time.process_time()
     board = compared_board(result) if is_long else diagnosed_board(result)
-    view = run_view(board, "run.csv")
+    view = run_view(board, Told("run.csv"))
     taken = time.process_time() - start
     more = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
     path = folder / "report.html"

@@ -7,6 +7,7 @@ formula, true scales from its own product of matrices. The true expansion is dra
 one, and the thermometer errs by its uncertainty:
 
     known     15 to 30 degC; the run states what the thermometer reads
+    scaled    the same, calibrated by a CMM with a scale of 0 +- 5 ppm, which the run states
     unknown   20 +- 2 degC; the run states the expansion alone
     unstated  15 to 30 degC; the run states nothing
 """
@@ -22,7 +23,8 @@ sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
 
 ALPHA, U_ALPHA = 10.5e-6, 1.05e-6
 U_KNOWN, U_UNKNOWN = 0.3, 2.0
-CASES = ("known", "unknown", "unstated")
+U_SCALE = 5e-6
+CASES = ("known", "scaled", "unknown", "unstated")
 POSES = 5
 """Table poses of each of three set-ups."""
 
@@ -31,7 +33,11 @@ def head(case: str, reading: float) -> str:
     """What the head of the run states."""
     if case == "unstated":
         return ""
-    known = f", body_degC = {reading:.3f}, body_u_K = {U_KNOWN}" if case == "known" else ""
+    known = ""
+    if case in ("known", "scaled"):
+        known = f", body_degC = {reading:.3f}, body_u_K = {U_KNOWN}"
+    if case == "scaled":
+        known += f", scale_u_ppm = {1e6 * U_SCALE:g}"
     return f"# standard = {{ expansion_1_K = {ALPHA}, expansion_u_1_K = {U_ALPHA}{known} }}"
 
 
@@ -48,7 +54,10 @@ def scales(seed: int, machine: str, case: str) -> dict[str, tuple[float, float, 
     e = random_experiment(rng, machine, POSES)
     t = rng.normal(20.0, U_UNKNOWN) if case == "unknown" else rng.uniform(15.0, 30.0)
     alpha, reading = rng.normal(ALPHA, U_ALPHA), rng.normal(t, U_KNOWN)
-    run = probed_warm(e, rng, alpha, t, head(case, reading))
+    text = head(case, reading)
+    if case == "scaled":  # one more relative growth, expressed by the expansion
+        alpha += rng.normal(0.0, U_SCALE) / (t - 20.0)
+    run = probed_warm(e, rng, alpha, t, text)
     fit = fit_run(run, ordinary_model(run.touches.chain))
     truth = true_scales(e, run.touches[fit.used])
     return {
@@ -63,9 +72,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("-n", type=int, default=100, help="runs of each case (100)")
     parser.add_argument("--first", type=int, default=0, help="seed of the first run (0)")
+    parser.add_argument("--cases", nargs="+", choices=CASES, default=CASES)
     parser.add_argument("--machine", choices=("hsm600u", "fork", "hmc1995"), default="hsm600u")
     args = parser.parse_args()
-    for case in CASES:
+    for case in args.cases:
         seeds = range(args.first, args.first + args.n)
         found = [scales(seed, args.machine, case) for seed in seeds]
         for name in ("EXX", "EYY", "EZZ"):

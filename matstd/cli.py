@@ -40,6 +40,7 @@ FOLDERS = {
         "show": "one page on which a machine moves, with its errors and a program",
         "machines": "list the included machines; print a machine file with the source of every "
         "figure",
+        "examples": "copy the examples that come with the tool: runs, projects, scripts",
         "new": "write a commented minimal file: machine, project, run or effect",
         "effects": "list the effects of the library with their formulas and units",
     },

@@ -80,6 +80,13 @@ def _compare(args: Namespace) -> Step:
     return called("diagnose", args.run_file, "-o", "diagnosis"), "what the model lacks"
 
 
+def _learn(args: Namespace) -> Step:
+    out = Path(args.output)
+    known = ["--effects", out / "effect.py"] if (out / "effect.py").exists() else []
+    words = called("compare", "--model", out / "model.toml", *known, "-o", "after", more="RUN.csv")
+    return words, "the law on another run"
+
+
 def _thermal(args: Namespace) -> Step:
     if args.law:
         return None
@@ -135,6 +142,7 @@ _AFTER: dict[str, Callable[[Namespace], Step]] = {
     "replan": _replan,
     "import": _run_file,
     "compare": _compare,
+    "learn": _learn,
     "thermal": _thermal,
     "compensate": _compensate,
     "volumetric": _volumetric,
@@ -142,6 +150,7 @@ _AFTER: dict[str, Callable[[Namespace], Step]] = {
 }
 
 WITHOUT = {
+    "examples": "what was copied decides: `args.next`",
     "diagnose": "its verdict decides: `args.next`",
     "serve": "ends when it is stopped",
     "contributions": "its page is the end of a question",

@@ -21,6 +21,8 @@ number in a result.
             the live view of a run: effects to switch, and the error with them
     scenes  pictures in three dimensions, rendered in a process of their own
     machine a machine that moves, with its errors and a program, on a page
+    design_view
+            what moves on the page of a design
     drawing the sheet for the workshop, PDF and SVG
     pages   the pages: results as lists of sections
     compensation
@@ -47,6 +49,7 @@ PARTS = (
     "run_view",
     "scenes",
     "machine",
+    "design_view",
     "drawing",
     "pages",
     "compensation",

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from matstd.commands.machine.examples import EXAMPLES
+
 ROOT = Path(__file__).parents[1]
 TRAPS = ("report", "twin", "information", "diagnosis", "artefact", "compensation", "sensitivity")
 
@@ -77,13 +79,26 @@ def test_a_wheel_adds_one_name(wheel: Path) -> None:
 def test_a_wheel_is_whole(wheel: Path) -> None:
     """Every module, template and dialect of the rooms is in it."""
     inside = set(zipfile.ZipFile(wheel).namelist())
-    rooms = [p for p in ROOT.iterdir() if p.name != "matstd" and (p / "__init__.py").exists()]
+    others = ("matstd", "examples")
+    rooms = [p for p in ROOT.iterdir() if p.name not in others and (p / "__init__.py").exists()]
     assert len(rooms) >= 9
     for room in [*rooms, ROOT / "matstd"]:
         for file in room.rglob("*"):
             if file.is_file() and "__pycache__" not in file.parts:
                 inner = file.relative_to(ROOT).as_posix()
                 assert (inner if room.name == "matstd" else f"matstd/{inner}") in inside, inner
+
+
+def test_every_example_is_in_the_wheel(wheel: Path) -> None:
+    """What `matstd examples` copies; pictures and records of other licences stay behind."""
+    inside = {name for name in zipfile.ZipFile(wheel).namelist() if "/examples/" in name}
+    for example in EXAMPLES.values():
+        for pattern in example.files:
+            wanted = [p for p in (ROOT / "examples").glob(pattern) if p.name != "__init__.py"]
+            assert wanted or pattern.endswith(".json"), pattern
+            for path in wanted:
+                assert f"matstd/{path.relative_to(ROOT).as_posix()}" in inside, path
+    assert not any(name.startswith("matstd/examples/fl_thermal") for name in inside)
 
 
 def test_modules_of_the_user_change_nothing(user: Path) -> None:

@@ -16,10 +16,11 @@ from matstd.artefact.body.limits import (
     max_slope,
     min_concave_radius,
 )
+from matstd.artefact.body.material import Material
 from matstd.artefact.body.patch import Meeting
 from matstd.artefact.body.solids import BLEND, Plate
 from matstd.artefact.body.sphere_fit import fitted_sphere
-from matstd.artefact.body.standard import Base, Core, Material, Standard
+from matstd.artefact.body.standard import Base, Core, Standard
 from matstd.artefact.body.standard_file import read_standard, write_standard
 
 __all__ = [

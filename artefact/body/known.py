@@ -12,12 +12,20 @@ class KnownFeature:
         u: Of its place in every direction, which all touches on it share, mm.
         u_tilt: Of its rotations, rad; 0 of a ball.
         u_form: Of its surface at a point, beyond that, mm.
+        u_axes: Of its place along x, y and z where they differ, mm: a ball is measured on its upper
+            half. `u` is their root mean square then.
     """
 
     points: int
     u: float
     u_tilt: float
     u_form: float
+    u_axes: tuple[float, float, float] | None = None
+
+    @property
+    def along(self) -> tuple[float, float, float]:
+        """Standard uncertainties of its place along x, y and z, mm."""
+        return (self.u, self.u, self.u) if self.u_axes is None else self.u_axes
 
 
 GUARD = 1.65
@@ -31,7 +39,7 @@ class Verdict:
 
     Attributes:
         feature: Name; for the scale the names of the two balls with the largest distance.
-        characteristic: `diameter`, `position`, `profile` or `scale`.
+        characteristic: `diameter`, `form`, `position`, `profile` or `scale`.
         deviation: Measured minus designed, mm.
         tolerance: Largest allowed deviation, mm.
         u: Standard uncertainty of the deviation, mm.
@@ -65,12 +73,15 @@ class Known:
         nominal: Fingerprint of the standard as designed.
         features: By name; for other features the designed shape and assumed uncertainties hold.
         verdicts: Conformity with the drawing; empty where it was not evaluated.
+        u_scale: Relative standard uncertainty of all its lengths at 20 degC, shared: scales
+            and temperature of the CMM; None where an earlier calibration does not state it.
     """
 
     source: str
     nominal: str
     features: Mapping[str, KnownFeature]
     verdicts: tuple[Verdict, ...] = ()
+    u_scale: float | None = None
 
     @property
     def accepted(self) -> tuple[str, ...]:

@@ -8,17 +8,31 @@ from matstd.artefact.body.known import Known, KnownFeature, Verdict
 from matstd.twin.files import Table
 from matstd.twin.units import UM, URAD
 
+PPM = 1e-6
+
 
 class _KnownFeature(Table):
     points: Annotated[int, Field(ge=1)]
     u_um: Annotated[float, Field(ge=0.0)]
     u_urad: Annotated[float, Field(ge=0.0)] = 0.0
     u_form_um: Annotated[float, Field(ge=0.0)] = 0.0
+    u_axes_um: Annotated[list[float] | None, Field(min_length=3, max_length=3)] = None
+
+    def feature(self) -> KnownFeature:
+        """In base units."""
+        axes = self.u_axes_um
+        return KnownFeature(
+            points=self.points,
+            u=self.u_um * UM,
+            u_tilt=self.u_urad * URAD,
+            u_form=self.u_form_um * UM,
+            u_axes=None if axes is None else (axes[0] * UM, axes[1] * UM, axes[2] * UM),
+        )
 
 
 class _Verdict(Table):
     feature: str
-    characteristic: Literal["diameter", "position", "profile", "scale"]
+    characteristic: Literal["diameter", "form", "position", "profile", "scale"]
     deviation_um: float
     tolerance_um: Annotated[float, Field(ge=0.0)]
     u_um: Annotated[float, Field(ge=0.0)]
@@ -30,6 +44,7 @@ class KnownTable(Table):
 
     source: str
     nominal: str
+    scale_u_ppm: Annotated[float | None, Field(ge=0.0)] = None
     feature: dict[str, _KnownFeature]
     verdict: list[_Verdict] = Field(default_factory=list)
 
@@ -38,10 +53,7 @@ class KnownTable(Table):
         return Known(
             source=self.source,
             nominal=self.nominal,
-            features={
-                name: KnownFeature(f.points, f.u_um * UM, f.u_urad * URAD, f.u_form_um * UM)
-                for name, f in self.feature.items()
-            },
+            features={name: f.feature() for name, f in self.feature.items()},
             verdicts=tuple(
                 Verdict(
                     feature=v.feature,
@@ -52,6 +64,7 @@ class KnownTable(Table):
                 )
                 for v in self.verdict
             ),
+            u_scale=None if self.scale_u_ppm is None else self.scale_u_ppm * PPM,
         )
 
 
@@ -60,12 +73,14 @@ def known_table(known: Known) -> dict[str, Any]:
     return {
         "source": known.source,
         "nominal": known.nominal,
+        **({} if known.u_scale is None else {"scale_u_ppm": round(known.u_scale / PPM, 4)}),
         "feature": {
             name: {
                 "points": f.points,
                 "u_um": round(f.u / UM, 4),
                 "u_urad": round(f.u_tilt / URAD, 3),
                 "u_form_um": round(f.u_form / UM, 4),
+                **({} if f.u_axes is None else {"u_axes_um": [round(u / UM, 4) for u in f.u_axes]}),
             }
             for name, f in known.features.items()
         },

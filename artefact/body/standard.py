@@ -1,7 +1,6 @@
 """The whole standard: one body with freeform patches, datum spheres, datum plane and holes."""
 
 import hashlib
-import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -11,11 +10,11 @@ import numpy as np
 from matstd.artefact.body.datum import DatumPlane, DatumSphere, MountingHole, outline_distance
 from matstd.artefact.body.freeform import FreeformPatch
 from matstd.artefact.body.known import Known
+from matstd.artefact.body.material import Material
 from matstd.artefact.body.patch import Mask, Surface
 from matstd.artefact.body.sag import Sag
 from matstd.artefact.body.solids import BLEND, Ball, Body, Column, Cone, Plate, column
 from matstd.twin.display import Displayed
-from matstd.twin.elastic import material as usual
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
@@ -25,50 +24,6 @@ from matstd.twin.units import T_REF
 DATUM_PLANE = "DATUM_A"
 
 _HULL_MARGIN = 1e-6  # mm added to a hull: squares of coordinates have lost digits
-
-
-@dataclass(frozen=True, slots=True)
-class Material:
-    """Material of the standard.
-
-    Attributes:
-        density: In kg/mm^3.
-        expansion: Coefficient of linear thermal expansion, 1/K.
-        u_expansion: Its standard uncertainty, 1/K; None where it is not stated.
-        modulus: Young's, N/mm^2; None where it is not known.
-        modulus_share: Relative standard uncertainty of the modulus; 0 where it is stated.
-    """
-
-    name: str = "X40Cr14 (1.2083), hardened"
-    density: float = 7.8e-6
-    expansion: float = 10.5e-6
-    u_expansion: float | None = None
-    modulus: float | None = None
-    poisson: float = 0.3
-    modulus_source: str = "stated"
-    modulus_share: float = 0.0
-
-    def with_usual_modulus(self) -> "Material":
-        """With the usual modulus of the named material, unless one is stated.
-
-        Only the words before a bracket or comma count, and only as a whole: "X40Cr14 (1.2083),
-        hardened" and "Cast iron" are known, "steel-filled epoxy" is not.
-        """
-        word = re.split(r"[(,]", self.name)[0].strip().casefold().replace(" ", "-")
-        known = usual({"aluminum": "aluminium"}.get(word, word))
-        if self.modulus is not None or known is None:
-            return self
-        source = f"usual value of {word}: {known.source}"
-        return replace(
-            self,
-            modulus=known.young,
-            poisson=known.poisson,
-            modulus_source=source,
-            modulus_share=known.share,
-        )
-
-
-STEEL = Material().with_usual_modulus()
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,11 +120,19 @@ class Standard(Displayed):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """Nonconforming characteristics that were accepted at its calibration."""
-        if self.known is None or not self.known.accepted:
+        """Nonconforming characteristics that were accepted at its calibration, missing values."""
+        if self.known is None:
             return ()
-        named = ", ".join(self.known.accepted)
-        return (f"calibration of '{self.name}' accepted although not conforming: {named}",)
+        lines = []
+        if self.known.accepted:
+            named = ", ".join(self.known.accepted)
+            lines = [f"calibration of '{self.name}' accepted although not conforming: {named}"]
+        if self.known.u_scale is None:
+            lines.append(
+                f"calibration of '{self.name}' states no uncertainty of its scale (scale_u_ppm): "
+                "it is taken as exact; calibrate again to state it"
+            )
+        return tuple(lines)
 
     @cached_property
     def usable_sag(self) -> Sag | None:
@@ -191,7 +154,10 @@ class Standard(Displayed):
         Uniformly warm and fixed at its origin, so that all surfaces grow by
         ``1 + expansion (temperature - 20)`` and keep their normals.
         """
-        k = 1.0 + self.material.expansion * (temperature - T_REF)
+        return self.scaled(1.0 + self.material.expansion * (temperature - T_REF))
+
+    def scaled(self, k: float) -> "Standard":
+        """Larger by a factor about its origin, as of `at`."""
         return replace(
             self,
             base=replace(self.base, thickness=k * self.base.thickness),

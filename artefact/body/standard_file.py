@@ -11,8 +11,9 @@ from matstd.artefact.body.datum import DatumSphere, MountingHole
 from matstd.artefact.body.freeform import ErrorShare, FreeformPatch
 from matstd.artefact.body.known import Known
 from matstd.artefact.body.known_file import KnownTable, known_table
+from matstd.artefact.body.material import Material
 from matstd.artefact.body.sag import DIRECTIONS, Sag
-from matstd.artefact.body.standard import Base, Core, Material, Standard
+from matstd.artefact.body.standard import Base, Core, Standard
 from matstd.twin.errors import BadFile, ShapeMismatch
 from matstd.twin.files import Table, check_format, checked, parse_toml, read_text, write_whole
 from matstd.twin.units import UM
@@ -40,6 +41,7 @@ class _Material(Table):
     poisson: float = Field(default=0.3, gt=0.0, lt=0.5)
     modulus_source: str = "stated"
     modulus_share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
+    hardness: str = ""
 
 
 class _Base(Table):
@@ -152,6 +154,7 @@ def _standard(path: Path, file: _File) -> Standard:
                 poisson=file.material.poisson,
                 modulus_source=file.material.modulus_source,
                 modulus_share=file.material.modulus_share,
+                hardness=file.material.hardness,
             ),
             base=_base(path, file.base),
             core=None
@@ -295,6 +298,8 @@ def _table(standard: Standard) -> dict[str, Any]:
             "modulus_source": material.modulus_source,
             "modulus_share": float(material.modulus_share),
         }
+    if material.hardness:
+        table["material"]["hardness"] = material.hardness
     if core is not None:
         table["core"] = {
             "low_radius_mm": float(core.low_radius),

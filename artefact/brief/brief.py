@@ -105,6 +105,8 @@ class StudySettings:
         tolerance: Allowed volumetric error, mm; infinite where none is stated.
         machines: Number of random machines of the proof.
         visits: Number of virtual visits from which the uncertainty of the task is evaluated.
+        body_temperature: Of the standard on the twin as its thermometer reads, degC.
+        body_u: Standard uncertainty of that reading, K.
     """
 
     poses: int = 2000
@@ -113,6 +115,8 @@ class StudySettings:
     tolerance: float = np.inf
     machines: int = 3
     visits: int = 10
+    body_temperature: float = 22.0
+    body_u: float = 0.3
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -129,6 +133,7 @@ class Brief(Displayed):
         blank: Base, fittings, material and limits of the standard.
         overhang: Allowed reach of the base beyond the edge of the table, mm; None for the default.
         riser: Height of a riser or pallet under the seat, mm.
+        first_mode: Least natural frequency of the standard on rigid screws, Hz; 0 for any.
         task: Measuring task; by default every touch on the faces.
         down: Direction of weight in machine coordinates.
         machine_path: The machine file; None where there is none.
@@ -145,6 +150,7 @@ class Brief(Displayed):
     blank: Blank = field(default_factory=Blank)
     overhang: float | None = None
     riser: float = 0.0
+    first_mode: float = 0.0
     options: PlacementOptions = field(default_factory=PlacementOptions)
     programs: ProgramSettings = field(default_factory=ProgramSettings)
     study: StudySettings = field(default_factory=StudySettings)
@@ -153,6 +159,8 @@ class Brief(Displayed):
     down: str = "-Z"
     author: str = "not stated"
     organisation: str = "not stated"
+    approved: str = "not stated"
+    date: str = "not stated"
     path: Path = Path("project.toml")
     machine_path: Path | None = None
     remarks: tuple[str, ...] = ()

@@ -4,19 +4,17 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
+from matstd.artefact.brief.material_table import MaterialTable, names_with_values
 from matstd.artefact.brief.standard_tables import (
     BASE_THICKNESS,
     LEAST_HEIGHT,
     LEAST_SIDE,
-    STEEL,
     BlankTable,
     LimitsTable,
-    MaterialTable,
     StandardTable,
 )
 from matstd.artefact.brief.workshop_tables import WorkshopTable
 from matstd.twin.errors import BadFile
-from matstd.twin.units import KG_M3
 
 MIN_SLOT_PITCH = 20.0
 """Smallest distance between two slots of a table, mm (ISO 299)."""
@@ -81,15 +79,14 @@ def standard_faults(wanted: StandardTable, path: Path) -> Iterator[BadFile]:
 
 
 def material_faults(material: MaterialTable, path: Path) -> Iterator[BadFile]:
-    """Another material with the default density or expansion."""
-    for key in ("density_kg_m3", "expansion_1_K"):
-        if material.name != STEEL and key not in material.model_fields_set:
-            yield BadFile(
-                path,
-                f"material.{key}",
-                f"no value beside name = '{material.name}'",
-                f"that of this material; the default is that of {STEEL}",
-            )
+    """Density or expansion of a name without usual values."""
+    for key in material.missing:
+        yield BadFile(
+            path,
+            f"material.{key}",
+            f"no value beside name = '{material.name}'",
+            f"that of this material, or a name with usual values: {names_with_values()}",
+        )
 
 
 def table_key(workshop: WorkshopTable) -> str:
@@ -143,7 +140,7 @@ def body_faults(
             f"{limits.slot_pitch_mm:g}",
             f"{MIN_SLOT_PITCH:g} mm or more, or 0 where screws may stand anywhere",
         )
-    base = sides[0] * sides[1] * BASE_THICKNESS * material.density_kg_m3 * KG_M3
+    base = sides[0] * sides[1] * BASE_THICKNESS * material.density
     if base > limits.max_mass_kg:
         yield BadFile(
             path,

@@ -18,10 +18,10 @@ from matstd.artefact.brief.contradictions import (
     table_key,
 )
 from matstd.artefact.brief.errors_table import ErrorsTable, expected_errors
+from matstd.artefact.brief.material_table import MaterialTable
 from matstd.artefact.brief.standard_tables import (
     BlankTable,
     LimitsTable,
-    MaterialTable,
     StandardTable,
 )
 from matstd.artefact.brief.task_file import Task, read_task
@@ -89,11 +89,17 @@ class CalibrationTable(Table):
     """uncertainty of every rotation of a freeform face"""
     ball_um: float = Field(default=0.3, ge=0.0)
     """uncertainty of every coordinate of a ball centre"""
+    scale_ppm: float = Field(default=1.0, ge=0.0, le=1000.0)
+    """uncertainty of all lengths, one error that all features share: scales and temperature of the
+    CMM; it enters the proof on the twin and the fits of its runs"""
 
     def calibration(self) -> Calibration:
         """In base units."""
         return Calibration(
-            patch=self.patch_um * UM, patch_tilt=self.patch_urad * URAD, ball=self.ball_um * UM
+            patch=self.patch_um * UM,
+            patch_tilt=self.patch_urad * URAD,
+            ball=self.ball_um * UM,
+            scale=self.scale_ppm * 1e-6,
         )
 
 
@@ -107,6 +113,12 @@ class SimulationTable(Table):
     visits: int = Field(default=10, ge=2, le=50)
     """number of times that the first of them probes the standard, clamped anew, for the
     uncertainty of the task"""
+    body_degC: float = Field(default=22.0, ge=0.0, le=50.0)  # noqa: N815
+    """temperature of the standard in this proof, as its thermometer reads; runs state it, and the
+    growth is corrected"""
+    body_u_K: float = Field(default=0.3, ge=0.0, le=20.0)  # noqa: N815
+    """standard uncertainty of that reading. The piece is at another temperature at random, and
+    differs from its stated expansion and scale by their uncertainties"""
 
 
 class ProjectTable(Table):
@@ -217,12 +229,15 @@ def _resolved(table: ProjectTable, path: Path, remarks: tuple[str, ...]) -> Brie
         blank=table.blank.blank(table.material.material(), limits),
         overhang=table.limits.overhang_mm,
         riser=table.limits.riser_mm,
+        first_mode=table.limits.first_mode_Hz,
         programs=shop.settings(table.control),
         study=replace(study, poses=poses),
         seed=table.seed,
         down=wanted.down,
         author=wanted.author,
         organisation=wanted.organisation,
+        approved=wanted.approved,
+        date=wanted.date,
         path=path,
         machine_path=machine_path,
         remarks=remarks,
@@ -245,6 +260,8 @@ def _study(table: ProjectTable, path: Path) -> StudySettings:
         tolerance=wanted.tolerance_um * UM,
         machines=proof.machines,
         visits=proof.visits,
+        body_temperature=proof.body_degC,
+        body_u=proof.body_u_K,
     )
 
 

@@ -9,7 +9,7 @@ from matstd.artefact.brief.brief import PlacementOptions
 from matstd.artefact.layout import Blank, Fittings
 from matstd.artefact.worth import Calibration, CriterionOptions, TouchOptions
 from matstd.twin.files import Pair, Table
-from matstd.twin.units import DEG, KG_M3
+from matstd.twin.units import DEG
 
 BASE_THICKNESS = 30.0
 """Thickness of the plate of every standard, mm."""
@@ -20,9 +20,6 @@ CORNER_RADIUS = 25.0
 
 FEWEST_PATCHES = 3
 """Smallest number of patches of a standard."""
-
-STEEL = "X40Cr14 (1.2083), hardened"
-"""Material of the default density and expansion."""
 
 FINISHING_RADIUS = 3.0
 """Radius of the finishing ball-end mill, mm; smaller concave radii cannot be made."""
@@ -48,6 +45,10 @@ class StandardTable(Table):
     """person responsible for the design; header of the STEP file"""
     organisation: str = "not stated"
     """organisation of the author"""
+    approved: str = Field(default="not stated", max_length=28)
+    """who approved the drawing, for its title block (ISO 7200)"""
+    date: str = Field(default="not stated", max_length=18)
+    """date of issue of the drawing, such as `"2026-11-23"`"""
     patches: int = Field(default=6, ge=FEWEST_PATCHES, le=16)
     """number of freeform faces, for verification; more faces are smaller"""
     balls: int = Field(default=13, ge=3, le=25)
@@ -93,34 +94,6 @@ class StandardTable(Table):
         )
 
 
-class MaterialTable(Table):
-    """`[material]` of the standard."""
-
-    name: str = STEEL
-    """name, for the drawing"""
-    density_kg_m3: float = Field(default=7800.0, ge=500.0, le=23e3)
-    """density"""
-    expansion_1_K: float = Field(default=10.5e-6, ge=0.0, le=3e-4)  # noqa: N815
-    """coefficient of expansion, 1/K"""
-    expansion_u_1_K: float | None = Field(default=None, ge=0.0, le=3e-4, examples=[1e-6])  # noqa: N815
-    """its standard uncertainty, 1/K. Default: a tenth of it"""
-    modulus_MPa: float | None = Field(default=None, ge=1e3, le=1.2e6, examples=[200e3])  # noqa: N815
-    """Young's modulus. Default: that of a known name, see below"""
-    poisson: float = Field(default=0.3, gt=0.0, lt=0.5)
-    """Poisson's ratio, for a stated modulus"""
-
-    def material(self) -> Material:
-        """In base units, with the usual modulus of a known name where none is stated."""
-        return Material(
-            self.name,
-            self.density_kg_m3 * KG_M3,
-            self.expansion_1_K,
-            u_expansion=self.expansion_u_1_K,
-            modulus=self.modulus_MPa,
-            poisson=self.poisson,
-        ).with_usual_modulus()
-
-
 class BlankTable(Table):
     """`[blank]`: sides of the base and height of the whole, mm."""
 
@@ -164,6 +137,9 @@ class LimitsTable(Table):
     riser_mm: float = Field(default=0.0, ge=0.0)
     """largest height of the seat above the table's face, on a riser or pallet. A body of
     `[[workshop.bodies]]` whose upper face is at the seat carries it without this key"""
+    first_mode_Hz: float = Field(default=0.0, ge=0.0, le=10_000.0)  # noqa: N815
+    """least first natural frequency of the standard on rigid screws; a design below it is refused
+    before its CAD is made. 0 for any: below 500 Hz the console names it as a compromise"""
 
     def limits(self, ball_radius: float, table_radius: float) -> Limits:
         """In base units.

@@ -8,20 +8,25 @@ prove a task; standards that differ from their calibration within its uncertaint
 
 from matstd.artefact.certify.calibration_fit import CalibrationFit, fit_calibration
 from matstd.artefact.certify.cmm_points_file import read_cmm_points
-from matstd.artefact.certify.dmis import dmis_program
+from matstd.artefact.certify.dmis import Limits, dmis_program
+from matstd.artefact.certify.reversal import merged_orientations
 from matstd.artefact.certify.task_places import check_places, like_task, on_faces
 from matstd.artefact.certify.true_places import displaced_features
 from matstd.artefact.certify.verdicts import Allowed, CommonCause, with_verdicts
+from matstd.artefact.certify.waviness import GAP
 
 __all__ = [
+    "GAP",
     "Allowed",
     "CalibrationFit",
     "CommonCause",
+    "Limits",
     "check_places",
     "displaced_features",
     "dmis_program",
     "fit_calibration",
     "like_task",
+    "merged_orientations",
     "on_faces",
     "read_cmm_points",
     "with_verdicts",

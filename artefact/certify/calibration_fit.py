@@ -61,6 +61,9 @@ class CalibrationFit:
         offset: Mean deviation of every face along the normal, mm.
         u_radius: Standard uncertainty of the radius of every ball by its points, mm.
         left: Root mean square of the residuals of every feature, mm.
+        form: Peak to valley of every ball by its points, less what their noise makes, mm.
+        u_point: Standard uncertainty of one point as stated, mm.
+        unseen: Faces on which dense lines are missing, so that `waviness` is assumed.
         remarks: Unused points and other irregularities.
     """
 
@@ -69,6 +72,10 @@ class CalibrationFit:
     offset: dict[str, float]
     u_radius: dict[str, float]
     left: dict[str, float]
+    form: dict[str, float]
+    unseen: tuple[str, ...]
+    waviness: float
+    u_point: float
     remarks: tuple[str, ...]
 
     @property
@@ -78,7 +85,7 @@ class CalibrationFit:
 
 
 def fit_calibration(
-    nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: float
+    nominal: Standard, cmm: CmmPoints, u_point: float, u_feature: float, waviness: float = 0.0
 ) -> CalibrationFit:
     """Fit the standard to the points of a CMM.
 
@@ -86,16 +93,18 @@ def fit_calibration(
         u_point: Standard uncertainty of one point, independent between points, mm.
         u_feature: Standard uncertainty that the points of a feature share (scales and squareness of
             the CMM, qualification of its stylus), mm.
+        waviness: Assumed root mean square of waves of faces that the points cannot show, mm.
 
     Raises:
         BadFile: Points in other units, or far from every feature.
         NotEnoughData: Too few points on a feature, or too few balls.
     """
     slips: list[str] = []
-    balls = _balls(nominal, cmm, u_point, slips)
-    T_artefact_cmm = _alignment(nominal, cmm, {n: b.centre for n, b in balls.items()})
+    balls = measured_balls(nominal, cmm, u_point, slips)
+    T_artefact_cmm = alignment(nominal, cmm, {n: b.centre for n, b in balls.items()})
     point = apply(T_artefact_cmm, cmm.point)
     known, moved, left, offset, spheres, patches = {}, {}, {}, {}, [], []
+    unseen: list[str] = []
     for sphere in nominal.spheres:
         if sphere.name not in balls:
             spheres.append(sphere)
@@ -103,7 +112,7 @@ def fit_calibration(
         ball = balls[sphere.name]
         centre = apply(T_artefact_cmm, ball.centre[None])[0]
         spheres.append(replace(sphere, centre=centre, radius=ball.radius))
-        known[sphere.name] = KnownFeature(ball.points, float(np.hypot(ball.u, u_feature)), 0.0, 0.0)
+        known[sphere.name] = _known_ball(ball, T_artefact_cmm, u_feature)
         moved[sphere.name] = float(np.linalg.norm(centre - sphere.centre))
         left[sphere.name] = ball.left
     for patch in nominal.patches:
@@ -112,12 +121,13 @@ def fit_calibration(
             patches.append(patch)
             continue
         _check_face(nominal, patch, cmm, rows, point)
-        found = corrected_face(patch, point[rows], u_point)
+        found = corrected_face(patch, point[rows], u_point, waviness)
         far = _is_outlier(found.left, u_point)
         if far.any():
             slips.append(_outlier_remark(patch.name, cmm, rows[far]))
             rows = rows[~far]
-            found = corrected_face(patch, point[rows], u_point)
+            found = corrected_face(patch, point[rows], u_point, waviness)
+        unseen += [] if all(found.seen) else [patch.name]
         patches.append(found.patch)
         known[patch.name] = KnownFeature(len(rows), u_feature, found.u_tilt, found.u_form)
         moved[patch.name], left[patch.name] = found.moved, rms(found.left)
@@ -134,6 +144,10 @@ def fit_calibration(
         offset=offset,
         u_radius={name: ball.u_radius for name, ball in balls.items()},
         left=left,
+        form={name: ball.form for name, ball in balls.items() if np.isfinite(ball.form)},
+        unseen=tuple(unseen),
+        waviness=waviness,
+        u_point=u_point,
         remarks=(*cmm.remarks, *slips, *_remarks(nominal, cmm, known)),
     )
 
@@ -154,15 +168,24 @@ def _remarks(nominal: Standard, cmm: CmmPoints, known: dict[str, KnownFeature]) 
     return out
 
 
+def _known_ball(ball: "Ball", T_artefact_cmm: Array, u_feature: float) -> KnownFeature:
+    """Uncertainties of a ball's place in the frame of the design."""
+    R = T_artefact_cmm[:3, :3]
+    axes = np.sqrt(np.diag(R @ ball.covariance @ R.T) + u_feature**2)
+    x, y, z = axes.tolist()
+    return KnownFeature(ball.points, u=rms(axes), u_tilt=0.0, u_form=0.0, u_axes=(x, y, z))
+
+
 class Ball(NamedTuple):
     """A measured ball in the frame of the CMM; lengths in mm."""
 
     centre: Array
     radius: float
-    u: float  # standard uncertainty of a coordinate of the centre
+    covariance: Array  # of the centre, (3, 3)
     u_radius: float
     left: float  # rms
     points: int
+    form: float  # peak to valley, less what noise makes; nan where the CMM evaluated the ball
 
 
 def _is_outlier(left: Array, u_point: float) -> NDArray[np.bool_]:
@@ -177,7 +200,9 @@ def _outlier_remark(name: str, cmm: CmmPoints, rows: np.ndarray) -> str:
     return f"{name}: points that stand out are left out, lines {lines} of {cmm.path}"
 
 
-def _balls(nominal: Standard, cmm: CmmPoints, u_point: float, slips: list[str]) -> dict[str, Ball]:
+def measured_balls(
+    nominal: Standard, cmm: CmmPoints, u_point: float, slips: list[str]
+) -> dict[str, Ball]:
     """Every measured ball in the frame of the CMM; remarks on outliers go to `slips`."""
     out: dict[str, Ball] = {}
     for sphere in nominal.spheres:
@@ -185,12 +210,20 @@ def _balls(nominal: Standard, cmm: CmmPoints, u_point: float, slips: list[str]) 
         if not len(rows):
             continue
         whole = rows[np.isfinite(cmm.diameter[rows])]
+        if len(rows) - len(whole) >= MIN_BALL:  # points hold the form, an evaluated ball does not
+            rows, whole = np.setdiff1d(rows, whole), whole[:0]
         if len(whole):
             radius = 0.5 * float(cmm.diameter[whole].mean())
             centre = cmm.point[whole].mean(axis=0)
             u = u_point / np.sqrt(len(whole))
             out[sphere.name] = Ball(
-                centre=centre, radius=radius, u=u, u_radius=0.5 * u, left=0.0, points=len(whole)
+                centre=centre,
+                radius=radius,
+                covariance=u**2 * np.eye(3),
+                u_radius=0.5 * u,
+                left=0.0,
+                points=len(whole),
+                form=float("nan"),
             )
         elif len(rows) < MIN_BALL:
             raise NotEnoughData(
@@ -222,11 +255,24 @@ def fitted_ball(points: Array, u_point: float) -> Ball:
     return Ball(
         centre=found.centre,
         radius=found.radius,
-        u=float(np.sqrt(np.trace(covariance[:3, :3]) / 3.0)),
+        covariance=covariance[:3, :3],
         u_radius=float(np.sqrt(covariance[3, 3])),
         left=rms(found.left),
         points=len(points),
+        form=_form(found.left, u_point),
     )
+
+
+def _form(left: Array, u_point: float) -> float:
+    """Peak to valley of residuals beyond that of noise alone, mm.
+
+    Reference: Blom, Statistical Estimates (1958): expected largest of n normal numbers.
+    """
+    from scipy.special import ndtri
+
+    n = len(left)
+    noise = 2.0 * float(ndtri((n - 0.375) / (n + 0.25))) * np.sqrt(max(n - 4, 1) / n)
+    return float(np.sqrt(max(float(np.ptp(left)) ** 2 - (noise * u_point) ** 2, 0.0)))
 
 
 def _check_size(nominal: Standard, cmm: CmmPoints, balls: dict[str, Ball]) -> None:
@@ -284,7 +330,7 @@ def _check_radii(nominal: Standard, cmm: CmmPoints, balls: dict[str, Ball]) -> N
         )
 
 
-def _alignment(nominal: Standard, cmm: CmmPoints, centres: dict[str, Array]) -> Array:
+def alignment(nominal: Standard, cmm: CmmPoints, centres: dict[str, Array]) -> Array:
     """Pose (4, 4) from the frame of the CMM to that of the design."""
     stated = np.array([s.centre for s in nominal.spheres if s.name in centres])
     found = np.array([centres[s.name] for s in nominal.spheres if s.name in centres])
@@ -308,6 +354,9 @@ def _check_face(
             if other is not patch and _distance_from_face(other, point[rows]).max() <= _MAX_MISFIT:
                 found = f"points of {other.name} under the name {patch.name}"
                 raise BadFile(cmm.path, "feature", found, "every face under its own name")
+        if neighbour := _on_another(nominal, patch, point[rows[worst]]):
+            line, found = f"line {cmm.line[rows[worst]]}", f"a point of {neighbour}"
+            raise BadFile(cmm.path, line, found, f"a point of {patch.name}, whose name it bears")
         raise BadFile(
             cmm.path,
             f"line {cmm.line[rows[worst]]}",
@@ -316,6 +365,17 @@ def _check_face(
             else f"a point beside {patch.name}",
             f"points within {_MAX_MISFIT:g} mm of their feature",
         )
+
+
+def _on_another(nominal: Standard, patch: FreeformPatch, place: Array) -> str:
+    """Name of another feature on which a point (3,) lies; empty for none."""
+    for other in nominal.patches:
+        if other is not patch and _distance_from_face(other, place[None])[0] <= _MAX_MISFIT:
+            return other.name
+    for ball in nominal.spheres:
+        if abs(float(np.linalg.norm(place - ball.centre)) - ball.radius) <= _MAX_MISFIT:
+            return ball.name
+    return ""
 
 
 def _distance_from_face(patch: FreeformPatch, point: Array) -> Array:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.artefact.body import FreeformPatch
+from matstd.artefact.certify.waviness import dense_lines, u_waves
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
 
@@ -22,7 +23,8 @@ class CorrectedFace:
     """A face as measured.
 
     Attributes:
-        u_form: Root mean square standard uncertainty of the surface over the face, mm.
+        u_form: Root mean square standard uncertainty of the surface over the face, with waves, mm.
+        seen: Whether a line of points shows short waves along u and along v.
         u_tilt: Standard uncertainty of its rotations by its points, rad.
         moved: Largest deviation from the design along the normal, mm.
         offset: Mean of these deviations over the face, mm.
@@ -35,39 +37,51 @@ class CorrectedFace:
     moved: float
     offset: float
     left: Array
+    seen: tuple[bool, bool]
 
 
-def corrected_face(patch: FreeformPatch, points: Array, u_point: float) -> CorrectedFace:
-    """Fit a smooth correction to the deviations of points.
+def corrected_face(
+    patch: FreeformPatch, points: Array, u_point: float, waviness: float = 0.0
+) -> CorrectedFace:
+    """Fit a smooth correction to the deviations of points; dense lines judge it.
 
     Args:
         points: On the real face, artefact frame, (N, 3), mm.
         u_point: Smallest standard uncertainty of a point, mm; raised to the scatter of the points.
+        waviness: Assumed root mean square of waves along a direction without a line, mm.
     """
     bend = _bending(patch)
     heights = patch.heights
+    judging, seen = dense_lines(patch.project(points), patch.half_size)
+    fitted = points[~judging]
     for _ in range(_ROUNDS):
-        uv, deviation, tilt = _deviations(replace(patch, heights=heights), points)
+        uv, deviation, tilt = _deviations(replace(patch, heights=heights), fitted)
         B = (
             _basis(patch, uv) / tilt[:, None]
         )  # a change of height moves the surface along its normal by the cosine of the slope
         before = B @ (heights - patch.heights).ravel()
-        c, root, left = _smooth(B, deviation + before, bend, u_point)
+        c, root, excess = _smooth(B, deviation + before, bend, u_point)
         heights = patch.heights + c.reshape(heights.shape)
     made = replace(patch, heights=heights)
     grid = patch.grid(_GRID)
     slope = np.hypot(patch.jet(grid).hu, patch.jet(grid).hv)
     G = _basis(patch, grid) / np.sqrt(1.0 + slope**2)[:, None]
     u = np.linalg.norm(G @ root, axis=1)
+    _, left, _ = _deviations(made, points)
+    # what lines show contains the error of the fit; without lines residuals stand for it
+    alone = float(np.hypot(rms(u), excess))
+    u_form = u_waves(left[judging], u_point) if judging.any() else alone
+    assumed = waviness * np.sqrt(0.5 * seen.count(False))
     plane = np.column_stack([np.ones(len(grid)), grid])
     tilts = np.linalg.lstsq(plane, _basis(patch, grid) @ root, rcond=None)[0][1:]
     return CorrectedFace(
         patch=made,
-        u_form=rms(u),
+        u_form=float(np.hypot(u_form, assumed)),
         u_tilt=float(np.linalg.norm(tilts) / np.sqrt(2.0)),
         moved=float(np.abs(G @ c).max()),
         offset=float((G @ c).mean()),
         left=left,
+        seen=seen,
     )
 
 
@@ -104,8 +118,8 @@ def _bending(patch: FreeformPatch) -> Array:
     return np.asarray(R / np.sqrt(len(grid)) * max(patch.half_size) ** 2)
 
 
-def _smooth(B: Array, d: Array, bend: Array, u_point: float) -> tuple[Array, Array, Array]:
-    """Coefficients, square root of their covariance, and residuals, (N,).
+def _smooth(B: Array, d: Array, bend: Array, u_point: float) -> tuple[Array, Array, float]:
+    """Coefficients, square root of their covariance, and scatter beyond that of a point, mm.
 
     The weight minimises ``n |d - H d|^2 / (n - tr H)^2``.
     """
@@ -122,7 +136,8 @@ def _smooth(B: Array, d: Array, bend: Array, u_point: float) -> tuple[Array, Arr
             best = score, c, M, used, float(left @ left)
     assert best is not None
     _, c, M, used, squares = best
-    noise = max(u_point, float(np.sqrt(squares / max(n - used, 1.0))))
+    scatter = float(np.sqrt(squares / max(n - used, 1.0)))
+    noise = max(u_point, scatter)
     # the Bayesian covariance of the penalised fit includes the bias by the penalty
     root = np.linalg.cholesky(np.linalg.inv(M)) * noise / np.sqrt(n)
-    return c, root, d - B @ c
+    return c, root, float(np.sqrt(max(scatter**2 - u_point**2, 0.0)))

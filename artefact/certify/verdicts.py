@@ -34,11 +34,17 @@ class Allowed:
         drawing: Largest deviations of `diameter` and `position` of a ball, `profile` of a face, mm.
         u_feature: Standard uncertainty that the points of a feature share, mm.
         u_temperature: Standard uncertainty of the temperature of the piece about 20 degC, K.
+        u_scale: Relative standard uncertainty of the scales of the CMM.
     """
 
     drawing: Mapping[str, float]
     u_feature: float
     u_temperature: float
+    u_scale: float = 0.0
+
+    def u_size(self, expansion: float) -> float:
+        """Relative standard uncertainty of all lengths, which every feature shares."""
+        return float(np.hypot(expansion * self.u_temperature, self.u_scale))
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +81,8 @@ def with_verdicts(
         causes.append(frame.cause(nominal.material.expansion))
     known = found.standard.known
     assert known is not None
-    known = replace(known, verdicts=(*verdicts, scale))
+    u_size = allowed.u_size(nominal.material.expansion)
+    known = replace(known, verdicts=(*verdicts, scale), u_scale=u_size)
     return replace(found, standard=replace(found.standard, known=known)), tuple(causes)
 
 
@@ -118,12 +125,12 @@ class _Frame:
         apart = np.linalg.norm(self.places[:, None] - self.places, axis=-1)
         a, b = np.unravel_index(int(np.argmax(apart)), apart.shape)
         length = float(apart[a, b])
-        by_heat = expansion * allowed.u_temperature * length
+        common = allowed.u_size(expansion) * length
         return Verdict(
             feature=f"{self.names[a]} to {self.names[b]}",
             characteristic="scale",
             deviation=self.ppm * length,
-            tolerance=_K * float(np.hypot(by_heat, np.sqrt(2.0) * allowed.u_feature)),
+            tolerance=_K * float(np.hypot(common, np.sqrt(2.0) * allowed.u_feature)),
             u=self.u_ppm * length,
         )
 
@@ -165,10 +172,11 @@ def _of_balls(
         u_radius = np.hypot(found.u_radius[drawn.name], allowed.u_feature)
         u_place = np.hypot(known.features[drawn.name].u, frame.u(drawn.centre[None]))
         wider, beside = 2.0 * (made.radius - drawn.radius), found.moved[drawn.name]
-        sizes = (
-            ("diameter", wider, 2.0 * u_radius),
-            ("position", beside, u_place),
-        )
+        sizes = [("diameter", wider, 2.0 * u_radius), ("position", beside, u_place)]
+        if drawn.name in found.form:
+            # both ends of the range err, and the form of the probing itself is in it
+            u_form = 2.0 * float(np.hypot(found.u_point, allowed.u_feature))
+            sizes.append(("form", found.form[drawn.name], u_form))
         out += [
             Verdict(drawn.name, what, deviation, allowed.drawing[what], u=float(u))
             for what, deviation, u in sizes

@@ -5,7 +5,7 @@ beside each other, and rivals. A further rival is one more entry in `rivals`.
 """
 
 from matstd.artefact.layout.blank import Blank, Fittings
-from matstd.artefact.layout.post import post_stiffness
+from matstd.artefact.layout.post import cantilever_stiffness, post_stiffness
 from matstd.artefact.layout.rival_artefacts import rivals, with_spheres
 from matstd.artefact.layout.side_by_side import Pairs, beside_balls, most_side_by_side
 from matstd.artefact.layout.upright import (
@@ -32,6 +32,7 @@ __all__ = [
     "balls_fit",
     "balls_on_posts",
     "beside_balls",
+    "cantilever_stiffness",
     "faces_beside",
     "faces_fit",
     "freeform_faces",

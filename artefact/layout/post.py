@@ -30,10 +30,18 @@ def post_stiffness(length: float, top: float, foot: float, modulus: float, poiss
         modulus: Young's, N/mm^2.
     """
     G = modulus / (2.0 * (1.0 + poisson))
+    turn = 3.0 * (1.0 - poisson) * length**2 / (8.0 * G * foot**3)
+    return float(1.0 / (1.0 / cantilever_stiffness(length, top, foot, modulus, poisson) + turn))
+
+
+def cantilever_stiffness(
+    length: float, top: float, foot: float, modulus: float, poisson: float
+) -> float:
+    """The same of a post on a rigid plate, by bending and shear alone, N/mm."""
+    G = modulus / (2.0 * (1.0 + poisson))
     bending = 4.0 * length**3 / (3.0 * np.pi * modulus * foot**3 * top)
     shear = length / (_SHEAR * G * np.pi * foot * top)
-    turn = 3.0 * (1.0 - poisson) * length**2 / (8.0 * G * foot**3)
-    return float(1.0 / (bending + shear + turn))
+    return float(1.0 / (bending + shear))
 
 
 def post_foot(length: float, top: float, stiffness: float, modulus: float, poisson: float) -> float:

@@ -33,25 +33,29 @@ class Calibration:
         patch: Of each coordinate of a freeform patch, mm.
         patch_tilt: Of each rotation of a patch, rad.
         ball: Of each coordinate of the centre of a datum sphere, mm.
+        scale: Of all lengths, relative, one error that every feature shares. It is no column: with
+            the temperature it belongs to the body of a run (`Body`), which every fit has.
         form: Of the surface of a face at a point, beside its place; points nearby share it, mm.
     """
 
     patch: float = 1.0 * UM
     patch_tilt: float = 10.0 * URAD
     ball: float = 0.3 * UM
+    scale: float = 1e-6
     form: float = 0.3 * UM
 
     def __post_init__(self) -> None:
-        if min(self.patch, self.patch_tilt, self.ball, self.form) < 0.0:
+        sizes = (self.patch, self.patch_tilt, self.ball, self.scale, self.form)
+        if min(sizes) < 0.0:
             raise DesignError(f"calibration {self}, expected uncertainties from zero up")
 
     @staticmethod
-    def _of(body: Standard, name: str, assumed: tuple[float, float]) -> tuple[float, float]:
-        """Uncertainty of place and rotations of a feature: as calibrated, else as assumed."""
+    def _of(body: Standard, name: str, assumed: tuple[float, float]) -> tuple[Array, float]:
+        """Uncertainty of place (3,) and rotations of a feature: as calibrated, else as assumed."""
         if body.known is None or name not in body.known.features:
-            return assumed
+            return np.full(3, assumed[0]), assumed[1]
         feature = body.known.features[name]
-        return feature.u, feature.u_tilt
+        return np.array(feature.along), feature.u_tilt
 
     def columns(self, body: Standard, wanted: Requests) -> Array:
         """Deviation along the normals per standard uncertainty of every feature's place, (N, Q).
@@ -65,12 +69,12 @@ class Calibration:
         out = []
         for patch in body.patches:
             place, tilt = self._of(body, patch.name, (self.patch, self.patch_tilt))
-            if max(place, tilt) > 0.0:
+            if max(place.max(), tilt) > 0.0:
                 mine = (wanted.feature == patch.name)[:, None] * wanted.normal
                 arm = wanted.point - patch.T_artefact_patch[:3, 3]
                 out += [place * mine, tilt * np.cross(arm, mine)]
         for sphere in body.spheres:
             place, _ = self._of(body, sphere.name, (self.ball, 0.0))
-            if place > 0.0:
+            if place.max() > 0.0:
                 out.append(place * (wanted.feature == sphere.name)[:, None] * wanted.normal)
         return np.concatenate(out, axis=1) if out else np.zeros((len(wanted), 0))

@@ -12,7 +12,14 @@ from matstd.cad_out.details.lettering import Lettering
 from matstd.cad_out.details.mounting import BALL, RELIEF, SCREW, Pad, Screw, relief_profile
 from matstd.cad_out.details.places import Bore, Side, datum_touches
 from matstd.cad_out.details.seats import Seat, glue_gap
-from matstd.cad_out.details.tolerances import CALIBRATED, DATUMS, Tolerance, notes_of, tolerances_of
+from matstd.cad_out.details.tolerances import (
+    CALIBRATED,
+    DATUMS,
+    Tolerance,
+    notes_of,
+    tolerances_of,
+    widths,
+)
 
 __all__ = [
     "BALL",
@@ -39,4 +46,5 @@ __all__ = [
     "notes_of",
     "relief_profile",
     "tolerances_of",
+    "widths",
 ]

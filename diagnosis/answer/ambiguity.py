@@ -118,18 +118,19 @@ def plausibility(effects: Sequence[Effect], touches: Touches) -> dict[str, float
     }
 
 
-def _arguments(effect: Effect) -> list[str]:
+def arguments(effect: Effect) -> list[str]:
+    """Words in the brackets of an effect's name."""
     inside = effect.name.partition("(")[2].removesuffix(")")
     return [a for a in inside.split(",") if a]
 
 
 def _family(effect: Effect, touches: Touches) -> tuple[str, bool]:
-    return effect.kind, any(a in touches.temperature for a in _arguments(effect))
+    return effect.kind, any(a in touches.temperature for a in arguments(effect))
 
 
 def _own_sensor(effect: Effect, touches: Touches) -> float:
     """Bonus of a sensor that is named after the axis that it explains."""
-    words = _arguments(effect)
+    words = arguments(effect)
     sensors = [w for w in words if w in touches.temperature]
     axes = {w if w in touches.chain.axes else w[-1:] for w in words if w not in sensors}
     own = any(sensor.endswith(axis) for sensor in sensors for axis in axes if axis)

@@ -12,6 +12,9 @@ from matstd.diagnosis.remarks import NotSignificant
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
 
+EXPANSION = "um_per_m_K"
+"""Unit of a coefficient of expansion, as it is reported."""
+
 MAX_SIZED_PARAMETERS = 2
 """Most parameters of an effect, a sine and a cosine, whose size tests the effect. The size of more
 parameters may be uncertain although the effect is not: the form of a face of 1.9 µm with a chance
@@ -84,7 +87,9 @@ def weakest(steps: Sequence[Step], is_weighed: bool) -> str | None:
         if step.effect is None:
             continue
         worth = np.inf if size is None or not size.u else abs(size.value) / size.u
-        if is_weighed:
+        if not _is_possible(step):
+            worth = 0.0
+        elif is_weighed:
             worth = worth if step.p_value > POLICY.chance_of_member else np.inf
         elif step.p_value >= POLICY.false_alarm:
             worth = 0.0
@@ -93,6 +98,17 @@ def weakest(steps: Sequence[Step], is_weighed: bool) -> str | None:
         if worth < least:
             out, least = step.effect.name, worth
     return out
+
+
+def _is_possible(step: Step) -> bool:
+    """Whether no coefficient of expansion is beyond what materials have."""
+    for n in step.reported:
+        if n.unit == EXPANSION:
+            margin = POLICY.significant_ratio * (n.u or 0.0)
+            low, high = POLICY.expansion_least / n.factor, POLICY.expansion_most / n.factor
+            if not low - margin < n.value < high + margin:
+                return False
+    return True
 
 
 def is_significant(step: Step) -> bool:

@@ -46,6 +46,8 @@ class NamedEffect:
         runner_up: The next best explanation of what it explains; None for one that the user named,
             and where no other effect of the library acts on these touches.
         is_headline: Whether it is certain, larger than its uncertainty, and large enough to name.
+        against_drift: Log odds of an effect that follows a sensor against a smooth drift in time
+            whose cause nobody recorded; None for others.
     """
 
     effect: Effect
@@ -54,6 +56,7 @@ class NamedEffect:
     share: float
     runner_up: Rival | None
     is_headline: bool
+    against_drift: float | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,6 +115,7 @@ class Weighed:
     scatter: float
     runner_up: Rival | None
     is_significant: bool
+    against_drift: float | None = None
 
 
 def verdict_parts(
@@ -151,6 +155,7 @@ def verdict_parts(
                 explained=float(np.sqrt(fall)),
                 share=min(fall / whole, 1.0),
                 runner_up=step.runner_up,
+                against_drift=step.against_drift,
                 is_headline=bool(
                     step.is_significant
                     and step.p_value < POLICY.false_alarm

@@ -1,6 +1,6 @@
 """The diagnosis of a run: which effect the model lacks, how sure that is, what stays open."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +14,7 @@ from matstd.diagnosis.answer.collinear import (
     not_significant,
     weakest,
 )
-from matstd.diagnosis.answer.dependences import dependences, structures
+from matstd.diagnosis.answer.dependences import dependences, odds_against_drift, structures
 from matstd.diagnosis.answer.detectable import detectable
 from matstd.diagnosis.answer.nearest import named_probability, nearest, to_repeat
 from matstd.diagnosis.answer.next_measurement import (
@@ -170,7 +170,8 @@ def _result(
     geometry = learnt_geometry(
         last, task.prior if task.is_known else None, steps[0].fit if len(steps) > 1 else None
     )
-    parts = _parts(steps, counted, geometry, faults, repeats)
+    odds = odds_against_drift(final)
+    parts = _parts(steps, counted, geometry, faults, repeats, odds)
     verdict = _verdict(parts, len(steps) > 1 + len(added), len(repeat) > 0)
     start = structures(final, progress)
     candidates, depends_on = (
@@ -210,6 +211,7 @@ def _parts(
     geometry: LearntGeometry,
     faults: Sequence[DescriptionFault],
     repeats: Repeatability,
+    against_drift: Mapping[str, float],
 ) -> VerdictParts:
     """The three parts of the verdict."""
 
@@ -223,6 +225,7 @@ def _parts(
             scatter=scatter(step),
             runner_up=step.confusion.runner_up if step.confusion else None,
             is_significant=is_significant(step),
+            against_drift=against_drift.get(step.effect.name),
         )
         for step in steps
         if step.effect is not None

@@ -101,6 +101,12 @@ class EffectSet:
         L = self._factor
         return np.asarray(solve_triangular(L, self.along, lower=True, trans=1, check_finite=False))
 
+    def spread(self, k: int) -> float:
+        """Standard deviation of parameter k of the effects, in units of its prior."""
+        one = np.zeros(self.A.shape[1])
+        one[k] = 1.0
+        return float(np.linalg.norm(self.lower_solve(one[:, None])))
+
     @cached_property
     def residual(self) -> Array:
         """Residual with the effects in, data and prior rows, (N + P,)."""

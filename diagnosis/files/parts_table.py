@@ -34,10 +34,15 @@ def _named(one: NamedEffect) -> dict[str, Any]:
         "share": significant(one.share),
         "in_headline": one.is_headline,
         "runner_up": None if rival is None else rival.effect.name,
-        "runner_up_log10_odds": None
-        if rival is None
-        else significant(rival.log_odds / float(np.log(10.0))),
+        "runner_up_log10_odds": None if rival is None else _log10(rival.log_odds),
+        "unrecorded_drift_log10_odds": None
+        if one.against_drift is None
+        else _log10(one.against_drift),
     }
+
+
+def _log10(log_odds: float) -> float:
+    return significant(log_odds / float(np.log(10.0)))
 
 
 def _remains(left: Remainder) -> dict[str, Any]:

@@ -18,6 +18,10 @@ class Policy:
             an effect: odds of twenty to one, which pay for what the prior of its size leaves open.
         touches_explained: Least number of touches that an effect explains; a single one may be an
             accident.
+        expansion_least: Least coefficient of expansion that a found effect may have, 1/K: a control
+            that corrects for steel where nothing expands shows -12.
+        expansion_most: The largest one: aluminium has 23e-6, and a screw may be warmer by half than
+            the sensor beside it.
         material_share: Share of the squared residual that a pattern must hold. In ten thousand rows
             less is beyond chance too, but would improve a prediction by half a per cent at most.
         error_share: Error of held-out blocks with the richer of two explanations over that with the
@@ -61,6 +65,8 @@ class Policy:
     false_alarm: float = 1e-3
     log_evidence_gain: float = 3.0
     touches_explained: float = 1.5
+    expansion_least: float = -15e-6
+    expansion_most: float = 40e-6
     material_share: float = 0.01
     error_share: float = 0.97
     error_share_beside_memory: float = 0.85

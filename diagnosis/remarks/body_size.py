@@ -16,12 +16,15 @@ class BodySize:
         body: What the run states; None where it states nothing.
         temperature: Of the standard, on average, degC; None where nothing is known of it.
         length: Of what was touched, from corner to corner, mm.
+        machine: Lowest and highest temperature of every other sensor, degC: scales of the machine
+            are those at these temperatures.
     """
 
     run: str
     body: Body | None
     temperature: float | None
     length: float
+    machine: tuple[tuple[str, float, float], ...] = ()
 
     @property
     def strain(self) -> float:
@@ -37,7 +40,8 @@ class BodySize:
             return 0.0
         warmth = 0.0 if self.temperature is None else self.temperature - T_REF
         by_temperature = self.body.alpha * self.body.u_temperature
-        return float(np.hypot(by_temperature, self.body.u_alpha * warmth))
+        parts = (by_temperature, self.body.u_alpha * warmth, self.body.u_scale)
+        return float(np.linalg.norm(parts))
 
 
 def body_sizes(touches: Touches) -> list[BodySize]:
@@ -57,4 +61,12 @@ def _size(touches: Touches, body: Body | None, run: str) -> BodySize:
     if body is not None:
         at = touches.body_temperature if body.is_known else None
     length = float(np.linalg.norm(np.ptp(touches.point, axis=0)))
-    return BodySize(run, body, None if at is None else float(np.mean(at)), length)
+    others = sorted(name for name in touches.temperature if name != BODY)
+    logged = ((name, touches.temperature[name]) for name in others)
+    return BodySize(
+        run=run,
+        body=body,
+        temperature=None if at is None else float(np.mean(at)),
+        length=length,
+        machine=tuple((name, float(t.min()), float(t.max())) for name, t in logged),
+    )

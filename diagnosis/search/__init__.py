@@ -6,6 +6,7 @@ way through, `selection` the choice, `refine` and `regrid` what a grid is too co
 `screening` what makes long runs affordable, `edges` gross errors that are none.
 """
 
+from matstd.diagnosis.search.budget import MOST_SETS, Budget
 from matstd.diagnosis.search.refine import refined, refined_set, with_moved_points
 from matstd.diagnosis.search.screened import best_set, scaled
 from matstd.diagnosis.search.screening import WHOLE_BELOW, Library
@@ -17,8 +18,6 @@ from matstd.diagnosis.search.search_loop import (
 )
 from matstd.diagnosis.search.selection import (
     MAX_LISTED,
-    MOST_SETS,
-    Budget,
     Member,
     Search,
     Verified,

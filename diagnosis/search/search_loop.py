@@ -33,6 +33,7 @@ from matstd.diagnosis.evidence import (
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import PatternTests, Structure, find_structure
+from matstd.diagnosis.search.domains import by_time
 from matstd.diagnosis.search.edges import unexplained_near_slip, without
 from matstd.diagnosis.search.overtones import with_overtones
 from matstd.diagnosis.search.refine import refined_set
@@ -60,10 +61,6 @@ MAX_PERIODS = 4
 
 MAX_NAMELESS = 3
 """Most patterns without a name that are put beside the effects of an unexplained run."""
-
-
-STRETCHES = 5
-"""Stretches of time that are left out to weigh patterns against named effects."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -278,6 +275,8 @@ def _with_structure(
         left = find_structure(chosen.effects, progress, smooth)
     if _evicted(named[1], chosen):
         (search, chosen, left), nameless = named, []
+    elif nameless:
+        chosen = _both(search, named[1], chosen)
     return SearchState(
         base=base,
         library=library,
@@ -304,12 +303,24 @@ def _evicted(before: EffectSubset, after: EffectSubset) -> bool:
     return _by_stretches(after.effects) > POLICY.error_share * _by_stretches(before.effects)
 
 
+def _both(search: Search, before: EffectSubset, after: EffectSubset) -> EffectSubset:
+    """Names beside the patterns that replaced them, where both predict better than patterns alone.
+
+    Args:
+        search: With the patterns in every set.
+    """
+    kept = {m.effect.name for m in after.members}
+    if all(m.effect.name in kept for m in before.members):
+        return after
+    both = search.evaluate(before.members)
+    is_better = _by_stretches(both.effects) < POLICY.error_share * _by_stretches(after.effects)
+    return both if is_better else after
+
+
 def _by_stretches(effects: EffectSet) -> float:
     """Held-out error of a set when long stretches of time are left out."""
     complement = effects.complement
-    order = np.argsort(complement.touches.time[complement.used], kind="stable")
-    groups = tuple(np.array_split(order, STRETCHES))
-    return EffectSet(replace(complement, groups=groups), effects.A).held_out.rms
+    return EffectSet(replace(complement, groups=by_time(complement)), effects.A).held_out.rms
 
 
 def most_evident(found: Sequence[Structure]) -> Structure:

@@ -9,7 +9,7 @@ left out of the fit.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations, count
 
@@ -25,6 +25,8 @@ from matstd.diagnosis.evidence import (
     score_all,
 )
 from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.search.budget import Budget
+from matstd.diagnosis.search.domains import domain_gain
 from matstd.diagnosis.search.instants import p_by_instants
 from matstd.diagnosis.search.nested import contains
 from matstd.twin.frames import Array
@@ -47,41 +49,6 @@ USUAL_SET_SIZE = 6
 
 MAX_LISTED = 25
 """Most candidates that are listed, best first."""
-
-MOST_SETS = 1500.0
-"""Sets of effects that all searches of one diagnosis may try. A usual run needs a hundred, an
-unexplained one three hundred; long records of many related sensors need more, and a remark says so
-when the limit ended the search."""
-
-UNIT_CHARGE_SIZE = 5e7
-"""Touches times squared columns from which a set counts for more than one."""
-
-USUAL_POOL = 1.3e6
-"""Touches times columns of all candidates in a usual run; a set of a small one counts for less."""
-
-MIN_CHARGE = 0.1
-"""Least charge of a set."""
-
-
-@dataclass(slots=True)
-class Budget:
-    """Number of sets that searches may still try, shared; once spent, they return what they have.
-
-    Attributes:
-        left: Number of sets of ordinary size.
-    """
-
-    left: float = MOST_SETS
-
-    def spend(self, touches: int, columns: int, pool: int) -> None:
-        """Charge for one set, and for all columns of the pool beside it."""
-        beside = min(MIN_CHARGE + float(touches) * pool / USUAL_POOL, 1.0)
-        self.left -= beside + float(touches) * columns * columns / UNIT_CHARGE_SIZE
-
-    @property
-    def is_spent(self) -> bool:
-        """Whether some search was ended before its end."""
-        return self.left <= 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,6 +78,9 @@ class Verified:
         held_out: Held-out error with it over that without it.
         density: Gain of the held-out log predictive density by it.
         touches: Effective number it explains, ``(sum d^2)^2 / sum d^4`` of what it changes.
+        domain_density: Least gain of the log predictive density over domains of which blocks are
+            left out (parts of the time, set-ups); 0 where an earlier test fails already.
+        is_possible: Whether no coefficient of expansion is beyond what materials have.
     """
 
     member: Member
@@ -119,10 +89,17 @@ class Verified:
     held_out: float
     density: float
     touches: float
+    domain_density: float = 0.0
+    is_possible: bool = True
 
     @property
     def stands(self) -> bool:
         """Whether all tests are passed."""
+        return self.stands_by_poses and self.is_possible and self.domain_density > 0.0
+
+    @property
+    def stands_by_poses(self) -> bool:
+        """Whether the tests are passed that leave out one pose at a time."""
         return (
             self.p_value < POLICY.false_alarm
             and self.evidence > POLICY.log_evidence_gain
@@ -296,14 +273,34 @@ class Search:
         changed = (others.effects.residual - whole.effects.residual)[:count] ** 2
         touches = float(changed.sum()) ** 2 / max(float(changed @ changed), 1e-300)
         p = max(self.scores(others).p[member.variant], p_by_instants(others.effects, whole.effects))
-        return Verified(
+        found = Verified(
             member=member,
             p_value=self.corrected(member.candidate, p),
             evidence=float(whole.effects.evidence - others.effects.evidence),
             held_out=whole.effects.held_out.rms / max(others.effects.held_out.rms, 1e-300),
             density=float(density),
             touches=touches,
+            is_possible=self._is_possible(whole, member),
         )
+        if not found.stands_by_poses:
+            return found
+        return replace(found, domain_density=domain_gain(others.effects, whole.effects))
+
+    def _is_possible(self, whole: EffectSubset, member: Member) -> bool:
+        """Whether materials may expand as a member says, within twice its uncertainty."""
+        at = 0 if self.fixed is None else self.fixed.shape[1]
+        at += sum(len(m.effect.parameters) for m in whole.members[: whole.members.index(member)])
+        effects = whole.effects
+        for k, parameter in enumerate(member.effect.parameters, start=at):
+            if parameter.unit == "1/K":
+                unit = parameter.sd * member.scale
+                margin = POLICY.significant_ratio * unit * effects.spread(k)
+                alpha = unit * float(effects.phi[k])
+                if not -margin < alpha - POLICY.expansion_least:
+                    return False
+                if alpha - POLICY.expansion_most > margin:
+                    return False
+        return True
 
     def corrected(self, candidate: int, p: float) -> float:
         """Probability with the scan of the grid and the number of candidates paid for."""

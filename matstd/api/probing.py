@@ -275,9 +275,16 @@ def stated_body(standard: Standard, temperature: float | None, u: float | None) 
     Raises:
         BadArgument: A temperature, or an uncertainty, that makes no sense.
     """
-    material = standard.material
+    material, known = standard.material, standard.known
+    scale = None if known is None or known.u_scale is None else 1e6 * known.u_scale
     try:
-        return StatedBody(material.expansion, material.u_expansion, temperature, u)
+        return StatedBody(
+            material.expansion,
+            material.u_expansion,
+            body_degC=temperature,
+            body_u_K=u,
+            scale_u_ppm=scale,
+        )
     except BadValue as error:
         found, expected = error.facts["found"], str(error.facts["expected"])
         raise BadArgument(str(error.facts["key"]), found, expected) from None

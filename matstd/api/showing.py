@@ -43,7 +43,6 @@ from matstd.twin.effects import ComponentError, LocationError
 from matstd.twin.errors import BadArgument, BadFile
 from matstd.twin.files import (
     read_any_text,
-    read_bodies,
     read_errors,
     refuse_to_overwrite,
     write_whole,
@@ -123,7 +122,7 @@ def show(
     """A page on which a machine moves: axes, errors that are switched, a program that is played.
 
     Args:
-        machine: A machine, or the path of its file, whose table `bodies` may name meshes.
+        machine: A machine, or the path of its file, whose table `bodies` may name drawings.
         errors: Error file. Without errors and model every error that the machine can have is
             listed in its expected size, switched off.
         model: A fit, a model, or the path of a model file of the same machine.
@@ -151,12 +150,12 @@ def show(
     if not 0.0 <= tool_length < 1e4:
         raise BadArgument("tool_length", f"{tool_length:g}", "a length from 0 to 10 000 mm")
     progress("errors", 0, 1)
-    known, source, remarks = _known(chain, machine, errors, model, add, state or State())
+    known, source, remarks = _known(chain, errors, model, add, state or State())
     preset = datum_of(chain, within_travel(chain, "datum", datum or {}), tool_length)
     files = [program] if isinstance(program, str | Path) else list(program)
     if standard is not None and not files:
         raise BadArgument("standard", str(standard), "probing programs (--program) beside it")
-    played, bodies = None, list(_meshes(machine))
+    played, bodies = None, body_meshes(chain)
     from_files = [body.on for body in bodies]
     replaced = set(from_files)
     if files:
@@ -188,7 +187,6 @@ def show(
 
 def _known(
     chain: Chain,
-    machine: Chain | str | Path,
     errors: str | Path | None,
     model: SavedModel | Fit | str | Path | None,
     add: Sequence[str],
@@ -237,13 +235,6 @@ def expected_errors(chain: Chain) -> list[tuple[Effect, Array]]:
         effect = ComponentError(symbol, "linear") if is_component else LocationError(symbol)
         out.append((effect, np.array([ranges.of(chain, symbol)[1]])))
     return out
-
-
-def _meshes(machine: Chain | str | Path) -> list[Drawn]:
-    """Bodies from the user's own drawings."""
-    if isinstance(machine, Chain):
-        return []
-    return body_meshes(chain_of(machine), read_bodies(machine))
 
 
 def _played(

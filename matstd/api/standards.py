@@ -1,6 +1,6 @@
 """A standard under a coordinate measuring machine, and what measurements of it say of a task."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -12,8 +12,8 @@ from matstd.artefact.certify import (
     Allowed,
     CalibrationFit,
     check_places,
-    dmis_program,
     fit_calibration,
+    merged_orientations,
     read_cmm_points,
     with_verdicts,
 )
@@ -94,22 +94,28 @@ class Calibration(CalibrationFit, Displayed):
 
 def calibrate(
     standard: Standard | str | Path,
-    points: str | Path,
+    points: str | Path | Sequence[str | Path],
     *,
     u: float = 0.3 * UM,
     u_feature: float = 0.3 * UM,
     body_u: float = 0.5,
+    u_scale: float = 1e-6,
+    waviness: float = 0.5 * UM,
     accept: bool = False,
 ) -> Calibration:
     """The standard as a coordinate measuring machine (CMM) found it, judged by its drawing.
 
     Args:
         standard: As designed.
-        points: File with the points of the CMM (docs/calibration.md).
+        points: File with the points of the CMM (docs/calibration.md), or one file for every
+            orientation of the standard on its table.
         u: Standard uncertainty of one point, mm.
-        u_feature: Of the place of a feature by what its points share (scales, squareness and stylus
-            of the CMM), as its certificate has it, mm.
+        u_feature: Of the place of a feature by what its points share (squareness and stylus of the
+            CMM), as its certificate has it, mm.
         body_u: Standard uncertainty of the temperature of the standard while it was measured, K.
+        u_scale: Relative standard uncertainty of the scales of the CMM, as its certificate has it.
+        waviness: Assumed root mean square of short waves along a direction of a face that no dense
+            line of points shows, mm.
         accept: Take a standard that does not conform to its drawing.
 
     Raises:
@@ -124,17 +130,24 @@ def calibrate(
     """
     from matstd.cad_out.details import CALIBRATED
 
+    if not 0.0 <= waviness / UM <= 100.0:
+        raise BadArgument("waviness_um", f"{waviness / UM:g}", "0 to 100 µm")
     for name, value in (("u_um", u), ("u_feature_um", u_feature)):
         if not 0.001 <= value / UM <= 100.0:
             raise BadArgument(name, f"{value / UM:g}", "an uncertainty from 0.001 to 100 µm")
     if not 0.0 <= body_u <= 20.0:
         raise BadArgument("body_u_K", f"{body_u:g}", "0 to 20 K")
+    if not 0.0 <= u_scale <= 1e-3:
+        raise BadArgument("scale_u_ppm", f"{1e6 * u_scale:g}", "0 to 1000 ppm")
     nominal = as_designed(standard)
-    found = fit_calibration(nominal, read_cmm_points(points, nominal), u, u_feature)
-    found, causes = with_verdicts(nominal, found, Allowed(CALIBRATED, u_feature, body_u))
+    files = [points] if isinstance(points, str | Path) else list(points)
+    read = [read_cmm_points(one, nominal) for one in files]
+    measured, u_shared = merged_orientations(nominal, read, u, u_feature)
+    found = fit_calibration(nominal, measured, u, u_shared, waviness)
+    found, causes = with_verdicts(nominal, found, Allowed(CALIBRATED, u_shared, body_u, u_scale))
     refusal = ""
     if any(v.is_refused for v in found.verdicts):
-        refusal = f"{points}: {refusal_sentence(found.verdicts, causes)}"
+        refusal = f"{', '.join(map(str, files))}: {refusal_sentence(found.verdicts, causes)}"
     known = {f.name: getattr(found, f.name) for f in fields(found)}
     out = Calibration(**known, refusal=refusal)
     if not accept:
@@ -142,20 +155,24 @@ def calibrate(
     return out
 
 
-def cmm_program(standard: Standard | str | Path) -> str:
+def cmm_program(standard: Standard | str | Path, orientation: float = 0.0) -> str:
     """The DMIS program that takes the points of a calibration on a CMM.
 
     Args:
         standard: As designed.
+        orientation: By which it is turned about z on the table of the CMM, degrees; the mean of
+            four orientations is free of squareness and of differences of scales of the CMM.
+
+    Raises:
+        NotReachable: A feature that no stylus reaches.
 
     Example:
         >>> cmm_program("standard.toml").count("PTMEAS/") > 100
         True
     """
-    from matstd.cad_out.details import datum_touches, engraved_on
+    from matstd.stages import cmm
 
-    nominal = as_designed(standard)
-    return dmis_program(nominal, datum_touches(nominal), engraved_on(nominal))
+    return cmm.cmm_program(as_designed(standard), orientation)
 
 
 def as_designed(standard: Standard | str | Path) -> Standard:

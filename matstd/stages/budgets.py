@@ -14,6 +14,8 @@ from matstd.artefact.worth import Calibration
 from matstd.diagnosis.fit import Prior, fit_run
 from matstd.diagnosis.task import TaskUncertainty, Visits, task_uncertainty, visits_of
 from matstd.probe_paths.campaign import VirtualMachine, visits
+from matstd.probe_paths.control import read_program
+from matstd.stages.warm_body import WarmBody
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import pose, rotation
 from matstd.twin.model import Model
@@ -88,7 +90,8 @@ def virtual_budgets(
     """Budgets of the brief's task from visits on the twin, before and after identification.
 
     The true standard is beside its calibration as much as that allows, and clamped anew for every
-    visit. The model is identified from the balls of the first.
+    visit, at another temperature than its thermometer reads. The model is identified from the balls
+    of the first.
     """
     known = brief.options.criterion.calibration
     true = displaced_features(standard, known, rng)
@@ -96,7 +99,13 @@ def virtual_budgets(
         replace(machine, setup_error=pose(rotation(rng.normal(0.0, b, 3)), rng.normal(0.0, a, 3)))
         for a, b in [CLAMPING_SCATTER] * brief.study.visits
     ]
-    runs = [c.run for c in visits(programs, true, stands, rng, calibrated=standard)]
+    body = WarmBody.of(brief.study, standard, known)
+    pieces = body.pieces(true, len(stands), rng.spawn(1)[0])
+    texts = [read_program(path, machine.chain, None, machine.dialect) for path in programs]
+    runs = [
+        body.stated_in(visits(texts, piece, [stand], rng, calibrated=standard)[0].run)
+        for piece, stand in zip(pieces, stands, strict=True)
+    ]
     held_back = np.where(on_faces(standard, runs[0].touches), "test", "train")
     fit = fit_run(replace(runs[0], split=held_back), brief.population.expected())
     count = len(fit.model.parameters)

@@ -14,11 +14,11 @@ import numpy as np
 
 from matstd.artefact.body import Standard, write_standard
 from matstd.artefact.brief import Brief
-from matstd.artefact.certify import dmis_program, like_task
+from matstd.artefact.certify import like_task
 from matstd.artefact.compare import WorstRegions, identifiability_report, worst_regions
 from matstd.artefact.feasibility import check_beside, check_seat, feasibility
 from matstd.artefact.place import Placement, design_standard
-from matstd.cad_out.details import datum_touches, details_of, engraved_on
+from matstd.cad_out.details import details_of
 from matstd.cad_out.making import Stiffness, making_of, stiffness_of, with_sag, write_making
 from matstd.cad_out.meshes import read_stl
 from matstd.cad_out.verify import Conformity, export_standard
@@ -46,10 +46,13 @@ from matstd.sensitivity.montecarlo import Workers
 from matstd.sensitivity.population import drawn_errors
 from matstd.sensitivity.study import Study
 from matstd.stages.budgets import virtual_budgets
+from matstd.stages.cmm import cmm_program
 from matstd.stages.refusals import REACH, ROOM
 from matstd.stages.streams import Streams, streams
 from matstd.stages.study_run import study_and_maps
+from matstd.stages.warm_body import WarmBody
 from matstd.twin.compute import Progress
+from matstd.twin.errors import BadFile
 from matstd.twin.files import errors_toml, write_run, write_whole
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, contribution
@@ -80,6 +83,7 @@ def design(brief: Brief, folder: Path, progress: Progress, workers: Workers = No
     proving = placement.criterion.reach.touches(placement.touches)
     like_task(brief.task, placement.standard, proving)
     placement, stiffness = _with_sag(placement, brief.down)
+    _check_first_mode(brief, stiffness)
     plans = _plans(brief, placement)
     _write_standard(folder, placement.standard)
     with ThreadPoolExecutor(1) as beside:  # the kernel works in processes of its own
@@ -153,8 +157,7 @@ def _on_twins(
 def _write_standard(folder: Path, standard: Standard) -> None:
     """The design, and the program of its calibration."""
     write_standard(folder / "standard.toml", standard)
-    program = dmis_program(standard, datum_touches(standard), engraved_on(standard))
-    write_whole(folder / "cmm.dmi", program, newline="\r\n")
+    write_whole(folder / "cmm.dmi", cmm_program(standard), newline="\r\n")
 
 
 def _worst(placement: Placement, study: Study) -> WorstRegions:
@@ -176,7 +179,13 @@ def _export(brief: Brief, standard: Standard, folder: Path, q: Array) -> Conform
 
 def _draw(brief: Brief, standard: Standard, conformity: Conformity, folder: Path) -> None:
     """The drawing of a standard, with the mass that was measured."""
-    issuer = Issuer(brief.author, brief.organisation, conformity.mass)
+    issuer = Issuer(
+        brief.author,
+        brief.organisation,
+        mass=conformity.mass,
+        approved=brief.approved,
+        date=brief.date,
+    )
     write_drawing(folder, standard, issuer)
 
 
@@ -199,6 +208,27 @@ def _with_sag(placement: Placement, down: str) -> tuple[Placement, Stiffness | N
     return replace(placement, standard=with_sag(standard, stiffness, down)), stiffness
 
 
+def _check_first_mode(brief: Brief, stiffness: Stiffness | None) -> None:
+    """Refuse a standard that vibrates below the limit of the project.
+
+    Raises:
+        BadFile: The limit, and the first mode of the design.
+    """
+    wanted = brief.first_mode
+    if not wanted or (stiffness is not None and stiffness.first_mode >= wanted):
+        return
+    if stiffness is None:
+        found = f"{wanted:g} for '{brief.blank.material.name}', whose modulus is not known"
+        raise BadFile(brief.path, "limits.first_mode_Hz", found, "material.modulus_MPa as well")
+    raise BadFile(
+        brief.path,
+        "limits.first_mode_Hz",
+        f"{wanted:g}",
+        f"at most {stiffness.first_mode:.0f}, the first mode of this design; a smaller "
+        "blank.height_mm or a material with more stiffness per mass raises it",
+    )
+
+
 def _plans(brief: Brief, placement: Placement) -> list[tuple[int, TouchPlan]]:
     """Touches that the placement wants, in the order of a cautious operator, by probe."""
     return plan_campaign(
@@ -219,13 +249,15 @@ def _prove(
     rng: np.random.Generator,
 ) -> Proven:
     """Probe one random machine by the text of the programs, identify it, compare with its truth."""
-    rng_errors, rng_noise, rng_volume, rng_workspace = rng.spawn(4)
+    rng_errors, rng_noise, rng_volume, rng_workspace, rng_body = rng.spawn(5)
     population = brief.population
     errors = drawn_errors(population, rng_errors)
     machine = _twin(brief, errors)
-    campaign = _with_split(
-        simulate(programs, placement.standard, machine, rng_noise), placement.standard
-    )
+    standard = placement.standard
+    body = WarmBody.of(brief.study, standard, brief.options.criterion.calibration)
+    (piece,) = body.pieces(standard, 1, rng_body)
+    probed = simulate(programs, piece, machine, rng_noise, calibrated=standard)
+    campaign = _with_split(replace(probed, run=body.stated_in(probed.run)), standard)
     fit = fit_run(campaign.run, population.expected())
     in_volume = probed_volume(campaign.run, PROOF_POSES, rng_volume)
     q = latin_hypercube(brief.workspace, PROOF_POSES, rng_workspace)

@@ -12,11 +12,18 @@ from matstd.cad_out.details import (
     DATUMS,
     Details,
     Tolerance,
+    datum_touches,
     details_of,
     notes_of,
     tolerances_of,
 )
-from matstd.report.drawing.sections import draw_screw, draw_seat, engraving_words
+from matstd.report.drawing.sections import (
+    BALL_CUT,
+    HOLE_CUT,
+    draw_screw,
+    draw_seat,
+    engraving_words,
+)
 from matstd.report.drawing.sheet import WIDTH, Sheet, View
 from matstd.report.drawing.views import draw_from, draw_top
 from matstd.twin.files import written_whole
@@ -41,11 +48,15 @@ class Issuer:
         author: Responsible for the design.
         organisation: Whom the author works for.
         mass: Of body and balls, kg.
+        approved: Who approved the drawing.
+        date: Of its issue.
     """
 
     author: str
     organisation: str
     mass: float
+    approved: str = "not stated"
+    date: str = "not stated"
 
 
 def write_drawing(folder: Path, standard: Standard, issuer: Issuer) -> None:
@@ -77,6 +88,7 @@ def draw_sheet(standard: Standard, details: Details, issuer: Issuer) -> Sheet:
     _dimensions(sheet, front, top, standard, tall)
     _datums(sheet, front, top, left, standard, details)
     _axes(sheet, top)
+    _cuts(sheet, top, standard)
     if standard.spheres:
         enlarged = 2.0 if standard.spheres[0].radius <= 16.0 else 1.0
         draw_seat(sheet, View(top.x + scale * a + 74.0, floor - 76.0, enlarged), standard, details)
@@ -101,7 +113,7 @@ def _dimensions(sheet: Sheet, front: View, top: View, standard: Standard, tall: 
     highest = front.at([[-a, tall]])[0]
     sheet.dimension(p, highest, 16.0, f"({tall:.1f})")
     p, q = top.at([[-a, -b], [a, -b]])
-    sheet.dimension(p, q, -16.0, f"{2 * a:g}")
+    sheet.dimension(p, q, -24.0, f"{2 * a:g}")  # below the targets of datum B
     p, q = top.at([[a, -b], [a, b]])
     sheet.dimension(p, q, -9.0, f"{2 * b:g}")
     radius = standard.base.corner_radius
@@ -113,37 +125,97 @@ def _dimensions(sheet: Sheet, front: View, top: View, standard: Standard, tall: 
 def _datums(
     sheet: Sheet, front: View, top: View, left: View, standard: Standard, details: Details
 ) -> None:
-    """Letters on their faces, and the tolerances of datums, pads, faces and balls."""
+    """Letters and targets on their faces, and tolerances attached to what they hold for."""
     (a, b), thick = standard.base.half_size, standard.base.thickness
-    down, west = np.array([0.0, -1.0]), np.array([-1.0, 0.0])
-    up = np.array([0.0, 1.0])
+    down, west, up = np.array([0.0, -1.0]), np.array([-1.0, 0.0]), np.array([0.0, 1.0])
     # beside the view: on the face itself pillars and posts are in the way
-    sheet.line(left.at([[b, thick]])[0] + np.array([[1.0, 0.0], [12.0, 0.0]]))
-    sheet.datum(np.add(left.at([[b, thick]])[0], [7.0, 0.0]), up, "A")
-    sheet.datum(top.at([[0.55 * a, -details.sides["DATUM_B"].offset]])[0], down, "B")
-    sheet.datum(top.at([[-details.sides["DATUM_C"].offset, 0.55 * b]])[0], west, "C")
-    sheet.line(front.at([[a, thick]])[0] + np.array([[1.0, 0.0], [16.0, 0.0]]))
+    end = left.at([[b, thick]])[0]
+    sheet.line(end + np.array([[1.0, 0.0], [16.0, 0.0]]))
+    sheet.datum(np.add(end, [7.0, 0.0]), up, "A")
+    south = top.at([[-0.2 * a, -details.sides["DATUM_B"].offset]])[0]
+    west_side = top.at([[-details.sides["DATUM_C"].offset, 0.75 * b]])[0]
+    sheet.datum(south, down, "B")
+    sheet.datum(west_side, west, "C")
+    sheet.line(front.at([[a, thick]])[0] + np.array([[1.0, 0.0], [20.0, 0.0]]))
     sheet.roughness(np.add(front.at([[a, thick]])[0], [4.0, 0.0]), "Ra 0.8")
+    names = {"DATUM_B": ("B1", "B2"), "DATUM_C": ("C1",)}
+    for side, (points, normal) in datum_touches(standard).items():
+        for name, point in zip(names.get(side, ()), points, strict=False):
+            place = top.at(point[:2])[0]
+            sheet.target(place, place + 12.0 * normal[:2] + 3.0 * np.array([1.0, 0.0]), name)
     tolerances = {t.face: t for t in tolerances_of(standard, details)}
-    x, y = left.at([[-b, 0.0]])[0]
-    rows = [("DATUM_A", "A"), ("DATUM_B", "B"), ("DATUM_C", "C")]
-    seats = [t.face for t in tolerances.values() if t.kind == "parallelism"]
-    rows += [(seats[0], f"{len(seats)} x pad" if details.pads else "underside")]
-    for patch in standard.patches[:1]:
-        rows.append((patch.name, f"{len(standard.patches)} x FF"))
-    for sphere in standard.spheres[:1]:
-        rows.append((f"{sphere.name}_SEAT", f"{len(standard.spheres)} x centre"))
-    for k, (face, words) in enumerate(rows):
-        column, row = divmod(k, 3)
-        at = (x + 62.0 * column, y - 14.0 - 8.5 * row)
-        _frame(sheet, at, tolerances[face], words)
+    _attached(sheet, np.add(end, [-2.0, 18.0]), tolerances["DATUM_A"], np.add(end, [13.0, 0.0]))
+    _attached(sheet, np.add(south, [8.0, -13.0]), tolerances["DATUM_B"], np.add(south, [5.0, 0.0]))
+    corner = np.add(west_side, [-20.0, 22.0])
+    _attached(sheet, corner, tolerances["DATUM_C"], np.add(west_side, [0.0, 6.0]))
+    _of_features(sheet, left, top, standard, details, tolerances)
 
 
-def _frame(sheet: Sheet, at: tuple[float, float], tolerance: Tolerance, words: str) -> None:
-    width = f"{tolerance.width:g}"
+def _of_features(
+    sheet: Sheet,
+    left: View,
+    top: View,
+    standard: Standard,
+    details: Details,
+    tolerances: dict[str, Tolerance],
+) -> None:
+    """Tolerances of pads, faces and balls, each at one of them.
+
+    In the view from the left one looks along +x, so that y runs to the left.
+    """
+    low, high = left.at([[-standard.base.half_size[1], 0.0]])[0], _TOP + 2.0
+    seat = next(t for t in tolerances.values() if t.kind == "parallelism")
+    at, words = (low[0] + 20.0, low[1] - 16.0), "underside"
+    under = left.at([[0.0, 0.0]])[0]
+    if details.pads:
+        pad = max(details.pads, key=lambda one: one.y)
+        under, words = left.at([[-pad.y, 0.0]])[0], f"{len(details.pads)} x pad"
+    _attached(sheet, at, seat, under, words, "CZ" if details.pads else "")
+    if standard.patches:
+        patch = max(standard.patches, key=lambda p: float(p.T_artefact_patch[1, 3]))
+        rim = patch.point(patch.grid())
+        middle = 0.5 * (rim[:, 0].min() + rim[:, 0].max())
+        tip = top.at([[middle, rim[:, 1].max()]])[0]  # from above nothing hides it
+        edge = top.at([[0.0, standard.base.half_size[1]]])[0]
+        # above the frame of datum C, which stands 22 to 28 mm above three quarters of the side
+        above = max(6.0, 30.0 - 0.25 * top.scale * standard.base.half_size[1])
+        words = f"{len(standard.patches)} x FF"
+        _attached(sheet, (tip[0] - 18.0, edge[1] + above), tolerances[patch.name], tip, words)
+    if standard.spheres:
+        ball = max(standard.spheres, key=lambda one: float(one.centre[2]))
+        centre = left.at([[-ball.centre[1], ball.centre[2] + ball.radius]])[0]
+        width = tolerances[f"{ball.name}_SEAT"].width
+        place = Tolerance(ball.name, "position", width, "ABC")
+        words = f"{len(standard.spheres)} x SØ{2 * ball.radius:g}, centre"
+        _attached(sheet, (low[0] + 50.0, high), place, centre, words)
+
+
+def _attached(
+    sheet: Sheet, at: Any, tolerance: Tolerance, tip: Any, words: str = "", zone: str = ""
+) -> None:
+    """A tolerance frame with its leader to the feature, and words above the frame."""
+    width = f"{tolerance.width:g} {zone}".rstrip()
     width = f"SØ{width}" if tolerance.kind == "position" else width
-    sheet.text(at[0], at[1] + 1.8, words, size=2.2)
-    sheet.tolerance(at[0] + 23.0, at[1], tolerance.kind, width, tolerance.datums)
+    x, y = float(at[0]), float(at[1])
+    long = sheet.tolerance(x, y, tolerance.kind, width, tolerance.datums)
+    goal = np.asarray(tip, dtype=float)
+    start = np.array([x + 0.5 * long, y + 6.0 if goal[1] > y else y])
+    sheet.line([start, goal])
+    sheet.arrow(goal, goal - start)
+    if words:
+        beside = (x + long + 1.5, y + 1.8) if goal[1] > y else (x, y + 6.8)
+        sheet.text(*beside, words)
+
+
+def _cuts(sheet: Sheet, top: View, standard: Standard) -> None:
+    """Cutting planes of the sections, through the ball and the hole that they show."""
+    cut = [(s.centre[:2], s.foot_radius, BALL_CUT) for s in standard.spheres[:1]]
+    cut += [(np.array([h.x, h.y]), h.bore_radius, HOLE_CUT) for h in standard.holes[:1]]
+    for middle, radius, letter in cut:
+        at = top.at(middle)[0]
+        for side in (-1.0, 1.0):
+            beside = [side * (top.scale * radius + 5.0), 0.0]
+            sheet.cut(np.add(at, beside), np.array([0.0, 1.0]), letter)
 
 
 def _axes(sheet: Sheet, top: View) -> None:
@@ -156,19 +228,19 @@ def _axes(sheet: Sheet, top: View) -> None:
 
 def _tables(sheet: Sheet, standard: Standard, details: Details) -> float:
     """Faces, balls and holes with their places; returns the height of the lower edge."""
-    rows = [["face", "x", "y", "z", "size", "slope", "R", "tests the model; dominant errors"]]
+    rows = [["face", "x", "y", "z", "size", "slope", "R", "tests; dominant errors"]]
     rows += [_face_row(patch) for patch in standard.patches]
     title = "Freeform faces (middle, steepest slope, least concave radius between their edges)"
-    y = sheet.table(_TABLES, _TOP, (11, 14, 14, 14, 22, 11, 13, 89), rows, title)
+    y = sheet.table(_TABLES, _TOP, (11, 15, 15, 14, 26, 12, 16, 79), rows, title)
     rows = [["ball", "x", "y", "z", "Ø", "foot", "land", "land z", "sink",
-             "identifies the machine; calibrated"]]  # fmt: skip
+             "identifies; calibrated"]]  # fmt: skip
     rows += [_ball_row(ball, details) for ball in standard.spheres]
     title = f"Balls (centres), {BALL.name}, and their posts"
-    y = sheet.table(_TABLES, y - 9.0, (11, 14, 14, 14, 11, 15, 15, 15, 13, 66), rows, title)
+    y = sheet.table(_TABLES, y - 9.0, (15, 15, 15, 15, 9, 16, 18, 16, 13, 56), rows, title)
     rows = [["hole", "x", "y", "z", "through", "counterbore", "pad", "for"]]
     rows += _hole_rows(standard, details)
     title = "Holes (middles of their mouths)"
-    return sheet.table(_TABLES, y - 9.0, (17, 17, 17, 12, 24, 24, 14, 63), rows, title)
+    return sheet.table(_TABLES, y - 9.0, (18, 16, 16, 12, 24, 26, 16, 60), rows, title)
 
 
 def _hole_rows(standard: Standard, details: Details) -> list[list[str]]:
@@ -181,7 +253,7 @@ def _hole_rows(standard: Standard, details: Details) -> list[list[str]]:
     for bore in details.bores:
         x, y, z = bore.mouth
         sizes = [f"Ø{2 * bore.radius:g} x {bore.depth:g}", bore.thread, ""]
-        purpose = "eyebolt" if bore.thread else "thermometer, from the side at +y"
+        purpose = "eyebolt" if bore.thread else "thermometer, side +y"
         out.append([bore.name, f"{x:.1f}", f"{y:.1f}", f"{z:g}", *sizes, purpose])
     return out
 
@@ -221,14 +293,15 @@ def _notes(sheet: Sheet, top: float, standard: Standard, details: Details) -> No
     faces = ", ".join(f"{letter} = {face}" for letter, face in DATUMS.items())
     words.append(f"Names of faces as in standard.step: {faces}; that model is the definition.")
     for number, note in enumerate(words, 1):
-        top -= 4.2
-        note = note.replace(" degC", " °C").replace(" um", " µm")  # ASCII is for the STEP file
+        top -= 5.2
+        for plain, sign in ((" degC", " °C"), (" um", " µm"), ("+-", "±")):  # of the STEP file
+            note = note.replace(plain, sign)
         for k, part in enumerate(_wrapped(f"{number}  {note}")):
-            top -= 3.6 if k else 0.0
-            sheet.text(_TABLES, top, part, size=2.0)
+            top -= 4.2 if k else 0.0
+            sheet.text(_TABLES, top, part)
 
 
-def _wrapped(words: str, most: int = 112) -> list[str]:
+def _wrapped(words: str, most: int = 90) -> list[str]:
     import textwrap
 
     return textwrap.wrap(words, most, subsequent_indent="    ")
@@ -237,26 +310,31 @@ def _wrapped(words: str, most: int = 112) -> list[str]:
 def _title(sheet: Sheet, standard: Standard, issuer: Issuer, scale: float) -> None:
     """Title block of ISO 7200 with the sign of first-angle projection."""
     x, y, w = _TABLES, 10.0, WIDTH - 10.0 - _TABLES
-    sheet.box(x, y, w, 36.0, 0.7)
+    sheet.box(x, y, w, 48.0, 0.7)
     ratio = f"{scale:g}:1" if scale >= 1.0 else f"1:{1.0 / scale:g}"
     tool = f"material-standard {versions()['material-standard']}"
     name = f"{standard.name} {standard.serial}".strip()
     cells = [
-        (0.0, 24.0, 100.0, "title", f"Material standard {name}"),
-        (100.0, 24.0, 88.0, "material", standard.material.name),
-        (0.0, 12.0, 64.0, "legal owner", issuer.organisation),
-        (64.0, 12.0, 62.0, "author", issuer.author),
+        (0.0, 36.0, 100.0, "title", f"Material standard {name}"),
+        (100.0, 36.0, 88.0, "material", standard.material.name),
+        (0.0, 24.0, 64.0, "legal owner", issuer.organisation),
+        (64.0, 24.0, 62.0, "created by", issuer.author),
+        (126.0, 24.0, 62.0, "approved by", issuer.approved),
+        (0.0, 12.0, 46.0, "document type", "part drawing"),
+        (46.0, 12.0, 40.0, "date of issue", issuer.date),
+        (86.0, 12.0, 40.0, "identification", standard.fingerprint),
         (126.0, 12.0, 62.0, "made by", tool),
-        (0.0, 0.0, 30.0, "mass with balls", f"{issuer.mass:.1f} kg"),
-        (30.0, 0.0, 18.0, "scale", ratio),
-        (48.0, 0.0, 24.0, "sheet", "1 / 1, A2"),
-        (72.0, 0.0, 46.0, "tolerances", "ISO 2768-mK, ISO 8015"),
-        (118.0, 0.0, 36.0, "identification", standard.fingerprint),
+        (0.0, 0.0, 28.0, "mass", f"{issuer.mass:.1f} kg"),
+        (28.0, 0.0, 20.0, "scale", ratio),
+        (48.0, 0.0, 34.0, "sheet", "1 / 1, A2"),
+        (82.0, 0.0, 72.0, "tolerances", "ISO 22081, ISO 8015"),
     ]
     for left, low, width, what, words in cells:
         sheet.box(x + left, y + low, width, 12.0)
-        sheet.text(x + left + 1.2, y + low + 9.2, what, size=1.5)
-        sheet.text(x + left + 1.2, y + low + 3.0, words, size=2.5)
+        sheet.text(x + left + 1.2, y + low + 8.4, what)
+        sheet.text(x + left + 1.2, y + low + 2.6, words, size=3.0 if low == 36.0 else 2.5)
+    sheet.edges(x, y + 51.0, "-0.1 / -0.3", "+0.3")
+    sheet.text(x + 50.0, y + 54.0, "edges ISO 13715")
     sheet.box(x + 154.0, y, 34.0, 12.0)
     middle = np.array([x + 163.0, y + 6.0])
     sheet.circle(np.add(middle, [14.0, 0.0]), 4.0, 0.3)

@@ -4,8 +4,11 @@ import numpy as np
 
 from matstd.artefact.body import BLEND, Standard
 from matstd.cad_out.details import CUTTER, DEPTH, RELIEF, Details, glue_gap
-from matstd.report.drawing.sheet import THIN, WIDE, Sheet, View
+from matstd.report.drawing.sheet import HATCH, THIN, WIDE, Sheet, View
 from matstd.twin.units import DEG
+
+BALL_CUT, HOLE_CUT = "D", "E"
+"""Letters of the sections; A, B and C are datums."""
 
 
 def draw_seat(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
@@ -18,7 +21,7 @@ def draw_seat(sheet: Sheet, view: View, standard: Standard, details: Details) ->
     top, deep = seat.top - z, seat.bottom - z
     wall = [[-low, floor], [-seat.top_radius, top], [-seat.rim_radius, top], [0.0, deep]]
     mirrored = [[-x, y] for x, y in wall[-2::-1]]
-    sheet.line(view.at([*wall, *mirrored, wall[0]]), WIDE, fill="0.9")
+    sheet.line(view.at([*wall, *mirrored, wall[0]]), WIDE, fill=HATCH)
     sheet.circle(view.at([[0.0, 0.0]])[0], view.scale * sphere.radius, fill="white")
     rim = 1.2 * sphere.radius
     sheet.line(view.at([[0.0, floor - 2.0], [0.0, rim]]), 0.13, "-.")
@@ -37,10 +40,10 @@ def draw_seat(sheet: Sheet, view: View, standard: Standard, details: Details) ->
     size = view.at([[-0.7 * sphere.radius, 0.7 * sphere.radius]])[0]
     sheet.leader(size, np.add(size, [-6.0, 5.0]), f"SØ{2 * sphere.radius:g} ±0.0025")
     where = view.at([[0.0, 1.3 * sphere.radius]])[0]
-    title = f"{sphere.name} IN ITS SEAT ({_ratio(view.scale)})"
+    title = f"{BALL_CUT}-{BALL_CUT} ({_ratio(view.scale)}): {sphere.name} in its seat"
     sheet.text(where[0], where[1] + 6.0, title, size=3.0, ha="center")
     others = "all balls alike; land and countersink as in the table"
-    sheet.text(where[0], where[1] + 2.0, others, size=2.2, ha="center")
+    sheet.text(where[0], where[1] + 2.0, others, ha="center")
 
 
 def draw_screw(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
@@ -52,7 +55,7 @@ def draw_screw(sheet: Sheet, view: View, standard: Standard, details: Details) -
     left = [[-wide, low], [-pad, low], [-pad, 0.0], [-hole.radius, 0.0], [-hole.radius, floor]]
     left += [[-hole.bore_radius, floor], [-hole.bore_radius, thick], [-wide, thick]]
     for sign in (1.0, -1.0):
-        sheet.line(view.at([[sign * x, y] for x, y in [*left, left[0]]]), WIDE, fill="0.9")
+        sheet.line(view.at([[sign * x, y] for x, y in [*left, left[0]]]), WIDE, fill=HATCH)
     for screw in details.screws[:1]:
         d, h = 0.5 * screw.diameter, 0.5 * screw.head
         end = floor - screw.length
@@ -81,7 +84,7 @@ def draw_screw(sheet: Sheet, view: View, standard: Standard, details: Details) -
     through = f"Ø{2 * hole.radius:g} through"
     alike = len({p.radius for p in details.pads}) < 2
     rest = f"{len(standard.holes)} alike" if alike else "others with pads as in the table"
-    title = f"{hole.name} ({_ratio(view.scale)}), {through}, {rest}"
+    title = f"{HOLE_CUT}-{HOLE_CUT} ({_ratio(view.scale)}): {hole.name}, {through}, {rest}"
     sheet.text(where[0], where[1] + 11.0, title, size=3.0, ha="center")
 
 

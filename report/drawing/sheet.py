@@ -15,6 +15,12 @@ WIDTH, HEIGHT = 594.0, 420.0
 WIDE, THIN = 0.5, 0.25
 """Lines of ISO 128-2, mm."""
 
+HATCH = "hatch"
+"""Filling of a cut solid (ISO 128-3)."""
+
+LETTERS = 2.5
+"""Height of lettering, mm (ISO 3098-1); smaller letters do not survive a copy."""
+
 _POINT = 72.0 / 25.4  # points a millimetre
 _MARGIN, _BINDING = 10.0, 20.0
 _ARROW = 2.6  # mm
@@ -56,7 +62,7 @@ class Sheet:
         self.box(_BINDING, _MARGIN, WIDTH - _MARGIN - _BINDING, HEIGHT - 2 * _MARGIN, 0.7)
 
     def line(self, points: Any, width: float = THIN, style: str = "-", fill: str = "none") -> None:
-        """A polyline, or a filled figure that hides what was drawn before."""
+        """A polyline, or a filled figure that hides what was drawn before; `hatch` cuts it."""
         from matplotlib.patches import Polygon
 
         p = np.atleast_2d(points)
@@ -68,7 +74,8 @@ class Sheet:
             Polygon(
                 p,
                 closed=closed,
-                facecolor=fill,
+                facecolor="white" if fill == HATCH else fill,
+                hatch="///" if fill == HATCH else None,
                 edgecolor="black",
                 lw=width * _POINT,
                 ls=dashes,
@@ -105,7 +112,7 @@ class Sheet:
             rotation_mode="anchor", zorder=self._depth,
         )  # fmt: skip
 
-    def label(self, middle: Any, radius: float, words: str, size: float = 1.9) -> None:
+    def label(self, middle: Any, radius: float, words: str, size: float = LETTERS) -> None:
         """Words beside a circle, on the side where least is drawn."""
         p, half = np.asarray(middle, dtype=float), 0.5 * np.array([_WIDE * len(words), 1.0]) * size
         reach = radius + 2.0 * half[0] + 2.0 * _CLEAR
@@ -169,12 +176,41 @@ class Sheet:
         self.box(middle[0] - 2.5, middle[1] - 2.5, 5.0, 5.0)
         self.text(middle[0], middle[1] - 1.3, letter, size=3.0, ha="center")
 
+    def target(self, place: Any, middle: Any, name: str) -> None:
+        """Datum target point: a cross on the face, and its name in a halved circle (ISO 5459)."""
+        p, m = np.asarray(place, dtype=float), np.asarray(middle, dtype=float)
+        for way in (np.array([1.5, 1.5]), np.array([1.5, -1.5])):
+            self.line([p - way, p + way], WIDE)
+        way = (p - m) / np.linalg.norm(p - m)
+        self.line([m + 5.0 * way, p])
+        self.circle(m, 5.0, THIN, fill="white")
+        self.line(m + np.array([[-5.0, 0.0], [5.0, 0.0]]))
+        self.text(m[0], m[1] - 3.7, name, ha="center")
+
+    def cut(self, at: Any, way: Any, letter: str) -> None:
+        """End of a cutting plane: a thick line, the direction in which is looked, its letter."""
+        p, d = np.asarray(at, dtype=float), np.asarray(way, dtype=float)
+        n = np.array([d[1], -d[0]])
+        self.line([p - 3.0 * n, p + 3.0 * n], 0.7)
+        self.line([p - 7.0 * d, p])
+        self.arrow(p, d)
+        x, y = p - 10.5 * d
+        self.text(float(x), float(y) - 1.3, letter, size=3.5, ha="center")
+
+    def edges(self, x: float, y: float, outer: str, inner: str) -> None:
+        """General signs of edges of undefined shape (ISO 13715): outer edges, inner edges."""
+        for k, words in enumerate((outer, inner)):
+            at = x + 24.0 * k
+            self.line([[at, y], [at + 3.0, y + 3.0], [at + 3.0, y + 7.0]], 0.3)
+            self.line([[at + 3.0, y + 3.0], [at + 7.0, y + 3.0]], 0.3)
+            self.text(at + 8.0, y + 3.2, words)
+
     def roughness(self, foot: Any, words: str) -> None:
         """Sign of ISO 21920-1 for a machined face, standing on it."""
         x, y = np.asarray(foot, dtype=float)
-        self.line([[x - 1.4, y + 2.4], [x, y], [x + 2.8, y + 4.8], [x + 11.0, y + 4.8]])
+        self.line([[x - 1.4, y + 2.4], [x, y], [x + 2.8, y + 4.8], [x + 15.0, y + 4.8]])
         self.line([[x - 1.4, y + 2.4], [x + 1.4, y + 2.4]])
-        self.text(x + 3.0, y + 2.2, words, size=2.0)
+        self.text(x + 3.4, y + 1.4, words)
 
     def tolerance(self, x: float, y: float, kind: str, width: str, datums: str) -> float:
         """A tolerance frame of ISO 1101; returns how wide it is."""
@@ -215,12 +251,12 @@ class Sheet:
     ) -> float:  # fmt: skip
         """A table under its title, first row bold lines; returns the height of its lower edge."""
         self.text(x, top + 1.2, title, size=3.0)
-        height, y = 4.6, top
+        height, y = 5.2, top
         for number, row in enumerate(rows):
             at = x
             for width, words in zip(widths, row, strict=True):
                 self.box(at, y - height, width, height, WIDE if number == 0 else 0.13)
-                self.text(at + 1.0, y - height + 1.4, words, size=1.9)
+                self.text(at + 1.0, y - height + 1.4, words)
                 at += width
             y -= height
         return y

@@ -28,7 +28,7 @@ def draw_top(sheet: Sheet, view: View, standard: Standard, details: Details) -> 
         sheet.circle(middle, view.scale * max(sphere.foot_radius, sphere.radius), fill="white")
         sheet.circle(middle, view.scale * sphere.radius)
         _cross(sheet, view, sphere.centre[:2], sphere.radius)
-        sheet.text(middle[0] + 0.6, middle[1] + 0.6, sphere.name.removeprefix("SPH"), size=2.2)
+        sheet.text(middle[0] + 0.6, middle[1] + 0.6, sphere.name.removeprefix("SPH"))
     for line in details.lettering:
         if line.T_artefact_text[2, 2] > 0.5:
             for dot in apply(line.T_artefact_text, np.pad(line.dots, ((0, 0), (0, 1)))):
@@ -156,7 +156,7 @@ def _pillar(
     sheet.line(view.at(np.concatenate([rim, ends, rim[:1]])), WIDE, fill="white")
     sheet.line(view.at(np.column_stack([along, front])), THIN)
     middle = view.at([[along.mean(), 0.5 * (foot + front.mean())]])[0]
-    sheet.text(middle[0], middle[1] - 1.0, patch.name, size=2.2, ha="center")
+    sheet.text(middle[0], middle[1] - 1.0, patch.name, ha="center")
 
 
 def _post(sheet: Sheet, view: View, sphere: DatumSphere, details: Details, right: Array) -> None:
@@ -167,4 +167,4 @@ def _post(sheet: Sheet, view: View, sphere: DatumSphere, details: Details, right
     middle = view.at([[at, sphere.centre[2]]])[0]
     sheet.circle(middle, view.scale * sphere.radius, fill="white")
     number = sphere.name.removeprefix("SPH")
-    sheet.text(middle[0], middle[1] - 0.9, number, size=2.0, ha="center")
+    sheet.text(middle[0], middle[1] - 0.9, number, ha="center")

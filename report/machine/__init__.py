@@ -6,11 +6,22 @@ readings, and the page multiplies the exact kinematics itself (`live/parts/kinem
 """
 
 from matstd.report.machine.error_series import ErrorFunction, error_functions
-from matstd.report.machine.machine_page import ShownMachine, machine_html, shown_lines
+from matstd.report.machine.machine_page import (
+    ShownMachine,
+    machine_data,
+    machine_html,
+    shown_lines,
+)
 from matstd.report.machine.meshes import body_meshes
 from matstd.report.machine.played import Played, played_part, played_probing
 from matstd.report.machine.probing_page import PLAYBACK, write_playback
-from matstd.report.machine.set_up import SetUp, probe_body, set_up_bodies, with_clearance
+from matstd.report.machine.set_up import (
+    SetUp,
+    probe_body,
+    set_up_bodies,
+    standard_bodies,
+    with_clearance,
+)
 from matstd.report.machine.solids import Drawn
 
 __all__ = [
@@ -22,12 +33,14 @@ __all__ = [
     "ShownMachine",
     "body_meshes",
     "error_functions",
+    "machine_data",
     "machine_html",
     "played_part",
     "played_probing",
     "probe_body",
     "set_up_bodies",
     "shown_lines",
+    "standard_bodies",
     "with_clearance",
     "write_playback",
 ]

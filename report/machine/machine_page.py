@@ -142,6 +142,26 @@ def _data(shown: ShownMachine, bodies: Sequence[Drawn], letters: Sequence[Letter
     size = sum(one.size**2 for one in shown.errors) ** 0.5
     power = np.log10(_DRAWN_AS / size) if size > 0.0 else 3.0
     return {
+        **machine_data(chain),
+        "low": [*(low for low, _ in ranges), 0.0],
+        "high": [*(high for _, high in ranges), shown.duration],
+        "length": shown.length,
+        "up": "y" if _is_level(chain) else "z",
+        "exaggeration": float(10.0 ** np.clip(np.round(2.0 * power) / 2.0, 0.0, 4.0)),
+        "bodies": [_body(body) for body in bodies],
+        "letters": [{"on": k.on, "text": k.text, "place": list(k.place)} for k in letters],
+        "errors": [_error(chain, one) for one in shown.errors if not one.left_out],
+        "is_assumed": shown.is_assumed,
+        "program": None if shown.program is None else _program(shown.program.thinned()),
+        "datum": None
+        if shown.datum is None
+        else {"q": shown.datum[0].tolist(), "length": shown.datum[1]},
+    }
+
+
+def machine_data(chain: Chain) -> TREE:
+    """A chain, its axes and its error parameters, as the scripts take them."""
+    return {
         "machine": _machine(chain),
         "axes": [
             {
@@ -153,20 +173,7 @@ def _data(shown: ShownMachine, bodies: Sequence[Drawn], letters: Sequence[Letter
             }
             for a in chain.axes
         ],
-        "low": [*(low for low, _ in ranges), 0.0],
-        "high": [*(high for _, high in ranges), shown.duration],
-        "length": shown.length,
-        "up": "y" if _is_level(chain) else "z",
-        "exaggeration": float(10.0 ** np.clip(np.round(2.0 * power) / 2.0, 0.0, 4.0)),
-        "bodies": [_body(body) for body in bodies],
-        "letters": [{"on": k.on, "text": k.text, "place": list(k.place)} for k in letters],
-        "errors": [_error(chain, one) for one in shown.errors if not one.left_out],
-        "is_assumed": shown.is_assumed,
         "symbols": _symbols(chain),
-        "program": None if shown.program is None else _program(shown.program.thinned()),
-        "datum": None
-        if shown.datum is None
-        else {"q": shown.datum[0].tolist(), "length": shown.datum[1]},
     }
 
 

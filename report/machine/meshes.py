@@ -1,6 +1,5 @@
 """The user's drawings of machine bodies: STL and STEP files as triangles, thinned where many."""
 
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -23,11 +22,8 @@ _DIVISIONS = (160, 112, 80, 56, 40, 28, 20, 12, 6)  # cells a side, from fine to
 _BED = "#c3cad3"
 
 
-def body_meshes(chain: Chain, files: Mapping[str, Path]) -> list[Drawn]:
-    """Bodies of a machine from files, in the frame of the machine with every axis at zero.
-
-    Args:
-        files: By link: an axis, `w`, `t` or the foundation `f`.
+def body_meshes(chain: Chain) -> list[Drawn]:
+    """Bodies of a machine from its drawings, machine frame with every axis at zero.
 
     Raises:
         BadFile: A file that is no mesh and no STEP file, or has nothing in it.
@@ -35,7 +31,7 @@ def body_meshes(chain: Chain, files: Mapping[str, Path]) -> list[Drawn]:
     colours = {name: series(k) for k, name in enumerate(chain.axes)} | {FOUNDATION: _BED}
     return [
         Drawn(on, colours.get(on, "#aeb6c0"), thinned(_triangles(path)))
-        for on, path in files.items()
+        for on, path in chain.drawings.items()
     ]
 
 

@@ -50,7 +50,7 @@ def set_up_bodies(chain: Chain, stands: SetUp) -> list[Drawn]:
     ]
     out += [
         Drawn("w", colour, origin + apply(T, corners))
-        for colour, corners in _standard(stands.standard)
+        for _, colour, corners in standard_bodies(stands.standard)
     ]
     return [*out, probe_body(stands.probe)]
 
@@ -89,22 +89,24 @@ def _solid(solid: Solid, T_table_face: Array) -> Array:
     return apply(T_table_face @ solid.T_face_solid, corners)
 
 
-def _standard(standard: Standard) -> list[tuple[str, Array]]:
-    """Base, core, balls on their posts and faces on their pillars, artefact frame."""
+def standard_bodies(standard: Standard) -> list[tuple[str, str, Array]]:
+    """Features of a standard with their names and colours, artefact frame, (T, 3, 3), mm.
+
+    First, without a name, base, core and the posts of the balls; a face comes with its pillar.
+    """
     base = standard.base
     grey = [box(base.half_size, 0.0, base.thickness)]
     if standard.core is not None:
         core = standard.core
         grey.append(cylinder(core.low_radius, core.high_radius, base.thickness, core.height))
-    balls = []
-    for s in standard.spheres:
-        at = np.array([*s.centre[:2], 0.0])
-        grey.append(cylinder(s.foot_radius, s.stem_radius, s.foot, float(s.centre[2])) + at)
-        balls.append(ball(s.radius) + s.centre)
-    out = [(_BODY, np.concatenate(grey))]
-    out += [(_BALL, np.concatenate(balls))] if balls else []
-    out += [(series(k), _pillar(patch)) for k, patch in enumerate(standard.patches)]
-    return out
+    posts = [
+        cylinder(s.foot_radius, s.stem_radius, s.foot, float(s.centre[2]))
+        + np.array([*s.centre[:2], 0.0])
+        for s in standard.spheres
+    ]
+    balls = [(s.name, _BALL, ball(s.radius) + s.centre) for s in standard.spheres]
+    faces = [(p.name, series(k), _pillar(p)) for k, p in enumerate(standard.patches)]
+    return [("", _BODY, np.concatenate([*grey, *posts])), *balls, *faces]
 
 
 def _pillar(patch: FreeformPatch) -> Array:

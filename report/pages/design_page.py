@@ -7,6 +7,7 @@ from pathlib import Path
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import standing_remarks
 from matstd.artefact.worth import Criterion, touch_curve
+from matstd.report.design_view import DesignScene, design_live, error_field
 from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, plural, um
 from matstd.report.pages.design_result import Design
@@ -107,9 +108,23 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
             f"Project `{design.brief.path.name}`, seed {design.brief.seed}. Deviations are "
             "tool side minus workpiece side; uncertainties are standard uncertainties (k = 1)."
         ],
+        live=design_live(_scene(design, on_machine)),
     )
     write_page(folder / "report.html", page)
     return remarks
+
+
+def _scene(design: Design, on_machine: dict[str, float]) -> DesignScene:
+    """What moves on the page."""
+    first = design.machines[0]
+    believed = first.campaign.run.touches.setups[0]
+    return DesignScene(
+        brief=design.brief,
+        placement=design.placement,
+        plan=design.plan,
+        minutes=on_machine,
+        field=error_field(design.brief, believed, first.errors, first.fit),
+    )
 
 
 def _times(design: Design) -> tuple[dict[str, float], tuple[Table, str]]:

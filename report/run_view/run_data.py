@@ -1,6 +1,7 @@
 """The data of the live view of a run, packed for the page."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -28,21 +29,35 @@ MOST_COLUMNS, FEWER_COLUMNS = 40, 10
 """Recorded columns that can be plotted; of a long run."""
 
 
-def run_data(
-    board: Board, title: str, set_up_alone: float | None, sizes: Mapping[str, str]
-) -> TREE:
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What the report says of a run, for its live view.
+
+    Attributes:
+        title: Name of the run.
+        set_up_alone: Held-out error without geometry, mm; None where it is not known.
+        sizes: Of found effects by name.
+        remains: What remains with everything that was found; empty for nothing to say.
+    """
+
+    title: str
+    set_up_alone: float | None = None
+    sizes: Mapping[str, str] = field(default_factory=dict)
+    remains: str = ""
+
+
+def run_data(board: Board, told: Told) -> TREE:
     """Data of `run_page.js`.
 
     Args:
         board: The run with its effects.
-        title: Name of the run.
-        set_up_alone: Held-out error without geometry, mm; None where it is not known.
-        sizes: Of found effects by name, as they are reported.
+        told: What the report says of it.
     """
     fit = board.fit
-    alone = None if set_up_alone is None else set_up_alone / UM
+    alone = None if told.set_up_alone is None else told.set_up_alone / UM
     return {
-        "title": title,
+        "title": told.title,
+        "remains": in_own_unit(told.remains),
         "unit": in_own_unit("µm"),
         "noise": float(np.median(fit.run.u)) / UM,
         "foundNoise": float(np.median(fit.u)) / UM,
@@ -50,7 +65,7 @@ def run_data(
         "touches": _touches(fit),
         "columns": _columns(fit.run.touches),
         "body": _bodies(fit.run.touches),
-        "switches": [_switch(s, sizes.get(s.effect.name, "")) for s in board.switches],
+        "switches": [_switch(s, told.sizes.get(s.effect.name, "")) for s in board.switches],
         "estimate": packed(board.estimate, "f8"),
         "known": [
             {"on": sorted(on), "fitted": known[0] / UM, "heldOut": known[1] / UM}

@@ -1,7 +1,5 @@
 """The live view as a page takes it: elements, style and script."""
 
-from collections.abc import Mapping
-
 from markupsafe import Markup
 
 from matstd.diagnosis.answer import Comparison, Diagnosis
@@ -9,8 +7,13 @@ from matstd.diagnosis.geometry import LearntGeometry, Rung
 from matstd.diagnosis.reduced import Board, compared_board, diagnosed_board
 from matstd.report.layout import LiveView
 from matstd.report.live import scripted, style
-from matstd.report.run_view.run_data import run_data
-from matstd.report.words import sizes
+from matstd.report.numbers import sentence
+from matstd.report.run_view.run_data import Told, run_data
+from matstd.report.verdict import part_lines
+from matstd.report.words import sizes, structure_words
+
+PATTERNS = 2
+"""Patterns of a residual that are named."""
 
 _PLACE = Markup(
     '<section id="live" class="live run" hidden '
@@ -18,37 +21,40 @@ _PLACE = Markup(
 )
 
 
-def run_view(
-    board: Board,
-    title: str,
-    set_up_alone: float | None = None,
-    reported: Mapping[str, str] | None = None,
-) -> LiveView:
+def run_view(board: Board, told: Told) -> LiveView:
     """The view of a run and its effects.
 
     Args:
         board: As `diagnosed_board` or `compared_board` makes it.
-        title: Name of the run.
-        set_up_alone: Held-out error without geometry, mm; None where it is not known.
-        reported: Sizes of found effects by name, in words.
+        told: What the report says of it.
     """
-    data = run_data(board, title, set_up_alone, reported or {})
     return LiveView(
         style=style(),
         place=_PLACE,
-        script=scripted("run_page", data),
+        script=scripted("run_page", run_data(board, told)),
     )
 
 
 def diagnosis_view(result: Diagnosis, title: str) -> LiveView:
     """Of a diagnosis: found effects on."""
-    reported = {s.effect.name: sizes(s, most=2) for s in result.steps if s.effect is not None}
-    return run_view(diagnosed_board(result), title, _set_up_alone(result.geometry), reported)
+    told = Told(
+        title,
+        set_up_alone=_set_up_alone(result.geometry),
+        sizes={s.effect.name: sizes(s, most=2) for s in result.steps if s.effect is not None},
+        remains=sentence(dict(part_lines(result))["what remains"]),
+    )
+    return run_view(diagnosed_board(result), told)
 
 
 def comparison_view(found: Comparison, title: str) -> LiveView:
     """Of a comparison: no effect on."""
-    return run_view(compared_board(found), title, _set_up_alone(found.geometry))
+    patterns = "; ".join(structure_words(s) for s in found.structure[:PATTERNS])
+    told = Told(
+        title,
+        set_up_alone=_set_up_alone(found.geometry),
+        remains=sentence(patterns) if patterns else "Nothing beyond chance.",
+    )
+    return run_view(compared_board(found), told)
 
 
 def _set_up_alone(geometry: LearntGeometry) -> float | None:

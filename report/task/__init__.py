@@ -7,11 +7,14 @@ from matstd.report.task.calibration_words import (
     verdict_lines,
     verdict_rows,
 )
+from matstd.report.task.making_words import fewer_lines, making_lines
 from matstd.report.task.task_words import budget_rows, measured_sentence, task_lines
 
 __all__ = [
     "budget_rows",
     "calibration_lines",
+    "fewer_lines",
+    "making_lines",
     "measured_sentence",
     "modulus_words",
     "refusal_sentence",

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from matstd.artefact.body import Material, Verdict
-from matstd.artefact.certify import CalibrationFit, CommonCause
+from matstd.artefact.certify import GAP, CalibrationFit, CommonCause
 from matstd.artefact.layout import DEFAULT_MODULUS
 from matstd.report.numbers import digits, um
 from matstd.twin.units import GPA, T_REF, UM, URAD
@@ -32,6 +32,12 @@ def calibration_lines(found: CalibrationFit) -> list[str]:
             tilt = f"{digits(feature.u_tilt / URAD, 2)} µrad"
             text += f", of its tilt {tilt}, of its surface {_um(feature.u_form)}"
         lines.append(text)
+    if found.unseen:
+        lines.append(
+            f"no dense line of points (up to {GAP:g} mm apart) along both directions of "
+            f"{', '.join(found.unseen)}: waves of {_um(found.waviness)} rms are assumed in each "
+            "direction without one (--waviness-um)"
+        )
     return [*lines, *found.remarks]
 
 
@@ -62,7 +68,11 @@ def refusal_sentence(verdicts: Sequence[Verdict], causes: Sequence[CommonCause])
 def verdict_lines(verdicts: Sequence[Verdict]) -> list[str]:
     """Characteristics accepted in spite of nonconformity, and undecided ones."""
     refused = [f"{v.feature} {v.characteristic}" for v in verdicts if v.is_refused]
-    open_ = [f"{v.feature} {v.characteristic}" for v in verdicts if v.state == "cannot be decided"]
+    undecided = [v for v in verdicts if v.state == "cannot be decided"]
+    forms = sum(v.characteristic == "form" for v in undecided)
+    open_ = [f"{v.feature} {v.characteristic}" for v in undecided if v.characteristic != "form"]
+    # the grade of a ball is finer than a CMM
+    open_ += [f"form of {forms} ball{'s' if forms > 1 else ''}"] if forms else []
     lines = [f"accepted although nonconforming: {', '.join(refused)}"] if refused else []
     if open_:
         lines.append(f"cannot be decided with this uncertainty: {', '.join(open_)}")

@@ -33,13 +33,14 @@ def part_lines(result: Diagnosis) -> list[tuple[str, str]]:
     """Heading and words of every part, in the order in which they are read."""
     parts = result.parts
     steps = {s.effect.name: s for s in result.steps if s.effect is not None}
+    before = result.promise_before if steps else None
     named = [_named(one, steps[one.effect.name]) for one in parts.named]
     return [
         ("geometry", _geometry(parts.geometry)),
         ("named effects", "; ".join(named) or _nothing_named(result)),
         ("what remains", _remains(parts.remains, parts.repeatability)),
         ("repeatability", repeatability_words(parts.repeatability, parts.remains.scatter)),
-        ("error to expect", promise_words(result.promise, result.promise_before)),
+        ("error to expect", promise_words(result.promise, before)),
     ]
 
 
@@ -69,16 +70,29 @@ def _named(one: NamedEffect, step: Step) -> str:
     weight = f"explains {percent(one.share)} of the excess ({microns(one.explained)} rms)"
     doubt = "" if one.is_headline else ", not certain by itself"
     by_name = ", added by name" if step.is_named else ""
-    inside = ", ".join(word for word in (size, weight, f"p = {p_value(one.p_value)}") if word)
+    inside = ", ".join(word for word in (size, weight, _chance(one.p_value)) if word)
     return f"{effect_words(one.effect)}: {inside}{doubt}{by_name}{_rival(one)}"
 
 
+def _chance(p: float) -> str:
+    """`p = 0.02`, or `p < 1e-12`."""
+    words = p_value(p)
+    return f"p {words}" if words.startswith("<") else f"p = {words}"
+
+
 def _rival(one: NamedEffect) -> str:
-    if one.runner_up is None:
-        return ""
-    name, odds = one.runner_up.effect.name, one.runner_up.log_odds
-    alike = " (not distinguished)" if odds < POLICY.log_odds_alike else ""
-    return f"; closest rival {name}, odds {odds_words(odds)}{alike}"
+    """The closest rival, and a cause that nobody recorded, each with its odds."""
+    rivals = []
+    if one.runner_up is not None:
+        rivals.append((f"closest rival {one.runner_up.effect.name}", one.runner_up.log_odds))
+    if one.against_drift is not None:
+        rivals.append(("a slow drift without a recorded cause", one.against_drift))
+    return "".join(f"; {name}, {_odds(odds)}" for name, odds in rivals)
+
+
+def _odds(log_odds: float) -> str:
+    alike = " (not distinguished)" if log_odds < POLICY.log_odds_alike else ""
+    return f"odds {odds_words(log_odds)}{alike}"
 
 
 def odds_words(log_odds: float) -> str:
@@ -102,7 +116,7 @@ def _nothing_named(result: Diagnosis) -> str:
     if not result.candidates:
         return "none; no effect of the library applies to these touches"
     best = result.candidates[0]
-    return f"none; closest by itself {best.effect}, p = {p_value(best.p_value)}"
+    return f"none; closest by itself {best.effect}, {_chance(best.p_value)}"
 
 
 def _remains(part: Remainder, repeats: Repeatability) -> str:
@@ -141,7 +155,7 @@ def repeatability_words(found: Repeatability, scatter: float) -> str:
 
 def promise_words(after: Promise, before: Promise | None = None) -> str:
     """Errors to expect at other places and at the same touches; and where the model fails."""
-    fall = "" if before is None or before is after else f"{microns(before.elsewhere)} → "
+    fall = "" if before is None else f"{microns(before.elsewhere)} → "
     fails = [d for d in after.domains if d.ratio > HOLDS]
     words = (
         f"{fall}{microns(after.elsewhere)} at other places within the probed range, "

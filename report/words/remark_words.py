@@ -16,6 +16,9 @@ NONE_CERTAIN = ", but none of its effects is significant in all rows"
 STEEL = 11e-6
 """Expansion of steel, 1/K."""
 
+WARMED, SENSORS = 0.05, 4
+"""Change of a temperature that is stated as a range, K; sensors that are named."""
+
 LISTED = 20
 """Gross errors whose lines are listed."""
 
@@ -50,14 +53,30 @@ def _body_size(r: noticed.BodySize) -> str:
         return (
             f"the temperature of {of} is not stated: {T_REF:g} ± {r.body.u_temperature:g} °C is "
             f"assumed, which leaves {u} {over}, in every scale; state it as body_degC or in a "
-            "column T_body_degC"
+            f"column T_body_degC; {_machine_warmth(r)}"
         )
     taken = r.strain * r.length / UM
     return (
         f"{of} was at {r.temperature:.1f} ± {r.body.u_temperature:g} °C: its growth of "
         f"{1e6 * r.strain:+.1f} ppm, {taken:+.1f} µm {over}, is corrected; {u} remains in every "
-        "scale"
+        f"scale; {_machine_warmth(r)}"
     )
+
+
+def _machine_warmth(r: noticed.BodySize) -> str:
+    """At which temperature a scale of the machine is that of the run."""
+    if not r.machine:
+        return (
+            "scales of the machine hold at its temperature during the run, which is not logged "
+            "(columns T_<sensor>_degC)"
+        )
+    logged = [
+        f"{name} {low:.1f} to {high:.1f}" if high - low >= WARMED else f"{name} {low:.1f}"
+        for name, low, high in r.machine[:SENSORS]
+    ]
+    more = f" and {len(r.machine) - SENSORS} more" if len(r.machine) > SENSORS else ""
+    at = f"{', '.join(logged)}{more} °C"
+    return f"scales of the machine hold at its temperatures during the run, {at}"
 
 
 def _noise_remembers(r: noticed.NoiseRemembers) -> str:

@@ -113,7 +113,7 @@ def _added(diagnosis: Diagnosis, step: Step, most: int) -> str:
 
 def _covered(diagnosis: Diagnosis) -> str:
     """A pattern within the stated noise, as a sentence; empty where there is none."""
-    if not diagnosis.left:
+    if not diagnosis.left or diagnosis.parts.remains.is_real:
         return ""
     found = max(diagnosis.left, key=lambda s: s.share)
     size = stated_noise(diagnosis.run) * diagnosis.fit.noise.factor * math.sqrt(min(found.share, 1))
@@ -128,17 +128,27 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
     most = _NUMBERS.get(len(diagnosis.steps) - 1, 0)
     steps = diagnosis.steps[1:]
     named = [_added(diagnosis, s, most) for s in steps if s.is_named]
-    found = [_added(diagnosis, s, most) for s in steps if not s.is_named]
+    certain = {n.effect.name for n in diagnosis.parts.headline}
+    others = [s for s in steps if not s.is_named]
+    found = [_added(diagnosis, s, most) for s in others if s.effect and s.effect.name in certain]
+    doubtful = len(others) - len(found)
     also = f" Added by name: {'; '.join(named)}." if named else ""
     them = "it" if len(steps) == 1 else "them"
     if diagnosis.verdict is Verdict.MISSING:
         what = "one effect" if len(found) == 1 else f"{len(found)} effects"
+        more = f" ({_plural(doubtful)} not certain or too small to name)" if doubtful else ""
         return (
-            f"The model lacks {what}: {'; '.join(found)}.{also} With {them} "
-            f"{_fall(diagnosis)}; the noise is {noise_words(diagnosis.fit)}.{_covered(diagnosis)}"
+            f"The model lacks {what}: {'; '.join(found)}{more}.{also} With {them} "
+            f"{_fall(diagnosis)}{_elsewhere(diagnosis)}; the noise is "
+            f"{noise_words(diagnosis.fit)}.{_also_left(diagnosis)}{_covered(diagnosis)}"
         )
     if diagnosis.verdict is Verdict.UNEXPLAINED:
         return _unexplained_sentence(diagnosis, [*named, *found])
+    if diagnosis.verdict is Verdict.UNDECIDED and doubtful:
+        return (
+            f"This run cannot decide: {_plural(doubtful)} would reduce the error, but none is "
+            f"certain by itself. With {them} {_fall(diagnosis)}.{also}"
+        )
     if diagnosis.verdict is Verdict.UNDECIDED:
         return _undecided_sentence(diagnosis)
     fall = f" With {them} {_fall(diagnosis)}." if named else ""
@@ -147,6 +157,30 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         f"of held-out touches is {microns(diagnosis.fit.test_rms)}, and the noise is "
         f"{noise_words(diagnosis.fit)}.{also}{fall}{_covered(diagnosis)}"
     )
+
+
+def _plural(count: int) -> str:
+    return "one effect" if count == 1 else f"{count} effects"
+
+
+def _elsewhere(diagnosis: Diagnosis) -> str:
+    """The error to expect at other places, where it is another than at the same touches."""
+    promise = diagnosis.promise
+    if promise.elsewhere < (1.0 + WITHIN) * promise.same:
+        return ""
+    return f" (at other places expect {microns(promise.elsewhere)})"
+
+
+def _also_left(diagnosis: Diagnosis) -> str:
+    """What remains beside the names, as a sentence; empty for nothing."""
+    left = diagnosis.parts.remains
+    if not left.is_real:
+        return ""
+    what = (
+        structure_clause(left.patterns[0]) if left.patterns else "it follows no recorded variable"
+    )
+    them = "it" if len(diagnosis.steps) == 2 else "them"
+    return f" Beside {them}, {microns(left.size)} rms remain: {what}."
 
 
 def _unexplained_sentence(diagnosis: Diagnosis, added: Sequence[str]) -> str:

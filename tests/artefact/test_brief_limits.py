@@ -1,13 +1,15 @@
 """Limits of a project that no workshop can meet, beside those that one can."""
 
+import re
 from pathlib import Path
 
 import pytest
 
 from matstd.api.machines import machine_file
 from matstd.artefact.brief import read_project
-from matstd.artefact.brief.contradictions import Faults, body_faults
-from matstd.artefact.brief.standard_tables import BlankTable, LimitsTable, MaterialTable
+from matstd.artefact.brief.contradictions import Faults, body_faults, material_faults
+from matstd.artefact.brief.material_table import MaterialTable
+from matstd.artefact.brief.standard_tables import BlankTable, LimitsTable
 from matstd.cad_out.making.cutting import CUTTERS
 from matstd.twin.errors import BadFile
 from matstd.twin.files import checked
@@ -36,6 +38,31 @@ def test_what_no_cutter_or_table_has_is_refused(limits, told):
 
 def test_what_the_least_cutter_and_the_narrowest_table_have_is_taken():
     check(min_concave_radius_mm=0.5 * min(CUTTERS), slot_pitch_mm=20.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "density", "expansion", "u"),
+    [
+        ("Invar", 8050.0, 1.3e-6, 0.4e-6),
+        ("aluminum, EN AW-5083", 2700.0, 23.2e-6, 0.5e-6),
+        ("Cast iron (EN-GJL-250)", 7200.0, 10.5e-6, 0.7e-6),
+    ],
+)
+def test_a_known_name_completes_what_is_not_stated(name, density, expansion, u) -> None:
+    made = MaterialTable(name=name).material()
+    assert made.density == pytest.approx(density * 1e-9)
+    assert (made.expansion, made.u_expansion) == pytest.approx((expansion, u))
+    assert made.modulus is not None
+    stated = MaterialTable(name=name, expansion_1_K=2e-6, hardness="60 HRC")
+    own = stated.material()
+    assert (own.expansion, own.u_expansion, own.hardness) == (2e-6, None, "60 HRC")
+
+
+def test_a_material_without_data_names_those_that_have_some() -> None:
+    found = material_faults(MaterialTable(name="ceramic"), Path("project.toml"))
+    density, expansion = map(str, found)
+    assert "material.expansion_1_K" in expansion
+    assert re.search(r"material\.density_kg_m3: .*'ceramic'.*alumina, zirconia", density)
 
 
 def project(tmp_path: Path, text: str) -> Path:

@@ -12,11 +12,11 @@ from matstd.artefact.body.spline import greville
 from matstd.artefact.body.standard_file import read_standard, write_standard
 from matstd.artefact.certify.calibration_fit import fit_calibration, fitted_ball
 from matstd.artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
-from matstd.artefact.certify.dmis import APPROACH, dmis_program
+from matstd.artefact.certify.cmm_stylus import TIP, TO_PIVOT, Angle, reaches
+from matstd.artefact.certify.dmis import APPROACH
 from matstd.artefact.tool.probe import Probe
 from matstd.artefact.worth.calibration import Calibration
 from matstd.cad_out.details.detail_list import engraved_on
-from matstd.cad_out.details.places import datum_touches
 from matstd.cli import main
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.fit.identification import fit_run
@@ -27,6 +27,7 @@ from matstd.probe_paths.emit.writer import Feeds
 from matstd.probe_paths.language.dialect_file import read_dialect
 from matstd.probe_paths.plan.planner import plan_touches
 from matstd.probe_paths.plan.touch_plan import PlanOptions
+from matstd.stages.cmm import cmm_program
 from matstd.twin.errors import BadFile, NotEnoughData
 from matstd.twin.frames import apply, pose, rotation
 from matstd.twin.library.ordinary import ordinary_model
@@ -159,7 +160,10 @@ def test_uncertainties_take_the_place_of_those_assumed(nominal, found) -> None:
         np.linalg.norm(Calibration(ball=5 * UM).columns(s, touch))
         for s in (nominal, found.standard)
     ]
-    assert felt == pytest.approx([5 * UM, found.standard.known.features[ball.name].u])
+    # along z, where the upper half of a ball determines least
+    across, _, along_z = found.standard.known.features[ball.name].along
+    assert felt == pytest.approx([5 * UM, along_z])
+    assert along_z > 1.2 * across
 
 
 def planted(nominal):
@@ -234,10 +238,12 @@ def test_diagnosis_sees_the_form_until_the_standard_is_calibrated(
 def test_a_ball_by_hand() -> None:
     """Six points of a ball of 10 mm at (1, 2, 3), exactly."""
     points = np.array([1.0, 2.0, 3.0]) + 10.0 * np.concatenate([np.eye(3), -np.eye(3)])
-    centre, radius, u, u_radius, left, count = fitted_ball(points, 1 * UM)
+    centre, radius, covariance, u_radius, left, count, form = fitted_ball(points, 1 * UM)
     assert centre == pytest.approx([1.0, 2.0, 3.0])
     assert (radius, left, count) == pytest.approx((10.0, 0.0, 6))
-    assert u == pytest.approx(1 * UM / np.sqrt(2.0))  # two points see every coordinate
+    # two points see every coordinate
+    assert covariance == pytest.approx(0.5 * UM**2 * np.eye(3), abs=1e-15)
+    assert form == 0.0
     assert u_radius == pytest.approx(1 * UM / np.sqrt(6.0))  # and all six the radius
 
 
@@ -294,14 +300,14 @@ def test_units_and_stamps(nominal, tmp_path, capsys) -> None:
 def test_dmis_program_probes_the_features_and_nothing_else(nominal) -> None:
     """Read back by patterns of its own: points on surfaces, normals, ways that meet nothing."""
     engraved = engraved_on(nominal)
-    text = dmis_program(nominal, datum_touches(nominal), engraved)
+    text = cmm_program(nominal)
     assert nominal.fingerprint in text.splitlines()[0]
     number = r"(-?\d+\.\d+)"
     feature, stylus, moved = "", 1.5, 0
     where = None
     automatic = False
     for line in text.splitlines():
-        automatic |= line.startswith("MODE/PROG")
+        automatic |= line.startswith("D(PART_2)")  # the datums of the frame come before it
         if found := re.match(r"F\((\w+)\)=FEAT", line):
             feature = re.sub(r"_\d+$", "", found[1])
         if not automatic:
@@ -326,7 +332,7 @@ def test_dmis_program_probes_the_features_and_nothing_else(nominal) -> None:
     assert moved > 200
     # by hand the frame of the drawing: the plate's own outline gives the places of B and C
     (a, b), thick = nominal.base.half_size, nominal.base.thickness
-    by_hand = text.partition("MODE/PROG")[0]
+    by_hand, _, controlled = text.partition("MODE/PROG")
     touched = np.array(re.findall(rf"PTMEAS/CART,{','.join([number] * 6)}", by_hand), dtype=float)
     assert touched[:-3, 2] == pytest.approx(thick, abs=1e-3)
     # a stylus of 2 mm rests on no dot, each of which is 1 mm wide
@@ -338,8 +344,49 @@ def test_dmis_program_probes_the_features_and_nothing_else(nominal) -> None:
     assert first[3:].tolist() == [0.0, -1.0, 0.0]
     assert third[3:].tolist() == [-1.0, 0.0, 0.0]
     assert f"D(PART)=TRANS/XORIG,{a:.4f},YORIG,{b:.4f},ZORIG,{-thick:.4f}" in by_hand
-    opened, closed = text.count("MEAS/") - text.count("PTMEAS/"), text.count("ENDMES")
-    assert opened == closed == text.count("OUTPUT/")
+    assert text.count("MEAS/") - text.count("PTMEAS/") == text.count("ENDMES")
+    # under control the same datums, and the frame again
+    refined = controlled.partition("D(PART_2)")[0]
+    again = np.array(re.findall(rf"PTMEAS/CART,{','.join([number] * 6)}", refined), dtype=float)
+    assert again == pytest.approx(touched)
+    assert "DATSET/DAT(A),ZDIR,ZORIG,DAT(B),XDIR,YORIG,DAT(C),XORIG" in refined
+
+
+def test_dmis_program_states_sensors_tolerances_and_the_form_of_balls(nominal) -> None:
+    text = cmm_program(nominal)
+    defined = dict(re.findall(r"S\((\w+)\)=SNSDEF/PROBE,INDEX,POL,([-0-9.,]+)", text))
+    selected = re.findall(r"SNSLCT/S\((\w+)\)", text)
+    assert selected[0] == "A0_B0"
+    assert set(selected) == set(defined)
+    assert "UNITS/MM,ANGDEC,TEMPC" in text
+    assert "10.5E-6/K" in text
+    assert "T(BALL_SIZE)=TOL/DIAM,-0.0025,0.0025" in text
+    assert "T(BALL_PLACE)=TOL/POS,3D,0.2000,DAT(A),DAT(B),DAT(C)" in text
+    assert "T(FACE)=TOL/PROFP,-0.0250,0.0250,DAT(A),DAT(B),DAT(C)" in text
+    joined = text.replace(",$\n", ",")
+    for ball in nominal.spheres:
+        points = len(re.findall(rf"OUTPUT/FA\({ball.name}_\d+\)", text))
+        assert points >= 7
+        (made_of,) = re.findall(rf"CONST/SPHERE,F\({ball.name}\),BF,(.*)", joined)
+        assert made_of.count("FA(") == points
+        assert f"OUTPUT/FA({ball.name}),TA(BALL_SIZE),TA(BALL_PLACE)" in text
+    assert max(map(len, text.splitlines())) <= 132
+    turned = cmm_program(nominal, 90.0)
+    assert turned.splitlines()[0].endswith("ORIENTATION 90',05.2")
+    assert "turned by 90 degrees" in turned
+
+
+def test_a_head_stands_on_the_side_that_its_angles_say(nominal) -> None:
+    """A = 90 lays the stylus down: its head at +y for B = 0, at -x for B = 90."""
+    assert Angle(0.0, 45.0).axis == pytest.approx([0.0, 0.0, 1.0])
+    assert Angle(90.0, 0.0).axis == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)
+    assert Angle(90.0, 90.0).axis == pytest.approx([-1.0, 0.0, 0.0], abs=1e-12)
+    ball = nominal.spheres[0]
+    pole = ball.centre + np.array([[0.0, 0.0, ball.radius + TIP]])
+    foot = ball.centre * [1.0, 1.0, 0.0] + [ball.foot_radius + TIP + 0.2, 0.0, ball.foot + 2.0]
+    high = 300.0 + TO_PIVOT
+    assert reaches(nominal, pole, high, 50.0, Angle(0.0, 0.0)).all()
+    assert not reaches(nominal, foot[None], high, 50.0, Angle(0.0, 0.0)).any()  # under the ball
 
 
 def test_the_piece_is_probed_and_the_design_believed(golden, nominal, found, tmp_path) -> None:

@@ -11,7 +11,7 @@ from sites import spread
 from matstd.artefact.body.datum import outline_distance
 from matstd.artefact.body.freeform import graph_patch
 from matstd.artefact.body.limits import Limits, max_slope, min_concave_radius
-from matstd.artefact.body.standard import Material
+from matstd.artefact.body.material import Material
 from matstd.artefact.compare.comparison import _scatter
 from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.post import post_foot, post_stiffness

@@ -158,7 +158,7 @@ def test_tolerances_datums_and_notes_are_in_the_text(upright, built):
     entities = read_entities(built[0] / "standard.step")
     found = read_tolerances(entities)
     assert Tolerance("FF2", "profile", 0.05, "ABC") in found
-    assert Tolerance("SPH3_SEAT", "position", 0.2, "ABC") in found
+    assert Tolerance("SPH3_SEAT", "profile", 0.2, "ABC") in found
     assert Tolerance("DATUM_C", "perpendicularity", 0.02, "AB") in found
     assert len(found) == 3 + 3 + 2 + 3
     assert read_notes(entities) == list(notes_of(upright, details_of(upright)))
@@ -184,7 +184,7 @@ def test_signs_are_drawn_in_planes_beside_the_plate_and_point_at_their_faces(upr
     height = patch.height(off[None, :2])[0]  # an upright patch: its own x and y are the body's
     assert off[2] == pytest.approx(height, abs=1e-6)
     assert np.linalg.norm(ends["SPH1 diameter"] - ball.centre) == pytest.approx(ball.radius)
-    assert np.linalg.norm(ends["SPH1_SEAT position"] - ball.centre) == pytest.approx(ball.radius)
+    assert np.linalg.norm(ends["SPH1_SEAT profile"] - ball.centre) == pytest.approx(ball.radius)
     assert ends["datum A"][2] == ends["DATUM_A flatness"][2] == base.thickness
     assert ends["datum B"][1] == ends["DATUM_B perpendicularity"][1] == -base.half_size[1]
     assert ends["datum C"][0] == -base.half_size[0]

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from matstd.artefact.body.freeform import graph_patch
-from matstd.artefact.body.standard import Base, Material
-from matstd.artefact.layout.post import post_stiffness
+from matstd.artefact.body.material import Material
+from matstd.artefact.body.standard import Base
+from matstd.artefact.layout.post import cantilever_stiffness
 from matstd.cad_out.details.detail_list import details_of
 from matstd.cad_out.making.cutting import OVERHANG, RADIUS, cutting_of, is_free, untrimmed_radius
 from matstd.cad_out.making.hexahedron import CORNERS, cube
@@ -107,7 +108,7 @@ def test_a_ball_on_a_rigid_plate_sags_by_its_weight_over_the_stiffness_of_its_po
     length = ball.centre[2] - ball.foot
     post = 7.8e-6 * np.pi * ball.foot_radius**2 * (length - ball.radius)  # nearly a cylinder
     mass = 7.83e-6 * 4.0 / 3.0 * np.pi * ball.radius**3 + 0.25 * post
-    k = post_stiffness(length, ball.stem_radius, ball.foot_radius, E, NU)
+    k = cantilever_stiffness(length, ball.stem_radius, ball.foot_radius, E, NU)
     alone = mass * GRAVITY * 1e-3 / k
     assert alone < found.sag["SPH2"] < 3.0 * alone
     assert k / 3.0 < found.at_balls["SPH2"] < k

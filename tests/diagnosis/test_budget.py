@@ -3,7 +3,7 @@
 import matstd.diagnosis.search.search_loop as rounds
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.remarks.run_remarks import SearchEnded
-from matstd.diagnosis.search.selection import MOST_SETS, Budget
+from matstd.diagnosis.search.budget import MOST_SETS, Budget
 from matstd.twin.library.catalogue import parse_effect
 
 KEY = (8, "hmc1995", ("thermal-expansion(Y,scaleY)",))

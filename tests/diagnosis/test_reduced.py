@@ -79,7 +79,11 @@ def assert_as_refitted(fit, effects, draws=6):
 
 @pytest.mark.parametrize(
     "memory",
-    [None, Memory(0.7), Memory(0.8, 0.0, False, is_filtered=False)],
+    [
+        None,
+        Memory(0.7),
+        pytest.param(Memory(0.8, 0.0, False, is_filtered=False), marks=pytest.mark.slow),
+    ],
     ids=["white", "remembers", "counts for less"],
 )
 def test_any_set_is_as_a_fit_to_the_touches(run, memory):
@@ -157,7 +161,7 @@ def test_columns_follow_the_inner_parameter(diagnosis):
 
 
 def test_a_comparison_offers_what_suits_its_residual(run):
-    found = compare(run)
+    found = compare(run[::2])
     board = compared_board(found)
     assert board.errors(()).held_out == pytest.approx(found.fit.test_rms, rel=1e-4)
     best = min(board.switches, key=lambda s: board.errors({s.effect.name}).held_out)

@@ -15,10 +15,11 @@ from matstd.diagnosis.evidence.effect_signatures import (
 from matstd.diagnosis.evidence.evidence import EffectSet, addition
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.search.budget import MOST_SETS
 from matstd.diagnosis.search.refine import refined, with_moved_points
 from matstd.diagnosis.search.regrid import regridded
 from matstd.diagnosis.search.screening import Library, joined_shortlists
-from matstd.diagnosis.search.selection import MOST_SETS, Search
+from matstd.diagnosis.search.selection import Search
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.model.model import columns

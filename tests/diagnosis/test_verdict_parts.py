@@ -13,9 +13,11 @@ from matstd.diagnosis.geometry import LearntGeometry
 from matstd.diagnosis.residual import Shape, Structure
 from matstd.report.verdict import part_lines
 from matstd.report.verdict.part_words import odds_words
+from matstd.report.words import verdict_sentence
 from matstd.twin.frames import apply
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.machine import tip
+from matstd.twin.model import Model
 
 UM = 1e-3
 NO_GEOMETRY = LearntGeometry((), (), ())
@@ -150,3 +152,50 @@ def test_odds_in_words():
         "1e6 : 1",
         "1e12 : 1",
     ]
+
+
+def test_a_law_of_a_sensor_is_weighed_against_a_drift_that_nobody_recorded(hidden):
+    """A backlash follows no sensor; a growth with a temperature does."""
+    run = hidden
+    t = run.touches
+    warm = 20.0 + 8.0 * (t.time / t.time.max()) ** 2
+    t = replace(t, temperature={**t.temperature, "ram": warm})
+    grown = 3.0 * UM * (warm - 20.0) * t.normal[:, 2]
+    found = diagnose(
+        replace(run, touches=t, deviation=run.deviation + grown),
+        candidates=[parse_effect("thermal-static(EZZ,ram)", t.chain)],
+    )
+    (named,) = found.parts.named
+    assert named.against_drift is not None
+    assert found.parts.headline == (named,)
+    assert "without a recorded cause, odds" in dict(part_lines(found))["named effects"]
+
+
+def test_an_expansion_beyond_all_materials_is_not_found(hidden):
+    """-41 um/(m K) fits, but no scale of the shop does that; 11 um/(m K) is steel."""
+    t = hidden.touches
+    warm = 20.0 + 8.0 * np.sin(t.time / t.time.max() * 5.0)
+    t = replace(t, temperature={**t.temperature, "scale": warm})
+    effect = parse_effect("thermal-expansion(X,scale)", t.chain)
+    found = []
+    for alpha in (11e-6, -41e-6):
+        column = Model(t.chain, (effect,)).columns(t)[:, 0]
+        run = replace(hidden, touches=t, deviation=hidden.deviation + alpha * column)
+        found.append([e.name for e in diagnose(run, candidates=[effect]).found])
+    assert found == [[effect.name], []]
+
+
+def test_the_headline_names_only_what_is_certain(hidden):
+    """Two laws are found; the one that is no more than a tenth of the noise is only counted."""
+    t = hidden.touches
+    effects = [parse_effect(f"backlash({axis})", t.chain) for axis in "XY"]
+    column = Model(t.chain, effects).columns(t) @ np.array([8.0 * UM, 6.0 * UM])
+    found = diagnose(replace(hidden, deviation=hidden.deviation + column), candidates=effects)
+    both = [f"backlash({axis})" for axis in "XY"]
+    assert sorted(e.name for e in found.found) == both
+    assert all(name in verdict_sentence(found) for name in both)
+    small = tuple(replace(n, is_headline=n.effect.name == both[0]) for n in found.parts.named)
+    one = replace(found, parts=replace(found.parts, named=small))
+    assert both[1] not in verdict_sentence(one)
+    assert "one effect: " in verdict_sentence(one)
+    assert "(one effect not certain or too small to name)" in verdict_sentence(one)

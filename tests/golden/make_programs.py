@@ -10,7 +10,8 @@ import numpy as np
 
 from matstd.artefact.body.datum import DatumSphere
 from matstd.artefact.body.freeform import FreeformPatch, graph_patch
-from matstd.artefact.body.standard import STEEL, Base, Standard
+from matstd.artefact.body.material import STEEL
+from matstd.artefact.body.standard import Base, Standard
 from matstd.artefact.reach.touchable import Requests
 from matstd.artefact.tool.probe import Probe
 from matstd.probe_paths.emit.program import ProgramSet, make_programs

@@ -5,10 +5,12 @@ import json
 import re
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import rs274
+from browser import faults, opened, requests
 
 from matstd.artefact.body.limits import Limits
 from matstd.artefact.body.standard_file import read_standard
@@ -28,8 +30,13 @@ from matstd.probe_paths.linuxcnc.replanned import shortened
 from matstd.report.pages import design_page
 from matstd.stages import study_run
 from matstd.twin.errors import BadFile
+from matstd.twin.files.error_file import read_errors
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.files.run_file import read_run
+from matstd.twin.frames import apply, inverse
+from matstd.twin.machine import exact_tip, tip
+from matstd.twin.model import contribution
+from matstd.twin.record import at_poses
 from matstd.twin.units import UM, URAD
 
 NEXT_TO_NONE = "0.01"
@@ -120,6 +127,79 @@ def test_every_file_is_there(made: Path) -> None:
     assert any(re.fullmatch(r"programs/\w+\.A", n) for n in names)
     assert any(re.fullmatch(r"sensitivity/\w+\.png", n) for n in names)
     assert [p.name for p in made.parent.iterdir() if p.name.startswith(".")] == []
+
+
+@pytest.mark.browser
+def test_the_report_moves(made: Path, browser: Any) -> None:
+    """Features, touches, other artefacts, the cut and sensitivities, in a browser."""
+    opened(browser, made / "report.html")
+    do = browser.execute_script
+    assert do("return !document.getElementById('design').hidden")
+    standard = read_standard(made / "standard.toml")
+    names = {*(p.name for p in standard.patches), *(s.name for s in standard.spheres)}
+    assert set(do("return designPage.data.features.map(f => f.name).filter(Boolean)")) == names
+    ball = standard.spheres[0].name
+    do(f"designPage.choose('{ball}')")
+    assert "worth" in do("return document.getElementById('feature').textContent")
+    # pointed at where it is drawn
+    found = do(
+        """const { standard, data } = designPage, view = standard.view;
+        view.camera.tilt = 1.5; view.draw();
+        const [x, y] = view.project(arguments[0]);
+        return standard.under(x, y);""",
+        (standard.spheres[0].centre + standard.spheres[0].radius * np.eye(3)[2]).tolist(),
+    )
+    assert found == ball
+    # at every touch the ball of the probe touches the point
+    rows = do(
+        """const t = designPage.data.touches, n = t.feature.values.length;
+        return [[...t.point.values], [...t.normal.values], [...t.tool.values], n,
+          designPage.data.length];"""
+    )
+    point, normal = (np.reshape(v, (-1, 3)) for v in rows[:2])
+    tool, length = np.reshape(rows[2], (-1, 4, 3)), rows[4]
+    ball_centre = tool[:, 3] - length * tool[:, 2]
+    radius = np.linalg.norm(ball_centre - point, axis=1)
+    assert np.ptp(radius) < 1e-3
+    assert np.abs(ball_centre - point - radius[:, None] * normal).max() < 1e-3
+    do(
+        """const t = document.getElementById("touch");
+        t.value = 3; t.dispatchEvent(new Event("input"));"""
+    )
+    assert "Touch 3 on" in do("return document.getElementById('touched').textContent")
+    # the cut: what identification leaves is smaller, and said
+    before = do("return document.getElementById('of-field').textContent")
+    do("document.getElementById('after').click()")
+    after = do("return document.getElementById('of-field').textContent")
+    sizes = [float(re.search(r": ([\d.]+) µm rms", words)[1]) for words in (before, after)]
+    assert sizes[0] > 5.0 * sizes[1]
+    field = do("const f = designPage.data.field; return { ...f, before: [...f.before.values] }")
+    chain = read_machine(made / "machine.toml")
+    q = np.zeros((1, len(chain.axes)))
+    for axis, places in zip(field["axes"], field["at"], strict=True):
+        q[0, chain.axis_index(axis)] = places[2]
+    for axis, reading in field["rotary"][1].items():
+        q[0, chain.axis_index(axis)] = np.radians(reading)
+    errors = contribution(read_errors(made / "errors.toml", chain), at_poses(chain, q, length))
+    stands = read_project(made.parent / "project.toml").setup.T_table_artefact
+    believed = read_run(made / "run.csv").touches.setups[0].T_table_artefact
+    actual = apply(inverse(stands), exact_tip(chain, q, length, errors))
+    moved = actual - apply(inverse(believed), tip(chain, q, length))
+    counts = [len(places) for places in field["at"]]
+    shown = np.reshape(field["before"], (-1, *counts))[1, 2, 2, 2]
+    assert shown * UM == pytest.approx(float(np.linalg.norm(moved)), abs=0.01 * UM)
+    # another artefact in place of the standard, then the standard again
+    do("document.querySelectorAll('#rivals input')[1].click()")
+    assert not do("return designPage.standard.own[0].isVisible")
+    do("document.querySelectorAll('#rivals input')[0].click()")
+    assert do("return designPage.standard.own[0].isVisible")
+    told = do(
+        """return [...document.querySelectorAll("#sensitivities li")].map(
+          e => [e.children[0].textContent, parseFloat(e.querySelector("output").textContent)]);"""
+    )
+    assert dict(map(tuple, told))["EXX"] == 1.0
+    assert faults(browser) == []
+    assert requests(browser) == []
 
 
 def test_the_unpredicted_error_falls_tenfold(made: Path) -> None:

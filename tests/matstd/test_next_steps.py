@@ -19,6 +19,7 @@ CALLS = {
     "replan": "LOG.TXT --design OUT -o again",
     "import": "laser.xlsx --positioning X -o run.csv",
     "compare": "run.csv -o OUT",
+    "learn": "run.csv -o OUT",
     "thermal": "LOG.csv -o OUT",
     "compensate": "model.toml --tables DIR --tool-length 160",
     "volumetric": "m.toml e.toml poses.csv -o table.csv",

@@ -9,7 +9,8 @@ import trimesh
 from formats import write_examples
 
 from matstd.artefact.body.datum import DatumSphere
-from matstd.artefact.body.standard import STEEL, Base, Standard
+from matstd.artefact.body.material import STEEL
+from matstd.artefact.body.standard import Base, Standard
 from matstd.artefact.brief.project_file import read_project
 from matstd.artefact.brief.workshop_tables import probe_models
 from matstd.artefact.feasibility.standing import check_seat

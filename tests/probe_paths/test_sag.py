@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from matstd.artefact.body.material import Material
 from matstd.artefact.body.sag import Sag, weight_directions
-from matstd.artefact.body.standard import Material
 from matstd.artefact.body.standard_file import read_standard, write_standard
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.evaluation import evaluate

@@ -29,6 +29,7 @@ def test_every_feature_tolerance_and_party_is_on_the_sheet(upright, drawn):
     for name in ("FF1", "FF2", "SPH1", "SPH2", "SPH3", "HOLE1", "HOLE2", "HOLE3", "THERMO"):
         assert name in words
     assert {"A", "B", "C", "0.05", "0.02", "SØ0.2", "A. Müller", "Workshop & Co"} <= set(words)
+    assert {"B1", "B2", "C1", "0.01 CZ", "3 x pad", "2 x FF", "3 x SØ25, centre"} <= set(words)
     assert {"170", "150", "R15", "25", "Ø26", "3 x ISO 4762 M10x30", "6.2 kg"} <= set(words)
     x, y, z = upright.spheres[1].centre
     row = words.index("SPH2")
@@ -43,6 +44,38 @@ def test_every_feature_tolerance_and_party_is_on_the_sheet(upright, drawn):
     assert words[row + 3 : row + 5] == [f"{thermo.mouth[2]:g}", "Ø6.2 x 40"]
     assert upright.fingerprint in words
     assert not [w for w in words if "Omitted for lack of space" in w]
+
+
+def test_the_title_block_and_the_notes_leave_no_question(upright):
+    """ISO 7200, 22081, 13715; hardness, adhesive, treatment, stress relief; letters to be read."""
+    hard = replace(upright, material=replace(upright.material, hardness="50 to 54 HRC"))
+    issuer = replace(ISSUER, approved="B. Approver", date="2026-11-23")
+    sheet = draw_sheet(hard, details_of(hard), issuer)
+    words = words_of(sheet)
+    named = {"legal owner", "created by", "approved by", "document type", "date of issue", "sheet"}
+    assert named <= set(words)
+    assert {"B. Approver", "2026-11-23", "part drawing", "edges ISO 13715"} <= set(words)
+    text = " ".join(words)
+    assert "ISO 2768" not in text
+    for told in ("ISO 22081", "hardness 50 to 54 HRC", "epoxy", "stress-relieve", "No coating"):
+        assert told in text
+    assert {"D-D", "E-E"} <= {w.split(" ")[0] for w in words}
+    assert words.count("D") == words.count("E") == 2
+    hatched = [p for p in sheet.axes.patches if p.get_hatch()]
+    assert len(hatched) == 3
+    sizes = [t.get_fontsize() / (1.35 * 72.0 / 25.4) for t in sheet.axes.texts]
+    assert min(sizes) >= 2.5 - 1e-9
+
+
+def test_a_frame_points_at_what_it_holds_for(upright):
+    """The leader of the balls ends on the top of the highest circle of the view."""
+    sheet = draw_sheet(upright, details_of(upright), ISSUER)
+    lines = [p.get_path().vertices for p in sheet.axes.patches]
+    sizes = 2.0 * max(s.radius for s in upright.spheres) * np.array([0.5, 1.0, 2.0])
+    circles = [v for v in lines if len(v) in (97, 98) and np.ptp(v[:, 1]) > 0.9 * sizes[0]]
+    tops = [v[np.argmax(v[:, 1])] for v in circles]
+    leaders = [v[1] for v in lines if len(v) == 2]
+    assert any(np.allclose(end, top, atol=0.1) for end in leaders for top in tops)
 
 
 def test_pads_of_two_sizes_are_not_told_to_be_alike(upright):

@@ -16,7 +16,7 @@ from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.reduced import compared_board, diagnosed_board
 from matstd.report.layout import Page, write_page
-from matstd.report.run_view import Framed, diagnosis_view, run_view
+from matstd.report.run_view import Framed, Told, diagnosis_view, run_view
 from matstd.report.run_view.touched_bodies import touched_bodies
 from matstd.twin.effects.backlash import KIND as BACKLASH
 from matstd.twin.library.ordinary import ordinary_model
@@ -238,8 +238,8 @@ def held_out(run_):
 @pytest.mark.parametrize(
     "odd",
     [
-        one_touch_a_feature,
         with_an_empty_column,
+        pytest.param(one_touch_a_feature, marks=pytest.mark.slow),
         pytest.param(without_poses, marks=pytest.mark.slow),
         pytest.param(without_places, marks=pytest.mark.slow),
         pytest.param(held_out, marks=pytest.mark.slow),
@@ -248,7 +248,7 @@ def held_out(run_):
 )
 def test_odd_runs_are_shown_as_far_as_they_go(odd, browser, diagnosis, tmp_path):
     found = compare(odd(diagnosis.run[::5]), ordinary_model(diagnosis.run.touches.chain))
-    view = run_view(compared_board(found), "odd.csv")
+    view = run_view(compared_board(found), Told("odd.csv"))
     opened(browser, written(tmp_path / "odd.html", view))
     assert run(browser, "return document.getElementById('live').dataset.isReady") == "true"
     fitted, held, *_ = run(browser, FIGURES)
@@ -259,7 +259,7 @@ def test_odd_runs_are_shown_as_far_as_they_go(odd, browser, diagnosis, tmp_path)
 def test_no_effect_at_all(browser, diagnosis, tmp_path):
     board = diagnosed_board(replace(diagnosis, steps=diagnosis.steps[:1], candidates=()))
     assert board.switches == ()
-    opened(browser, written(tmp_path / "none.html", run_view(board, "none.csv")))
+    opened(browser, written(tmp_path / "none.html", run_view(board, Told("none.csv"))))
     said = run(browser, "return document.getElementById('effect-list').textContent")
     assert "no effect that these touches could show" in said
     assert faults(browser) == []

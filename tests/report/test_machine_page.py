@@ -1,6 +1,7 @@
 """The page of a machine: its bodies, its errors as functions, and the kinematics of its scripts."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -194,8 +195,7 @@ def test_many_triangles_are_thinned(tmp_path):
     path = tmp_path / "big.stl"
     mesh = write_block(path, 200.0, 7)
     assert len(mesh.faces) > 300_000
-    chain = read_machine(HSM)
-    (body,) = body_meshes(chain, {"X": path})
+    (body,) = body_meshes(replace(read_machine(HSM), drawings={"X": path}))
     assert 2_000 < len(body.corners) <= 20_000
     away = np.linalg.norm(body.corners.reshape(-1, 3), axis=1)
     assert np.abs(away - 200.0).max() < 5.0
@@ -208,11 +208,12 @@ def test_a_step_file_is_a_body(tmp_path):
     from build123d import Box, export_step
 
     export_step(Box(20, 30, 40), tmp_path / "x.step")
-    (body,) = body_meshes(read_machine(HSM), {"X": tmp_path / "x.step"})
+    chain = read_machine(HSM)
+    (body,) = body_meshes(replace(chain, drawings={"X": tmp_path / "x.step"}))
     assert np.ptp(body.corners.reshape(-1, 3), axis=0) == pytest.approx([20, 30, 40], abs=1e-6)
     (tmp_path / "y.stp").write_text("ISO-10303-21; nonsense")
     with pytest.raises(BadFile, match="no body"):
-        body_meshes(read_machine(HSM), {"X": tmp_path / "y.stp"})
+        body_meshes(replace(chain, drawings={"X": tmp_path / "y.stp"}))
 
 
 # ---- in a browser
@@ -411,7 +412,8 @@ def test_a_part_program_is_played(browser, tmp_path):
                      ).replace("−", "-")) == pytest.approx(-3.0)  # fmt: skip
     run(
         browser,
-        "document.querySelector('#program button[aria-label=\"play the program\"]').click()",
+        """machinePage.panel.go(0);
+        document.querySelector('#program button[aria-label="play the program"]').click();""",
     )
     assert run(browser, "return machinePage.panel.isPlaying")
     assert faults(browser) == []

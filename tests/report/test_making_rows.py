@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from matstd.artefact.body.standard import Material
+from matstd.artefact.body.material import Material
 from matstd.cad_out.making.cutting import Cutting
 from matstd.cad_out.making.hints import FaceHint
 from matstd.cad_out.making.making_file import Making

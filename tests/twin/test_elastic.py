@@ -6,7 +6,8 @@ from beam_by_work import flexibility
 
 from matstd.twin.elastic.beam import SUPPORTS, bending
 from matstd.twin.elastic.body import GRAVITY
-from matstd.twin.elastic.section import material, section
+from matstd.twin.elastic.materials import material
+from matstd.twin.elastic.section import section
 from matstd.twin.errors import UnknownEffect
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.library.sized_effect import parse_sized_effect

@@ -161,16 +161,35 @@ def test_joined_runs_keep_their_temperatures_and_share_the_expansion(tmp_path: P
     assert here == [[1, 1, 0, 0], [0, 0, 1, 0], [1, 1, 1, 0]]
 
 
+def test_the_scale_of_the_cmm_is_one_error_of_all_runs_of_a_standard(tmp_path: Path) -> None:
+    """Per unit it moves every calibrated point from the origin by its own coordinates."""
+    stated = f"{STEEL}, body_degC = 20.0, scale_u_ppm = 5.25"
+    run = read(tmp_path, stated)
+    one, *others = [e for e in setup_errors(run.touches) if e.kind == "body-scale"]
+    assert not others
+    assert [p.sd for p in one.parameters] == pytest.approx([5.25e-6])
+    along = np.einsum("ni,ni->n", run.touches.point, run.touches.normal)
+    assert columns([one], run.touches)[:, 0] == pytest.approx(along)
+    write_run(tmp_path / "again.csv", run, "machine.toml")
+    again = read_run(tmp_path / "again.csv").touches
+    assert again.setups[0].body == run.touches.setups[0].body
+    both = joined({"spring": run, "autumn": read(tmp_path, stated, ROW, later(ROW, 3.0))}).touches
+    scale = [e for e in setup_errors(both) if e.kind == "body-scale"]
+    assert len(scale) == 1
+    assert columns(scale, both)[:, 0].all()
+
+
 @pytest.mark.parametrize(
     ("stated", "told"),
     [
+        (f"{STEEL}, scale_u_ppm = 5e3", "standard.scale_u_ppm: found 5000, expected the standard"),
         ("expansion_1_K = 11.5", "standard.expansion_1_K: found 11.5, expected 0 to 0.001 1/K"),
         ("expansion_1_K = -1e-6", "standard.expansion_1_K: found -1e-06"),
         (f"{STEEL}, expansion_u_1_K = 1.0", "standard.expansion_u_1_K: found 1,"),
         (f"{STEEL}, body_degC = 295.0", r"standard.body_degC: found 295 \(in kelvin\?\)"),
         (f"{STEEL}, body_degC = 80.0", r"standard.body_degC: found 80 \(of another body\?\)"),
         (f"{STEEL}, body_degC = 25.0, body_u_K = -0.5", "standard.body_u_K: found -0.5"),
-        ("body_degC = 25.0", "standard.expansion_1_K: found nothing, expected this key"),
+        ("body_degC = 25.0", "standard.expansion_1_K: found nothing, expected a number in 1/K"),
         (f"{STEEL}, body_C = 25.0", "standard.body_C: found an unknown key"),
     ],
 )

@@ -181,13 +181,44 @@ class BodyExpansion(Declared):
         return _grown(touches, self.here(touches) * (touches.body_temperature - T_REF))
 
 
+@dataclass(frozen=True)
+class BodyScale(Declared):
+    """Common relative error of all calibrated lengths of the standard, ``shift = s p``.
+
+    Scale and temperature of the CMM that calibrated it. Runs that state the same standard share it.
+    """
+
+    body: Body
+
+    kind = "body-scale"
+
+    @cached_property
+    def name(self) -> str:
+        """`body-scale(5.2e-06)`."""
+        return f"{self.kind}({self.body.u_scale:.3g})"
+
+    @cached_property
+    def parameters(self) -> Sequence[Parameter]:
+        return (Parameter("scale", "mm/mm", self.body.u_scale),)
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        stated = (self.body.alpha, self.body.u_scale)
+        own = [
+            s.body is not None and (s.body.alpha, s.body.u_scale) == stated for s in touches.setups
+        ]
+        return _grown(touches, np.array(own)[touches.setup].astype(float))
+
+
 def _grown(touches: Touches, strain: Array) -> Sequence[Term]:
     """Shifts of a standard that is larger by a strain (N,) per unit."""
     arm = touches.point_table - touches.T_table_artefact[:, :3, 3]
     return [Term(0, Where("shift", 0, i), strain * arm[:, i]) for i in range(3)]
 
 
-Free = SetupError | StylusError | BodyTemperature | BodyExpansion
+BodyError = BodyTemperature | BodyExpansion | BodyScale
+"""Parameters of the size of a standard."""
+
+Free = SetupError | StylusError | BodyError
 """Parameters estimated beside the model of the machine."""
 
 
@@ -208,14 +239,16 @@ def placing_errors(touches: Touches) -> tuple[SetupError | StylusError, ...]:
     return (*out, *further_styli(touches))
 
 
-def body_errors(touches: Touches) -> tuple[BodyTemperature | BodyExpansion, ...]:
+def body_errors(touches: Touches) -> tuple[BodyError, ...]:
     """Free parameters of the size of every standard with a stated expansion."""
     stated = [touches.setups[i] for i in np.unique(touches.setup)]
     pairs = dict.fromkeys((s.run, s.body) for s in stated if s.body is not None)
     warm = [BodyTemperature(run, body) for run, body in pairs]
     grown = {(b.alpha, b.u_alpha): BodyExpansion(b) for _, b in pairs}
     at = touches.body_temperature != T_REF
-    return (*warm, *(one for one in grown.values() if np.any(at & one.here(touches))))
+    scaled = {(b.alpha, b.u_scale): BodyScale(b) for _, b in pairs if b.u_scale}
+    expanded = [one for one in grown.values() if np.any(at & one.here(touches))]
+    return (*warm, *expanded, *scaled.values())
 
 
 def further_styli(touches: Touches) -> tuple[StylusError, ...]:

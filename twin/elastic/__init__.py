@@ -6,11 +6,12 @@ a material, so a `beam` is stated by the user and never proposed.
 
 from matstd.twin.elastic.body import Body
 from matstd.twin.elastic.doubts import short_beams
-from matstd.twin.elastic.section import Material, material
+from matstd.twin.elastic.materials import Material, material, material_names
 
 __all__ = [
     "Body",
     "Material",
     "material",
+    "material_names",
     "short_beams",
 ]

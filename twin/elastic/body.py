@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 
 from matstd.twin.elastic.beam import SUPPORTS, Plane, Support, along, bending
-from matstd.twin.elastic.section import MATERIALS, Material, Section, material, section
+from matstd.twin.elastic.materials import MATERIALS, Material, material
+from matstd.twin.elastic.section import Section, section
 from matstd.twin.errors import UnknownEffect
 from matstd.twin.fields import Refuse, no_values, read_linear_axis, refusal
 from matstd.twin.frames import Array

@@ -1,4 +1,4 @@
-"""Cross-sections and materials of beams, as users write them: `220x180x20`, `d120`, `steel`.
+"""Cross-sections of beams, as users write them: `220x180x20`, `d120`.
 
 Areas and moments in mm. Shear coefficients of Cowper, by which Timoshenko beams are close to solids
 from a slenderness of two.
@@ -10,49 +10,9 @@ import math
 import re
 from dataclasses import dataclass
 
-from matstd.twin.units import GPA, KG_M3
-
 _NUMBER = r"(\d+(?:\.\d+)?)"
 _BOX = re.compile(rf"{_NUMBER}x{_NUMBER}(?:x{_NUMBER})?\Z")
 _ROUND = re.compile(rf"d{_NUMBER}(?:x{_NUMBER})?\Z")
-
-
-@dataclass(frozen=True)
-class Material:
-    """An elastic solid.
-
-    Attributes:
-        young: N/mm2.
-        poisson: Poisson's ratio.
-        density: kg/mm3.
-        share: Standard uncertainty of the modulus, as a share of it.
-        source: Of the modulus.
-    """
-
-    young: float
-    poisson: float
-    density: float
-    share: float
-    source: str
-
-    @property
-    def shear(self) -> float:
-        """Shear modulus, N/mm2."""
-        return self.young / (2.0 * (1.0 + self.poisson))
-
-
-MATERIALS = {
-    "steel": (210.0, 0.30, 7850.0, 0.02, "EN 1993-1-1, 3.2.6"),
-    "x40cr14": (200.0, 0.30, 7800.0, 0.03, "data sheet of Uddeholm Stavax ESR"),
-    "cast-iron": (120.0, 0.26, 7200.0, 0.08, "EN 1561, EN-GJL-250 and 300: 103 to 137 GPa"),
-    "aluminium": (70.0, 0.33, 2700.0, 0.02, "EN 1999-1-1, 3.2.5"),
-    "invar": (141.0, 0.29, 8050.0, 0.04, "data sheet of Carpenter Invar 36"),
-    "alumina": (370.0, 0.22, 3900.0, 0.05, "data sheet of CoorsTek AD-995"),
-    "granite": (60.0, 0.25, 2900.0, 0.3, "suppliers: 30 to 90 GPa by its kind"),
-    "mineral-casting": (40.0, 0.25, 2400.0, 0.1, "suppliers: 30 to 45 GPa"),
-}
-"""Usual Young's modulus in GPa, Poisson's ratio, density in kg/m3, standard uncertainty of the
-modulus as a share of it, and its source."""
 
 
 @dataclass(frozen=True)
@@ -72,16 +32,6 @@ class Section:
     shear_area: tuple[float, float]
     torsion: float
     depth: float
-
-
-def material(word: str) -> Material | None:
-    """A material by its name; None where it is unknown."""
-    if word not in MATERIALS:
-        return None
-    young, poisson, density, share, source = MATERIALS[word]
-    return Material(
-        young=young * GPA, poisson=poisson, density=density * KG_M3, share=share, source=source
-    )
 
 
 def section(word: str, poisson: float) -> Section | None:

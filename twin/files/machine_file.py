@@ -1,5 +1,6 @@
 """Machine file (TOML, "machine/1"): a chain in ISO notation and what is known of each axis."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -107,31 +108,16 @@ class MachineFile(MachineTables):
 
 def read_machine(path: str | Path) -> Chain:
     """Machine from its file; raises BadFile."""
-    chain = _read(path).made(path)
+    data = parse_toml(read_text(path), path)
+    check_format(data, "machine/1", path)
+    tables = checked(MachineFile, data, path)
+    chain = tables.made(path)
     slips = [BadFile.of(path, slip) for slip in machine_slips(chain)]
     if slips:
         raise BadFile.several(slips)
-    return chain
-
-
-def read_bodies(path: str | Path) -> dict[str, Path]:
-    """Drawings of a machine's bodies by link: an axis, `w`, `t`, or `f` for the foundation.
-
-    They are seen from the machine file. Nothing but a picture depends on them.
-
-    Raises:
-        BadFile: A file of another kind, or a body of a link that the machine does not have.
-    """
-    tables = _read(path)
-    known = ["f", *(link.name for link in tables.made(path).links)]
-    drawings = tables.bodies or {}
+    known, drawings = ["f", *(link.name for link in chain.links)], tables.bodies or {}
     for name in drawings:
         if name not in known:
             raise BadFile(path, "bodies", name, f"one of {', '.join(known)}")
-    return {name: Path(path).parent / file for name, file in drawings.items()}
-
-
-def _read(path: str | Path) -> MachineFile:
-    data = parse_toml(read_text(path), path)
-    check_format(data, "machine/1", path)
-    return checked(MachineFile, data, path)
+    # a drawing is seen from the machine file
+    return replace(chain, drawings={name: Path(path).parent / d for name, d in drawings.items()})

@@ -90,6 +90,10 @@ class BodyTable(Table):
     body_u_K: float | None = None  # noqa: N815
     """its standard uncertainty, one error common to all touches. Default: 0.3 K for a stated
     temperature, otherwise 2 K"""
+    scale_u_ppm: float | None = Field(default=None, examples=[5.3])
+    """relative standard uncertainty of the calibrated lengths at 20 °C, one error common to all
+    features: scales and temperature of the CMM. `matstd evaluate` takes it from the calibrated
+    standard. Default: 0"""
 
 
 class HeadTable(Table):

@@ -72,7 +72,10 @@ def _body_line(touches: Touches) -> str:
     line = f"expansion_1_K = {body.alpha!r}, expansion_u_1_K = {body.u_alpha!r}"
     if body.is_known and BODY not in touches.temperature:
         line += f", body_degC = {float(touches.body_temperature[0])!r}"
-    return f"# standard = {{ {line}, body_u_K = {body.u_temperature!r} }}\n"
+    line += f", body_u_K = {body.u_temperature!r}"
+    if body.u_scale:
+        line += f", scale_u_ppm = {float(f'{1e6 * body.u_scale:.12g}')!r}"
+    return f"# standard = {{ {line} }}\n"
 
 
 def _has_targets(run: Run) -> bool:

@@ -149,6 +149,27 @@ def write_into(
     return paths
 
 
+def copy_into(folder: str | Path, data: Mapping[str, bytes], force: bool = False) -> list[Path]:
+    """Write files, as they are, into a folder; none is overwritten unasked.
+
+    Args:
+        data: By path within the folder.
+        force: Whether files of the same names may be overwritten.
+
+    Raises:
+        DesignError: A file of the same name exists; nothing is written then.
+    """
+    folder = Path(folder)
+    with in_turn(Path(os.path.realpath(folder))):
+        taken = next((n for n in data if not force and os.path.lexists(folder / n)), None)
+        if taken is not None:
+            raise DesignError(f"{folder / taken}: already exists; choose another folder or --force")
+        for name, content in data.items():
+            with written_whole(folder / name) as part:
+                part.write_bytes(content)
+    return [folder / name for name in data]
+
+
 @contextmanager
 def claimed(folder: str | Path, force: bool = False) -> Iterator[Path]:
     """A folder, made if need be, into which no other run writes while the block lasts.

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Literal
 
 import numpy as np
@@ -110,6 +111,8 @@ class Chain(Displayed):
         table_origin: Origin of the table frame, machine frame with every axis at zero, (3,), mm.
         assumed_points: Rotary axes without a stated line; they are assumed to turn about a line
             through the machine's origin.
+        drawings: Files that draw the bodies of links, `f` for the foundation; pictures alone
+            depend on them.
     """
 
     name: str
@@ -117,6 +120,7 @@ class Chain(Displayed):
     links: tuple[Link, ...]
     table_origin: Array = field(default_factory=lambda: np.zeros(3))
     assumed_points: tuple[str, ...] = ()
+    drawings: Mapping[str, Path] = field(default_factory=dict)
 
     @property
     def remarks(self) -> tuple[str, ...]:

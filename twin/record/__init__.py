@@ -5,7 +5,7 @@ units. A new quantity that is recorded at every touch becomes a field of it; `Ru
 """
 
 from matstd.twin.record.alignment import Moved, aligned, rigid_motion, turn_of
-from matstd.twin.record.body import BODY, StatedBody, with_body
+from matstd.twin.record.body import BODY, U_SHARE, StatedBody, with_body
 from matstd.twin.record.commanded import with_commanded
 from matstd.twin.record.copies import without_copies
 from matstd.twin.record.instrument import Instrument
@@ -25,6 +25,7 @@ from matstd.twin.record.touches import (
 
 __all__ = [
     "BODY",
+    "U_SHARE",
     "Body",
     "Instrument",
     "IntArray",

@@ -1,5 +1,7 @@
 """The size of a standard: its expansion and temperature, and the correction for its growth.
 
+The CMM that calibrated it has one scale and one temperature, which all calibrated points share.
+
 Calibrated points hold at 20 degC. At T they move by ``alpha (T - 20 degC) p``, p from the origin of
 the standard; where it is really held is a displacement, which the set-up absorbs.
 """
@@ -41,6 +43,9 @@ LARGEST = 1e-3
 LARGEST_U = 20.0
 """Largest standard uncertainty of a temperature, K."""
 
+LARGEST_SCALE = 1000.0
+"""Largest relative standard uncertainty of calibrated lengths, ppm."""
+
 MAX_DISAGREEMENT = 2.0
 """Standard uncertainties by which two statements of one temperature may differ."""
 
@@ -57,6 +62,7 @@ class StatedBody:
     expansion_u_1_K: float | None = None  # noqa: N815
     body_degC: float | None = None  # noqa: N815
     body_u_K: float | None = None  # noqa: N815
+    scale_u_ppm: float | None = None
 
     def __post_init__(self) -> None:
         for key in ("expansion_1_K", "expansion_u_1_K"):
@@ -68,6 +74,9 @@ class StatedBody:
         if self.body_u_K is not None and not 0.0 <= self.body_u_K <= LARGEST_U:
             expected = f"a standard uncertainty from 0 to {LARGEST_U:g} K"
             raise BadValue("body_u_K", f"{self.body_u_K:g}", expected)
+        if self.scale_u_ppm is not None and not 0.0 <= self.scale_u_ppm <= LARGEST_SCALE:
+            expected = f"the standard uncertainty of calibrated lengths, 0 to {LARGEST_SCALE:g} ppm"
+            raise BadValue("scale_u_ppm", f"{self.scale_u_ppm:g}", expected)
 
 
 def with_body(run: Run, stated: StatedBody) -> Run:
@@ -96,7 +105,13 @@ def with_body(run: Run, stated: StatedBody) -> Run:
     else:
         at = np.full(len(touches), T_REF if common is None else common)
     alpha, u_alpha = stated.expansion_1_K, stated.expansion_u_1_K
-    body = Body(alpha, U_SHARE * alpha if u_alpha is None else u_alpha, u, is_known)
+    body = Body(
+        alpha,
+        U_SHARE * alpha if u_alpha is None else u_alpha,
+        u_temperature=u,
+        is_known=is_known,
+        u_scale=1e-6 * (stated.scale_u_ppm or 0.0),
+    )
     setups = tuple(replace(s, body=body) for s in touches.setups)
     warm = replace(touches, setups=setups, body_temperature=at)
     return replace(run, touches=warm, deviation=run.raw_deviation - warm.growth)

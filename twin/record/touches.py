@@ -38,6 +38,7 @@ class Body:
     u_alpha: float  # its standard uncertainty, 1/K
     u_temperature: float  # that of its temperature, K, the same error at all touches of a run
     is_known: bool  # whether its temperature is stated; else points stay those of 20 degC
+    u_scale: float = 0.0  # relative standard uncertainty of its calibrated lengths at 20 degC
 
 
 @dataclass(frozen=True, eq=False)

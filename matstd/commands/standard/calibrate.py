@@ -20,30 +20,23 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     what.add_argument(
         "--points",
         metavar="CMM.csv",
+        nargs="+",
         help="points measured by the CMM: columns feature, x, y, z (mm unless the header "
-        "names a unit); a ball may be given by its centre and a column diameter",
+        "names a unit); a ball may be given by its centre and a column diameter; several files are "
+        "several orientations of the standard on the CMM",
     )
     what.add_argument(
         "--program", action="store_true", help="write the DMIS program that measures the points"
     )
     parser.add_argument(
-        "--u-um", type=float, default=0.3, help="standard uncertainty of one point, µm (0.3)"
-    )
-    parser.add_argument(
-        "--u-feature-um",
+        "--orientation",
+        metavar="DEG",
         type=float,
-        default=0.3,
-        help="standard uncertainty of the position of a feature that its points share "
-        "(scales, squareness and stylus of the CMM), from the certificate, µm (0.3)",
+        default=0.0,
+        help="with --program: orientation of the standard on the CMM about z, degrees (0); four "
+        "of them (0, 90, 180, 270) cancel squareness and differences of scales",
     )
-    parser.add_argument(
-        "--body-u-K",
-        metavar="U",
-        type=float,
-        default=0.5,
-        help="standard uncertainty of the temperature of the standard during the "
-        "measurement, about 20 °C, K (0.5); it enters the assessment of the scale",
-    )
+    _add_uncertainties(parser)
     parser.add_argument(
         "--accept",
         action="store_true",
@@ -55,6 +48,44 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="also write STEP, STL, 3MF and glTF of the standard as measured",
     )
     add_output(parser, "FILE")
+
+
+def _add_uncertainties(parser: argparse.ArgumentParser) -> None:
+    """Stated uncertainties of the CMM, and what is assumed of the faces."""
+    parser.add_argument(
+        "--u-um", type=float, default=0.3, help="standard uncertainty of one point, µm (0.3)"
+    )
+    parser.add_argument(
+        "--u-feature-um",
+        type=float,
+        default=0.3,
+        help="standard uncertainty of the position of a feature that its points share "
+        "(squareness and stylus of the CMM), from the certificate, µm (0.3)",
+    )
+    parser.add_argument(
+        "--body-u-K",
+        metavar="U",
+        type=float,
+        default=0.5,
+        help="standard uncertainty of the temperature of the standard during the "
+        "measurement, about 20 °C, K (0.5); it enters the assessment of the scale",
+    )
+    parser.add_argument(
+        "--scale-u-ppm",
+        metavar="U",
+        type=float,
+        default=1.0,
+        help="standard uncertainty of the scales of the CMM, ppm (1): of 1.2 + L/350 µm "
+        "(ISO 10360-2) it is 1.6; all features share it, with that of the temperature",
+    )
+    parser.add_argument(
+        "--waviness-um",
+        metavar="W",
+        type=float,
+        default=0.5,
+        help="root mean square of waves that is assumed along a direction of a face without a "
+        "dense line of points, µm (0.5)",
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -71,13 +102,15 @@ def run(args: argparse.Namespace) -> int:
     if args.program and args.cad:
         raise DesignError(f"--cad {args.cad}: beside --program, expected it beside --points")
     if args.program:
-        return _program(args.output, nominal)
+        return _program(args.output, nominal, args.orientation)
     found = calibrate(
         nominal,
         args.points,
         u=args.u_um * UM,
         u_feature=args.u_feature_um * UM,
         body_u=args.body_u_K,
+        u_scale=1e-6 * args.scale_u_ppm,
+        waviness=args.waviness_um * UM,
         accept=True,
     )
     _show(found.verdicts)
@@ -90,13 +123,13 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _program(output: str, nominal: Standard) -> int:
+def _program(output: str, nominal: Standard, orientation: float) -> int:
     """Write the program for the CMM."""
     from matstd.api.standards import cmm_program
     from matstd.console import say
     from matstd.twin.files import write_whole
 
-    text = cmm_program(nominal)
+    text = cmm_program(nominal, orientation)
     write_whole(output, text, newline="\r\n")
     count = text.count("PTMEAS/")
     say(f"{output}: {count} points on {len(nominal.features)} features, DMIS 5.2")

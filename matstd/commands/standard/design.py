@@ -49,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.artefact.reach import standing_remarks
     from matstd.console import say, say_assumed, say_each
     from matstd.progress import stages
-    from matstd.report.task import modulus_words, task_lines
+    from matstd.report.task import fewer_lines, making_lines, task_lines
     from matstd.report.words import design_lines, proof_line
 
     project = Project.read(args.project, args.control)
@@ -79,7 +79,10 @@ def run(args: argparse.Namespace) -> int:
         if tool not in tools
     )
     say_each(proof_line(m.seed + 1, m.in_workspace, m.proof, m.fit) for m in made.machines)
-    say_each([f"Young's modulus: {modulus_words(made.making.material)}"])
+    standard, limits = made.placement.standard, brief.blank.limits
+    wanted = brief.options.balls
+    say_each(fewer_lines(standard, wanted, made.conformity.mass, limits.max_mass))
+    say_each(making_lines(made.making))
     say_each(task_lines(made.budgets, brief.task.tolerance, made.visits))
     say(f"{args.output}: look at report.html; {SHEET}/setup.html goes with the programs")
     return 0

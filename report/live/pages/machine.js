@@ -1,20 +1,22 @@
 // The machine that moves: readings, errors, tool point, a program that is played.
 
-import { pageData } from "./data.js";
-import { Curves } from "./curve.js";
-import { element, slider, toggle } from "./elements.js";
-import { ErrorList } from "./error_list.js";
-import { ErrorSum } from "./error_sum.js";
-import { bodyPoses, deviationOf, noErrors, toolPoint } from "./kinematics.js";
-import { MachineView } from "./machine_view.js";
-import { digits, fixed } from "./numbers.js";
-import { Player } from "./player.js";
-import { ProgramPanel } from "./program_panel.js";
-import { SensitivityList } from "./sensitivity_list.js";
-import { colour, themeButton } from "./theme.js";
+import { axisOrder } from "../parts/axis_order.js";
+import { pageData } from "../parts/data.js";
+import { Curves } from "../parts/curve.js";
+import { element, slider, toggle } from "../parts/elements.js";
+import { ErrorList } from "../parts/error_list.js";
+import { ErrorSum } from "../parts/error_sum.js";
+import { bodyPoses, deviationOf, noErrors, toolPoint } from "../parts/kinematics.js";
+import { MachineView } from "../parts/machine_view.js";
+import { digits, fixed } from "../parts/numbers.js";
+import { Player } from "../parts/player.js";
+import { ProgramPanel } from "../parts/program_panel.js";
+import { SensitivityList } from "../parts/sensitivity_list.js";
+import { colour, themeButton } from "../parts/theme.js";
 
 const DEG = Math.PI / 180, UM = 1000;
-const ROWS = 1500;  // positions of a program at which its path is worked out
+const ROWS = 3000;  // positions of a program at which its path is worked out
+const AROUND = 15;  // s before and behind that are drawn of a path that is not drawn whole
 
 const data = pageData(), byId = id => document.getElementById(id);
 const { machine, axes } = data;
@@ -27,6 +29,7 @@ const state = {
   q: Float64Array.from(axes, a => Math.min(Math.max(0, a.low), a.high)),
   sides: new Int8Array(axes.length), time: 0, length: data.length, row: -1,
   exaggeration: data.exaggeration, isActual: false,
+  isWhole: Boolean(data.program && !data.program.touch),
   datum: data.datum, isFromDatum: Boolean(player && data.datum),
 };
 
@@ -73,10 +76,7 @@ const sliders = axes.map((axis, k) => {
   made.unit = unit;
   return made;
 });
-// linear axes first, by their letters; a spindle turns nothing that is shown
-const rank = k => (axes[k].is_rotary ? "2" : "1") + axes[k].name;
-byId("axes").append(...axes.map((_, k) => k).filter(k => axes[k].is_programmed)
-  .sort((a, b) => (rank(a) < rank(b) ? -1 : 1)).map(k => sliders[k]));
+byId("axes").append(...axisOrder(axes).map(k => sliders[k]));
 byId("home").addEventListener("click", () => {
   axes.forEach((a, k) => { state.q[k] = Math.min(Math.max(0, a.low), a.high); });
   state.sides.fill(0);
@@ -92,6 +92,8 @@ byId("view").append(
     input: v => { state.exaggeration = 10 ** v; changed(); } }),
   toggle({ label: "bodies with their errors", changed: v => { state.isActual = v; show(); } }),
   toggle({ label: "without bed and column", changed: v => view.hideFoundation(v) }),
+  ...(player ? [toggle({ label: "whole path", value: state.isWhole,
+    changed: v => { state.isWhole = v; showPath(); } })] : []),
   ...(data.datum ? [toggle({ label: "relative to the preset", value: state.isFromDatum,
     changed: v => { state.isFromDatum = v; changed(); } })] : []));
 
@@ -113,6 +115,16 @@ const poses = rows.map(row => ({
 }));
 const nominal = new Float32Array(poses.flatMap(p => toolPoint(machine, p.q, p.length)));
 
+const paths = { actual: new Float32Array(0) };
+
+/** The whole path, or what lies about the time: probing goes many times over the same place. */
+function drawPath() {
+  const seen = rows.map((row, i) => i).filter(i => state.isWhole
+    || Math.abs(poses[i].time - state.time) < AROUND);
+  const [from, to] = [3 * seen[0], 3 * (seen[seen.length - 1] + 1)];
+  view.showPaths(nominal.slice(from, to), paths.actual.slice(from, to));
+}
+
 function showPath() {
   if (!player) return;
   const actual = new Float32Array(nominal.length), sizes = new Float64Array(poses.length);
@@ -123,7 +135,8 @@ function showPath() {
       actual[3 * i + k] = nominal[3 * i + k] + state.exaggeration * d[k];
     }
   });
-  view.showPaths(nominal, actual);
+  paths.actual = actual;
+  drawPath();
   curve.frame.xLabel = "time, min";
   curve.frame.yLabel = "deviation, µm";
   const times = poses.map(p => p.time / 60), most = Math.max(...sizes, 1e-3);
@@ -172,6 +185,7 @@ function show() {
   showLargest(each);
   sensitivities.show(state.q, state.length);
   if (panel) panel.tell(state, deviationAt(state));
+  if (player && !state.isWhole) drawPath();
   if (curve) curve.show({ at: state.row >= 0 ? state.time / 60 : null });
 }
 

@@ -22,9 +22,16 @@ export class EffectList {
     const none = switches.length ? null : element("p", { class: "hint",
       text: "The library has no effect that these touches could show." });
     this.place.replaceChildren(...[
-      block("Found", found), block("Cannot be distinguished from it", alike),
+      block("Found", found), this.remains(), block("Cannot be distinguished from it", alike),
       block(found.length ? "Other effects" : "Effects that suit the residual best", others), none,
     ].filter(Boolean));
+  }
+
+  /** What the report says of the residual, with everything that was found. */
+  remains() {
+    if (!this.data.remains) return null;
+    return element("section", {}, element("h3", { text: "What remains" }),
+      element("p", { class: "hint", text: this.data.remains }));
   }
 
   row(one) {

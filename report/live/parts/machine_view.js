@@ -99,7 +99,7 @@ export class MachineView {
   look(path) {
     const { camera } = this.view;
     this.view.fit();
-    camera.start.far *= 0.8;
+    camera.start.far *= 0.9;
     if (path.length) {
       const low = [Infinity, Infinity, Infinity], high = low.map(v => -v);
       for (let i = 0; i < path.length; i += 3) {

@@ -1,0 +1,1 @@
+"""Examples: projects, machines, runs with a hidden effect, and scripts; `matstd examples`."""

@@ -1,0 +1,60 @@
+"""Every feature of a standard as a body that can be pointed at, and what its touches are worth."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import Requests
+from matstd.artefact.worth import Criterion
+from matstd.information.criteria import Posterior
+from matstd.report.machine import standard_bodies
+from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
+
+
+class Feature(NamedTuple):
+    """A ball or a face, or the rest of the body.
+
+    Attributes:
+        name: Empty for the rest.
+        kind: `ball`, `face` or `body`.
+        colour: As `#rrggbb`.
+        corners: Artefact frame, (T, 3, 3), mm.
+    """
+
+    name: str
+    kind: str
+    colour: str
+    corners: Array
+
+
+def features_of(standard: Standard) -> list[Feature]:
+    """All bodies of a standard: the rest first, then balls, then faces."""
+    balls = {s.name for s in standard.spheres}
+    return [
+        Feature(name, "body" if not name else "ball" if name in balls else "face", colour, corners)
+        for name, colour, corners in standard_bodies(standard)
+    ]
+
+
+def feature_shares(
+    criterion: Criterion, standard: Standard, touches: Requests
+) -> Mapping[str, float]:
+    """Predicted error of the tool point without the touches on each feature, rms, mm.
+
+    Args:
+        criterion: That chose the touches, on no body.
+        touches: Those that identify.
+
+    Returns:
+        By feature, over the user's workspace; with all touches under the empty name.
+    """
+    on_body = criterion.on(standard)
+    out = {}
+    for name in ["", *np.unique(touches.feature).tolist()]:
+        left = touches[np.flatnonzero(touches.feature != name)]
+        known = Posterior(on_body.known_rows(left), on_body.prior_sd, on_body.model.names)
+        out[name] = rms(known.predicted_sd(on_body.tip_user))
+    return out

@@ -1,0 +1,148 @@
+"""Data and markup of what moves on the page of a design."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup
+
+from matstd.artefact.brief import Brief
+from matstd.artefact.compare import Rival
+from matstd.artefact.place import Placement
+from matstd.artefact.reach import Requests
+from matstd.probe_paths.plan import TouchPlan
+from matstd.report.design_view.feature_worth import feature_shares, features_of
+from matstd.report.design_view.volume_error import ErrorField
+from matstd.report.layout import LiveView
+from matstd.report.live import TREE, packed, scripted, style
+from matstd.report.machine import machine_data, probe_body
+from matstd.twin.frames import Array, inverse
+from matstd.twin.machine import table_to_tool
+from matstd.twin.units import DEG, UM
+
+GRAIN = 0.05
+"""Of the corners of bodies, mm."""
+
+
+@dataclass(frozen=True, eq=False)
+class DesignScene:
+    """What the page of a design shows that moves.
+
+    Attributes:
+        plan: Touches of the first clamping and probe, in their order.
+        minutes: On the machine, by the name of the artefact.
+        field: Errors of the first simulated machine; None where there is no volume.
+    """
+
+    brief: Brief
+    placement: Placement
+    plan: TouchPlan
+    minutes: Mapping[str, float]
+    field: ErrorField | None
+
+
+def design_live(scene: DesignScene) -> LiveView:
+    """What moves, for the page."""
+    environment = Environment(
+        loader=PackageLoader("matstd.report.design_view"),
+        autoescape=True,
+        undefined=StrictUndefined,
+    )
+    place = environment.get_template("design.html").render(has_field=scene.field is not None)
+    own = environment.get_template("design.css").render()
+    return LiveView(
+        style=style() + Markup("<style>\n{}</style>").format(Markup(own)),
+        place=Markup(place),
+        script=scripted("design_page", _data(scene)),
+    )
+
+
+def _data(scene: DesignScene) -> TREE:
+    brief, placement = scene.brief, scene.placement
+    standard, chain = placement.standard, brief.chain
+    features = features_of(standard)
+    without = feature_shares(placement.criterion, standard, placement.requests)
+    return {
+        **machine_data(chain),
+        "length": brief.probe.length,
+        "features": [
+            {
+                "name": one.name,
+                "kind": one.kind,
+                "colour": one.colour,
+                "corners": _corners(one.corners),
+                "touches": int(np.sum(scene.plan.feature == one.name)),
+                "errors": [
+                    {"name": e.name, "share": e.share}
+                    for patch in standard.patches
+                    if patch.name == one.name
+                    for e in patch.errors[:5]
+                ],
+                "without_um": without[one.name] / UM if one.name in without and one.name else None,
+            }
+            for one in features
+        ],
+        "with_all_um": without[""] / UM,
+        "touches": _touches(scene.plan),
+        "probe": _corners(probe_body(scene.plan.probe).corners),
+        "rivals": [
+            _rival(rival, scene.minutes.get(rival.name, np.nan), k == 0)
+            for k, rival in enumerate(placement.rivals)
+        ],
+        "field": None if scene.field is None else _field(scene.field),
+    }
+
+
+def _corners(corners: Array) -> TREE:
+    return packed(corners.reshape(-1, 3), "i2", grain=GRAIN, unit="mm")
+
+
+def _touches(plan: TouchPlan) -> TREE:
+    """Touches in their order, with the pose of the tool seen from the standard."""
+    T = inverse(plan.setup.T_table_artefact) @ table_to_tool(plan.chain, plan.contact)
+    names = list(dict.fromkeys(plan.feature.tolist()))
+    rotary = [plan.chain.axis_index(a) for a in plan.chain.rotary_axes]
+    return {
+        "point": packed(plan.point, "f4", unit="mm"),
+        "normal": packed(plan.normal, "f4"),
+        # columns of three, as the scripts take them
+        "tool": packed(np.swapaxes(T[:, :3], 1, 2), "f4"),
+        "names": names,
+        "feature": packed([names.index(name) for name in plan.feature.tolist()], "u2"),
+        "visit": packed(plan.visit, "u2"),
+        "is_anchor": packed(plan.request < 0, "u1"),
+        "rotary": packed(plan.contact[:, rotary] / DEG, "f4", unit="°"),
+        "rotary_names": list(plan.chain.rotary_axes),
+    }
+
+
+def _rival(rival: Rival, minutes: float, is_own: bool) -> TREE:
+    """One artefact with its figures; the body of the standard itself is there already."""
+    bodies = [] if is_own or rival.body is None else features_of(rival.body)
+    return {
+        "name": rival.name,
+        "is_own": is_own,
+        "user_um": rival.rms_user / UM,
+        "volume_um": rival.rms / UM,
+        "estimable": rival.estimable,
+        "visible": rival.visible,
+        "could_be_visible": rival.could_be_visible,
+        "minutes": float(minutes) if np.isfinite(minutes) else None,
+        "bodies": [{"colour": b.colour, "corners": _corners(b.corners)} for b in bodies],
+        "point": packed(_places(rival.touches), "f4", unit="mm"),
+    }
+
+
+def _places(touches: Requests) -> Array:
+    return np.unique(np.round(touches.point, 3), axis=0)
+
+
+def _field(field: ErrorField) -> TREE:
+    return {
+        "axes": list(field.axes),
+        "at": [a.tolist() for a in field.at],
+        "rotary": [{k: v / DEG for k, v in one.items()} for one in field.rotary],
+        "before": packed(field.before / UM, "f4", unit="µm"),
+        "after": packed(field.after / UM, "f4", unit="µm"),
+    }

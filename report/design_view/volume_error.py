@@ -1,0 +1,78 @@
+"""Volumetric error of a simulated machine over its workspace, before and after identification."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from matstd.artefact.brief import Brief
+from matstd.diagnosis.accuracy import prove, seen_from
+from matstd.diagnosis.fit import Fit
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect
+from matstd.twin.record import Setup, at_poses
+
+COUNTS = (11, 11, 9)
+"""Places along the three linear axes."""
+
+_SHARES = (0.5, 0.15, 0.85)  # of the range of every rotary axis, at which the field is worked out
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorField:
+    """Length of the error vector over a grid of linear readings, at some rotary readings.
+
+    Attributes:
+        axes: Names of the three linear axes.
+        at: Readings of each, ascending, mm.
+        rotary: Readings of the rotary axes by name, for every field, rad.
+        before: (F, n1, n2, n3), mm; nan outside the user's volume.
+        after: Not predicted by the identified model, the same shape, mm.
+    """
+
+    axes: tuple[str, ...]
+    at: tuple[Array, ...]
+    rotary: tuple[dict[str, float], ...]
+    before: Array
+    after: Array
+
+
+def error_field(
+    brief: Brief, believed: Setup, truth: Sequence[tuple[Effect, Array]], fit: Fit
+) -> ErrorField | None:
+    """The field over the user's workspace; None on a machine without three linear axes.
+
+    Args:
+        believed: Where the run has the standard.
+        truth: Errors of the simulated machine.
+        fit: Its identified model.
+    """
+    workspace, chain = brief.workspace, brief.chain
+    axes = chain.linear_axes
+    if len(axes) != len(COUNTS):
+        return None
+    at = tuple(np.linspace(*workspace.limit(a), n) for a, n in zip(axes, COUNTS, strict=True))
+    grid = np.stack(np.meshgrid(*at, indexing="ij"), axis=-1).reshape(-1, 3)
+    rotary = []
+    before: list[Array] = []
+    after: list[Array] = []
+    for share in _SHARES if chain.rotary_axes else _SHARES[:1]:
+        q = np.zeros((len(grid), len(chain.axes)))
+        q[:, [chain.axis_index(a) for a in axes]] = grid
+        stands = {}
+        for name in chain.rotary_axes:
+            low, high = workspace.limit(name)
+            stands[name] = float(low + share * (high - low))
+            q[:, chain.axis_index(name)] = stands[name]
+        proof = prove(
+            fit, truth, brief.setup, seen_from(at_poses(chain, q, brief.probe.length), believed)
+        )
+        outside = ~workspace.in_volume(q)
+        for sizes, into in ((proof.before, before), (proof.after, after)):
+            length = np.linalg.norm(sizes, axis=1)
+            length[outside] = np.nan
+            into.append(length.reshape(COUNTS))
+        rotary.append(stands)
+    return ErrorField(
+        axes=axes, at=at, rotary=tuple(rotary), before=np.array(before), after=np.array(after)
+    )

@@ -1,0 +1,51 @@
+"""What a design does not reach of its project, for the console and the page."""
+
+from matstd.artefact.body import Standard
+from matstd.cad_out.making import FIRST_MODE, Making
+from matstd.report.task.calibration_words import modulus_words
+from matstd.twin.units import UM
+
+_NEAR = 0.95
+"""Share of the allowed mass above which mass is named as the reason for fewer balls: one ball with
+its post is about 2 % of a standard."""
+
+
+def making_lines(making: Making) -> list[str]:
+    """Modulus, and a first mode below what is usual, named as a compromise."""
+    lines = [f"Young's modulus: {modulus_words(making.material)}"]
+    stiff = making.stiffness
+    if stiff is None or stiff.first_mode >= FIRST_MODE:
+        return lines
+    words = (
+        f"compromise: first mode {stiff.first_mode:.0f} Hz on rigid screws, below "
+        f"{FIRST_MODE:.0f} Hz"
+    )
+    if stiff.at_balls:
+        ball = min(stiff.at_balls, key=stiff.at_balls.__getitem__)
+        words += f"; softest ball {ball}, {stiff.at_balls[ball] * UM:.1f} N/µm"
+    return [
+        *lines,
+        f"{words}: let the table settle after a turn; a smaller blank.height_mm raises both, "
+        "limits.first_mode_Hz refuses such a design",
+    ]
+
+
+def fewer_lines(standard: Standard, balls: int, mass: float, limit: float) -> list[str]:
+    """That a standard has fewer balls than its project asks for, and what binds.
+
+    Args:
+        balls: Wanted.
+        mass: Of the finished body, kg.
+        limit: Allowed mass, kg.
+    """
+    count = len(standard.spheres)
+    if count >= balls:
+        return []
+    if mass > _NEAR * limit:
+        why = f"more would exceed limits.max_mass_kg = {limit:g} ({mass:.1f} kg now)"
+    else:
+        why = (
+            f"beside {len(standard.patches)} faces and the screws no more keep the gaps for cutter "
+            "and probe; a larger blank.base_mm or fewer standard.patches make room"
+        )
+    return [f"compromise: {count} balls of standard.balls = {balls}: {why}"]
