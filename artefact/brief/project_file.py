@@ -13,6 +13,7 @@ from matstd.artefact.brief.standard_tables import (
     BlankTable,
     LimitsTable,
     MaterialTable,
+    ScanTable,
     StandardTable,
     check_body,
     check_material,
@@ -67,16 +68,20 @@ class MonteCarloTable(Table):
 
 
 class CalibrationTable(Table):
-    """`[calibration]`: standard uncertainties: place and rotations of a patch, centre of a ball."""
+    """`[calibration]`: standard uncertainties of place, rotations and form."""
 
     patch_um: float = Field(default=1.0, ge=0.0)
     patch_urad: float = Field(default=10.0, ge=0.0)
     ball_um: float = Field(default=0.3, ge=0.0)
+    form_um: float = Field(default=0.3, ge=0.0)
 
     def calibration(self) -> Calibration:
         """In base units."""
         return Calibration(
-            patch=self.patch_um * UM, patch_tilt=self.patch_urad * URAD, ball=self.ball_um * UM
+            patch=self.patch_um * UM,
+            patch_tilt=self.patch_urad * URAD,
+            ball=self.ball_um * UM,
+            form=self.form_um * UM,
         )
 
 
@@ -106,6 +111,7 @@ class ProjectTable(Table):
     blank: BlankTable = BlankTable()
     limits: LimitsTable = LimitsTable()
     setup: dict[str, SetupTable] = Field(default_factory=lambda: {"a": SetupTable()})
+    scan: ScanTable | None = None
     calibration: CalibrationTable = CalibrationTable()
     simulation: SimulationTable = SimulationTable()
 
@@ -147,7 +153,11 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         ranges=ranges,
         errors=expected_errors(table.errors, chain, path),
         setups=tuple(setups),
-        options=wanted.options(table.simulation.noise_um * UM, table.calibration.calibration()),
+        options=wanted.options(
+            table.simulation.noise_um * UM,
+            table.calibration.calibration(),
+            None if table.scan is None else table.scan.scan(),
+        ),
         task=_task(table, ranges, path),
         probes=(first_probe, *(probe.probe() for probe in checked_probes(shop, path))),
         table=face,

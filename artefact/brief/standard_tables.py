@@ -10,11 +10,12 @@ from pydantic import Field
 
 from matstd.artefact.body import Base, Limits, Material
 from matstd.artefact.brief.brief import PlacementOptions
+from matstd.artefact.hidden import Scan
 from matstd.artefact.layout import Blank, Fittings
 from matstd.artefact.worth import Calibration, CriterionOptions, TouchOptions
 from matstd.twin.errors import BadFile
 from matstd.twin.files import Pair, Table
-from matstd.twin.units import DEG, KG_M3
+from matstd.twin.units import DEG, KG_M3, UM
 
 BASE_THICKNESS = 30.0
 """Thickness of the plate of every standard, mm."""
@@ -58,8 +59,12 @@ class StandardTable(Table):
     robust_machines: int = Field(default=0, ge=0, le=100)
     robust_share: float = Field(default=1.0, gt=0.0, le=1.0)
     down: Literal["+X", "-X", "+Y", "-Y", "+Z", "-Z"] = "-Z"
+    family: Literal["auto", "faces", "flat", "wavy"] = "faces"
+    goal: Literal["prove", "identify"] = "prove"
 
-    def options(self, noise: float, calibration: Calibration) -> PlacementOptions:
+    def options(
+        self, noise: float, calibration: Calibration, scan: Scan | None = None
+    ) -> PlacementOptions:
         """The options in base units; noise in mm."""
         return PlacementOptions(
             name=self.name,
@@ -75,6 +80,29 @@ class StandardTable(Table):
                 calibration=calibration,
             ),
             choice=TouchOptions(self.touches, self.poses, self.proof_touches),
+            family=self.family,
+            goal=self.goal,
+            scan=scan,
+        )
+
+
+class ScanTable(Table):
+    """`[scan]`: how the control scans a wavy face; without it faces are touched."""
+
+    lines_mm: float = Field(default=5.0, ge=0.5, le=50.0)
+    pitch_mm: float = Field(default=2.5, ge=0.05, le=20.0)
+    noise_um: float = Field(default=2.0, gt=0.0)
+    memory_mm: float = Field(default=1.0, ge=0.0, le=50.0)
+    feed_mm_min: float = Field(default=1000.0, gt=0.0)
+
+    def scan(self) -> Scan:
+        """In base units."""
+        return Scan(
+            between=self.lines_mm,
+            pitch=self.pitch_mm,
+            u=self.noise_um * UM,
+            memory=self.memory_mm,
+            feed=self.feed_mm_min,
         )
 
 
