@@ -38,6 +38,7 @@ RUNS: dict[str, tuple[str, ...]] = {
     "flat_plate": (),
     "real_records": (),
     "standard_temperature": (),
+    "live_page": (),
 }
 """Scripts and their arguments; the unseen cases, which have to be made first, come after them."""
 

@@ -12,7 +12,7 @@ import numpy as np
 from ex06_step import standard
 
 from matstd.artefact.reach import joined
-from matstd.diagnosis.answer import probed_volume, prove
+from matstd.diagnosis.accuracy import probed_volume, prove
 from matstd.diagnosis.fit import fit_run
 from matstd.probe_paths.campaign import VirtualMachine, simulate
 from matstd.probe_paths.emit import make_programs

@@ -11,7 +11,7 @@ what a machine does wrong is the negative of what its controller sees.
 """
 
 from matstd.importers.arms import import_arm
-from matstd.importers.files import import_mapped, machine_text
+from matstd.importers.files import import_mapped, machine_text, with_travels
 from matstd.importers.instruments import (
     circle_machine,
     circle_run,
@@ -39,4 +39,5 @@ __all__ = [
     "read_circle",
     "read_positioning",
     "read_sheet",
+    "with_travels",
 ]

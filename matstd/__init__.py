@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from matstd.api.designing import Project, Sensitivities
     from matstd.api.diagnosing import Diagnosis, diagnose
     from matstd.api.drifting import DriftLaws, DriftPrediction, learn_drift, predict_drift
-    from matstd.api.effects import register_effects
     from matstd.api.evaluating import Evaluation, evaluate
+    from matstd.api.learning import LearntLaws, learn
     from matstd.api.machines import (
         machine_file,
         machine_names,
@@ -31,7 +31,8 @@ if TYPE_CHECKING:
     )
     from matstd.api.probing import Simulation, simulate, virtual_machine
     from matstd.api.replanning import Replanned, replan
-    from matstd.api.runs import read_run
+    from matstd.api.runs import read_run, register_effects
+    from matstd.api.showing import MachinePage, show
     from matstd.api.standards import (
         Calibration,
         TaskBudget,
@@ -59,7 +60,7 @@ _PLACES = {
     "api.designing": ("Project", "Sensitivities"),
     "api.diagnosing": ("Diagnosis", "diagnose"),
     "api.drifting": ("DriftLaws", "DriftPrediction", "learn_drift", "predict_drift"),
-    "api.effects": ("register_effects",),
+    "api.learning": ("LearntLaws", "learn"),
     "api.machines": (
         "machine_file",
         "machine_names",
@@ -70,7 +71,8 @@ _PLACES = {
     "api.evaluating": ("Evaluation", "evaluate"),
     "api.probing": ("Simulation", "simulate", "virtual_machine"),
     "api.replanning": ("Replanned", "replan"),
-    "api.runs": ("read_run",),
+    "api.runs": ("read_run", "register_effects"),
+    "api.showing": ("MachinePage", "show"),
     "api.standards": (
         "Calibration",
         "TaskBudget",
@@ -115,6 +117,8 @@ __all__ = [
     "Effect",
     "Evaluation",
     "Fit",
+    "LearntLaws",
+    "MachinePage",
     "Model",
     "NotEnoughData",
     "ProgramOptions",
@@ -134,6 +138,7 @@ __all__ = [
     "compensate",
     "diagnose",
     "evaluate",
+    "learn",
     "learn_drift",
     "machine_file",
     "machine_names",
@@ -145,6 +150,7 @@ __all__ = [
     "register_effects",
     "replan",
     "sensitivities",
+    "show",
     "simulate",
     "uncertainty",
     "virtual_machine",

@@ -27,6 +27,7 @@ FOLDERS = {
         "import": "convert tables of instruments, CMMs and spreadsheets to a run file",
         "compare": "compare measurements with the model: where it fails",
         "diagnose": "find the effect that the model lacks and the error that remains with it",
+        "learn": "learn the law of what a model leaves, where the library has no effect",
         "thermal": "fit laws of thermal drift to temperature logs and predict with them",
     },
     "compensation": {
@@ -36,6 +37,7 @@ FOLDERS = {
     },
     "machine": {
         "volumetric": "exact deviation of the tool point in the table frame, one row per pose",
+        "show": "one page on which a machine moves, with its errors and a program",
         "machines": "list the included machines; print a machine file with the source of every "
         "figure",
         "new": "write a commented minimal file: machine, project, run or effect",
@@ -64,6 +66,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         _check_output(args)
         code = int(args.run(args) or 0)
+        _say_next(args, code)
         sys.stdout.flush()  # a disk that is full says so here, not when Python ends
         return code
     except BadArgument as error:  # named as the option, not as the argument of a function
@@ -91,9 +94,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return EXIT_BAD_INPUT
 
 
+def _say_next(args: argparse.Namespace, code: int) -> None:
+    """The command that follows, as the last line."""
+    from matstd.next_steps import next_line
+
+    if code == 0 and (line := next_line(args)):
+        print(line)
+
+
 def _check_output(args: argparse.Namespace) -> None:
     """Refuse an output that is read, or a folder of results in which a file lies that is read."""
-    from matstd.twin.files import refuse_own_input
+    from matstd.twin.files.whole import refuse_own_input
 
     output = getattr(args, "output", None)
     if output is None:

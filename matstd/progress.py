@@ -7,12 +7,13 @@ import sys
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, NamedTuple, TextIO
 
 from matstd.stop import raise_if_asked
+from matstd.time_left import TimeLeft
 from matstd.twin.compute import Progress
 
 if TYPE_CHECKING:
@@ -24,6 +25,18 @@ PERIOD = 10.0
 
 TIME_LEFT_TOLERANCE = 1.2
 """Times the time left that was last shown, up to which a new estimate counts as the same."""
+
+
+class Plan(NamedTuple):
+    """Stages of a command as they were measured.
+
+    Attributes:
+        shares: Share of the whole that every stage takes, in their order; they sum up to one.
+        usual: Duration of the whole, s.
+    """
+
+    shares: Mapping[str, float]
+    usual: float
 
 
 @dataclass(slots=True)
@@ -99,17 +112,81 @@ def turns(show: Progress) -> Callable[[float, str], None]:
 
 
 @contextmanager
-def stages() -> Iterator[Progress]:
+def stages(plan: Plan | None = None) -> Iterator[Progress]:
     """A function (stage, done, total) that shows how far the work is and how long it still takes.
 
     In a terminal every stage is a bar; elsewhere a line says every ten seconds what is being done,
     also while a stage does not report, so that a log shows that the command lives.
+
+    Args:
+        plan: Shares of the stages in a command whose stages are known: one bar shows the whole.
     """
     from rich.console import Console
 
     watched = Console(stderr=True)
+    if plan is not None:
+        left = TimeLeft(plan.shares, plan.usual, time.monotonic())
+        with _bar(watched, left) if watched.is_terminal else _whole(sys.stderr, left) as show:
+            yield show
+        return
     with _bars(watched) if watched.is_terminal else _lines(sys.stderr, PERIOD) as show:
         yield show
+
+
+@contextmanager
+def _bar(watched: Console, left: TimeLeft) -> Iterator[Progress]:
+    """One bar for the whole command, with the name of the stage."""
+    from rich.progress import BarColumn, ProgressColumn, Task, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bars
+    from rich.progress_bar import ProgressBar
+    from rich.text import Text
+
+    class Whole(BarColumn):
+        """The fraction done by the clock, also while a stage is silent."""
+
+        def render(self, task: Task) -> ProgressBar:
+            done = 1.0 if task.finished else left.fraction(time.monotonic())
+            return ProgressBar(total=1.0, completed=done, width=30)
+
+    class Left(ProgressColumn):
+        """Percent and time left of the whole."""
+
+        def render(self, task: Task) -> Text:
+            return Text("" if task.finished else _percent(left, time.monotonic()))
+
+    columns = (TextColumn("{task.description}"), Whole(30), TimeElapsedColumn(), Left())
+    with Bars(*columns, console=watched) as bars:
+        whole = bars.add_task(f"{'':<24}", total=1)
+
+        def show(stage: str, done: int, total: int) -> None:
+            raise_if_asked()
+            left.report(stage, done, total, time.monotonic())
+            bars.update(whole, description=f"{stage:<24}")
+
+        yield show
+        bars.update(whole, completed=1, description=f"{'done':<24}")
+
+
+@contextmanager
+def _whole(out: TextIO, left: TimeLeft, period: float = PERIOD) -> Iterator[Progress]:
+    """Lines such as `[ 70 s] placement: 31 % of the whole, about 2:35 min left`."""
+    stage = "reading"
+
+    def show(name: str, done: int, total: int) -> None:
+        nonlocal stage
+        raise_if_asked()
+        stage = name
+        left.report(name, done, total, time.monotonic())
+
+    with _told(out, period, lambda now: f"{stage}: {_percent(left, now)}"):
+        yield show
+
+
+def _percent(left: TimeLeft, now: float) -> str:
+    """`31 % of the whole, about 2:35 min left`."""
+    seconds = left.left(now)
+    rest = "" if seconds is None else f", about {clock(seconds)} left"
+    return f"{int(100.0 * left.fraction(now))} % of the whole{rest}"
 
 
 @contextmanager
@@ -151,22 +228,30 @@ def _bars(watched: Console) -> Iterator[Progress]:
 @contextmanager
 def _lines(out: TextIO, period: float) -> Iterator[Progress]:
     """Lines such as `[ 70 s] placement: 50 %, about 60 s left`."""
-    begun = time.monotonic()
-    state, over = _State(since=begun), threading.Event()
+    state = _State(since=time.monotonic())
 
     def show(stage: str, done: int, total: int) -> None:
         raise_if_asked()
         state.report(stage, done, total, time.monotonic())
 
+    with _told(out, period, state.words):
+        yield show
+
+
+@contextmanager
+def _told(out: TextIO, period: float, words: Callable[[float], str]) -> Iterator[None]:
+    """A line by the clock while the block works."""
+    begun, over = time.monotonic(), threading.Event()
+
     def tell() -> None:
         while not over.wait(period):
             now = time.monotonic()
-            print(f"[{now - begun:3.0f} s] {state.words(now)}", file=out, flush=True)
+            print(f"[{now - begun:3.0f} s] {words(now)}", file=out, flush=True)
 
     teller = threading.Thread(target=tell, daemon=True)
     teller.start()
     try:
-        yield show
+        yield
     finally:
         over.set()
         teller.join()

@@ -7,6 +7,7 @@ number in a result.
 
     style   paper, colours and labels of every picture
     layout  sections of a page, and how they become HTML, CSV and PDF
+    live    data and scripts of pages that move
     effects titles of effects
     words   sentences, for pages and for the console
     geometry
@@ -16,12 +17,16 @@ number in a result.
     task    calibration of a standard, uncertainty of a measuring task
     maps    sensitivities and volumetric error over a workspace or along a path
     plots   plans, proofs, residuals, effects
+    run_view
+            the live view of a run: effects to switch, and the error with them
     scenes  pictures in three dimensions, rendered in a process of their own
+    machine a machine that moves, with its errors and a program, on a page
     drawing the sheet for the workshop, PDF and SVG
     pages   the pages: results as lists of sections
     compensation
             what compensation corrects and what remains, with its page
     drift   laws of a thermal drift, with their page
+    laws    laws that were learnt, with their page and their Python file
 
 A new picture is a function from a result to a figure (`maps`, `plots`); a section of a page lists
 it with its caption. A new sentence is a function in `words`.
@@ -30,17 +35,22 @@ it with its caption. A new sentence is a function in `words`.
 PARTS = (
     "style",
     "layout",
+    "live",
     "effects",
     "words",
     "geometry",
+    "verdict",
     "identifiability",
     "task",
     "maps",
     "plots",
+    "run_view",
     "scenes",
+    "machine",
     "drawing",
     "pages",
     "compensation",
     "drift",
+    "laws",
 )
 """From bottom to top: each imports only from those before it."""

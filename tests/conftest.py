@@ -17,7 +17,7 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.dont_write_bytecode = False
 
-pytest_plugins = ["bench", "machines", "standards", "runs"]
+pytest_plugins = ["bench", "browser", "machines", "standards", "runs"]
 """Fixtures that the tests of several rooms share, in `tests/fixtures`."""
 
 
@@ -60,6 +60,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
             return TOGETHER if file.startswith(TOGETHER) else file
 
     return TogetherScheduling(config, log)
+
+
+def pytest_report_header() -> str:
+    """Whether the live pages are driven."""
+    from browser import MISSING, is_here
+
+    return "pages are driven in Chromium" if is_here() else MISSING
 
 
 DOT = b64decode(

@@ -3,6 +3,7 @@
 import importlib
 import json
 import re
+import runpy
 import tomllib
 from enum import Enum
 from pathlib import Path
@@ -22,11 +23,11 @@ from matstd.probe_paths.control.log import read_log
 from matstd.twin.errors import BadFile
 from matstd.twin.files import run_columns, run_file
 from matstd.twin.files.error_file import read_errors
+from matstd.twin.files.keys import Table
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.files.pose_file import read_poses
 from matstd.twin.files.run_file import read_run
 from matstd.twin.files.sensor_file import read_sensors
-from matstd.twin.files.toml import Table
 from matstd.twin.machine.ranges import DEFAULT_RANGES
 from matstd.twin.record.several_runs import joined
 from matstd.twin.units import UM, URAD
@@ -146,6 +147,27 @@ def test_every_key_is_described_with_its_default(name):
             assert told == UNSTATED[default], key
 
 
+MADE = runpy.run_path(str(ROOT / "docs" / "make_formats.py"))
+
+
+def test_keys_that_users_write_have_a_description_and_an_example():
+    """Refusals, pages and new files are made from them."""
+    written = [m for name, m in TABLES.items() if name.rpartition(".")[0] in MADE["MODULES"]]
+    assert len(written) > 20
+    for model in written:
+        for name, key in model.keys().items():
+            assert key.about, f"{model.__name__}.{name}: write a docstring below the field"
+            is_value = not key.holds.startswith(("a table", "tables", "text", "true"))
+            is_named = '"' in key.holds or key.range or "in brackets" in key.holds
+            assert not is_value or is_named or key.example, f"{model.__name__}.{name}: {key}"
+
+
+@pytest.mark.parametrize("page", sorted(p.name for p in MADE["FOLDER"].glob("*.md")))
+def test_tables_of_keys_are_those_of_the_models(page):
+    text = (MADE["FOLDER"] / page).read_text(encoding="utf-8")
+    assert MADE["written"](text) == text, "run python docs/make_formats.py"
+
+
 def test_every_column_of_a_run_is_described(folder):
     columns = {*run_columns.POINT, *run_columns.NORMAL, *run_columns.FORCE, *run_file._OPTIONAL}
     placeholders = {"X_mm", "B_deg", "dirX", "dirB", "T_<sensor>_degC", "V_<name>_<unit>"}
@@ -200,13 +222,16 @@ RESULTS = {
         "diagnosis/files/diagnosis_file.py",
         "diagnosis/files/geometry_table.py",
         "diagnosis/files/fault_table.py",
+        "diagnosis/files/parts_table.py",
         "diagnosis/files/trend_table.py",
     ],
     "comparison.json": [
         "diagnosis/files/diagnosis_file.py",
         "diagnosis/files/geometry_table.py",
         "diagnosis/files/fault_table.py",
+        "diagnosis/files/parts_table.py",
     ],
+    "law.json": ["diagnosis/files/law_file.py", "diagnosis/laws/policy.py"],
     "uncertainty.json": ["diagnosis/files/uncertainty_file.py"],
     "identification.json": ["report/identifiability/identification_file.py"],
     "identifiability.json": [

@@ -27,6 +27,7 @@ PARTS = (
     "thermal",
     "elastic",
     "effects",
+    "laws",
     "library",
     "files",
 )

@@ -1,6 +1,6 @@
 """Exceptions: what a user can put right, in one line, with what is available instead."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from matstd.twin.words import did_you_mean
@@ -114,6 +114,10 @@ class MissingLibrary(DesignError, ImportError):
     """Something outside this package is needed for what was asked; the message names it."""
 
 
+MOST_FAULTS = 4
+"""Faults of one file that are described in one line; of more, their number."""
+
+
 def _short(value: object, most: int = 120) -> str:
     """What stood in a file as a part of one line: on a screen, whatever stood there."""
     text = " ".join(str(value).split())
@@ -139,6 +143,27 @@ class BadFile(DesignError, ValueError):
             found=found,
             expected=expected,
         )
+
+    @classmethod
+    def several(cls, faults: Sequence["BadFile"]) -> "BadFile":
+        """All faults of one file in one line, the first `MOST_FAULTS` of them in full.
+
+        The facts are those of the first; `faults` has all.
+        """
+        if len(faults) == 1:
+            return faults[0]
+        first = faults[0].facts
+        shown = [
+            f"{_short(f.facts['where'], 60)}: found {_short(f.facts['found'], 60)}, "
+            f"expected {_short(f.facts['expected'], 150)}"
+            for f in faults[:MOST_FAULTS]
+        ]
+        more = len(faults) - len(shown)
+        rest = f"; and {more} more" if more else ""
+        error = cls.__new__(cls)
+        text = f"{_short(first['path'], 300)}: {len(faults)} faults: {'; '.join(shown)}{rest}"
+        DesignError.__init__(error, text, **first, faults=tuple(faults))
+        return error
 
     @classmethod
     def of(cls, path: str | Path, error: DesignError, within: str = "", key: str = "") -> "BadFile":

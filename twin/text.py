@@ -5,6 +5,7 @@ import io
 import json
 import math
 from collections.abc import Iterable, Mapping
+from enum import Enum
 from typing import Any
 
 
@@ -40,3 +41,21 @@ def csv_text(names: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
     writer.writerow(names)
     writer.writerows(rows)
     return out.getvalue()
+
+
+def toml_value(value: object) -> str:
+    """A value as it stands in a TOML file.
+
+    Example:
+        >>> toml_value((280.0, 280.0)), toml_value(True), toml_value("I")
+        ('[280.0, 280.0]', 'true', '"I"')
+    """
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, Enum):
+        return toml_value(value.value)
+    if isinstance(value, str):
+        return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(toml_value, value))}]"
+    return repr(value)

@@ -7,6 +7,7 @@ of the `Brief`, and a check beside it if it can contradict another.
 
 from matstd.artefact.brief.brief import Brief, PlacementOptions, ProgramSettings, StudySettings
 from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.brief.project_writer import project_text
 from matstd.artefact.brief.standard_tables import (
     FEWEST_PATCHES,
     FINISHING_RADIUS,
@@ -27,6 +28,7 @@ __all__ = [
     "Task",
     "base_of",
     "probe_models",
+    "project_text",
     "read_project",
     "read_task",
 ]

@@ -25,33 +25,46 @@ class MixTable(Table):
     """`EXX = { shapes = ["linear", "sinusoidal"], weights = [2, 1], periods = [1, 2] }`."""
 
     shapes: list[ShapeName]
+    """any of `constant`, `linear`, `parabolic`, `sinusoidal`, each once"""
     weights: list[float] = Field(default_factory=list)
+    """relative probability of each. Default: equal"""
     periods: list[int] = Field(default_factory=lambda: [1])
+    """numbers of periods of a sinusoidal error, drawn with equal probability"""
 
 
 class GroupTable(Table):
     """`[[errors.groups]]`: errors of one cause."""
 
     names: list[str]
+    """two errors or more; a minus before a name reverses its sign"""
     correlation: float = 1.0
+    """correlation of every two amplitudes, 0 to 1"""
     same_shape: bool = False
+    """whether shape, periods and phase are common too"""
 
 
 class CorrelationTable(Table):
     """`[errors.correlation]`: a matrix over some errors."""
 
     names: list[str]
+    """the errors"""
     matrix: list[list[float]]
+    """their correlations, one row each"""
 
 
 class ErrorsTable(Table):
     """`[errors]`: amplitude ranges by class and by parameter, µm or µrad, shapes and relations."""
 
     classes: dict[str, Pair] = Field(default_factory=dict)
+    """smallest and largest peak amplitude of a class"""
     parameters: dict[str, Pair] = Field(default_factory=dict)
+    """the same for single errors, `EXC = [5.0, 10.0]`; they take precedence over their class"""
     shapes: dict[str, MixTable] = Field(default_factory=dict)
+    """shapes over the reading to draw from, for a class or an error"""
     groups: list[GroupTable] = Field(default_factory=list)
+    """errors of one cause, `[[errors.groups]]`"""
     correlation: CorrelationTable | None = None
+    """instead of groups: a correlation matrix of some errors, `[errors.correlation]`"""
 
 
 def expected_errors(table: ErrorsTable, chain: Chain, path: Path) -> Population:

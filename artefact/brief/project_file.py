@@ -2,12 +2,21 @@
 
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from pydantic import Field
 
 from matstd.artefact.brief.brief import Brief, StudySettings
+from matstd.artefact.brief.contradictions import (
+    Faults,
+    as_written,
+    body_faults,
+    material_faults,
+    standard_faults,
+    table_key,
+)
 from matstd.artefact.brief.errors_table import ErrorsTable, expected_errors
 from matstd.artefact.brief.standard_tables import (
     BlankTable,
@@ -15,9 +24,6 @@ from matstd.artefact.brief.standard_tables import (
     MaterialTable,
     ScanTable,
     StandardTable,
-    check_body,
-    check_material,
-    check_standard,
 )
 from matstd.artefact.brief.task_file import Task, read_task
 from matstd.artefact.brief.workshop_tables import (
@@ -29,6 +35,7 @@ from matstd.artefact.brief.workshop_tables import (
 )
 from matstd.artefact.reach import Body, Solid, round_table
 from matstd.artefact.seat import middle_room
+from matstd.artefact.tool import Probe
 from matstd.artefact.worth import Calibration
 from matstd.sensitivity.montecarlo import MACHINES_A_BATCH
 from matstd.twin.errors import BadFile, UnknownAxis
@@ -43,11 +50,14 @@ from matstd.twin.files import (
 )
 from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
-from matstd.twin.units import DEG, UM, URAD
+from matstd.twin.units import DEG, UM, URAD, meant_in_radians
 
 MAX_READING = 1e6
 """Largest plausible reading, mm or degrees; larger integers may not convert to floats."""
 
+
+LEAST_WORKSPACE = 5.0
+"""Smallest range of a linear axis that is of interest, mm: less is one in metres."""
 
 RENAMED_KEYS = {
     "standard.drawn_machines": "standard.robust_machines",
@@ -63,17 +73,26 @@ class MonteCarloTable(Table):
     """`[montecarlo]`: number of random machines, and when to stop."""
 
     draws: int = Field(default=2000, ge=100)
+    """number of random machines; with `digits` the largest number, 20480 or more"""
     digits: int = Field(default=0, ge=0, le=3)
+    """draw until so many digits of the standard deviation are stable at every pose (JCGM 101,
+    7.9.4); 0 for exactly `draws`"""
     tolerance_um: float = Field(default=float("inf"), gt=0.0)
+    """permissible volumetric error; the share of machines beyond it is reported at every pose"""
 
 
 class CalibrationTable(Table):
     """`[calibration]`: standard uncertainties of place, rotations and form."""
 
     patch_um: float = Field(default=1.0, ge=0.0)
+    """uncertainty of every coordinate of a freeform face"""
     patch_urad: float = Field(default=10.0, ge=0.0)
+    """uncertainty of every rotation of a freeform face"""
     ball_um: float = Field(default=0.3, ge=0.0)
+    """uncertainty of every coordinate of a ball centre"""
     form_um: float = Field(default=0.3, ge=0.0)
+    """uncertainty of the surface of a freeform face at a point, alike over 6 mm; counts where
+    families of features are compared"""
 
     def calibration(self) -> Calibration:
         """In base units."""
@@ -89,31 +108,56 @@ class SimulationTable(Table):
     """`[simulation]`: the proof on the twin."""
 
     noise_um: float = Field(default=1.0, gt=0.0)
+    """standard deviation of one simulated touch"""
     machines: int = Field(default=3, ge=1, le=50)
+    """number of random machines that are probed and identified"""
     visits: int = Field(default=10, ge=2, le=50)
+    """number of times that the first of them probes the standard, clamped anew, for the
+    uncertainty of the task"""
 
 
 class ProjectTable(Table):
     """The whole file."""
 
-    format: str
-    machine: str
-    seed: int = Field(ge=0)
+    format: str = Field(examples=["project/1"])
+    """kind and version of the file, `"project/1"`"""
+    machine: str = Field(examples=["machine.toml"])
+    """path of the machine file, relative to this file"""
+    seed: int = Field(ge=0, examples=[1])
+    """seed of all random numbers; the same seed gives the same standard"""
     control: str = "itnc530"
-    task: str | None = None
+    """control of the programs: a name, or a [dialect file](dialect.md), relative to this file"""
+    task: str | None = Field(default=None, examples=["task.toml"])
+    """a [task file](task.md), relative to this file: a measuring task on workpieces, whose
+    uncertainty is evaluated on the twin"""
     probe: ProbeTable
+    """the touch probe in the spindle"""
     workshop: WorkshopTable = WorkshopTable()
+    """surroundings of the standard, and the control"""
     workspace: dict[str, object] = Field(default_factory=dict)
+    """readings of interest"""
     montecarlo: MonteCarloTable = MonteCarloTable()
+    """random machines of the maps"""
     errors: ErrorsTable = ErrorsTable()
+    """expected errors of the machine"""
     standard: StandardTable = StandardTable()
+    """the standard to be designed"""
     material: MaterialTable = MaterialTable()
+    """its material"""
     blank: BlankTable = BlankTable()
+    """its blank"""
     limits: LimitsTable = LimitsTable()
+    """limits of workshop, probe and table"""
     setup: dict[str, SetupTable] = Field(default_factory=lambda: {"a": SetupTable()})
+    """position of the standard on the table, as in a [run](measurements.md#run). It is designed
+    for the first set-up. In every further one the same positions are touched again, at those table
+    poses of the first at which they are reachable"""
     scan: ScanTable | None = None
+    """how the control scans a wavy face; without it faces are touched"""
     calibration: CalibrationTable = CalibrationTable()
+    """expected uncertainties of the features of the standard"""
     simulation: SimulationTable = SimulationTable()
+    """the virtual test"""
 
 
 def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None) -> Brief:
@@ -128,30 +172,50 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     path = Path(path)
     data = parse_toml(read_text(path), path)
     check_format(data, "project/1", path)
-    remarks = _rename_keys(data, path)
+    renamed = _rename_keys(data)
     if montecarlo and isinstance(data.setdefault("montecarlo", {}), dict):
         data["montecarlo"] |= montecarlo
-    table = checked(ProjectTable, data, path)
+    remarks = [f"{path}: {old} is now called {new} and was read as such" for new, old in renamed]
+    try:
+        return _resolved(checked(ProjectTable, data, path), path, tuple(remarks))
+    except BadFile as error:
+        raise as_written(error, dict(renamed)) from error
+
+
+def _resolved(table: ProjectTable, path: Path, remarks: tuple[str, ...]) -> Brief:
+    """The project in base units; raises BadFile with all contradictions of its keys."""
     machine_path = path.parent / table.machine
     chain = read_machine(machine_path)
-    ranges, poses = _workspace(table, chain, path)
-    study = _study(table, poses, path)
-    check_standard(table.standard, path)
-    first_probe = checked_probe(table.probe, path).probe()
-    face = _table_face(table, path)
-    check_material(table.material, path)
-    check_body(
-        table.blank, table.limits, table.material, first_probe.radius, min(face.half_size), path
-    )
-    setups = _setups(table, path)
+    wanted, shop = table.standard, table.workshop
+    faults = Faults((*standard_faults(wanted, path), *material_faults(table.material, path)))
+    with faults.collected():
+        ranges, poses = _workspace(table, chain, path)
+    with faults.collected():
+        study = _study(table, path)
+    probes: tuple[Probe, ...] = ()
+    with faults.collected():
+        first = checked_probe(table.probe, path).probe()
+        probes = (first, *(probe.probe() for probe in checked_probes(shop, path)))
+    with faults.collected():
+        errors = expected_errors(table.errors, chain, path)
+    face, setups = None, list[Setup]()
+    with faults.collected():
+        setups = _setups(table, path)
+        face = _table_face(table, path)
+        bodies = _bodies(table, chain, path)
+    if face is not None:
+        known = (table_key(shop), 2.0 * min(face.half_size))
+        ball = probes[0].radius if probes else 0.0
+        faults += body_faults(table.blank, table.limits, table.material, ball, known, path)
+    faults.refuse()
+    assert face is not None
     # screws and pads must stand on the table in every set-up
     room = min(middle_room(face, setup.T_table_artefact) for setup in setups)
-    limits = table.limits.limits(first_probe.radius, room)
-    wanted, shop = table.standard, table.workshop
+    limits = table.limits.limits(probes[0].radius, room)
     return Brief(
         chain=chain,
         ranges=ranges,
-        errors=expected_errors(table.errors, chain, path),
+        errors=errors,
         setups=tuple(setups),
         options=wanted.options(
             table.simulation.noise_um * UM,
@@ -159,15 +223,15 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
             None if table.scan is None else table.scan.scan(),
         ),
         task=_task(table, ranges, path),
-        probes=(first_probe, *(probe.probe() for probe in checked_probes(shop, path))),
+        probes=probes,
         table=face,
-        bodies=_bodies(table, chain, path),
+        bodies=bodies,
         ball=None if shop.ball is None else shop.ball.ball(face.high),
         blank=table.blank.blank(table.material.material(), limits),
         overhang=table.limits.overhang_mm,
         riser=table.limits.riser_mm,
         programs=shop.settings(table.control),
-        study=study,
+        study=replace(study, poses=poses),
         seed=table.seed,
         down=wanted.down,
         author=wanted.author,
@@ -178,7 +242,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
     )
 
 
-def _study(table: ProjectTable, poses: int, path: Path) -> StudySettings:
+def _study(table: ProjectTable, path: Path) -> StudySettings:
     """Random machines of maps and proof; stable digits need two batches of them."""
     wanted, proof = table.montecarlo, table.simulation
     if wanted.digits and wanted.draws < 2 * MACHINES_A_BATCH:
@@ -189,7 +253,6 @@ def _study(table: ProjectTable, poses: int, path: Path) -> StudySettings:
             f"{2 * MACHINES_A_BATCH} or more: stable digits need two batches",
         )
     return StudySettings(
-        poses=poses,
         draws=wanted.draws,
         digits=wanted.digits,
         tolerance=wanted.tolerance_um * UM,
@@ -208,9 +271,9 @@ def _bodies(table: ProjectTable, chain: Chain, path: Path) -> tuple[Body, ...]:
     return tuple(body.body(path.parent) for body in table.workshop.bodies)
 
 
-def _rename_keys(data: dict[str, Any], path: Path) -> tuple[str, ...]:
-    """Rename keys of older files; a remark for each."""
-    remarks = []
+def _rename_keys(data: dict[str, Any]) -> list[tuple[str, str]]:
+    """Rename keys of older files; present and written name of each."""
+    renamed = []
     for old, new in RENAMED_KEYS.items():
         (table, key), (new_table, new_key) = old.split("."), new.split(".")
         had = data.get(table)
@@ -219,8 +282,8 @@ def _rename_keys(data: dict[str, Any], path: Path) -> tuple[str, ...]:
         wanted = data.setdefault(new_table, {})
         if isinstance(wanted, dict) and new_key not in wanted:
             wanted[new_key] = had.pop(key)
-            remarks.append(f"{path}: {old} is now called {new} and was read as such")
-    return tuple(remarks)
+            renamed.append((new, old))
+    return renamed
 
 
 def _setups(table: ProjectTable, path: Path) -> list[Setup]:
@@ -298,8 +361,26 @@ def _workspace(
                 [low, high],
                 f"within the travel {travel[0] / factor:g} to {travel[1] / factor:g}",
             )
+        _check_unit(axis, (low, high), (travel[0] / factor, travel[1] / factor), path)
         out[axis] = (low * factor, high * factor)
     return out, poses
+
+
+def _check_unit(
+    axis: str, stated: tuple[float, float], travel: tuple[float, float], path: Path
+) -> None:
+    """Refuse a workspace in metres or radians; units of the file."""
+    low, high = stated
+    key, found = f"workspace.{axis}", [low, high]
+    width = f"{high - low:.3g}"
+    if axis[0] in "ABC":
+        meant = meant_in_radians(low, high)
+        if meant is not None and travel[0] <= meant[0] and meant[1] <= travel[1]:
+            ends = f"[{meant[0]:g}, {meant[1]:g}]"
+            raise BadFile(path, key, found, f"degrees, not {width}; is it in radians, {ends}?")
+    elif 0.0 < high - low < LEAST_WORKSPACE:
+        ends = f"[{1e3 * low:g}, {1e3 * high:g}]"
+        raise BadFile(path, key, found, f"mm, not {width} of them; is it in metres, {ends}?")
 
 
 def _pair(value: Any, path: Path, key: str) -> tuple[float, float]:

@@ -18,21 +18,34 @@ class WorkpieceTable(Table):
     """`[workpiece]`: how workpieces differ from the calibrated standard."""
 
     form_um: float = Field(default=0.0, ge=0.0)
+    """standard uncertainty due to form, roughness, dirt"""
     length_mm: float = Field(default=0.0, ge=0.0)
+    """length that expands between datum and surface"""
     warmer: float = Field(default=0.0, alias="warmer_K", ge=0.0)
+    """difference of the workpieces from 20 °C, or from the temperature to which their scale is
+    corrected, K"""
     expansion_u: float = Field(default=1e-6, alias="expansion_u_1_K", ge=0.0, lt=1e-3)
+    """standard uncertainty of their coefficient of expansion, 1/K"""
 
 
 class TaskTable(Table):
     """The whole file."""
 
-    format: str
-    name: str
-    tolerance_um: float | None = Field(default=None, gt=0.0)
+    format: str = Field(examples=["task/1"])
+    """kind and version of the file, `"task/1"`"""
+    name: str = Field(examples=["pockets"])
+    """name of the task"""
+    tolerance_um: float | None = Field(default=None, gt=0.0, examples=[20.0])
+    """width of the tolerance zone of the surface's profile (ISO 1660), half of it to either
+    side"""
     slope_deg: Range = Field(default=[0.0, 180.0])
+    """smallest and largest angle between the normal and the workpiece's z"""
     curvature_1_m: Range = Field(default=[0.0, 1e6])
+    """smallest and largest of the larger principal curvature, concave or convex, 1/m"""
     poses: dict[str, Range] = Field(default_factory=dict)
+    """smallest and largest reading of rotary axes: `A_deg`, `B_deg`, `C_deg`"""
     workpiece: WorkpieceTable = WorkpieceTable()
+    """differences between workpieces and the standard: u_w"""
 
 
 @dataclass(frozen=True)

@@ -32,13 +32,22 @@ class ProbeTable(Table):
     """
 
     model: str | None = None
-    radius_mm: float | None = Field(default=None, gt=0.0, le=25.0)
-    length_mm: float | None = Field(default=None, gt=0.0)
-    stack_mm: list[Pair] | None = None
-    stylus_length_mm: float | None = Field(default=None, gt=0.0)
-    stylus_diameter_mm: float | None = Field(default=None, gt=0.0)
+    """name in the library; radius, length and shape are those of the library unless given"""
+    radius_mm: float | None = Field(default=None, gt=0.0, le=25.0, examples=[3.0])
+    """radius of the ball; required without a model"""
+    length_mm: float | None = Field(default=None, gt=0.0, examples=[160.0])
+    """distance from gauge point to ball centre; required without a model"""
+    stack_mm: list[Pair] | None = Field(default=None, examples=[[[50.0, 4.0], [160.0, 60.0]]])
+    """`[[end, diameter], ...]` of its cylinders from the ball centre upwards; the last extends to
+    the gauge line"""
+    stylus_length_mm: float | None = Field(default=None, gt=0.0, examples=[50.0])
+    """distance from ball centre to the body of the probe. Default: half the length"""
+    stylus_diameter_mm: float | None = Field(default=None, gt=0.0, examples=[4.0])
+    """diameter of the stem. Default: that of a common stylus for the ball"""
     body_diameter_mm: float = Field(default=50.0, gt=0.0)
+    """diameter of the probe body, up to the gauge line"""
     nose_diameter_mm: float = Field(default=90.0, gt=0.0)
+    """diameter of the spindle nose above the gauge line"""
 
     def probe(self) -> Probe:
         """In base units; requires the complete table of `checked_probe`."""
@@ -56,18 +65,26 @@ class ModelTable(Table):
     """A probe of the library."""
 
     source: str
+    """source of the figures"""
     ball_diameter_mm: float = Field(gt=0.0)
+    """diameter of the ball"""
     stack_mm: list[Pair]
+    """cylinders from the ball centre upwards"""
     nose_diameter_mm: float = Field(gt=0.0)
+    """diameter of the spindle nose above the gauge line"""
 
 
 class TableTable(Table):
     """`[workshop.table]`: its face, round or square."""
 
-    diameter_mm: float | None = Field(default=None, gt=0.0)
-    sides_mm: Pair | None = None
+    diameter_mm: float | None = Field(default=None, gt=0.0, examples=[320.0])
+    """diameter of a round face"""
+    sides_mm: Pair | None = Field(default=None, examples=[[400.0, 300.0]])
+    """sides of a rectangular face"""
     height_mm: float = 0.0
+    """height of the face above the origin of the table frame"""
     thickness_mm: float = Field(default=60.0, gt=0.0)
+    """thickness of the table below the face, kept clear"""
 
     def solid(self) -> Solid:
         """The table as a body."""
@@ -87,15 +104,25 @@ class BodyTable(Table):
     With `setup` it stands there only in that set-up.
     """
 
-    name: str = Field(pattern=r"^[A-Za-z0-9_.+-]{1,13}$")
+    name: str = Field(pattern=r"^[A-Za-z0-9_.+-]{1,13}$", examples=["CLAMP"])
+    """up to 13 letters, digits, `_ . + -`"""
     at_mm: Vector = (0.0, 0.0, 0.0)
-    sides_mm: Pair | None = None
-    diameter_mm: float | None = Field(default=None, gt=0.0)
-    height_mm: float | None = Field(default=None, gt=0.0)
-    stl: str | None = None
+    """centre of its lower side; origin of an STL"""
+    sides_mm: Pair | None = Field(default=None, examples=[[60.0, 40.0]])
+    """sides of a box"""
+    diameter_mm: float | None = Field(default=None, gt=0.0, examples=[40.0])
+    """diameter of an upright cylinder"""
+    height_mm: float | None = Field(default=None, gt=0.0, examples=[50.0])
+    """height of box or cylinder"""
+    stl: str | None = Field(default=None, examples=["clamp.stl"])
+    """mesh file, mm, relative to this file"""
     turned_deg: float = 0.0
+    """rotation about its own upright axis"""
     on: str = ""
+    """axis that carries it, `"B"` for the cradle of a trunnion; empty if it moves with the
+    table"""
     setup: str = ""
+    """set-up in which it is present; empty for all"""
 
     def body(self, folder: Path) -> Body:
         """In base units; a mesh is read from a folder.
@@ -120,10 +147,14 @@ class BodyTable(Table):
 class BallTable(Table):
     """`[workshop.ball]`: a calibrated ball on the table that monitors the probe."""
 
-    at_mm: Vector
-    diameter_mm: float = Field(gt=0.0, le=100.0)
-    stem_diameter_mm: float = Field(gt=0.0)
+    at_mm: Vector = Field(examples=[[120.0, 0.0, 60.0]])
+    """its centre, in the frame of the table's face"""
+    diameter_mm: float = Field(gt=0.0, le=100.0, examples=[25.0])
+    """calibrated diameter"""
+    stem_diameter_mm: float = Field(gt=0.0, examples=[10.0])
+    """diameter of the upright stem down to the table's face"""
     u_um: float = Field(default=0.5, ge=0.0, le=100.0)
+    """standard uncertainty of the diameter, µm"""
 
     def ball(self, low: float) -> DatumBall:
         """The ball on a stem that begins at height `low`, mm."""
@@ -134,9 +165,12 @@ class BallTable(Table):
 class TemperatureTable(Table):
     """`[workshop.temperatures]`: a sensor whose reading the PLC passes to programs."""
 
-    parameter: int = Field(ge=100, le=107)
+    parameter: int = Field(ge=100, le=107, examples=[100])
+    """number of the Q parameter"""
     factor: float = 1.0
+    """°C per unit of the parameter"""
     offset: float = 0.0
+    """°C at zero"""
 
 
 AnyProbe = TypeVar("AnyProbe", bound=ProbeTable)
@@ -145,30 +179,51 @@ AnyProbe = TypeVar("AnyProbe", bound=ProbeTable)
 class FurtherProbeTable(ProbeTable):
     """`[[workshop.probes]]`: a probe with its own tool number for touches that others miss."""
 
-    tool: int = Field(ge=1, le=32767)
+    tool: int = Field(ge=1, le=32767, examples=[31])
+    """its number in the tool table, different from all other probes"""
 
 
 class WorkshopTable(Table):
     """`[workshop]`: bodies on the machine, and its control."""
 
     table: TableTable | None = None
+    """face of the table. Default: a disc of `limits.table_radius_mm`"""
     bodies: list[BodyTable] = Field(default_factory=list)
+    """clamps, fixtures, covers, `[[workshop.bodies]]`"""
     probes: list[FurtherProbeTable] = Field(default_factory=list)
+    """further probes, `[[workshop.probes]]`, for touches that the previous ones do not reach"""
     tool: int = Field(default=30, ge=1, le=32767)
+    """number of the probe in the tool table"""
     preset: int = Field(default=1, ge=0, le=999)
+    """row of the preset table"""
     folder: str = Field(default="TNC:\\MATSTD", pattern=r"^[A-Z0-9_:\\.-]{1,40}$")
+    """folder of programs, masks and logs on the control"""
     clearance_mm: float = Field(default=20.0, ge=1.0)
+    """clearance of the tool above everything during sideways moves"""
     retract_mm: float = Field(default=1.0, ge=0.0, le=20.0)
+    """distance below the upper end of Z at which rotary axes turn"""
     probing_feed_mm_min: int = Field(default=250, ge=10, le=1000)
+    """feed of cycle 4; use the same for the calibration of the probe"""
     approach_feed_mm_min: int = Field(default=2000, ge=100, le=5000)
+    """feed below the clearance height"""
     turning_feed_deg_min: int = Field(default=1000, ge=100, le=5000)
+    """feed of the last motion to a rotary position"""
     touches_per_file: int = Field(default=400, ge=10)
-    minutes_per_file: float | None = Field(default=None, ge=1.0)
+    """touches after which the next visit starts a new program"""
+    minutes_per_file: float | None = Field(default=None, ge=1.0, examples=[20.0])
+    """largest duration of a program, unless one visit takes longer"""
     dry_run_mm: float = Field(default=100.0, ge=10.0)
+    """height of the dry run above the programs"""
     height_read: Literal["gauge", "tip"] = "gauge"
+    """height that Z of cycle 4 refers to: the spindle's `gauge` point or the `tip`"""
     ball: BallTable | None = None
+    """calibrated ball beside the standard, `[workshop.ball]`"""
     temperatures: dict[str, TemperatureTable] = Field(default_factory=dict)
+    """sensors of the control, `[workshop.temperatures]`"""
     strategy: Literal["axes", "plane-spatial"] = "axes"
+    """`"axes"`: readings of the axes, coordinates from our own kinematics; `"plane-spatial"`:
+    coordinates of planes that the control tilts with the table
+    ([controls](../controls.md#tilted-planes))"""
 
     def settings(self, control: str) -> ProgramSettings:
         """Settings of programs; keys that the file leaves out are left to the dialect."""

@@ -4,13 +4,14 @@ A refusal names the body, the distance by which it is wrong, and a change that w
 places of the same body, the nearest first, until one leaves fewer faults.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.artefact.brief import Brief
+from matstd.artefact.feasibility.turning import between, meetings, seen_from_face
 from matstd.artefact.reach import Body, Solid, hangs, table_face
 from matstd.artefact.seat import (
     CONTACT_DEPTH,
@@ -63,6 +64,15 @@ class Fault:
     way: Array = field(default_factory=lambda: np.zeros(3))
 
 
+@dataclass(frozen=True, eq=False)
+class Finished:
+    """A standard with its mesh, and the readings (N, A) at which it is probed."""
+
+    standard: Standard
+    mesh: Mesh
+    q: Array
+
+
 def check_seat(brief: Brief) -> None:
     """Reject a standard that does not stand on its table, and bodies in its base or the table.
 
@@ -72,16 +82,17 @@ def check_seat(brief: Brief) -> None:
     _refuse(brief, None)
 
 
-def check_beside(brief: Brief, standard: Standard, mesh: Mesh) -> None:
-    """Reject bodies that overlap the finished standard.
+def check_beside(brief: Brief, standard: Standard, mesh: Mesh, q: Array) -> None:
+    """Reject bodies that overlap the finished standard at any planned pose.
 
     Args:
         mesh: Of it: corners (V, 3) and triangles (F, 3), artefact frame, mm.
+        q: Planned readings, (N, A), mm and rad; bodies on other axes are looked at in each.
 
     Raises:
         BadFile: As of `check_seat`.
     """
-    _refuse(brief, (standard, mesh))
+    _refuse(brief, Finished(standard, mesh, q))
 
 
 def stands(brief: Brief, setup: Setup) -> bool:
@@ -89,7 +100,7 @@ def stands(brief: Brief, setup: Setup) -> bool:
     return next(_setup_faults(brief, setup), None) is None
 
 
-def _refuse(brief: Brief, finished: tuple[Standard, Mesh] | None) -> None:
+def _refuse(brief: Brief, finished: Finished | None) -> None:
     """Raise BadFile for the first fault, with a change that removes it and adds none."""
     found = _faults(brief, finished)
     if not found:
@@ -106,14 +117,15 @@ def _refuse(brief: Brief, finished: tuple[Standard, Mesh] | None) -> None:
     raise BadFile(brief.path, first.key, first.found, f"{first.words}{more}; {helps}")
 
 
-def _faults(brief: Brief, finished: tuple[Standard, Mesh] | None) -> list[Fault]:
+def _faults(brief: Brief, finished: Finished | None) -> list[Fault]:
     """Faults of every set-up, and of the finished standard where there is one."""
     found = [
         fault
         for setup in brief.setups
-        for fault in (*_setup_faults(brief, setup), *_body_faults(brief, setup))
+        for check in (_setup_faults, _body_faults, _turning_faults)
+        for fault in check(brief, setup)
     ]
-    return found if finished is None else [*found, *_faults_in_standard(brief, *finished)]
+    return found if finished is None else [*found, *_faults_in_standard(brief, finished)]
 
 
 def _setup_faults(brief: Brief, setup: Setup) -> Iterator[Fault]:
@@ -218,24 +230,64 @@ def _extent(common: Array) -> tuple[float, Array]:
     return float(sides.min()), np.eye(3)[axis] * sides[axis]
 
 
-def _faults_in_standard(
-    brief: Brief, standard: Standard, mesh: tuple[Array, Array]
-) -> Iterator[Fault]:
+def _turning_faults(brief: Brief, setup: Setup) -> Iterator[Fault]:
+    """Bodies on other axes that meet the base or the table while it turns."""
+    for one in meetings(brief, setup):
+        at = _pose_words(brief, one.pose)
+        words = (
+            f"{one.body.name} clear of what turns past it: at {at} it reaches {one.depth:.1f} mm "
+            f"into {one.met}"
+        )
+        yield Fault(f"workshop.bodies.{one.number}.at_mm", list(one.body.at), words)
+
+
+def _pose_words(brief: Brief, readings: Mapping[str, float]) -> str:
+    """Readings of axes in the units of the file: `B = -90, C = 45 degrees`."""
+    is_rotary = [brief.chain.link(name).kind == "rotary" for name in readings]
+    shown = [
+        f"{name} = {value / DEG if turns else value:.4g}"
+        for (name, value), turns in zip(readings.items(), is_rotary, strict=True)
+    ]
+    return ", ".join(shown) + (" degrees" if all(is_rotary) else "")
+
+
+def _faults_in_standard(brief: Brief, finished: Finished) -> Iterator[Fault]:
     """Bodies that overlap faces, posts or balls, by the mesh of the standard."""
+    standard, mesh = finished.standard, finished.mesh
     for setup in brief.setups:
         T_table_artefact = setup.T_table_artefact
         T_face_artefact = inverse(table_face(T_table_artefact)) @ T_table_artefact
         corners = apply(T_face_artefact, mesh[0])
         for i, body in _bodies(brief, setup):
-            own = body.mesh
-            others = [own] if own else [(s.corners(_SIDES), None) for s in body.solids]
-            common = np.concatenate([common_part(corners, mesh[1], *other) for other in others])
-            depth, way = _extent(common)
-            if depth > CONTACT_DEPTH:
+            names = between(brief, body)
+            q = _distinct(brief, names, finished.q)
+            for row, T in zip(q, seen_from_face(brief, setup, body, q), strict=True):
+                common = _common(body, T, (corners, mesh[1]))
+                depth, way = _extent(common)
+                if depth <= CONTACT_DEPTH:
+                    continue
                 near = apply(inverse(T_face_artefact), common.mean(axis=0, keepdims=True))
                 met = min(standard.bodies, key=lambda n: standard.bodies[n].distance(near)[0])
-                words = f"{body.name} beside the standard: it reaches {depth:.1f} mm into {met}"
+                pose = {name: float(row[brief.chain.axis_index(name)]) for name in names}
+                at = f" at {_pose_words(brief, pose)}" if pose else ""
+                words = f"{body.name} beside the standard: it reaches {depth:.1f} mm into {met}{at}"
                 yield Fault(f"workshop.bodies.{i}.at_mm", list(body.at), words, way)
+                break
+
+
+def _distinct(brief: Brief, names: Sequence[str], q: Array) -> Array:
+    """Readings that differ in some axes, (N, A), with all others at zero."""
+    out = np.zeros_like(q)
+    columns = [brief.chain.axis_index(name) for name in names]
+    out[:, columns] = q[:, columns]
+    return np.asarray(np.unique(out.round(9), axis=0))
+
+
+def _common(body: Body, T_face_still: Array, mesh: Mesh) -> Array:
+    """Corners (V, 3) of what a turned body has in common with the standard."""
+    own = [body.mesh] if body.mesh else [(s.corners(_SIDES), None) for s in body.solids]
+    turned = [(apply(T_face_still, corners), triangles) for corners, triangles in own]
+    return np.concatenate([common_part(*mesh, *other) for other in turned])
 
 
 def _changes(brief: Brief, fault: Fault) -> Iterator[tuple[str, Brief]]:

@@ -5,6 +5,7 @@ here loads the kernel at import; `run_apart` serves any library that may crash.
 """
 
 from matstd.cad_out.kernel.process import run_apart, run_kernel
+from matstd.cad_out.kernel.step_mesh import step_triangles
 from matstd.cad_out.kernel.worker import FACES, FACTS, MESH, SCENES, STANDARD, STEP
 
 __all__ = [
@@ -16,4 +17,5 @@ __all__ = [
     "STEP",
     "run_apart",
     "run_kernel",
+    "step_triangles",
 ]

@@ -16,6 +16,7 @@ from OCP.gp import gp_Pnt
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.ShapeAnalysis import ShapeAnalysis_Surface
 from OCP.STEPCAFControl import STEPCAFControl_Reader
+from OCP.STEPControl import STEPControl_Reader
 from OCP.TDF import TDF_Label
 from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
 from OCP.TopExp import TopExp
@@ -90,6 +91,22 @@ class Reread:
     tolerances: tuple[Tolerance, ...]
     notes: tuple[str, ...]
     signs: dict[str, tuple[float, float, float, float]]
+
+
+def read_shape(path: Path) -> Any:
+    """Everything that a STEP file of another program draws, as one shape, mm.
+
+    Raises:
+        NotBuildable: A file that the kernel cannot read, or without a face.
+    """
+    reader = STEPControl_Reader()
+    if reader.ReadFile(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
+        raise NotBuildable("the CAD kernel cannot read it")
+    reader.TransferRoots()
+    shape = reader.OneShape()
+    if shape.IsNull() or not faces_of(shape):
+        raise NotBuildable("there is no face in it")
+    return shape
 
 
 def read_step(path: Path) -> Reread:

@@ -94,6 +94,19 @@ def reread(folder: str) -> None:
     (Path(folder) / FACTS).write_text(json.dumps(facts), encoding="utf-8")
 
 
+def mesh_step(folder: str, chord: float) -> None:
+    """Triangles of all bodies of a STEP file that a user drew.
+
+    Args:
+        folder: Holds the file; takes the triangles.
+        chord: Largest distance of the mesh from the faces that is asked for, mm.
+    """
+    from matstd.cad_out.kernel.reader import read_shape, tessellate
+
+    corners, triangles, _ = tessellate(read_shape(Path(folder) / STEP), chord)
+    np.savez(Path(folder) / MESH, corners=corners, triangles=triangles)
+
+
 def _mesh(standard: Standard, solid: Solid, chord: float) -> tuple[Mesh, float]:
     """Mesh of body and balls with the chord error kept, and the body's distance from it, mm.
 

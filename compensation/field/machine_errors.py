@@ -222,6 +222,10 @@ class MachineErrors:
         starts = np.concatenate([[0], np.cumsum(counts)]).astype(int)
         return np.concatenate([np.arange(starts[i], starts[i + 1]) for i in self.groups[group]])
 
+    def words(self, group: str) -> set[str]:
+        """Every word under which the errors of a group are switched (`switched`)."""
+        return {w for i in self.groups[group] for w in words_of(self.chain, self.effects[i])}
+
     def only(self, group: str) -> "MachineErrors":
         """The errors of one group alone."""
         chosen, rows = self.groups[group], self.parameter_rows(group)

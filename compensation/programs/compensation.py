@@ -144,11 +144,15 @@ def compensated(
     )
 
 
-def passed(program: Program, errors: MachineErrors) -> Touches:
-    """Poses that a program passes, as it is, in the order of the motion."""
+def passed(program: Program, errors: MachineErrors) -> tuple[Touches, IntArray]:
+    """Poses that a program passes, as it is, in the order of the motion.
+
+    Returns:
+        The poses, and the number of the motion of each, (N,).
+    """
     path = ProgramPath(program, errors)
     which, share = _shares(_begun(path, TOLERANCE))
-    return path.touches(which, share)
+    return path.touches(which, share), which
 
 
 MAX_U_POINTS = 200

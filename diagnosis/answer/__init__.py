@@ -5,32 +5,36 @@ look-alikes, `sizes` numbers that rest on the touches alone, `detectable` what t
 shown, `next_measurement` touches that distinguish look-alikes, `proof` compares with a known truth.
 """
 
-from matstd.diagnosis.answer.ambiguity import MAX_LOG_ODDS_CONFUSED, ConfusionClass
+from matstd.diagnosis.answer.ambiguity import ConfusionClass
 from matstd.diagnosis.answer.comparison import Comparison, GroupResidual, compare
 from matstd.diagnosis.answer.detectable import Detectable
 from matstd.diagnosis.answer.next_measurement import Plan
-from matstd.diagnosis.answer.proof import Proof, probed_volume, prove, seen_from
+from matstd.diagnosis.answer.parts import (
+    GeometryPart,
+    NamedEffect,
+    Remainder,
+    VerdictParts,
+)
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.trend import RunErrors, Trend
 from matstd.diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
 
 __all__ = [
-    "MAX_LOG_ODDS_CONFUSED",
     "Candidate",
     "Comparison",
     "ConfusionClass",
     "Detectable",
     "Diagnosis",
+    "GeometryPart",
     "GroupResidual",
+    "NamedEffect",
     "Plan",
-    "Proof",
+    "Remainder",
     "RunErrors",
     "Step",
     "Trend",
     "Verdict",
+    "VerdictParts",
     "compare",
     "diagnose",
-    "probed_volume",
-    "prove",
-    "seen_from",
 ]

@@ -20,14 +20,12 @@ from matstd.diagnosis.evidence import (
     signatures,
     strongest,
 )
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.search import refined
 from matstd.twin.effects import usual_distance
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Inner, Tunable, is_tunable
 from matstd.twin.numbers import significant
-
-MAX_LOG_ODDS_ALIKE = float(np.log(100.0))
-"""Log odds below which two periods are not distinguished."""
 
 MAX_LOST_SHARE = 0.2
 """Share of the square explained by the best period of the scan by which another may fall behind and
@@ -138,7 +136,7 @@ def _best(
     looked_at = [*peaks, *range(scanned, len(periods))]
     sized = [refined(base, variants[i], SCANS) for i in looked_at]
     top = max((e for _, e in sized), default=-np.inf)
-    close = [s for s, e in sized if top - e < MAX_LOG_ODDS_ALIKE]
+    close = [s for s, e in sized if top - e < POLICY.log_odds_alike]
     out: list[ScaledEffect] = []
     for s in sorted(close, key=lambda s: period_value(s.effect), reverse=not inner.is_harmonic):
         # two peaks of a scan may climb to one and the same period

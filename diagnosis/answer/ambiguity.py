@@ -16,17 +16,15 @@ from matstd.diagnosis.evidence import (
     score_all,
     signatures,
 )
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.search import refined
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 from matstd.twin.record import Touches
 
-MAX_LOG_ODDS_CONFUSED = float(np.log(100.0))
-"""Log odds below which two effects are not distinguished."""
-
-MAX_EVIDENCE_LOSS = 15.0
-"""Rivals whose evidence on the grid is this far behind that of the named effect on its own grid are
-not refined."""
+LISTED_FAR = 2
+"""Candidates that are refined where all rivals are far behind: the effect itself and one that says
+how far."""
 
 MAX_RIVALS = 40
 """Most rivals that are refined, the most likely first; a larger class would not help a reader."""
@@ -76,6 +74,11 @@ class ConfusionClass:
     def effect(self) -> Effect:
         """The named effect itself."""
         return self.sized.effect
+
+    @property
+    def runner_up(self) -> Rival | None:
+        """The next best explanation, however far behind."""
+        return next(iter((*self.rivals, *self.distinguished)), None)
 
     def headed(self, sized: ScaledEffect) -> "ConfusionClass":
         """The class with another of its members named: the one that was weighed."""
@@ -149,7 +152,7 @@ def confusion_class(
     rivals = [Rival(found, 0.0, 1.0)]
     explained = _explained(base, found)
     for variant in _ranked(
-        pool, scores.evidence, min(top, _on_grid(base, found)) - MAX_EVIDENCE_LOSS
+        pool, scores.evidence, min(top, _on_grid(base, found)) - POLICY.log_odds_ruled_out
     ):
         candidate = pool.variants[variant]
         if candidate.name in names:
@@ -174,7 +177,8 @@ def _ranked(pool: Signatures, evidence: Array, least: float) -> list[int]:
     order = np.argsort(-evidence, kind="stable")
     _, first = np.unique(pool.owner[order], return_index=True)
     ranked = order[np.sort(first)]
-    return [int(v) for v in ranked if evidence[v] > least][:MAX_RIVALS]
+    close = [int(v) for v in ranked if evidence[v] > least][:MAX_RIVALS]
+    return close if len(close) > 1 else [int(v) for v in ranked[:LISTED_FAR]]
 
 
 def _explained(without: EffectSet, sized: ScaledEffect) -> Array:
@@ -194,7 +198,7 @@ def _ordered(found: Sequence[Rival], prior: dict[str, float]) -> ConfusionClass:
     head = min(found, key=rank)
     rest = sorted((r for r in found if r is not head), key=rank)
     shifted = [Rival(r.sized, r.log_odds - head.log_odds, r.overlap) for r in rest]
-    close = tuple(r for r in shifted if r.log_odds < MAX_LOG_ODDS_CONFUSED)
+    close = tuple(r for r in shifted if r.log_odds < POLICY.log_odds_alike)
     return ConfusionClass(
-        head.sized, close, tuple(r for r in shifted if r.log_odds >= MAX_LOG_ODDS_CONFUSED)
+        head.sized, close, tuple(r for r in shifted if r.log_odds >= POLICY.log_odds_alike)
     )

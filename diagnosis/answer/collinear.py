@@ -7,22 +7,10 @@ import numpy as np
 from matstd.diagnosis.answer.verdict import Step
 from matstd.diagnosis.evidence import MIN_OWN_SHARE, ResidualSpace, ScaledEffect
 from matstd.diagnosis.fit import Reported, Role
-from matstd.diagnosis.regression import FALSE_ALARM
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.remarks import NotSignificant
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
-
-MIN_P_CHANCE = 0.05
-"""Probability by chance from which a fall is compatible with chance."""
-
-MIN_SIGNIFICANT_RATIO = 2.0
-"""Standard uncertainties from which a size is significant (GUM, k = 2)."""
-
-
-MAX_P_CERTAIN = 1e-12
-"""Probability by chance below which an effect is present although none of its numbers is
-significant: six numbers of a slip that three touches saw."""
-
 
 MAX_SIZED_PARAMETERS = 2
 """Most parameters of an effect, a sine and a cosine, whose size tests the effect. The size of more
@@ -73,7 +61,7 @@ def not_significant(steps: Sequence[Step]) -> tuple[NotSignificant, ...]:
         size = _size(step.reported)
         if step.effect is None or not step.is_named or size is None or size.u is None:
             continue
-        if abs(size.value) < MIN_SIGNIFICANT_RATIO * size.u:
+        if abs(size.value) < POLICY.significant_ratio * size.u:
             name = step.effect.name
             out.append(
                 NotSignificant(
@@ -90,21 +78,30 @@ def weakest(steps: Sequence[Step], is_weighed: bool) -> str | None:
         is_weighed: Whether the set was chosen by what it predicts: then its members stand together,
             and one falls only if neither its size nor its probability speaks for it.
     """
-    out, least = None, MIN_SIGNIFICANT_RATIO
+    out, least = None, POLICY.significant_ratio
     for step in steps:
         size = _size(step.reported)
         if step.effect is None:
             continue
         worth = np.inf if size is None or not size.u else abs(size.value) / size.u
         if is_weighed:
-            worth = worth if step.p_value > MIN_P_CHANCE else np.inf
-        elif step.p_value >= FALSE_ALARM:
+            worth = worth if step.p_value > POLICY.chance_of_member else np.inf
+        elif step.p_value >= POLICY.false_alarm:
             worth = 0.0
-        elif step.p_value < MAX_P_CERTAIN or len(step.effect.parameters) > MAX_SIZED_PARAMETERS:
+        elif step.p_value < POLICY.certain_p or len(step.effect.parameters) > MAX_SIZED_PARAMETERS:
             continue
         if worth < least:
             out, least = step.effect.name, worth
     return out
+
+
+def is_significant(step: Step) -> bool:
+    """Whether an effect exceeds its own uncertainty, or needs not to."""
+    size = _size(step.reported)
+    many = step.effect is not None and len(step.effect.parameters) > MAX_SIZED_PARAMETERS
+    if size is None or not size.u or many or step.p_value < POLICY.certain_p:
+        return True
+    return abs(size.value) >= POLICY.significant_ratio * size.u
 
 
 def _size(numbers: Sequence[Reported]) -> Reported | None:

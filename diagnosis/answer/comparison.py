@@ -6,11 +6,18 @@ from typing import Any
 
 import numpy as np
 
+from matstd.diagnosis.accuracy import (
+    Promise,
+    Repeatability,
+    machine_variance,
+    promise,
+    repeatability,
+)
 from matstd.diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
 from matstd.diagnosis.faults import DescriptionFault, description_faults
 from matstd.diagnosis.fit import Fit, Learnt, Prior, fit_run
 from matstd.diagnosis.geometry import LearntGeometry, learnt_geometry
-from matstd.diagnosis.regression import BoolArray, solve
+from matstd.diagnosis.regression import BoolArray
 from matstd.diagnosis.remarks import Remark, remarks
 from matstd.diagnosis.residual import Region, Structure, find_structure, regions
 from matstd.twin.compute import one_blas_thread
@@ -55,6 +62,8 @@ class Comparison(Tabular):
         where: Regions where the model fails.
         geometry: What the run says of the machine's geometry, and what of it changed since the
             model was made, if it is one of an earlier run.
+        repeatability: Scatter of repeated touches, whatever the model.
+        promise: Errors to expect of the fitted model; None of a prediction, which `expected` has.
         learnt: The fit that the model was learnt by, where that was from this very run: its
             figures are those reported then.
     """
@@ -65,6 +74,8 @@ class Comparison(Tabular):
     structure: tuple[Structure, ...]
     where: tuple[Region, ...]
     geometry: LearntGeometry
+    repeatability: Repeatability
+    promise: Promise | None
     faults: tuple[DescriptionFault, ...]
     remarks: tuple[Remark, ...]
     learnt: Fit | None = None
@@ -120,6 +131,16 @@ class Comparison(Tabular):
     def rms_measured(self) -> float:
         """Root mean square of the measured deviations, mm."""
         return rms(self.run.deviation[self.counted])
+
+    @property
+    def scatter(self) -> float:
+        """Standard deviation of the residual, degrees of freedom accounted for, mm."""
+        return self.repeatability.stated * self.fit.noise.factor
+
+    @property
+    def expected(self) -> float:
+        """Error to expect at these touches of what is known of the machine, rms, mm."""
+        return rms(self.u[self.counted])
 
     @property
     def worst(self) -> int:
@@ -190,7 +211,7 @@ def compare(
         u = run.u
     else:
         fit = _predicted(run, model, estimates)
-        u = np.sqrt(run.u**2 + _prediction_variance(fit, estimates))
+        u = np.sqrt(run.u**2 + machine_variance(run.touches, model, estimates.root, run.u))
     nothing = EffectSet(ResidualSpace.of(fit), np.zeros((int(fit.used.sum()) + len(fit.prior), 0)))
     found = tuple(find_structure(nothing, progress))
     return Comparison(
@@ -201,6 +222,8 @@ def compare(
         where=regions(fit),
         geometry=learnt_geometry(fit, estimates),
         # a machine that is no longer its model's is no mistake in the description
+        repeatability=repeatability(fit),
+        promise=promise(fit) if estimates is None else None,
         faults=description_faults(fit if estimates is None else fit_run(run, model), progress),
         remarks=remarks(fit),
         learnt=None if learnt is None else learnt.again(run, model),
@@ -217,13 +240,3 @@ def _predicted(run: Run, model: Model, estimates: Prior) -> Fit:
     gross = replace(learnt.gross, too_many=False)
     everything = replace(run, split=np.full(len(run), "", dtype="U5"))
     return fit_run(everything, model, known, gross=gross)
-
-
-def _prediction_variance(fit: Fit, estimates: Prior) -> Array:
-    """Variance of the prediction that a set-up cannot take up, (N,), mm^2."""
-    machine = len(estimates)
-    unit = fit.run.u[:, None]
-    S = fit.model.columns(fit.run.touches) @ estimates.root / unit
-    free = solve(fit.X[:, machine:] * fit.noise.factor, np.zeros(len(S))).Q
-    left = S - free @ (free.T @ S)
-    return np.asarray(np.einsum("np,np->n", left, left) * fit.run.u**2)

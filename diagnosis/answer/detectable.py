@@ -8,13 +8,10 @@ from scipy.special import chdtri
 
 from matstd.diagnosis.evidence import EffectSet, ScaledEffect, Signatures, projected
 from matstd.diagnosis.fit import inner_unit
-from matstd.diagnosis.regression import FALSE_ALARM
+from matstd.diagnosis.policy import POLICY
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, inner_values
 from matstd.twin.record import Touches
-
-POWER = 0.84
-"""Standard deviations of the statistic above its threshold: found in four of five runs."""
 
 MAX_SIZE_RATIO = 30.0
 """Beyond so many times its expected size an effect is called invisible in these touches."""
@@ -102,9 +99,11 @@ def _surviving(effects: EffectSet, pool: Signatures) -> tuple[Array, Array]:
 def _needed(pool: Signatures) -> Array:
     """Non-centrality that every variant needs, (V,)."""
     k = pool.width.astype(float)
-    threshold = chdtri(k, FALSE_ALARM / (pool.tries[pool.owner] * pool.tried))
-    # k + L - POWER sqrt(2 k + 4 L) = threshold, a quadratic in sqrt(2 k + 4 L)
-    root = 2.0 * POWER + np.sqrt(4.0 * POWER**2 + 4.0 * threshold - 2.0 * k)
+    threshold = chdtri(k, POLICY.false_alarm / (pool.tries[pool.owner] * pool.tried))
+    # k + L - POLICY.detection_power sqrt(2 k + 4 L) = threshold, a quadratic in sqrt(2 k + 4 L)
+    root = 2.0 * POLICY.detection_power + np.sqrt(
+        4.0 * POLICY.detection_power**2 + 4.0 * threshold - 2.0 * k
+    )
     return np.asarray((root**2 - 2.0 * k) / 4.0)
 
 

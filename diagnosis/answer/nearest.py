@@ -9,9 +9,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from matstd.diagnosis.accuracy import Repeatability
 from matstd.diagnosis.answer.verdict import Candidate, Dependence, Offer
 from matstd.diagnosis.evidence import ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors, f_probability
 from matstd.diagnosis.search import DiagnosisTask, refined_named
 from matstd.twin.library import parse_effect
@@ -19,27 +21,12 @@ from matstd.twin.machine import LETTERS
 from matstd.twin.model import Effect
 from matstd.twin.record import IntArray, Touches
 
-MAX_P_CERTAIN = 1e-6
-"""Probability by chance from which a library effect is named however little it leaves better."""
-
-MAX_P_LIKELY = 1e-3
-"""The same where held-out touches are predicted better with it."""
-
 MAX_TRIED = 6
 """Library effects, the best ones by themselves, that are tried beside what was found."""
 
 MAX_NAMED = 3
 """Effects that are named."""
 
-MAX_CREDIBLE_NOISE = 2.5
-"""Noise over the stated one that a run does not show by repeats and is not believed: statements
-are wrong by a factor of two, not more, on public records whose noise is known."""
-
-MIN_REPEAT_DOF = 5
-"""Degrees of freedom of repeats that show the noise within a third."""
-
-MAX_REPEAT_RATIO = 1.5
-"""Noise of a run over that of its repeats up to which they account for it."""
 
 MAX_REPEATED = 6
 """Touches to repeat: three times each they give twelve degrees of freedom."""
@@ -59,7 +46,7 @@ def nearest(
         candidates: Library effects by themselves, best first.
     """
     known = {sized.effect.name for sized in found}
-    certain = {c.effect for c in candidates if c.p_value < MAX_P_CERTAIN} - known
+    certain = {c.effect for c in candidates if c.p_value < POLICY.close_p} - known
     library = [c.effect for c in candidates if c.effect not in known][:MAX_TRIED]
     effects = [parse_effect(name, task.model.chain) for name in library]
     effects += [e for e in _tables(last.run.touches, depends_on) if e.name not in known]
@@ -69,7 +56,7 @@ def nearest(
         p = min(1.0, len(effects) * named_probability(last, fit))
         offers.append(Offer(effect.name, p, float(fit.test_rms)))
     offers.sort(key=lambda offer: offer.test_rms)
-    likely = [o for o in offers if o.p_value < MAX_P_LIKELY and o.test_rms < last.test_rms]
+    likely = [o for o in offers if o.p_value < POLICY.false_alarm and o.test_rms < last.test_rms]
     return tuple((likely or [o for o in offers if o.effect in certain])[:MAX_NAMED])
 
 
@@ -90,19 +77,15 @@ def named_probability(before: Fit, after: Fit) -> float:
     return float(f_probability(drop, k, after.solution.objective, after.solution.dof))
 
 
-def to_repeat(fit: Fit) -> IntArray:
+def to_repeat(fit: Fit, repeats: Repeatability) -> IntArray:
     """Rows to repeat where the noise would have to be doubtfully large; empty where it need not.
+
+    Where repeats are known they have decided: what exceeds them is no noise.
 
     The largest residual of each of the worst poses: a fault of the model comes again there, noise
     does not.
     """
-    noise = fit.noise
-    is_shown = (
-        noise.replicates is not None
-        and noise.replicates_dof >= MIN_REPEAT_DOF
-        and noise.factor < MAX_REPEAT_RATIO * noise.replicates
-    )
-    if noise.factor <= MAX_CREDIBLE_NOISE or is_shown:
+    if fit.noise.factor <= POLICY.credible_noise or repeats.known is not None:
         return np.zeros(0, dtype=np.int64)
     touches = fit.run.touches
     off = np.where(fit.used, np.abs(fit.residual) / fit.run.u, -1.0)

@@ -5,9 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from matstd.diagnosis.accuracy import Repeatability, promise, repeatability
 from matstd.diagnosis.answer.alike import period_value
 from matstd.diagnosis.answer.ambiguity import ConfusionClass
-from matstd.diagnosis.answer.collinear import check_distinct, not_significant, weakest
+from matstd.diagnosis.answer.collinear import (
+    check_distinct,
+    is_significant,
+    not_significant,
+    weakest,
+)
+from matstd.diagnosis.answer.dependences import dependences, structures
 from matstd.diagnosis.answer.detectable import detectable
 from matstd.diagnosis.answer.nearest import named_probability, nearest, to_repeat
 from matstd.diagnosis.answer.next_measurement import (
@@ -16,10 +23,11 @@ from matstd.diagnosis.answer.next_measurement import (
     candidate_touches,
     plan,
 )
+from matstd.diagnosis.answer.parts import VerdictParts, Weighed, verdict_parts
 from matstd.diagnosis.answer.reported_set import ReportedSet, reported_set, without
 from matstd.diagnosis.answer.several import with_trend
 from matstd.diagnosis.answer.sizes import sizes
-from matstd.diagnosis.answer.verdict import Candidate, Dependence, Diagnosis, Step, Verdict
+from matstd.diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
 from matstd.diagnosis.choice import (
     candidate_effects,
     choice_remarks,
@@ -36,19 +44,19 @@ from matstd.diagnosis.evidence import (
     projected,
     quiet,
 )
-from matstd.diagnosis.faults import description_faults
+from matstd.diagnosis.faults import DescriptionFault, description_faults
 from matstd.diagnosis.fit import Fit, Prior, prior_for
-from matstd.diagnosis.geometry import learnt_geometry
+from matstd.diagnosis.geometry import LearntGeometry, learnt_geometry
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors
 from matstd.diagnosis.remarks import Remark, SearchEnded, remarks
-from matstd.diagnosis.residual import Region, Structure, find_structure, regions
+from matstd.diagnosis.residual import Region, Structure, regions
 from matstd.diagnosis.search import (
     MAX_LISTED,
     MOST_SETS,
     DiagnosisTask,
     Search,
     SearchState,
-    most_evident,
     refined_named,
 )
 from matstd.twin.compute import one_blas_thread
@@ -60,18 +68,6 @@ from matstd.twin.record import Run, Touches, with_commanded, without_copies
 
 MAX_PERIODS_PLANNED = 8
 """Most periods that a plan of touches distinguishes, the longest ones."""
-
-MAX_P_BESIDE_MEMORY = 1e-4
-"""Probability by chance below which a pattern is reported beside noise with memory. A memory is an
-approximate model, and the residual of real parts never follows it exactly."""
-
-MAX_COVERED_RATIO = 0.7
-"""Residual over stated uncertainty below which a pattern is reported but no effect counts as
-missing, since the stated uncertainty allows for it. Scatter of a run of a hundred touches does not
-reach so low."""
-
-MAX_DEPENDENCES = 2
-"""Most patterns that `depends_on` reports, one after the other."""
 
 
 @one_blas_thread()
@@ -165,16 +161,22 @@ def _result(
     final, classes, gross = tested.state, tested.classes, final.base.gross
     left = _beyond_doubt((*final.nameless, *final.left), steps[-1].fit)
     # a residual well below the stated uncertainty is allowed for, whatever pattern it has
-    unexplained = bool(left) and not _is_covered(steps[-1].fit)
-    repeat = to_repeat(steps[-1].fit)
-    if unexplained:
-        verdict = Verdict.UNEXPLAINED
-    elif len(steps) > 1 + len(added):
-        verdict = Verdict.MISSING
-    else:
-        verdict = Verdict.UNDECIDED if len(repeat) else Verdict.NONE
-    start = _structures(final, progress)
-    candidates, depends_on = _candidates(final), _dependences(left if unexplained else start)
+    counted = () if _is_covered(steps[-1].fit) else left
+    last = steps[-1].fit
+    repeats = repeatability(last)
+    repeat = to_repeat(last, repeats)
+    named = [s.effect for s in steps[1:] if s.effect is not None]
+    faults = description_faults(steps[0].fit, progress, named)
+    geometry = learnt_geometry(
+        last, task.prior if task.is_known else None, steps[0].fit if len(steps) > 1 else None
+    )
+    parts = _parts(steps, counted, geometry, faults, repeats)
+    verdict = _verdict(parts, len(steps) > 1 + len(added), len(repeat) > 0)
+    start = structures(final, progress)
+    candidates, depends_on = (
+        _candidates(final),
+        dependences(left if parts.remains.is_real else start),
+    )
     beside = (*added, *final.effects)
     progress(0.8, "what the run could have shown")
     seen = final.library.sample
@@ -182,6 +184,9 @@ def _result(
         run=task.run,
         verdict=verdict,
         steps=steps,
+        parts=parts,
+        promise=promise(last),
+        promise_before=promise(steps[0].fit),
         candidates=candidates,
         structure=start,
         left=left,
@@ -189,29 +194,66 @@ def _result(
         where=_where(steps, verdict),
         detectable=detectable(seen, final.effects, len(final.library.complement.u)),
         plans=_plans(task, added, classes, gross, rng),
-        geometry=learnt_geometry(
-            steps[-1].fit,
-            task.prior if task.is_known else None,
-            steps[0].fit if len(steps) > 1 else None,
-        ),
-        faults=description_faults(steps[0].fit, progress),
+        geometry=geometry,
+        faults=faults,
         remarks=(*not_significant(steps), *_remarks(steps, final)),
         nearest=nearest(task, beside, gross, steps[-1].fit, candidates, depends_on)
-        if unexplained
+        if parts.remains.is_real
         else (),
         repeat=repeat if verdict is Verdict.UNDECIDED else repeat[:0],
     )
 
 
+def _parts(
+    steps: Sequence[Step],
+    left: Sequence[Structure],
+    geometry: LearntGeometry,
+    faults: Sequence[DescriptionFault],
+    repeats: Repeatability,
+) -> VerdictParts:
+    """The three parts of the verdict."""
+
+    def scatter(step: Step) -> float:
+        return repeats.stated * step.fit.noise.factor
+
+    weighed = [
+        Weighed(
+            effect=step.effect,
+            p_value=step.p_value,
+            scatter=scatter(step),
+            runner_up=step.confusion.runner_up if step.confusion else None,
+            is_significant=is_significant(step),
+        )
+        for step in steps
+        if step.effect is not None
+    ]
+    dof = steps[-1].fit.noise.dof
+    return verdict_parts(scatter(steps[0]), dof, weighed, left, geometry, faults, repeats)
+
+
+def _verdict(parts: VerdictParts, is_found: bool, is_doubtful: bool) -> Verdict:
+    """The word of the file.
+
+    Args:
+        is_found: Whether the diagnosis itself added an effect.
+        is_doubtful: Whether the noise would have to be incredibly large.
+    """
+    if parts.is_unexplained:
+        return Verdict.UNEXPLAINED
+    if is_found and parts.headline:
+        return Verdict.MISSING
+    return Verdict.UNDECIDED if is_doubtful or is_found else Verdict.NONE
+
+
 def _beyond_doubt(left: Sequence[Structure], fit: Fit) -> tuple[Structure, ...]:
     """Patterns that stand however the noise remembers."""
     is_modelled = fit.memory is not None and fit.memory.is_filtered
-    return tuple(s for s in left if not is_modelled or s.p_value < MAX_P_BESIDE_MEMORY)
+    return tuple(s for s in left if not is_modelled or s.p_value < POLICY.p_beside_memory)
 
 
 def _is_covered(fit: Fit) -> bool:
     """Whether the whole residual is well within the stated uncertainty of a touch."""
-    return float(np.std(fit.residual[fit.used] / fit.run.u[fit.used])) < MAX_COVERED_RATIO
+    return float(np.std(fit.residual[fit.used] / fit.run.u[fit.used])) < POLICY.noise_ratio_covered
 
 
 def _significant_effects(
@@ -313,35 +355,6 @@ def _candidates(final: SearchState) -> tuple[Candidate, ...]:
             )
         )
     return tuple(out)
-
-
-def _structures(final: SearchState, progress: Progress) -> tuple[Structure, ...]:
-    """What the residual varies with at the start, each pattern freed of those before."""
-    complement = final.smooth.complement
-    out: list[Structure] = []
-    A = np.zeros((len(complement.residual), 0))
-    found: Sequence[Structure] = final.at_start
-    while found:
-        if not any(s.columns is not None for s in found):
-            return (*out, found[0])
-        best = most_evident(found)
-        out.append(best)
-        if len(out) == MAX_DEPENDENCES or best.columns is None:
-            break
-        A = np.hstack([A, best.columns])
-        found = find_structure(EffectSet(complement, A), progress, final.smooth)
-    return tuple(out)
-
-
-def _dependences(found: Sequence[Structure]) -> tuple[Dependence, ...]:
-    """Variables of some structures, each once, with the smallest probability."""
-    out: dict[str, Dependence] = {}
-    for structure in found:
-        for variable in structure.variables:
-            known = out.get(variable)
-            if known is None or structure.p_value < known.p_value:
-                out[variable] = Dependence(variable, structure.p_value, structure)
-    return tuple(out.values())
 
 
 def _plans(

@@ -19,7 +19,7 @@ from matstd.diagnosis.geometry import (
     geometry_rows,
     with_changes,
 )
-from matstd.diagnosis.regression import MIN_GAIN_MEMORY
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.search import FREEDOM, DiagnosisTask
 from matstd.twin.model import Model
 
@@ -77,7 +77,7 @@ def _shown(
         single = single_change(without, run) if run else None
         if single is not None:
             alone[run] = single
-        if is_contradicted or single or _evidence(beside) > _evidence(without) + MIN_GAIN_MEMORY:
+        if is_contradicted or single or _evidence(beside) > _evidence(without) + POLICY.memory_gain:
             shown.add(run)
     return sorted(shown), alone
 

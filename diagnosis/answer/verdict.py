@@ -6,9 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from matstd.diagnosis.accuracy import Promise
 from matstd.diagnosis.answer.ambiguity import ConfusionClass
 from matstd.diagnosis.answer.detectable import Detectable
 from matstd.diagnosis.answer.next_measurement import Plan
+from matstd.diagnosis.answer.parts import VerdictParts
 from matstd.diagnosis.answer.trend import Trend
 from matstd.diagnosis.choice import Choice
 from matstd.diagnosis.faults import DescriptionFault
@@ -99,6 +101,9 @@ class Diagnosis(Tabular):
         verdict: One of four; undecided where the noise would have to be far above the stated one
             and no repeats show it.
         steps: The error falling, effect by effect.
+        parts: Geometry, named effects and remainder, each with its weight.
+        promise: Errors to expect of the last step, at the same touches and elsewhere.
+        promise_before: The same of the starting model.
         structure: What the residual of the starting model varies with.
         left: What the residual of the last step varies with; empty unless unexplained.
         depends_on: Variables of `structure`, or of `left` where the verdict is unexplained.
@@ -112,6 +117,9 @@ class Diagnosis(Tabular):
     run: Run
     verdict: Verdict
     steps: tuple[Step, ...]
+    parts: VerdictParts
+    promise: Promise
+    promise_before: Promise
     candidates: tuple[Candidate, ...]
     structure: tuple[Structure, ...]
     left: tuple[Structure, ...]

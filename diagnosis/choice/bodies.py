@@ -19,8 +19,9 @@ from matstd.diagnosis.evidence import (
     projected,
     tuned_variants,
 )
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors
-from matstd.diagnosis.search import MIN_LOG_EVIDENCE_GAIN, DiagnosisTask, refined_set
+from matstd.diagnosis.search import DiagnosisTask, refined_set
 from matstd.twin.effects import repeat
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Symbol
@@ -105,7 +106,7 @@ def _best(base: EffectSet, family: _Family) -> list[Effect]:
     C = complement.project(complement.columns(family.effects)) * PRIOR_FACTOR
     E = base.whiten(C)
     S, g = C.T @ C - E.T @ E, C.T @ complement.residual - E.T @ base.along
-    best, top = np.zeros(0, dtype=np.int64), base.evidence + MIN_LOG_EVIDENCE_GAIN
+    best, top = np.zeros(0, dtype=np.int64), base.evidence + POLICY.log_evidence_gain
     for members in _members(family):
         part = S[members[:, :, None], members[:, None, :]] + np.eye(members.shape[1])
         along = g[members]

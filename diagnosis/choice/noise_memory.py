@@ -13,7 +13,8 @@ import numpy as np
 
 from matstd.diagnosis.evidence import Progress, ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.regression import MIN_GAIN_MEMORY, GrossErrors, Memory, likely_memory
+from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.regression import GrossErrors, Memory, likely_memory
 from matstd.diagnosis.search import DiagnosisTask, SearchState, search_until_stable
 from matstd.twin.model import Effect
 
@@ -21,12 +22,6 @@ MIN_INDEPENDENT = 15.0
 """Independent observations that a run must hold for its memory to be known: the length of a memory
 is uncertain by about the root of two over their number, 37 % here."""
 
-MAX_NOISE = 3.0
-"""Noise over stated noise above which a wandering residual is not noise of the instrument."""
-
-MAX_NOISE_ALONE = 2.0
-"""The same if no effect is found beside it. Users misjudge their noise by less, and an error that
-follows the order of probing looks the same."""
 
 MAX_TURNS = 3
 """Searches in which effects and memory settle beside one another."""
@@ -91,13 +86,13 @@ def memory_beside(
     """Memory of the noise beside some effects; None where the run does not determine one."""
     fit = replace(task, memory=None).fit(effects, gross)
     memory, gain = memory_of(fit)
-    is_determined = gain >= MIN_GAIN_MEMORY and is_noise(memory, int(fit.used.sum()))
-    return memory if is_determined and fit.noise.factor <= MAX_NOISE else None
+    is_determined = gain >= POLICY.memory_gain and is_noise(memory, int(fit.used.sum()))
+    return memory if is_determined and fit.noise.factor <= POLICY.memory_noise else None
 
 
 def max_noise(effects: Sequence[ScaledEffect]) -> float:
     """Largest noise over stated noise that counts as noise beside the found effects."""
-    return MAX_NOISE if effects else MAX_NOISE_ALONE
+    return POLICY.memory_noise if effects else POLICY.memory_noise_alone
 
 
 def _evidence(final: SearchState) -> float:

@@ -20,7 +20,8 @@ from matstd.diagnosis.choice.noise_memory import memory_of
 from matstd.diagnosis.choice.prune import prune_by_held_out_error
 from matstd.diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.regression import MIN_GAIN_MEMORY, GrossErrors, Memory
+from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.regression import GrossErrors, Memory
 from matstd.diagnosis.search import (
     Budget,
     DiagnosisTask,
@@ -46,18 +47,6 @@ MAX_SETS_PER_BLOCK = 300.0
 
 MAX_ROWS = 4000
 """Most rows used to judge ways of choosing, since each block needs a search of its own."""
-
-MAX_ERROR_SHARE = 0.97
-"""Share of the error of the simpler way below which another way is preferred. Blocks are few, and 3
-% are well within their scatter."""
-
-
-MIN_LOUD_NOISE = 1.3
-"""Noise with memory over stated noise above which it may have a cause that a drive explains."""
-
-MAX_ERROR_SHARE_MEMORY = 0.85
-"""Share of the error of a set in noise with memory below which a way replaces it. That set was
-found from all rows, and noise with memory is the simpler cause."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,14 +107,17 @@ def chosen_by_prediction(
     remembers = task.memory is not None
     is_open = bool(final.left or final.nameless)
     if remembers:
-        is_open = task.fit((*added, *final.effects), final.base.gross).noise.factor > MIN_LOUD_NOISE
+        is_open = (
+            task.fit((*added, *final.effects), final.base.gross).noise.factor
+            > POLICY.memory_loud_noise
+        )
     if not is_open or not drives(task.run.touches):
         return None
     # ways are compared in white noise: a memory would absorb what they are to explain
     task = replace(task, memory=None)
     fit = task.fit((*added, *final.effects), final.base.gross)
     memory, gain = memory_of(fit)
-    if gain < MIN_GAIN_MEMORY or memory.per_independent < MIN_ROWS_PER_INDEPENDENT:
+    if gain < POLICY.memory_gain or memory.per_independent < MIN_ROWS_PER_INDEPENDENT:
         return None
     task = thinned(task, fit)
     fit = task.fit((*added, *final.effects), final.base.gross)
@@ -143,18 +135,18 @@ def chosen_by_prediction(
     best = rules[0]
     # the simplest way comes first, and a later one must be clearly better
     for rule in rules[1:]:
-        if rule.error < MAX_ERROR_SHARE * best.error:
+        if rule.error < POLICY.error_share * best.error:
             best = rule
     if remembers:
         errors = _errors(task, added, gross, groups, lambda task, gross: final.effects)
-        if best.error > MAX_ERROR_SHARE_MEMORY * replace(best, errors=errors).error:
+        if best.error > POLICY.error_share_beside_memory * replace(best, errors=errors).error:
             return None
     left = memory_of(task.fit((*added, *best.effects), gross))
     return Choice(
         rules=tuple(rules),
         best=best,
         blocks=len(groups),
-        memory=left[0] if left[1] >= MIN_GAIN_MEMORY else None,
+        memory=left[0] if left[1] >= POLICY.memory_gain else None,
         is_ended=any(b.is_spent for b in budgets),
     )
 

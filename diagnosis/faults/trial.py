@@ -31,7 +31,7 @@ from matstd.twin.effects import SHIFT_SD, TURN_SD, body_errors, placing_errors
 from matstd.twin.errors import NotEnoughData
 from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.library import ordinary_model
-from matstd.twin.model import Effect, columns, traits
+from matstd.twin.model import Effect, Model, columns, traits
 from matstd.twin.record import Run, Setup, Touches
 
 MAX_TOUCHES = 400
@@ -107,18 +107,27 @@ class _Trial:
     evidence: float
 
 
-def description_faults(before: Fit, progress: Progress = quiet) -> tuple[DescriptionFault, ...]:
-    """Mistakes in the description of a run or its machine that make it fit; usually none."""
+def description_faults(
+    before: Fit, progress: Progress = quiet, beside: Sequence[Effect] = ()
+) -> tuple[DescriptionFault, ...]:
+    """Mistakes in the description of a run or its machine that make it fit; usually none.
+
+    Args:
+        before: The fit of the ordinary model.
+        beside: Effects that were found, free in every trial: what a backlash explains is no zero.
+    """
     run = before.run
     named = [_clock(before)] if has_minutes_for_seconds(run) else []
     excess = max(before.widened, before.noise.factor)
     is_absurd = excess > MAX_CREDIBLE_RATIO or unit_mistake(before) is not None
     few = with_setups_placed(_few(run))
-    right = _evidence(few, (), np.zeros(0))[0] - _moved_setups(run.touches.setups, few.touches)
+    right = _evidence(few, (), np.zeros(0), beside)[0] - _moved_setups(
+        run.touches.setups, few.touches
+    )
     trials = []
     for i, suspect in enumerate(suspects(few, is_absurd)):
         moved = _moved_setups(run.touches.setups, suspect.run.touches)
-        trials.append(_trial(i, suspect, moved, right))
+        trials.append(_trial(i, suspect, moved, right, beside))
         progress(0.5, "mistakes in the description")
     trials = sorted(trials, key=lambda t: -t.evidence)
     close = [
@@ -126,7 +135,8 @@ def description_faults(before: Fit, progress: Progress = quiet) -> tuple[Descrip
         for t in trials
         if t.evidence > max(right + MIN_LOG_ODDS, trials[0].evidence - MAX_LOG_ODDS_ALIKE)
     ]
-    faults = [_description_fault(before, t, right, is_absurd) for t in close]
+    was = fit_run(run, _model(run, beside)) if beside and close else before
+    faults = [_description_fault(was, t, right, is_absurd, beside) for t in close]
     # an axis has many places on the other side that differ in nothing
     kept = list({(t.fault, t.axes): t for t in reversed(faults) if t is not None}.values())[::-1]
     if kept:
@@ -182,7 +192,16 @@ def _moved_setups(stated: Sequence[Setup], touches: Touches) -> float:
     return cost
 
 
-def _trial(index: int, suspect: Suspect, moved: float, right: float) -> _Trial:
+def _model(run: Run, beside: Sequence[Effect]) -> Model:
+    """The ordinary model with effects that were found."""
+    ordinary = ordinary_model(run.touches.chain).effects
+    names = {e.name for e in ordinary}
+    return Model(run.touches.chain, (*ordinary, *(e for e in beside if e.name not in names)))
+
+
+def _trial(
+    index: int, suspect: Suspect, moved: float, right: float, beside: Sequence[Effect]
+) -> _Trial:
     """Numbers of a suspect, found and moved exactly in turns, and its evidence at the end.
 
     Args:
@@ -194,7 +213,7 @@ def _trial(index: int, suspect: Suspect, moved: float, right: float) -> _Trial:
     total = np.zeros(sum(len(e.parameters) for e in suspect.free))
     at = suspect
     for remaining in reversed(range(MAX_STEPS)):
-        evidence, theta, u = _evidence(at.run, at.free, total)
+        evidence, theta, u = _evidence(at.run, at.free, total, beside)
         if not suspect.free or not remaining or evidence - moved < right:
             break
         total = total + theta
@@ -202,15 +221,18 @@ def _trial(index: int, suspect: Suspect, moved: float, right: float) -> _Trial:
     return _Trial(index=index, suspect=suspect, theta=total, u=u, evidence=evidence - moved)
 
 
-def _evidence(run: Run, free: Sequence[Effect], at: Array) -> tuple[float, Array, Array]:
+def _evidence(
+    run: Run, free: Sequence[Effect], at: Array, beside: Sequence[Effect]
+) -> tuple[float, Array, Array]:
     """Log evidence of a run up to a constant, with the free numbers and their uncertainties.
 
     Args:
         free: Numbers of the description that are left free.
         at: By how much they have been moved already, (K,).
+        beside: Effects that were found.
     """
     touches = run.touches
-    machine, setups = ordinary_model(touches.chain).effects, placing_errors(touches)
+    machine, setups = _model(run, beside).effects, placing_errors(touches)
     bodies = body_errors(touches)
     usual = (*machine, *setups, *bodies)
     count = sum(len(e.parameters) for e in free)
@@ -238,7 +260,7 @@ def _evidence(run: Run, free: Sequence[Effect], at: Array) -> tuple[float, Array
 
 
 def _description_fault(
-    before: Fit, trial: _Trial, right: float, is_absurd: bool
+    before: Fit, trial: _Trial, right: float, is_absurd: bool, beside: Sequence[Effect]
 ) -> DescriptionFault | None:
     """A mistake with the figures of the whole run; None where undoing it does not mend the fit.
 
@@ -253,7 +275,7 @@ def _description_fault(
     suspect = next(islice(suspects(before.run, is_absurd), trial.index, None))  # on all touches
     undone = corrected(suspect, trial.theta) if suspect.free else suspect
     chain = undone.run.touches.chain
-    after = fit_run(undone.run, ordinary_model(chain))
+    after = fit_run(undone.run, _model(undone.run, beside))
     falls = (
         before.test_rms > MIN_IMPROVEMENT * after.test_rms
         or before.widened > MIN_IMPROVEMENT * after.widened

@@ -11,6 +11,7 @@ from matstd.diagnosis.files.diagnosis_file import (
     write_diagnosis,
     write_residuals,
 )
+from matstd.diagnosis.files.law_file import write_laws
 from matstd.diagnosis.files.model_file import (
     SavedModel,
     check_machine,
@@ -30,6 +31,7 @@ __all__ = [
     "read_model",
     "write_comparison",
     "write_diagnosis",
+    "write_laws",
     "write_model",
     "write_residuals",
     "write_uncertainty",

@@ -11,8 +11,10 @@ from matstd.diagnosis.answer import Comparison, Detectable, Diagnosis, GroupResi
 from matstd.diagnosis.choice import Choice
 from matstd.diagnosis.files.fault_table import fault_table
 from matstd.diagnosis.files.geometry_table import geometry_table
+from matstd.diagnosis.files.parts_table import parts_table, promise_table, repeatability_table
 from matstd.diagnosis.files.trend_table import trend_table
 from matstd.diagnosis.fit import Fit, file_unit
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import Condition, Region, Side
 from matstd.twin.files import reading_columns, write_whole
 from matstd.twin.numbers import significant
@@ -33,6 +35,11 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
         "touches": len(result.run),
         "u_um": _um(float(np.median(result.run.u))),
         "verdict": result.verdict.value,
+        "parts": parts_table(result.parts),
+        "repeatability": repeatability_table(result.parts.repeatability),
+        "promise": promise_table(result.promise),
+        "promise_before": promise_table(result.promise_before),
+        "policy": POLICY.table(),
         "steps": [_step(step) for step in result.steps],
         "candidates": [
             {
@@ -95,6 +102,9 @@ def comparison_table(
             "scatter_um": _um(noise.replicates * float(np.median(found.run.u))),
             "degrees_of_freedom": noise.replicates_dof,
         },
+        "repeatability": repeatability_table(found.repeatability),
+        **({} if found.promise is None else {"promise": promise_table(found.promise)}),
+        "expected_um": _um(found.expected),
         "gross_errors": [int(line) for line in found.run.line[found.fit.gross.rows]],
         "where": _where(found.where),
         "depends_on": [

@@ -58,6 +58,8 @@ def _row(row: GeometryRow) -> dict[str, Any]:
             "shared_with": list(row.shared_with),
         }
     out |= _estimate("", suffix, row.estimate, factor)
+    if row.u_model:
+        out[f"uncertainty_of_model_{suffix}"] = significant(row.u_model / factor)
     out |= _estimate("at_ends_", "um", row.at_ends, UM)
     out["is_beyond_expected"] = row.is_beyond_expected
     if row.before is not None and row.change is not None:

@@ -14,15 +14,25 @@ from matstd.diagnosis.fit.describe import (
     reported,
 )
 from matstd.diagnosis.fit.estimability import Estimable, estimable
-from matstd.diagnosis.fit.identification import MIN_POSES, MIN_TOUCHES, Fit, fit_run, prior_for
+from matstd.diagnosis.fit.identification import (
+    MAX_PASSES,
+    MIN_POSES,
+    MIN_TOUCHES,
+    SETTLED_CHANGE,
+    Fit,
+    fit_run,
+    prior_for,
+)
 from matstd.diagnosis.fit.inner import continuous_inner, shifted, spacing
 from matstd.diagnosis.fit.learnt_fit import Learnt
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.fit.unit_mistakes import MistakenUnit, UnitMistake, unit_mistake
 
 __all__ = [
+    "MAX_PASSES",
     "MIN_POSES",
     "MIN_TOUCHES",
+    "SETTLED_CHANGE",
     "SINE_PREFIX",
     "Estimable",
     "Fit",

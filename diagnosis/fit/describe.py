@@ -120,7 +120,9 @@ def reported(
         out.append(explained_rms(fit, effect, theta, covariance))
     elif own.is_curve:
         out += curve_sizes(fit, effect)
-    elif len(theta) > 1:
+    elif own.changes is not None:
+        out += _changes(fit, effect, wider)
+    elif len(theta) > 1 and not own.is_by_parameter:
         out.append(size(effect, theta, covariance, _is_seen(fit, place)))
     if own.wave is not None and own.wave.sines > 1:
         out += _sines(effect, own.wave.sines, theta, covariance)
@@ -134,7 +136,7 @@ def reported(
                 u=float(np.sqrt(covariance[i, i])) / factor,
                 factor=factor,
                 # where nothing sums them up, the coefficient is the size
-                role=Role.COEFFICIENT if len(theta) > 1 else Role.SIZE,
+                role=Role.SIZE if len(theta) == 1 or own.is_by_parameter else Role.COEFFICIENT,
             )
         )
     return tuple(out)
@@ -193,6 +195,19 @@ def curve_sizes(fit: Fit, effect: Effect) -> Sequence[Reported]:
     across = curve[int(np.nanargmax(values))] - curve[int(np.nanargmin(values))]
     whole = _reported_size("peak_to_valley", unit, float(across @ theta), across, covariance)
     return [whole, *_reversals(fit, effect)]
+
+
+def _changes(fit: Fit, effect: Effect, wider: float) -> Iterator[Reported]:
+    """What an effect changed within the run, with what its inner parameters contribute."""
+    of = traits(effect).changes
+    tangents = [t for t in fit.tangents if t.effect.name == effect.name]
+    every = [effect, *tangents]
+    place = np.concatenate([np.r_[fit.of_effect(e.name)] for e in every])
+    theta, covariance = fit.theta[place], fit.covariance[np.ix_(place, place)] * wider**2
+    for name, pair in () if of is None else of(fit.run.touches[fit.used]):
+        curve, unit = _curve(every, pair)
+        w = curve[1] - curve[0]
+        yield _reported_size(name, unit, float(w @ theta), w, covariance)
 
 
 def _of_same_curve(fit: Fit, effect: Effect) -> list[Effect]:

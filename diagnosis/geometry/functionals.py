@@ -1,8 +1,10 @@
 """Quantities of a machine's geometry as linear functions of the parameters of a model.
 
 - lines along every linear axis through the middle of what was probed, all rotary axes at zero, give
-  the scale (slope along the axis), the straightness (across it, about the straight line of least
-  squares) and, two by two, the squareness;
+  the scale (slope along the axis) and the straightness (across it, about the straight line of
+  least squares);
+- squareness, two by two, is that of the affine field that fits the displacements at the probed
+  positions best, all rotary axes at zero: a curved line has another slope in every part of it;
 - the angular errors of a linear axis and all errors of a rotary one are curves of its reading, of
   which the peak-to-valley over the probed readings is reported;
 - the line of a rotary axis is where the tool sees it, place and tilt, while the axis turns;
@@ -12,7 +14,7 @@ None of them depends on where the standard stands, nor on how parameters share w
 common.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -21,11 +23,17 @@ from matstd.diagnosis.geometry.arm_links import arm_functionals
 from matstd.diagnosis.geometry.quantities import Functional, Quantity, geometric_effects
 from matstd.twin.frames import Array
 from matstd.twin.machine import LETTERS, Chain, Family, Link, tip
-from matstd.twin.model import Model
+from matstd.twin.model import Model, traits
 from matstd.twin.record import Touches, at_poses
 
 POINTS = 21
 """Poses of a line along an axis: a sine over the travel has ten of them in every half wave."""
+
+MAX_POSITIONS = 400
+"""Probed positions at which an affine field is fitted: more do not move a slope by a per cent."""
+
+MIN_INDEPENDENT = 0.1
+"""Least singular value of unit columns of readings from which axes moved independently."""
 
 
 def functionals(fit: Fit, theta: Array) -> Iterator[Functional]:
@@ -40,9 +48,10 @@ def functionals(fit: Fit, theta: Array) -> Iterator[Functional]:
     for line in lines.values():
         yield from line.functionals(theta)
     axes = sorted(lines)
+    slopes = _affine_slopes(fit, axes)
     for i, first in enumerate(axes):
         for second in axes[i + 1 :]:
-            yield from _squareness(lines[first], lines[second])
+            yield from _squareness(lines[first], lines[second], slopes)
     probed = [axis for axis in chain.rotary_axes if _is_probed(fit, axis)]
     yield from arm_functionals(fit, probed)
     for axis in probed:
@@ -175,7 +184,29 @@ def _longest_other(chain: Chain, axis: str) -> float:
     return max((float(high - low) for low, high in others), default=0.0)
 
 
-def _squareness(first: _Line, second: _Line) -> Iterator[Functional]:
+def _affine_slopes(fit: Fit, axes: Sequence[str]) -> Mapping[str, Array]:
+    """Slopes over every axis of the affine field that fits the probed positions best, (3, P).
+
+    ``d = c + sum_a g_a q_a`` by least squares over the readings of the linear axes at all touches,
+    as many as `MAX_POSITIONS`. Axes whose readings went together give none: their lines do.
+    """
+    t = fit.run.touches[fit.used]
+    chain = t.chain
+    rows = np.unique(np.linspace(0, len(t) - 1, min(MAX_POSITIONS, len(t))).astype(int))
+    q = np.zeros((len(rows), len(chain.axes)))
+    for axis in axes:
+        q[:, chain.axis_index(axis)] = t.reading(axis)[rows]
+    at = np.column_stack([q[:, chain.axis_index(a)] for a in axes]) if axes else q[:, :0]
+    at = at - at.mean(axis=0)
+    size = np.linalg.norm(at, axis=0)
+    if not axes or np.linalg.svd(at / size, compute_uv=False)[-1] < MIN_INDEPENDENT:
+        return {}
+    D = _displacements(fit, at_poses(chain, q, float(np.mean(t.length))))
+    slopes = np.tensordot(np.linalg.pinv(at / size) / size[:, None], D, axes=1)  # (A, 3, P)
+    return dict(zip(axes, slopes, strict=True))
+
+
+def _squareness(first: _Line, second: _Line, slopes: Mapping[str, Array]) -> Iterator[Functional]:
     """Deviation of two axes from a right angle, as the rotation of the second about the third.
 
     ``EC0Y = -(slope of X over y) - (slope of Y over x)``, and so on by cyclic exchange.
@@ -185,13 +216,15 @@ def _squareness(first: _Line, second: _Line) -> Iterator[Functional]:
     if abs(first.direction @ second.direction) > 0.5:  # parallel axes have no squareness
         return
     sign = float(np.cross(np.eye(3)[third], second.direction) @ first.direction)
-    slopes = second.slope(first.direction) + first.slope(second.direction)
+    weights = second.slope(first.direction) + first.slope(second.direction)
+    if slopes:
+        weights = first.direction @ slopes[second.axis] + second.direction @ slopes[first.axis]
     yield Functional(
         quantity=Quantity.SQUARENESS,
         symbol=f"E{LETTERS[3 + third]}0{second.axis}",
         axes=(first.axis, second.axis),
         unit="rad",
-        weights=np.sign(sign) * slopes,
+        weights=np.sign(sign) * weights,
         lever=second.travel,
     )
 
@@ -215,6 +248,8 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
             weights=weights,
             lever=reach if component >= 3 else 1.0,
         )
+    if not link.is_joint:
+        yield from _zero(fit, link, reach)
     for component, curve in sorted(_curves(fit, _along_axis(fit, axis), link).items()):
         is_angle = component >= 3
         weights = _peak_to_valley(curve, theta)
@@ -228,6 +263,23 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
             weights=weights,
             lever=reach if is_angle else 1.0,
         )
+
+
+def _zero(fit: Fit, link: Link, reach: float) -> Iterator[Functional]:
+    """Zero of a rotary axis; where a turned standard or a tilted neighbour does the same, open."""
+    for start, effect in geometric_effects(fit):
+        symbol = traits(effect).ordinary_constant
+        if symbol and symbol.link == link.name and symbol.component == link.own_component:
+            weights = np.zeros(len(fit.model.parameters))
+            weights[start] = 1.0
+            yield Functional(
+                quantity=Quantity.ROTARY_ZERO,
+                symbol=symbol.name,
+                axes=(link.name,),
+                unit="rad",
+                weights=weights,
+                lever=reach,
+            )
 
 
 def _line_of(fit: Fit, axis: str) -> dict[int, Array]:

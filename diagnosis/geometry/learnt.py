@@ -26,15 +26,21 @@ from matstd.diagnosis.geometry.changes import (
 from matstd.diagnosis.geometry.corrections import Correction, corrections
 from matstd.diagnosis.geometry.expected import expected_size, stated_sizes
 from matstd.diagnosis.geometry.functionals import functionals
+from matstd.diagnosis.geometry.model_choice import with_model_choice
 from matstd.diagnosis.geometry.quantities import Functional, Quantity
 from matstd.diagnosis.geometry.rivals import FoundNumber
-from matstd.diagnosis.geometry.rows import Estimate, GeometryRow, is_clear
+from matstd.diagnosis.geometry.rows import (
+    MIN_CLEAR_SIZE,
+    MIN_DETERMINED_RATIO,
+    Estimate,
+    GeometryRow,
+    is_clear,
+)
 from matstd.twin.frames import Array
 from matstd.twin.model import Model
 
-MIN_DETERMINED_RATIO = 3.0
-"""Expected over remaining standard deviation from which a quantity is a result. With less the
-expectation contributes more than a tenth, ``1 / 3^2``, to the estimate."""
+LOCATIONS = (Quantity.ROTARY_LINE, Quantity.ROTARY_ZERO)
+"""Quantities that one location error is named by, whose usual size is expected of them."""
 
 MIN_SHARED_CORRELATION = 0.3
 """Correlation of estimates from which a parameter is named as one that a quantity is shared with;
@@ -95,7 +101,7 @@ def learnt_geometry(
     if before is not None:
         before = of_first(before, fit.model)
         fit = fit_run(fit.run, since_first_run(fit.model), gross=fit.gross)
-    rows = geometry_rows(fit, before)
+    rows = with_model_choice(fit, geometry_rows(fit, before))
     return LearntGeometry(rows, rungs, *corrections(fit, rows))
 
 
@@ -150,6 +156,11 @@ def _row(
     sd = float(np.linalg.norm(one.weights @ fit.prior.root[:machine, :machine]))
     values = [_of(fit, w) for w in every]
     is_known = [e.u * MIN_DETERMINED_RATIO < sd for e in values]
+    usual = _usual(fit, one) if one.quantity in LOCATIONS else None
+    # what all errors may add up to at a line is no size that a line of such a machine has
+    expected = usual or expected_size(fit, one.weights, stated)
+    # a residual that widens what is expected makes no size of what the run leaves open
+    is_known = [k and _is_size(e, expected) for k, e in zip(is_known, values, strict=True)]
     fitted = set(fit.run.touches.run[fit.used])
     course = tuple(e if is_known[i] and i in fitted else None for i, e in enumerate(values))
     # a difference is taken by its own weights, since the states share most of their errors
@@ -171,15 +182,21 @@ def _row(
         unit=one.unit,
         estimate=values[-1],
         lever=one.lever,
-        expected=expected_size(fit, one.weights, stated),
+        expected=expected,
         is_determined=is_known[-1],
         shared_with=() if is_known[-1] else _shared_with(fit, every[-1]),
         before=earlier,
         change=change,
         course=course if steps else (),
         steps=tuple(steps),
-        usual=_usual(fit, one) if one.quantity is Quantity.ROTARY_LINE else None,
+        usual=usual,
     )
+
+
+def _is_size(estimate: Estimate, expected: float) -> bool:
+    """Whether an estimate is sharper than what was expected of it, or clear by itself."""
+    is_clear = abs(estimate.value) > MIN_CLEAR_SIZE * estimate.u
+    return is_clear or estimate.u * MIN_DETERMINED_RATIO < expected
 
 
 def _usual(fit: Fit, one: Functional) -> float | None:

@@ -17,6 +17,7 @@ class Quantity(Enum):
     SQUARENESS = "squareness"
     ANGULAR = "angular error"
     ROTARY_LINE = "line of a rotary axis"
+    ROTARY_ZERO = "zero of a rotary axis"
     ROTARY_MOTION = "error motion of a rotary axis"
     JOINT_ZERO = "zero of a joint"
     LINK_LENGTH = "length of a link"

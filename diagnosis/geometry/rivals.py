@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.geometry.quantities import is_geometry
 from matstd.twin.effects import LocationError, ProbeRadius
 from matstd.twin.library import ordinary_model
 from matstd.twin.machine import Family
@@ -55,7 +56,9 @@ class Descriptions:
         ]
         touches = fit.run.touches[rows]
         unit = fit.u[rows][:, None]
-        machine = ordinary_model(touches.chain).effects
+        # beside what was found: a number that imitates a found effect is no rival of a line
+        found = [e for e in fit.model.effects if not is_geometry(e) and traits(e).original is None]
+        machine = (*ordinary_model(touches.chain).effects, *found)
         sd = [p.sd for e in machine for p in e.parameters]
         sd += [SETUP_FACTOR * p.sd for e in fit.setups for p in e.parameters]
         A = columns((*machine, *fit.setups), touches) * sd / unit

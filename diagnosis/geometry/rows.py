@@ -14,6 +14,13 @@ MIN_CLEAR_CHANGE = 4.0
 compared; chance makes one of them exceed this in one of three hundred such tables, and would in one
 of eight at 3."""
 
+MIN_DETERMINED_RATIO = 3.0
+"""Expected over remaining standard deviation from which a quantity is a result. With less the
+expectation contributes more than a tenth, ``1 / 3^2``, to the estimate."""
+
+MIN_CLEAR_SIZE = 2.0
+"""Standard uncertainties from which an estimate is a size, however uncertain it is."""
+
 MIN_FAR_LINE = 5.0
 """Own standard uncertainties, and usual sizes of a location error, from which the line of a rotary
 axis is far from where the machine file has it, whatever other errors may add up to: of 64 lines of
@@ -47,8 +54,8 @@ class GeometryRow:
         course: The same in every run, in their order, where there are several; None in a run that
             does not determine it.
         steps: What changed into every run but the first; None where either is not determined.
-        usual: Of the line of a rotary axis the usual size of the one error that it is named by;
-            `expected` has what all errors of the machine may add up to.
+        usual: Of the line or zero of a rotary axis the usual size of the error that it is named by.
+        u_model: What the choice of the model contributes to the uncertainty of the estimate.
     """
 
     quantity: Quantity
@@ -65,13 +72,19 @@ class GeometryRow:
     course: tuple[Estimate | None, ...] = ()
     steps: tuple[Estimate | None, ...] = ()
     usual: float | None = None
+    u_model: float = 0.0
 
     @property
     def is_far(self) -> bool:
-        """Whether it is the line of a rotary axis that is not where the machine file has it."""
+        """Whether it is a line or zero of a rotary axis far from where the machine file has it."""
         if self.usual is None or not self.is_determined:
             return False
         return abs(self.estimate.value) > MIN_FAR_LINE * max(self.usual, self.estimate.u)
+
+    @property
+    def times_usual(self) -> float:
+        """Size over the usual one of a line or zero of a rotary axis; 0 of other quantities."""
+        return abs(self.estimate.value) / self.usual if self.usual else 0.0
 
     @property
     def at_ends(self) -> Estimate:

@@ -7,7 +7,6 @@ independent. Nothing here knows a machine.
 
 from matstd.diagnosis.regression.f_test import f_probability, f_tail
 from matstd.diagnosis.regression.gross import (
-    FALSE_ALARM,
     GrossErrors,
     find_gross,
     robust_scale,
@@ -15,17 +14,20 @@ from matstd.diagnosis.regression.gross import (
 )
 from matstd.diagnosis.regression.linear import BoolArray, LeftOut, Solution, left_out, solve
 from matstd.diagnosis.regression.memory import (
-    MIN_GAIN_MEMORY,
     Memory,
     Whitener,
     likely_memory,
     whitener,
 )
-from matstd.diagnosis.regression.noise import PRIOR_DOF, Noise, noise_factor, replicate_factor
+from matstd.diagnosis.regression.noise import (
+    PRIOR_DOF,
+    Noise,
+    noise_factor,
+    replicate_factor,
+    replicate_groups,
+)
 
 __all__ = [
-    "FALSE_ALARM",
-    "MIN_GAIN_MEMORY",
     "PRIOR_DOF",
     "BoolArray",
     "GrossErrors",
@@ -41,6 +43,7 @@ __all__ = [
     "likely_memory",
     "noise_factor",
     "replicate_factor",
+    "replicate_groups",
     "robust_scale",
     "shots",
     "solve",

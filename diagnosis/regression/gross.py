@@ -5,13 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import gammainc, ndtri
 
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression.linear import BoolArray, Solution, solve
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
-
-FALSE_ALARM = 1e-3
-"""Probability that noise is taken for a gross error, a structure, a region, an edge or an effect:
-of each kind of test, all its trials together."""
 
 MAX_ACCIDENT_SHARE = 0.05
 """Share of touches up to which an outlier is an accident by itself; more must look like
@@ -127,7 +124,7 @@ def find_gross(
     """
     shot = np.arange(len(y)) if shot is None else shot
     n = int(allowed.sum())
-    limit = float(-ndtri(0.5 * FALSE_ALARM / max(n, 1)))
+    limit = float(-ndtri(0.5 * POLICY.false_alarm / max(n, 1)))
     used = allowed.copy()
     fit = solve(X[used], y[used])
     if fit.dof < MIN_DOF:

@@ -18,10 +18,6 @@ from matstd.diagnosis.regression.noise import PRIOR_DOF
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 
-MIN_GAIN_MEMORY = 8.0
-"""Gain of log likelihood by which noise with memory must beat white noise: a chance of 6e-5, since
-twice the gain is chi-squared with one degree of freedom."""
-
 MAX_ROWS_MEMORY = 2500
 """Most rows that a memory is estimated from; more would not improve it and take long."""
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from matstd.diagnosis.regression.linear import BoolArray
 from matstd.twin.frames import Array
-from matstd.twin.record import Instrument, Run
+from matstd.twin.record import Instrument, IntArray, Run
 
 PRIOR_DOF = 4.0
 """Weight of the stated uncertainty, in degrees of freedom: it decides where touches are few."""
@@ -55,10 +55,13 @@ def noise_factor(chi2: float, dof: float) -> float:
     return float(np.sqrt((chi2 + PRIOR_DOF) / (max(dof, 0.0) + PRIOR_DOF)))
 
 
-def replicate_groups(run: Run, rows: BoolArray) -> np.ndarray:
+def replicate_groups(run: Run, rows: BoolArray, in_any_pose: bool = False) -> IntArray:
     """Number of the group of replicates of every row, (N,): same place, pose and last motions.
 
     Rows outside `rows` get -1.
+
+    Args:
+        in_any_pose: Whether a place that was returned to in another pose, or cycle, is the same.
     """
     t = run.touches
     extent = float(np.ptp(t.point, axis=0).max(initial=0.0))
@@ -67,7 +70,8 @@ def replicate_groups(run: Run, rows: BoolArray) -> np.ndarray:
     cells = np.round(t.point / place).astype(np.int64)
     sides = np.round(t.normal / SAME_SIDE).astype(np.int64)
     readings = np.round(t.q / place).astype(np.int64)
-    key = np.column_stack([cells, sides, readings, t.setup, t.pose, t.approach.astype(np.int64)])
+    pose = np.zeros_like(t.pose) if in_any_pose else t.pose
+    key = np.column_stack([cells, sides, readings, t.setup, pose, t.approach.astype(np.int64)])
     group = np.full(len(run), -1)
     group[rows] = np.unique(key[rows], axis=0, return_inverse=True)[1].reshape(-1)
     return group

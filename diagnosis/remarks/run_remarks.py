@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.diagnosis.fit import MIN_POSES, Fit, UnitMistake, fit_run, unit_mistake
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.remarks.body_size import BodySize, body_sizes
 from matstd.diagnosis.remarks.order import JumpInOrder, jump_in_order
 from matstd.diagnosis.remarks.other_run import EffectOfOtherRun
@@ -30,9 +31,6 @@ LOAD_EFFECTS = ("stiffness", "tool-point-stiffness")
 
 MAX_STILL_RANGE = 1e-3
 """Range of readings (rad) below which a joint of an arm stood still; jitter shows nothing."""
-
-MIN_REPLICATE_DOF = 10
-"""Degrees of freedom from which the scatter of replicates is a yardstick for residuals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -334,7 +332,7 @@ def _memory(fit: Fit) -> list[Remark]:
 def _noise(fit: Fit) -> list[Remark]:
     """Noise that is not what the file states."""
     noise = fit.noise
-    if noise.replicates is not None and noise.replicates_dof >= MIN_REPLICATE_DOF:
+    if noise.replicates is not None and noise.replicates_dof >= POLICY.repeat_dof:
         ratio = noise.factor / noise.replicates
         if ratio > 1.0 + 3.0 * (0.5 / noise.replicates_dof) ** 0.5:
             return [WorseThanReplicates(ratio, noise.replicates_dof)]

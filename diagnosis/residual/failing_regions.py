@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.regression import FALSE_ALARM, BoolArray, f_tail
+from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.regression import BoolArray, f_tail
 from matstd.diagnosis.residual.patterns import variables
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
@@ -180,7 +181,7 @@ def _judged(
     rows, judges = who
     seen, z = rows & judges, _even(fit) / noise
     p = min(1.0, kind.chance(z[seen], z[judges & ~rows]) * count)
-    if p >= FALSE_ALARM:
+    if p >= POLICY.false_alarm:
         return None
     r = fit.residual[seen]
     u = float(np.sqrt(np.sum(noise[seen] ** 2)) / len(r))

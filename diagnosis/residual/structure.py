@@ -14,16 +14,13 @@ from scipy.spatial import cKDTree
 from scipy.special import ndtr
 
 from matstd.diagnosis.evidence import EffectSet, Progress, ResidualSpace, quiet
-from matstd.diagnosis.regression import FALSE_ALARM, PRIOR_DOF
+from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.regression import PRIOR_DOF
 from matstd.diagnosis.residual.crowds import crowds
 from matstd.diagnosis.residual.pattern_tests import PatternTests, TestedPattern
 from matstd.diagnosis.residual.waves import Wave, best_wave
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
-
-MIN_MATERIAL_SHARE = 0.01
-"""Share of the squared residual that a pattern must hold to count. In ten thousand rows less is
-beyond chance too, but a model of it would improve the prediction by half a per cent at most."""
 
 FEATURE_DISTANCE = 1e4
 """Distance (mm) by which different features are held apart in the search for neighbours."""
@@ -85,13 +82,15 @@ def find_structure(
     wave = best_wave(effects, complement.touches, smooth.rows)
     neighbours = [*_neighbours(effects), *_crowds(complement)]
     count = sum(len(t.p) for t in tested) + wave.count + len(neighbours)
-    beyond = {_as_structure(t, count): t for t in tested if t.p.min() * count < FALSE_ALARM}
+    beyond = {_as_structure(t, count): t for t in tested if t.p.min() * count < POLICY.false_alarm}
     found = [
         *beyond,
         _wave_structure(effects, wave, count, smooth.rows),
         *(_corrected(n, count) for n in neighbours),
     ]
-    counts = (f for f in found if f.p_value < FALSE_ALARM and f.share > MIN_MATERIAL_SHARE)
+    counts = (
+        f for f in found if f.p_value < POLICY.false_alarm and f.share > POLICY.material_share
+    )
     found = sorted(counts, key=lambda f: f.p_value)
     progress(1.0, "structure left")
     first = [replace(f, columns=beyond[f].columns()) if f in beyond else f for f in found[:most]]
@@ -129,7 +128,7 @@ def _wave_structure(effects: EffectSet, wave: Wave, count: int, rows: IntArray) 
         p_value=p,
         share=wave.drop * (len(effects.complement.u) / len(rows)) / effects.objective,
         evidence=float(gained),
-        columns=effects.complement.project(wave.columns) if p < FALSE_ALARM else None,
+        columns=effects.complement.project(wave.columns) if p < POLICY.false_alarm else None,
         period=wave.period,
     )
 

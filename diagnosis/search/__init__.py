@@ -17,7 +17,6 @@ from matstd.diagnosis.search.search_loop import (
 )
 from matstd.diagnosis.search.selection import (
     MAX_LISTED,
-    MIN_LOG_EVIDENCE_GAIN,
     MOST_SETS,
     Budget,
     Member,
@@ -29,7 +28,6 @@ from matstd.diagnosis.search.task import FREEDOM, DiagnosisTask
 __all__ = [
     "FREEDOM",
     "MAX_LISTED",
-    "MIN_LOG_EVIDENCE_GAIN",
     "MOST_SETS",
     "WHOLE_BELOW",
     "Budget",

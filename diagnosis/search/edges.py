@@ -12,7 +12,8 @@ import numpy as np
 from scipy.special import gammaln
 
 from matstd.diagnosis.evidence import ScaledEffect
-from matstd.diagnosis.regression import FALSE_ALARM, BoolArray, GrossErrors
+from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.regression import BoolArray, GrossErrors
 from matstd.twin.frames import Array
 from matstd.twin.model import inner_values
 from matstd.twin.record import IntArray, Touches
@@ -52,7 +53,7 @@ def unexplained_near_slip(
         count = np.cumsum(bad[near])
         for k in np.flatnonzero(bad[near] & (count >= MIN_EDGE_ERRORS)):
             p = _by_chance(len(touches), int(bad.sum()), int(k) + 1, int(count[k]))
-            if p * len(edges) * MAX_EDGE_LENGTH < FALSE_ALARM:
+            if p * len(edges) * MAX_EDGE_LENGTH < POLICY.false_alarm:
                 out[near[: k + 1]] |= bad[near[: k + 1]]
     return out
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, addition, projected
-from matstd.diagnosis.search.selection import MIN_LOG_EVIDENCE_GAIN
+from matstd.diagnosis.policy import POLICY
 from matstd.twin.effects import MAX_OVERTONES, usual_distance
 from matstd.twin.model import Effect, Wave, original_of, traits
 
@@ -18,7 +18,7 @@ def with_overtones(
 ) -> tuple[ScaledEffect, ...] | None:
     """A set with waves over one axis exchanged for one period of several sines; None for none."""
     best: tuple[float, tuple[ScaledEffect, ...] | None] = (
-        EffectSet(complement, projected(complement, found)).evidence + MIN_LOG_EVIDENCE_GAIN,
+        EffectSet(complement, projected(complement, found)).evidence + POLICY.log_evidence_gain,
         None,
     )
     for wave in found:

@@ -10,8 +10,9 @@ from dataclasses import replace
 
 from matstd.diagnosis.evidence import EffectSet, Grid, ScaledEffect, projected, signatures
 from matstd.diagnosis.fit import continuous_inner
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.search.refine import refined_set, with_moved_points
-from matstd.diagnosis.search.selection import MIN_LOG_EVIDENCE_GAIN, EffectSubset, Member, Search
+from matstd.diagnosis.search.selection import EffectSubset, Member, Search
 
 MAX_SEARCHES = 3
 """Most searches with points of the grid moved to refined inner parameters."""
@@ -31,7 +32,7 @@ def regridded(search: Search, chosen: EffectSubset) -> tuple[Search, EffectSubse
         members = refined_set(search.complement, start)
         effects = EffectSet(search.complement, projected(search.complement, members))
         kept, members = _needed(search, chosen.members, members)
-        is_better = effects.evidence >= chosen.effects.evidence + MIN_LOG_EVIDENCE_GAIN
+        is_better = effects.evidence >= chosen.effects.evidence + POLICY.log_evidence_gain
         if len(kept) == len(chosen.members) and not is_better:
             break
         pool = with_moved_points(

@@ -31,6 +31,7 @@ from matstd.diagnosis.evidence import (
     signatures,
 )
 from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import PatternTests, Structure, find_structure
 from matstd.diagnosis.search.edges import unexplained_near_slip, without
 from matstd.diagnosis.search.overtones import with_overtones
@@ -56,22 +57,13 @@ model then imitates half of everything."""
 MAX_PERIODS = 4
 """Most periods of one component error of one axis."""
 
-MAX_MISSTATED_NOISE = 1.5
-"""Noise that is left over the stated one from which further periods are looked for."""
 
 MAX_NAMELESS = 3
 """Most patterns without a name that are put beside the effects of an unexplained run."""
 
-MIN_LOG_ODDS_NAMELESS = 15.0
-"""Log odds by which one pattern without a name must beat all library effects together to say that
-they only imitate it."""
 
 STRETCHES = 5
 """Stretches of time that are left out to weigh patterns against named effects."""
-
-MAX_ERROR_SHARE = 0.97
-"""Share of the held-out error of named effects below which nameless patterns, or tables, replace
-one of them. Where both predict equally well, the named effect stays."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -151,7 +143,7 @@ def search_until_stable(
     if start or len(laws) == len(candidates):
         return state
     other = _with_further_periods(task, added, candidates, progress, ())
-    return other if _held_out(other) < MAX_ERROR_SHARE * _held_out(state) else state
+    return other if _held_out(other) < POLICY.error_share * _held_out(state) else state
 
 
 def _held_out(state: SearchState) -> float:
@@ -199,7 +191,7 @@ def _is_open(state: SearchState) -> bool:
     """
     chosen = state.chosen.effects
     noise = state.base.noise.factor * float(np.sqrt(chosen.objective / max(chosen.dof, 1.0)))
-    return bool(state.left or state.nameless) or noise > MAX_MISSTATED_NOISE
+    return bool(state.left or state.nameless) or noise > POLICY.noise_ratio_open
 
 
 def _as_one_period(
@@ -309,7 +301,7 @@ def _evicted(before: EffectSubset, after: EffectSubset) -> bool:
     kept = {m.effect.name for m in after.members}
     if all(m.effect.name in kept for m in before.members):
         return False
-    return _by_stretches(after.effects) > MAX_ERROR_SHARE * _by_stretches(before.effects)
+    return _by_stretches(after.effects) > POLICY.error_share * _by_stretches(before.effects)
 
 
 def _by_stretches(effects: EffectSet) -> float:
@@ -331,5 +323,7 @@ def _patterns_that_win(
     """Patterns that explain the run clearly better than all found effects together."""
     gained = chosen.effects.evidence - nothing.effects.evidence
     return [
-        s for s in at_start if s.columns is not None and s.evidence > gained + MIN_LOG_ODDS_NAMELESS
+        s
+        for s in at_start
+        if s.columns is not None and s.evidence > gained + POLICY.log_odds_without_name
     ]

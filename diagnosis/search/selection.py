@@ -24,17 +24,11 @@ from matstd.diagnosis.evidence import (
     quiet,
     score_all,
 )
-from matstd.diagnosis.regression import FALSE_ALARM
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.search.instants import p_by_instants
 from matstd.diagnosis.search.nested import contains
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
-
-MIN_LOG_EVIDENCE_GAIN = 3.0
-"""Least gain of log evidence, and of held-out log density, of an effect: odds of twenty to one."""
-
-MIN_TOUCHES_EXPLAINED = 1.5
-"""Fewest touches that a member must explain; a single one may be an accident."""
 
 MIN_CORRELATION_ALIKE = 0.95
 """Correlation of two fitted signatures from which only one of the sets is carried on."""
@@ -130,11 +124,11 @@ class Verified:
     def stands(self) -> bool:
         """Whether all tests are passed."""
         return (
-            self.p_value < FALSE_ALARM
-            and self.evidence > MIN_LOG_EVIDENCE_GAIN
+            self.p_value < POLICY.false_alarm
+            and self.evidence > POLICY.log_evidence_gain
             and self.held_out < 1.0
-            and self.density > MIN_LOG_EVIDENCE_GAIN
-            and self.touches > MIN_TOUCHES_EXPLAINED
+            and self.density > POLICY.log_evidence_gain
+            and self.touches > POLICY.touches_explained
         )
 
 
@@ -281,8 +275,8 @@ class Search:
             p = float(self.scores(others).p[member.variant])
             gained = chosen.effects.evidence - others.effects.evidence
             if (
-                self.corrected(member.candidate, p) >= FALSE_ALARM
-                or gained <= MIN_LOG_EVIDENCE_GAIN
+                self.corrected(member.candidate, p) >= POLICY.false_alarm
+                or gained <= POLICY.log_evidence_gain
             ):
                 return False
         return all(v.stands for v in self.verify(chosen))
@@ -326,7 +320,7 @@ class Search:
             best = self.backward(self.grown(best))
             other = self.reopened(best)
             if (
-                other.effects.evidence <= best.effects.evidence + MIN_LOG_EVIDENCE_GAIN
+                other.effects.evidence <= best.effects.evidence + POLICY.log_evidence_gain
                 or not self.stands(other)
             ):
                 break
@@ -347,7 +341,7 @@ class Search:
             better = [
                 c
                 for c in carried
-                if c.effects.evidence > best.effects.evidence + MIN_LOG_EVIDENCE_GAIN
+                if c.effects.evidence > best.effects.evidence + POLICY.log_evidence_gain
             ]
             standing = next((c for c in better if self.stands(c)), None)
             if standing is None:

@@ -9,6 +9,7 @@ from matstd.importers.sheets import ANGLES, MM, Sheet
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array, pose, rotation
 from matstd.twin.machine import Axis, Chain, make_chain
+from matstd.twin.units import DEG
 
 _COLUMNS = {
     "a": re.compile(r"\Aa\b", re.IGNORECASE),
@@ -16,6 +17,15 @@ _COLUMNS = {
     "d": re.compile(r"\Ad\b", re.IGNORECASE),
     "theta": re.compile(r"theta|offset|θ", re.IGNORECASE),
 }
+
+_LIMITS = {
+    "min": re.compile(r"\b(min|lower|low)", re.IGNORECASE),
+    "max": re.compile(r"\b(max|upper|high)", re.IGNORECASE),
+}
+"""Columns of the limits of the joints."""
+
+SLACK = 0.5 * DEG
+"""By which a reading may lie beyond a limit."""
 
 
 def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tuple[Chain, Array]:
@@ -28,7 +38,8 @@ def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tup
     Args:
         sheet: Columns a and d in mm, alpha and theta (its offset at reading zero) in degrees,
             unless their names say other units.
-        readings: Of the joints, (N, J), rad; travels are theirs.
+        readings: Of the joints, (N, J), rad. Travels are those of columns `min` and `max`, without
+            them half a turn either way, or whole turns where readings go beyond.
         is_modified: Whether a joint turns about z of its own frame (Craig), and not about that of
             the frame before it.
 
@@ -45,6 +56,7 @@ def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tup
     if len(a) != readings.shape[1]:
         found = f"{len(a)} rows for {readings.shape[1]} columns of joints"
         raise BadFile(sheet.path, "table", found, "a row a joint")
+    travels = _travels(sheet, readings)
     # an axis is the z of the frame before its own rotation: modified parameters first go across
     T, origins, lines = np.eye(4), [], []
     ex, ez = np.eye(3)[0], np.eye(3)[2]
@@ -59,7 +71,7 @@ def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tup
     names = _names(lines)
     axes = {
         name: Axis(
-            range=_travel(readings[:, i]),
+            range=travels[i],
             point=_triple(origins[i] - flange),
             direction=_triple(lines[i]),
         )
@@ -92,9 +104,29 @@ def _names(lines: Sequence[Array]) -> list[str]:
     return out
 
 
-def _travel(q: Array) -> tuple[float, float]:
-    low, high = float(q.min()), float(q.max())
-    return (low, high) if high > low else (low - 1.0, high + 1.0)
+def _travels(sheet: Sheet, readings: Array) -> list[tuple[float, float]]:
+    """Travel of every joint, rad.
+
+    Raises:
+        BadFile: One limit without the other, limits in the wrong order, readings beyond them.
+    """
+    low, high = (sheet.find(_LIMITS[end]) for end in ("min", "max"))
+    if low is None and high is None:
+        # another log of the same arm has other poses: those of one are no limits
+        turns = np.ceil(np.abs(readings).max(axis=0, initial=0.0) / np.pi - 1e-9)
+        reach = np.pi * np.maximum(turns, 1.0)
+        return [(-float(r), float(r)) for r in reach]
+    if low is None or high is None:
+        raise sheet.lacking("both limits of the joints, min and max")
+    ends = [sheet.quantity(column, ANGLES, "deg") for column in (low, high)]
+    for i, (a, b) in enumerate(zip(*ends, strict=True)):
+        if not a < b:
+            raise sheet.bad(i, low, f"{a / DEG:g} to {b / DEG:g} degrees", "min below max")
+        found = readings[:, i].min(), readings[:, i].max()
+        if found[0] < a - SLACK or found[1] > b + SLACK:
+            shown = f"readings from {found[0] / DEG:g} to {found[1] / DEG:g} degrees"
+            raise sheet.bad(i, low, shown, f"the travel, {a / DEG:g} to {b / DEG:g} degrees")
+    return [(float(a), float(b)) for a, b in zip(*ends, strict=True)]
 
 
 def _triple(v: Array) -> tuple[float, float, float]:

@@ -1,22 +1,34 @@
 """Tables of joint readings with the places at which a tracker measured reflectors."""
 
 import re
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from matstd.importers.arms.orientation import oriented, rotations
 from matstd.importers.sheets import ANGLES, MM, Sheet
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
 
 _JOINT = re.compile(
-    r"(?:\A|[^a-z])(?:j|joint|axis|achse|gelenk|q|theta|a)[\s_.]*(\d)", re.IGNORECASE
+    r"(?:\A|[^a-z])(?:j|joint|axis|achse|gelenk|q|theta|a)[\s_.]*(\d{1,2})(?!\d)", re.IGNORECASE
 )
 _LETTER = re.compile(r"(?<![a-z])([xyz])(?![a-z])", re.IGNORECASE)
 _MEASURED = re.compile(r"meas|act|ist\b|track|refl|laser", re.IGNORECASE)
-_COUPLED = re.compile(r"J?(\d)\s*([+-])\s*J?(\d)\Z", re.IGNORECASE)
+_FIXED = re.compile(r"\b(ref(erence|erenz)?|fix(ed)?|fest|base|monument|datum)\b", re.IGNORECASE)
+"""Names of targets beside the arm."""
+_CYCLE = re.compile(r"cycle|zyklus|\brep(lica\w*|eat\w*|etition\w*)?\b|trial", re.IGNORECASE)
+_COUPLED = re.compile(r"J?(\d{1,2})\s*([+-])\s*J?(\d{1,2})\Z", re.IGNORECASE)
+
+
+MAX_FIXED_MOTION = 2.0
+"""Range (mm) of a fixed target in the frame of a tracker that drifts."""
+
+MIN_MOTION_RATIO = 20.0
+"""Least motion of the reflectors on the arm, in ranges of a fixed target."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +41,11 @@ class ArmTable:
     # where the reflectors were measured, (N, K, 3), mm; not a number where one was not
     place: Array
     names: tuple[str, ...]
+    # measured rotation of the target in the tracker's frame, (N, 3, 3); None where places alone
+    turn: Array | None = None
+    # places of targets beside the arm by name, each (N, 3), mm
+    fixed: Mapping[str, Array] = field(default_factory=dict)
+    repeat: IntArray | None = None  # number of the repetition, (N,)
 
     @property
     def shots(self) -> NDArray[np.bool_]:
@@ -37,30 +54,71 @@ class ArmTable:
         return np.all(np.isfinite(self.place), axis=2) & is_whole[:, None]
 
 
-def read_arm(sheet: Sheet, axes: Sequence[str] = ()) -> ArmTable:
+def read_arm(sheet: Sheet, axes: Sequence[str] = (), is_oriented: bool = False) -> ArmTable:
     """Readings of joints, and places of reflectors in the tracker's frame.
 
     Columns of joints are taken in the order of their numbers (`j1`, `joint 2`, `theta3`), degrees
     where the name of a column has no unit. Columns x, y and z with the same words about the letter
-    are one reflector (`x1 y1 z1 x2 y2 z2`, `SMR1 X`), mm where no unit is stated.
+    are one reflector (`x1 y1 z1 x2 y2 z2`, `SMR1 X`), mm where no unit is stated. One that is named
+    so (`ref x`, `base y`), or does not move with the others, is a fixed target beside the arm.
 
     Args:
         axes: Names of the axes of the arm; columns named so are taken, if all are there.
+        is_oriented: Whether the orientation of the target is read (`qw qx qy qz` or `rx ry rz`).
 
     Raises:
         BadFile: No such columns, a joint twice or missing, ambiguous columns of places.
     """
+    turned = oriented(sheet) if is_oriented else None
     joints = _joints(sheet, axes)
-    reflectors = _reflectors(sheet, joints)
+    reflectors, fixed = _reflectors(sheet, (*joints, *(turned.columns if turned else ())))
     q = [sheet.quantity(i, {**ANGLES, **MM}, "deg") for i in joints]
     place = [[sheet.quantity(of[c], MM, "mm") for c in "xyz"] for of in reflectors]
     several = len(reflectors) > 1
-    return ArmTable(
+    cycle = sheet.find(_CYCLE)
+    table = ArmTable(
         sheet=sheet,
         q=np.stack(q, axis=1),
         joints=tuple(sheet.columns[i] for i in joints),
         place=np.array(place).transpose(2, 0, 1),
         names=tuple(f"reflector {k + 1}" if several else "reflector" for k in range(len(place))),
+        turn=rotations(sheet, turned) if turned else None,
+        fixed={
+            name: np.stack([sheet.quantity(of[c], MM, "mm") for c in "xyz"], axis=1)
+            for name, of in fixed.items()
+        },
+        repeat=None if cycle is None else _repetitions(sheet, cycle),
+    )
+    if table.turn is not None and several:
+        found = f"orientations beside {len(reflectors)} reflectors"
+        raise BadFile(sheet.path, "header", found, "one target with an orientation")
+    return _without_standing(table)
+
+
+def _repetitions(sheet: Sheet, column: int) -> IntArray:
+    """Numbers of repetitions."""
+    numbers = sheet.numbers(column)
+    odd = np.flatnonzero(~np.isfinite(numbers) | (numbers != np.round(numbers)))
+    if len(odd):
+        raise sheet.bad(int(odd[0]), column, f"{numbers[odd[0]]:g}", "the number of a repetition")
+    return numbers.astype(np.int64)
+
+
+def _without_standing(table: ArmTable) -> ArmTable:
+    """The table with reflectors that stand still while others move among the fixed targets."""
+    with np.errstate(invalid="ignore"):
+        low, high = np.nanmin(table.place, axis=0), np.nanmax(table.place, axis=0)
+    motion = np.linalg.norm(high - low, axis=1)  # (K,)
+    limit = min(MAX_FIXED_MOTION, float(motion.max()) / MIN_MOTION_RATIO)
+    stands = motion < limit
+    if not stands.any():
+        return table
+    fixed = {table.names[k]: table.place[:, k] for k in np.flatnonzero(stands)}
+    return replace(
+        table,
+        place=table.place[:, ~stands],
+        names=tuple(n for n, still in zip(table.names, stands, strict=True) if not still),
+        fixed={**table.fixed, **fixed},
     )
 
 
@@ -92,8 +150,10 @@ def _named(sheet: Sheet, axis: str) -> int | None:
     return same[0] if same else None
 
 
-def _reflectors(sheet: Sheet, joints: Sequence[int]) -> list[dict[str, int]]:
-    """Columns x, y and z of every reflector.
+def _reflectors(
+    sheet: Sheet, others: Sequence[int]
+) -> tuple[list[dict[str, int]], dict[str, dict[str, int]]]:
+    """Columns x, y and z of every reflector, and those of fixed targets by name.
 
     `Z` and `z` are two columns. Of columns of several kinds those count whose names say that they
     were measured; of one kind they may differ by a number alone.
@@ -101,14 +161,16 @@ def _reflectors(sheet: Sheet, joints: Sequence[int]) -> list[dict[str, int]]:
     found: dict[tuple[str, bool], dict[str, int]] = {}
     for i, name in enumerate(sheet.names):
         match = _LETTER.search(name.replace("_", " "))
-        if match and i not in joints:
+        if match and i not in others:
             around = match.string[: match.start()] + match.string[match.end() :]
             key = around.strip().lower(), match[1].isupper()
             found.setdefault(key, {}).setdefault(match[1].lower(), i)
     whole = {key: of for key, of in found.items() if len(of) == 3}
+    fixed = {words: of for (words, _), of in whole.items() if _FIXED.search(_words(words))}
+    whole = {key: of for key, of in whole.items() if key[0] not in fixed}
     measured = {key: of for key, of in whole.items() if _MEASURED.search(key[0])}
     chosen = measured or whole
-    kinds = {(re.sub(r"\d+", "", words).strip(), is_upper) for words, is_upper in chosen}
+    kinds = {(_words(words), is_upper) for words, is_upper in chosen}
     if len(kinds) != 1:
         every = [sheet.columns[i] for of in found.values() for i in of.values()]
         raise BadFile(
@@ -118,7 +180,12 @@ def _reflectors(sheet: Sheet, joints: Sequence[int]) -> list[dict[str, int]]:
             "one column of measured x, y, z (or x1, x2 ...), the others renamed, or `measured` in "
             "its name",
         )
-    return list(chosen.values())
+    return list(chosen.values()), fixed
+
+
+def _words(name: str) -> str:
+    """A name without numbers."""
+    return re.sub(r"\d+", "", name).strip()
 
 
 def coupled(q: Array, how: str) -> Array:

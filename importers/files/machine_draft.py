@@ -1,14 +1,21 @@
 """Draft machine files for imported measurements; the user checks what the data cannot determine."""
 
+from collections.abc import Mapping
+from dataclasses import replace
+
 import numpy as np
 
+from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
+from matstd.twin.record import Run
 from matstd.twin.units import DEG, UM
 
 ORDINARY_ERROR = (1.0 * UM, 15e-6)
 """Ordinary translational error of a linear axis: a constant (mm) and a share of the travel. New
 machines of ordinary accuracy have 8.5 µm over 500 mm (ISO 10791-4 tolerates 22 µm there)."""
+
+DATA_TRAVEL = "  # PLACEHOLDER: that of the data; --travel states it"
 
 SIDES = "# PLACEHOLDER: the data do not show which axes carry the workpiece (prime)"
 
@@ -34,10 +41,11 @@ def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
         link = chain.link(axis)
         unit = 1.0 if link.kind == "linear" else DEG
         low, high = link.range
+        doubt = "  # PLACEHOLDER: travel of the joint" if is_known else DATA_TRAVEL
         lines += [
             "",
             f"[axis.{axis}]",
-            f"range = [{low / unit:.12g}, {high / unit:.12g}]  # PLACEHOLDER: that of the data",
+            f"range = [{low / unit:.12g}, {high / unit:.12g}]{doubt}",
         ]
         if link.kind == "linear":
             expected = link.expected or usual(high - low)
@@ -50,6 +58,29 @@ def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
     if np.any(chain.table_origin):
         lines += ["", "[workpiece]", f"origin = {_listed(chain.table_origin)}"]
     return "\n".join(lines) + "\n"
+
+
+def with_travels(run: Run, travels: Mapping[str, tuple[float, float]]) -> Run:
+    """The run on its machine with stated travels, mm and rad; those of the data say nothing beyond.
+
+    Raises:
+        UnknownAxis: An axis that the machine does not have.
+        DesignError: Limits in the wrong order, or readings beyond them.
+    """
+    chain = run.touches.chain
+    for axis, (low, high) in travels.items():
+        q = run.touches.q[:, chain.axis_index(axis)]
+        unit = 1.0 if chain.link(axis).kind == "linear" else DEG
+        if not (low < high and low <= q.min() and q.max() <= high):
+            raise DesignError(
+                f"--travel {axis} {low / unit:g} {high / unit:g}: expected limits about the "
+                f"readings, {q.min() / unit:g} to {q.max() / unit:g}"
+            )
+    links = tuple(
+        replace(link, range=travels[link.name]) if link.name in travels else link
+        for link in chain.links
+    )
+    return replace(run, touches=replace(run.touches, chain=replace(chain, links=links)))
 
 
 def usual(travel: float) -> float:

@@ -152,7 +152,7 @@ def _cells(sheet: Sheet, name: str, how: How, key: str, path: str | Path) -> lis
     if how.source not in sheet.columns:
         found = f"{how.source!r}, and {sheet.path} has no such column"
         raise BadFile(path, key, found, f"one of {', '.join(sheet.columns)}")
-    column = sheet.columns.index(how.source)
+    column = sheet.column(how.source)
     if name in _TEXT:
         return sheet.text(column)
     values = how.factor * _values(sheet, column, name, how) + how.offset

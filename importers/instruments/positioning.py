@@ -52,18 +52,31 @@ _ASIDE = re.compile(
     re.IGNORECASE,
 )
 """Names of columns of straightness and angular errors."""
-_CYCLE = re.compile(r"cycle|run|zyklus|lauf|\bj\b", re.IGNORECASE)
+_CYCLE = re.compile(
+    r"cycle|run\b|zyklus|lauf\b|\bj\b|\brep(lica\w*|eat\w*|etition\w*)?\b|trial|pass\b|wiederhol|essai",
+    re.IGNORECASE,
+)
+_COMPUTED = re.compile(
+    r"\bmean|\bavg|average|mittel|moyen|\bst(an)?d(ard)?\b|estimat|sigma|σ|[±+-]\s*[2-4]\s*[\*·]?\s*s|"
+    r"\b[2-4]\s*s\b|\bs\b|\brepeatab|wiederholbar|streu|\brange\b|spann|revers(al|ib)|umkehr|"
+    r"\b[bmera](_?i)?\b|\bu\b|uncert|unsicher|\bmin\b|\bmax\b",
+    re.IGNORECASE,
+)
+"""Names of columns that reports compute from the readings."""
 _DIRECTION = re.compile(r"dir|richtung|approach|anfahr", re.IGNORECASE)
 _WAY_OUT = re.compile(r"\b(up|forward|fwd|vorwärts|hin)\b", re.IGNORECASE)
 _WAY_BACK = re.compile(r"\b(down|backward|bwd|reverse|rückwärts|zurück)\b", re.IGNORECASE)
 _TIME = re.compile(r"time|zeit|clock|heure|\btemps", re.IGNORECASE)
 _NUMBER = re.compile(r"\d+")
+_BRACKETS = re.compile(r"[\[(]\s*([^\])]+?)\s*[\])]")
 _ALONE = re.compile(
     r"(up|down|fwd|bwd|rev|forward|backward|reverse|vor|rück|zurück|hin|aller|retour|pos|neg|[-+↑↓])"
     r"(wards?|wärts)?\Z",
     re.IGNORECASE,
 )
 """A direction alone, where there is one cycle."""
+_AT_AND_WAY = re.compile(r"([+-]?\d+(?:[.,]\d*)?)\s*([^\d\s]*)\Z")
+"""Name of a column made of a target and the direction below it, as in `50 ↓`."""
 _MAX_DIGITS = 9  # digits of the number of a cycle
 
 
@@ -132,7 +145,8 @@ def read_positioning(
     Raises:
         BadFile: No column of targets or deviations, a unit that is not stated.
     """
-    sheet = _upright(sheet)
+    upright = _upright(sheet)
+    is_turned, sheet = upright is not sheet, upright
     target = sheet.column(named[0]) if named[0] else sheet.find(_TARGET, _ACTUAL, _DEVIATION)
     if target is None:
         raise sheet.lacking("a column of targets, or its name by --target (and --actual)")
@@ -140,10 +154,11 @@ def read_positioning(
     at = sheet.quantity(target, ANGLES if turns else MM, "deg" if turns else "mm")
     units = ANGLES if _is_angle(axis, component) else MM
     column, is_position = _readings(sheet, target, named[1], _is_own(axis, component))
-    if column is None:
+    if column is None or (is_turned and _NUMBER.search(sheet.names[column])):
         return _without_gaps(sheet, stacked(_wide(sheet, axis, component, target, at, unit)))
     deviation = sheet.quantity(column, units, unit)
-    cycle, direction, clock = map(sheet.find, (_CYCLE, _DIRECTION, _TIME))
+    cycle, clock = map(sheet.find, (_CYCLE, _TIME))
+    direction = sheet.find(_DIRECTION, _COMPUTED)
     sign, stroke = (
         approaches(_filled_forward(at)) if clock is None else strokes(_filled_forward(at))
     )
@@ -170,15 +185,19 @@ def _readings(sheet: Sheet, target: int, named: str, is_own: bool) -> tuple[int 
     """Column of readings, None for a table with one column per run; whether they are positions."""
     if is_own and named:
         return sheet.column(named), True
-    values, actual = sheet.find(_DEVIATION), sheet.find(_ACTUAL)
+    values, actual = sheet.find(_DEVIATION, _COMPUTED), sheet.find(_ACTUAL, _COMPUTED)
     if is_own:
         actual = sheet.find(_REFERENCE) if actual is None else actual
         return (actual, True) if values is None else (values, False)
-    aside = [i for i, name in enumerate(sheet.names) if _ASIDE.search(name) and i != target]
+    aside = [i for i, name in enumerate(sheet.names) if i != target and _is_aside(name)]
     values = next(iter(aside), actual) if values is None else values
     if named:
         return sheet.column(named), False
     return (None if len(aside) > 1 else values), False
+
+
+def _is_aside(name: str) -> bool:
+    return bool(_ASIDE.search(name)) and not _COMPUTED.search(name)
 
 
 def _filled_forward(at: Array) -> Array:
@@ -190,18 +209,39 @@ def _filled_forward(at: Array) -> Array:
 
 
 def _upright(sheet: Sheet) -> Sheet:
-    """The table with one row per target, transposed where needed: `Target [mm], 0, 100, 200`."""
-    first = str(sheet.cells[0][0]) if len(sheet) else ""
-    if not _TARGET.search(bare(first)) or not all(isinstance(r[0], str) for r in sheet.cells):
+    """The table with one row per target, transposed where needed: `Target [mm], 0, 100, 200`.
+
+    A row of directions, whose cells are words, comes with it, below the targets or among the rows.
+    Names of the rows may stand in several cells: `Deviation [µm], j = 1`.
+    """
+    if not all(isinstance(r[0], str) for r in sheet.cells):
         return sheet
+    rows = [*sheet.cells, *(row for _, row in sheet.of_words if _DIRECTION.search(str(row[0])))]
+    in_header = [_AT_AND_WAY.match(name) for name in sheet.columns]
+    labels = next((i for i, m in enumerate(in_header) if m), 0)
+    if labels and _TARGET.search(sheet.columns[0]) and all(in_header[labels:]):
+        words = ["Target", *sheet.columns[1:labels]]
+        found = [m for m in in_header if m]
+        rows += [(*words, *(float(m[1].replace(",", ".")) for m in found))]
+        rows += [("Direction", *[""] * (labels - 1), *(m[2] for m in found))]
+    elif sheet.find(_TARGET) is not None:
+        return sheet
+    targets = next((r for r in rows if _TARGET.search(bare(str(r[0])))), None)
+    if targets is None or not any(isinstance(cell, float) for cell in targets):
+        return sheet
+    labels = next(i for i, cell in enumerate(targets) if isinstance(cell, float))
     sheet.used.update(range(len(sheet.columns)))
-    columns = list(zip(*sheet.cells, strict=True))
+    # a target over the columns of both directions stands in the first of its merged cells
+    last: str | float = ""
+    filled = [last := cell if cell != "" else last for cell in targets[labels:]]
+    rows = [(*targets[:labels], *filled) if row is targets else row for row in rows]
+    columns = list(zip(*(row[labels:] for row in rows), strict=True))
     return replace(
         sheet,
-        columns=tuple(str(name) for name in columns[0]),
-        cells=tuple(columns[1:]),
-        lines=(sheet.lines[0],) * (len(columns) - 1),
-        above=("",) * (len(columns) - 1),
+        columns=tuple(" ".join(str(c) for c in row[:labels] if c != "") for row in rows),
+        cells=tuple(columns),
+        lines=(sheet.lines[0],) * len(columns),
+        above=("",) * len(columns),
         used=set(),
     )
 
@@ -213,10 +253,13 @@ def _wide(
     units = ANGLES if _is_angle(axis, component) else MM
     parts, found = [], {}
     whole = np.ones(len(sheet), dtype=np.int64)
+    column = sheet.find(_DIRECTION, _COMPUTED)
+    ways = _ways_of_parts(sheet) if column is None else signs(sheet, column)
+    unit = unit or _unit_within(sheet, units)
     for i, name in enumerate(sheet.names):
         number = _NUMBER.search(sheet.columns[i])
         digits = number[0] if number else "1" if _ALONE.match(name) else ""
-        if i == target or not digits:
+        if i in (target, column) or not digits or _COMPUTED.search(name):
             continue
         if len(digits) > _MAX_DIGITS:
             shown = f"column {sheet.columns[i][:40]!r}"
@@ -228,7 +271,7 @@ def _wide(
                 target=at,
                 deviation=_deviations(sheet, i, target, at, unit, units),
                 cycle=int(digits) * whole,
-                direction=found[i] * whole if found[i] else _ways_of_parts(sheet),
+                direction=found[i] * whole if found[i] else ways,
                 line=np.array(sheet.lines),
                 component=component,
             )
@@ -242,6 +285,13 @@ def _wide(
         expected = "up or down (fwd, bwd, +, -) in its name, as in others"
         raise BadFile(sheet.path, "header", f"column {sheet.columns[unsaid]!r}", expected)
     return parts
+
+
+def _unit_within(sheet: Sheet, units: dict[str, float]) -> str | None:
+    """The one unit in brackets within names, as of `Deviation [µm] j = 1`; None of several."""
+    inside = (_BRACKETS.search(name) for name in sheet.columns if unit_of_column(name) is None)
+    found = {m[1].replace("μ", "µ") for m in inside if m} & set(units)
+    return found.pop() if len(found) == 1 else None
 
 
 def _ways_of_parts(sheet: Sheet) -> IntArray:

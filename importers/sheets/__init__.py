@@ -9,7 +9,7 @@ from matstd.importers.sheets.directions import approaches, sign_of, signs, strok
 from matstd.importers.sheets.rows import picked, stacked, timed_by_rows
 from matstd.importers.sheets.sensors import loads, own_columns, temperatures
 from matstd.importers.sheets.sheet import Sheet
-from matstd.importers.sheets.table import read_sheet
+from matstd.importers.sheets.table import listed_tables, most_read, read_sheet, read_tables
 from matstd.importers.sheets.units import ANGLES, MM, bare, unit_of_column
 
 __all__ = [
@@ -20,10 +20,13 @@ __all__ = [
     "bare",
     "clock_times",
     "has_clock",
+    "listed_tables",
     "loads",
+    "most_read",
     "own_columns",
     "picked",
     "read_sheet",
+    "read_tables",
     "seconds",
     "sign_of",
     "signs",

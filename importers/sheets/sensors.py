@@ -8,6 +8,9 @@ from matstd.importers.sheets.sheet import Sheet
 from matstd.importers.sheets.units import ANGLES, DEGC, MM, SECONDS, parted
 from matstd.twin.frames import Array
 
+_TILT = re.compile(r"tilt|incl|neig|level|libelle", re.IGNORECASE)
+"""Names of channels of levels and inclinometers."""
+
 _LOAD = re.compile(r"F_?([xyz])\Z", re.IGNORECASE)
 
 
@@ -34,13 +37,17 @@ def loads(sheet: Sheet) -> Array | None:
 def own_columns(sheet: Sheet) -> dict[str, Array]:
     """Whole columns of numbers with any other unit in brackets, `tau2 [Nm]`, that nothing used.
 
+    Columns of lengths and angles may hold what was measured, so only tilts are taken of those.
+
     By name and unit as a run has them (`tau2_Nm`), (N,); they may drive any effect.
     """
     known = (*MM, *ANGLES, *SECONDS, *DEGC)
     out = {}
     for i, column in enumerate(sheet.columns):
         name, unit = map(_word, parted(column))
-        is_other = column.endswith((")", "]")) and parted(column)[1] not in known
+        is_other = column.endswith((")", "]")) and (
+            parted(column)[1] not in known or (parted(column)[1] in ANGLES and _TILT.search(column))
+        )
         is_whole = all(isinstance(row[i], float) for row in sheet.cells)
         if i not in sheet.used and is_other and is_whole and name and unit:
             out[f"{name}_{unit}"] = sheet.numbers(i)

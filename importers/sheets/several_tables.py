@@ -1,6 +1,8 @@
-"""Choice of the table to read in a report with several tables."""
+"""The tables of a report that has several: one per axis, readings, statistics, environment."""
 
+import re
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 Row = tuple[int, Sequence[str | float]]
 """A line of the file with its cells."""
@@ -8,45 +10,66 @@ Row = tuple[int, Sequence[str | float]]
 MIN_EQUAL_NAMES = 0.5
 """From this share of equal names two headers belong to parts of one table."""
 
+_AXIS = re.compile(r"\b(?:axis|achse|axe|eje)\b\W*([XYZABC])\b", re.IGNORECASE)
 
-def fullest_table(
+
+@dataclass(frozen=True)
+class Part:
+    """One table of a report: its rows with all words of the file, and the lines of the others."""
+
+    rows: Sequence[Row]
+    passed_over: tuple[int, ...] = ()
+
+
+@dataclass
+class _Header:
+    names: tuple[str, ...]
+    axis: str  # the last that words above it name, "" without any
+
+
+def separate_tables(
     rows: Sequence[Row], is_data: Callable[[Sequence[str | float]], bool]
-) -> tuple[Sequence[Row], list[int]]:
-    """Rows without the tables that have other columns than the one with most numbers.
+) -> list[Part]:
+    """The tables of a file by their headers, in its order; words alone stand with each of them.
 
-    A header is a row of words with as many cells as the row of numbers right below it. Of tables
-    with as many numbers the first is taken, as results stand below what they are computed from.
-
-    Returns:
-        The rows, and the lines of those that were passed over.
+    A header is a row of words with as many cells as the row of numbers right below it. Tables with
+    alike headers are parts of one (forward and backward), unless words above them name other axes.
 
     Example:
         >>> is_data = lambda row: isinstance(row[0], float)
-        >>> fullest_table([(1, ["a", "b"]), (2, [1.0, 2.0]),
-        ...                (3, ["c", "d"]), (4, [1.0, 2.0]), (5, [3.0, 4.0])], is_data)
-        ([(3, ['c', 'd']), (4, [1.0, 2.0]), (5, [3.0, 4.0])], [1, 2])
+        >>> [part.passed_over for part in separate_tables([(1, ["a", "b"]), (2, [1.0, 2.0]),
+        ...     (3, ["c", "d"]), (4, [1.0, 2.0]), (5, [3.0, 4.0])], is_data)]
+        [(3, 4, 5), (1, 2)]
     """
-    headers: list[tuple[str, ...]] = []
+    headers: list[_Header] = []
     of: list[int | None] = []
     at: int | None = None
+    axis = ""
     for k, (_, row) in enumerate(rows):
         below = rows[k + 1][1] if k + 1 < len(rows) else ()
         names = _names(row)
+        axis = axis_in(" ".join(c for c in row if isinstance(c, str))) or axis
         if names and is_data(below) and len(names) == sum(c != "" for c in below):
-            at = next((i for i, h in enumerate(headers) if _alike(h, names)), len(headers))
-            headers += [names] if at == len(headers) else []
+            own = (i for i, h in enumerate(headers) if h.axis == axis and _alike(h.names, names))
+            at = next(own, len(headers))
+            headers += [_Header(names, axis)] if at == len(headers) else []
             of.append(at)
         else:
             of.append(at if is_data(row) else None)
     if len(headers) < 2:
-        return rows, []
-    numbers = [0] * len(headers)
-    for (_, row), table in zip(rows, of, strict=True):
-        if table is not None:
-            numbers[table] += sum(isinstance(c, float) for c in row)
-    best = numbers.index(max(numbers))
-    kept = [row for row, table in zip(rows, of, strict=True) if table in (None, best)]
-    return kept, [row[0] for row, table in zip(rows, of, strict=True) if table not in (None, best)]
+        return [Part(rows)]
+    return [
+        Part(
+            [row for row, table in zip(rows, of, strict=True) if table in (None, k)],
+            tuple(line for (line, _), t in zip(rows, of, strict=True) if t is not None and t != k),
+        )
+        for k in range(len(headers))
+    ]
+
+
+def axis_in(words: str) -> str:
+    """Letter of the axis that words name last, as in `Axis: X`; "" where they name none."""
+    return (_AXIS.findall(words) or [""])[-1].upper()
 
 
 def _names(row: Sequence[str | float]) -> tuple[str, ...]:

@@ -29,10 +29,19 @@ class Sheet:
     left_out: tuple[int, ...] = ()  # lines below the header that hold no row of numbers
     # for each row the words above its block of numbers, such as the names of parts
     above: tuple[str, ...] = ()
+    # rows among those of numbers that hold words, with their lines
+    of_words: tuple[tuple[int, tuple[str | float, ...]], ...] = ()
+    sheet: str = ""  # of a workbook
+    number: int = 1  # in the order of the tables of the file
     used: set[int] = field(default_factory=set, compare=False, repr=False)  # columns that were read
 
     def __len__(self) -> int:
         return len(self.cells)
+
+    @property
+    def count(self) -> int:
+        """Numbers in the table."""
+        return sum(isinstance(cell, float) for row in self.cells for cell in row)
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -99,6 +108,10 @@ class Sheet:
     def column(self, name: str) -> int:
         """Index of a column by its whole name or its name without unit; raises BadFile."""
         for names in (self.columns, self.names):
+            if names.count(name) > 1:
+                twice = [self.columns[i] for i, other in enumerate(names) if other == name]
+                found = f"{name!r} in columns {' and '.join(map(repr, twice[:2]))}"
+                raise BadFile(self.path, "header", found, "one column of that name")
             if name in names:
                 return names.index(name)
         expected = f"one of {', '.join(self.columns)}"

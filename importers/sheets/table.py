@@ -7,7 +7,8 @@ words below the last one a footer (means, remarks).
 import csv
 import io
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,10 +16,10 @@ import numpy as np
 from matstd.importers.sheets.blanks import by_blanks
 from matstd.importers.sheets.channel_log import by_channels
 from matstd.importers.sheets.height_map import by_heights
-from matstd.importers.sheets.several_tables import fullest_table
+from matstd.importers.sheets.several_tables import axis_in, separate_tables
 from matstd.importers.sheets.sheet import Sheet
 from matstd.importers.sheets.units import is_unit
-from matstd.twin.errors import BadFile
+from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files import read_any_text
 
 Row = tuple[int, Sequence[str | float]]
@@ -33,6 +34,9 @@ _SEPARATORS = (";", "\t", ",", "|")
 MIN_NUMBER_SHARE = 0.6
 """From this share of numbers a column is one of numbers."""
 
+MAX_LISTED_TABLES, MAX_LISTED_NAMES = 12, 6
+"""Tables, and columns of each, that a message lists."""
+
 _RULE = re.compile(r":?-{2,}:?\Z|\Z")
 """Cells of a line that separates the header, as in tables of a wiki."""
 
@@ -40,7 +44,9 @@ _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?\Z")
 _DECIMAL_POINT = re.compile(r"[+-]?\d+\.\d*([eE][+-]?\d+)?\Z")
 
 
-def read_sheet(path: str | Path, name: str | None = None, names: Sequence[str] = ()) -> Sheet:
+def read_sheet(
+    path: str | Path, name: str | None = None, names: Sequence[str] = (), table: int | None = None
+) -> Sheet:
     """The table of a foreign file.
 
     Args:
@@ -48,21 +54,73 @@ def read_sheet(path: str | Path, name: str | None = None, names: Sequence[str] =
             decimal commas are read where every number of the file has them.
         name: Sheet of a workbook; None takes the first that has a table.
         names: Of the columns, of a table without a header.
+        table: Number of the table in `read_tables`; None takes the one with most numbers of the
+            first sheet, the first of equal ones.
 
     Raises:
-        BadFile: No table of numbers, no such sheet, or mixed decimal marks.
+        BadFile: No table of numbers, no such sheet or table, or mixed decimal marks.
+    """
+    tables = read_tables(path, name, names)
+    if table is None:
+        return max((t for t in tables if t.sheet == tables[0].sheet), key=lambda t: t.count)
+    if not 1 <= table <= len(tables):
+        raise BadFile(path, "--table", str(table), f"1 to {len(tables)}: {listed_tables(tables)}")
+    return tables[table - 1]
+
+
+def read_tables(
+    path: str | Path, name: str | None = None, names: Sequence[str] = ()
+) -> tuple[Sheet, ...]:
+    """Every table of a foreign file, numbered in its order.
+
+    Raises:
+        BadFile: As `read_sheet`.
     """
     path = Path(path)
     if path.suffix.lower() in WORKBOOKS:
-        return _workbook(path, name, names)
-    sheet = _table(path, _text_rows(path), names)
-    if sheet is None:
-        raise BadFile(path, "file", "no table of numbers", "a header and rows of numbers below it")
-    return sheet
+        found = _workbook(path, name, names)
+    else:
+        found = _tables(path, _text_rows(path), names)
+    if not found:
+        where = f"sheet {name}" if name else "file"
+        raise BadFile(path, where, "no table of numbers", "a header and rows of numbers below it")
+    return tuple(replace(sheet, number=i, used=set()) for i, sheet in enumerate(found, 1))
 
 
-def _workbook(path: Path, name: str | None, names: Sequence[str]) -> Sheet:
-    """The table of one sheet of a workbook."""
+def listed_tables(tables: Sequence[Sheet]) -> str:
+    """Tables with number, place, size and columns: `1 (line 6, 11 rows): Target [mm], 1 up ...`."""
+    return "; ".join(
+        f"{t.number} ({f'sheet {t.sheet}, ' if t.sheet else ''}line {t.lines[0]}, {len(t)} rows): "
+        f"{', '.join(filter(None, t.columns[:MAX_LISTED_NAMES]))}"
+        f"{' ...' if len(t.columns) > MAX_LISTED_NAMES else ''}"
+        for t in tables[:MAX_LISTED_TABLES]
+    ) + (f"; and {len(tables) - MAX_LISTED_TABLES} more" * (len(tables) > MAX_LISTED_TABLES))
+
+
+def most_read(tables: Sequence[Sheet], readings: Callable[[Sheet], int], axis: str = "") -> Sheet:
+    """The table of which a reader makes most readings; the fullest where it can read none.
+
+    Args:
+        readings: Their number; raises DesignError where the table is of another kind.
+        axis: Letter that the words above a table may name: such tables come first, those of other
+            axes last.
+    """
+
+    def rank(sheet: Sheet) -> tuple[bool, int, int, int]:
+        named = axis_in("\n".join(sheet.title)) if axis else ""
+        try:
+            count = readings(sheet)
+        except DesignError:
+            count = -1
+        finally:
+            sheet.used.clear()
+        return count >= 0, (named == axis) - (named not in ("", axis)), count, sheet.count
+
+    return tables[0] if len(tables) == 1 else max(tables, key=rank)
+
+
+def _workbook(path: Path, name: str | None, names: Sequence[str]) -> list[Sheet]:
+    """The tables of one sheet of a workbook, or of all."""
     from python_calamine import CalamineError, CalamineWorkbook
 
     try:
@@ -72,13 +130,16 @@ def _workbook(path: Path, name: str | None, names: Sequence[str]) -> Sheet:
     sheets = book.sheet_names
     if name is not None and name not in sheets:
         raise BadFile(path, "sheet", repr(name), f"one of {', '.join(sheets)}")
+    out: list[Sheet] = []
     for one in [name] if name else sheets:
         found = book.get_sheet_by_name(one).to_python(skip_empty_area=False)
         rows = [(i + 1, [_cell(c) for c in row]) for i, row in enumerate(found)]
-        sheet = _table(path, rows, names)
-        if sheet is not None:
-            return sheet
-    raise BadFile(path, f"sheet {name or ', '.join(sheets)}", "no table of numbers", "a table")
+        try:
+            out += [replace(sheet, sheet=one) for sheet in _tables(path, rows, names)]
+        except BadFile:
+            if not out:  # sheets behind one that was read may hold anything
+                raise
+    return out
 
 
 def _cell(value: object) -> str | float:
@@ -134,10 +195,27 @@ def _number(cell: str, mark: str) -> str | float:
         return cell
 
 
-def _table(path: Path, rows: Sequence[Row], names: Sequence[str]) -> Sheet | None:
-    """Header and rows of numbers, None where there are none."""
+def _tables(path: Path, rows: Sequence[Row], names: Sequence[str]) -> list[Sheet]:
+    """Tables of some rows; a fault of the fullest one is raised."""
     rows = [(line, row) for line, row in rows if any(c != "" for c in row)]
-    rows, passed_over = fullest_table(rows, _is_data)
+    parts = separate_tables(rows, _is_data)
+    numbers = [sum(isinstance(c, float) for _, row in p.rows for c in row) for p in parts]
+    out = []
+    for i, part in enumerate(parts):
+        try:
+            sheet = _table(path, part.rows, names, part.passed_over)
+        except BadFile:
+            if numbers[i] == max(numbers):
+                raise
+            continue
+        out += [] if sheet is None else [sheet]
+    return out
+
+
+def _table(
+    path: Path, rows: Sequence[Row], names: Sequence[str], passed_over: Sequence[int]
+) -> Sheet | None:
+    """Header and rows of numbers, None where there are none."""
     first = next((i for i in range(len(rows)) if _begins_table(rows, i)), None)
     if first is None:
         return None
@@ -155,6 +233,7 @@ def _table(path: Path, rows: Sequence[Row], names: Sequence[str]) -> Sheet | Non
     begin = first if names else above[-1] + 1
     data, others = _data_rows(rows[begin:])
     blocks = _blocks(rows, {line for line, _ in data})
+    out_of = set(others)
     return Sheet(
         path=path,
         columns=header,
@@ -163,6 +242,7 @@ def _table(path: Path, rows: Sequence[Row], names: Sequence[str]) -> Sheet | Non
         title=tuple(_words(row) for _, row in rows[: max(begin - 1, 0)]),
         left_out=tuple(sorted([*others, *passed_over])),
         above=tuple(blocks[line] for line, _ in data),
+        of_words=tuple((line, tuple(row)) for line, row in rows[begin:] if line in out_of),
     )
 
 

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.api.arm import FOUND, write_found_arm
 from matstd.api.runs import GEOMETRY, Runs, StartingModel, starting_run
-from matstd.api.saved import REPORT_FILES, Saveable
+from matstd.api.saved import FOUND, REPORT_FILES, Saveable, write_found_arm
 from matstd.diagnosis import answer
 from matstd.diagnosis.evidence import Progress, quiet
 from matstd.diagnosis.files import SavedModel, write_comparison, write_residuals
 from matstd.report.pages import Printer, write_compare_page, write_pdf
-from matstd.report.words import remark_sentence, structure_words
+from matstd.report.run_view import Framed, comparison_view
+from matstd.report.words import comparison_sentence, remark_sentence, structure_words
 from matstd.twin.record import without_copies
 from matstd.twin.words import deviations_in
 
@@ -47,6 +47,12 @@ class Comparison(Saveable, answer.Comparison):
             )
             write_residuals(folder / "residuals.csv", self)
             return "" if self.saved else write_found_arm(folder, self.fit, self.title)
+
+    def live(self) -> Framed:
+        """The live view: in a notebook effects are switched where it is shown."""
+        with deviations_in(self.run.touches.deviation_unit):
+            view = comparison_view(self, self.title)
+            return Framed(f"{self.title} against the model", comparison_sentence(self), view)
 
     def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
         """Write the page into an existing folder."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from matstd.api.diagnosing import Diagnosis
-from matstd.api.effects import register_effects
 from matstd.api.known_errors import drives_stated, machine_errors, with_added, with_unknowns
+from matstd.api.runs import register_effects
 from matstd.compensation import field
 from matstd.compensation.field import Datum, MachineErrors, Share, State, datum_of, sample_workspace
 from matstd.compensation.part_programs import Frame, Program, read_loads, read_part_program
@@ -241,7 +241,7 @@ class Compensation(Displayed):
         """What every error adds along a part program."""
         frame = Frame(self.errors.chain, self.datum)
         program = (options or ProgramOptions()).read(source, frame)
-        return self._shares(passed(program, self.errors))
+        return self._shares(passed(program, self.errors)[0])
 
     def at(self, poses: str | Path) -> Shares:
         """What every error adds at the poses of a file."""
@@ -317,7 +317,7 @@ def compensate(
     title = model.title if isinstance(model, Diagnosis) else Path(name).name
     out = Compensation(
         errors=known,
-        datum=datum_of(chain, _within_travel(chain, "datum", datum or {}), tool_length),
+        datum=datum_of(chain, within_travel(chain, "datum", datum or {}), tool_length),
         poses=sample_workspace(chain, _limits(chain, within or {})),
         model=hashed(b"".join([content, *laws])),
         title=title,
@@ -337,7 +337,7 @@ def _controls(argument: str, names: Iterable[str]) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def _within_travel(chain: Chain, argument: str, readings: Mapping[str, float]) -> dict[str, float]:
+def within_travel(chain: Chain, argument: str, readings: Mapping[str, float]) -> dict[str, float]:
     """Readings by axis, mm and rad; raises BadArgument beyond the travel of an axis."""
     for name, value in readings.items():
         link = chain.links[chain.link_index(chain.axes[chain.axis_index(name)])]
@@ -355,7 +355,7 @@ def _limits(
     """Ranges by axis, mm and rad."""
     for name, ends in within.items():
         for end in ends:
-            _within_travel(chain, "within", {name: end})
+            within_travel(chain, "within", {name: end})
         if not ends[0] <= ends[1]:
             raise BadArgument("within", f"{name}={ends[0]:g}:{ends[1]:g}", "the smaller end first")
     return dict(within)

@@ -114,6 +114,7 @@ class Project:
             NotBuildable: Limits that no standard meets, with the nearest wishes.
         """
         from matstd.api.saved import REPORT_FILES
+        from matstd.compensation.field import MachineErrors
         from matstd.options import SHEET, SHEET_FILES, print_report
         from matstd.probe_paths.stations import feeds_of
         from matstd.report.pages import printer, write_design_page
@@ -136,7 +137,9 @@ class Project:
             remarks = write_design_page(made, folder)
             print_report(folder, printed_by)
             raised = brief.programs.dry_run
-            write_sheets(folder / SHEET, made.stations, feeds_of(brief), printed_by, raised)
+            tried = MachineErrors.of_errors(brief.chain, made.machines[0].errors)
+            feeds = feeds_of(brief)
+            write_sheets(folder / SHEET, made.stations, feeds, printed_by, raised, tried)
         return replace(made, remarks=tuple(remarks), folder=Path(out))
 
     @one_blas_thread()

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from matstd.api.arm import FOUND, write_found_arm
 from matstd.api.runs import GEOMETRY, Runs, StartingModel, is_learnt_from, starting_run
-from matstd.api.saved import REPORT_FILES, Saveable
+from matstd.api.saved import FOUND, REPORT_FILES, Saveable, write_found_arm
 from matstd.diagnosis import answer
 from matstd.diagnosis.choice import candidate_effects
 from matstd.diagnosis.evidence import Progress, quiet
@@ -21,8 +20,10 @@ from matstd.diagnosis.files import (
     write_diagnosis,
 )
 from matstd.diagnosis.fit import Fit
+from matstd.report.geometry import determined_comment
 from matstd.report.pages import Printer, write_diagnosis_page, write_pdf
-from matstd.report.words import remark_sentence
+from matstd.report.run_view import Framed, diagnosis_view
+from matstd.report.words import remark_sentence, verdict_sentence
 from matstd.twin.errors import BadArgument
 from matstd.twin.files import write_whole
 from matstd.twin.library import is_visible, kinds, parse_effect, try_effect, users_files
@@ -92,10 +93,16 @@ class Diagnosis(Saveable, answer.Diagnosis):
         with deviations_in(self.run.touches.deviation_unit):
             sentences = [remark_sentence(r) for r in self.remarks]
             write_diagnosis(folder / "diagnosis.json", self, sentences)
-            write_whole(folder / "model.toml", self.model_text)
+            write_whole(folder / "model.toml", determined_comment(self.geometry) + self.model_text)
             for i, plan in enumerate(self.plans, start=1):
                 write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
             return write_found_arm(folder, self.fit, self.title)
+
+    def live(self) -> Framed:
+        """The live view: in a notebook effects are switched where it is shown."""
+        with deviations_in(self.run.touches.deviation_unit):
+            view = diagnosis_view(self, self.title)
+            return Framed(f"Diagnosis of {self.title}", verdict_sentence(self), view)
 
     def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
         """Write the page into an existing folder."""

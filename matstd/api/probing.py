@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.api.effects import register_effects
 from matstd.api.machines import chain_of
+from matstd.api.runs import register_effects
 from matstd.api.standards import standard_of
 from matstd.artefact.body import Standard
 from matstd.diagnosis.remarks import body_sizes
@@ -30,7 +30,8 @@ from matstd.sensitivity.population import Population, drawn_errors
 from matstd.twin.compute import Progress, silent
 from matstd.twin.display import Displayed
 from matstd.twin.errors import BadArgument, BadFile, BadValue
-from matstd.twin.files import SensorRecord, read_errors, read_sensors, write_run, write_whole
+from matstd.twin.files import SensorRecord, read_errors, read_sensors, write_run
+from matstd.twin.files.whole import write_into
 from matstd.twin.frames import fixed_xyz, pose
 from matstd.twin.library import parse_sized_effect, parse_sizes
 from matstd.twin.machine import Chain
@@ -142,18 +143,28 @@ class Simulation(Displayed):
     campaign: Campaign
     remarks: tuple[str, ...]
 
-    def save(self, path: str | Path, machine: str | Path, logs: str | Path | None = None) -> None:
-        """Write the run file, and the logs into a folder of their own, each whole or not at all.
+    def save(
+        self,
+        path: str | Path,
+        machine: str | Path,
+        logs: str | Path | None = None,
+        force: bool = False,
+    ) -> None:
+        """Write the run file, and the logs into a folder, each whole or not at all.
 
         Args:
             path: Run file.
             machine: Machine file that the run file names.
             logs: Folder; None for none.
+            force: Replace logs of an earlier run.
+
+        Raises:
+            DesignError: A log of the same name exists; the logs are kept in a free folder beside.
         """
         save_run(path, self.run, machine)
         # after it: a run that comes second does not touch the logs of the first
         if logs is not None:
-            save_logs(logs, self.campaign.logs)
+            save_logs(logs, self.campaign.logs, force)
 
 
 def simulate(
@@ -278,9 +289,6 @@ def save_run(path: str | Path, run: Run, machine: str | Path) -> None:
     write_run(path, run, Path(relpath(machine, folder)).as_posix())
 
 
-def save_logs(folder: str | Path, logs: Mapping[str, str]) -> list[Path]:
-    """Write logs as a control leaves them, each whole or not at all."""
-    paths = [Path(folder) / name for name in logs]
-    for path, text in zip(paths, logs.values(), strict=True):
-        write_whole(path, text, newline="\r\n")
-    return paths
+def save_logs(folder: str | Path, logs: Mapping[str, str], force: bool = False) -> list[Path]:
+    """Write logs as a control leaves them; arguments and errors as of `Simulation.save`."""
+    return write_into(folder, logs, force, newline="\r\n")

@@ -4,11 +4,18 @@ from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import ClassVar
 
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.geometry import found_arm
+from matstd.importers import machine_text
+from matstd.report.numbers import microns
 from matstd.report.pages import Printer, printer
-from matstd.twin.files import results_folder
+from matstd.twin.files import results_folder, write_whole
 
 REPORT_FILES = ("report.html", "report.pdf", "tables.xlsx", "tables/*.csv")
 """Files of a page that not every run of a command leaves."""
+
+FOUND = "machine_found.toml"
+"""Machine file of a serial arm with the lines of all joints as found."""
 
 
 class Saveable(ABC):
@@ -52,3 +59,20 @@ class Saveable(ABC):
     @abstractmethod
     def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
         """Write the page into an existing folder."""
+
+
+def write_found_arm(folder: Path, fit: Fit, title: str) -> str:
+    """Write the machine file of a serial arm as a run found it, if the machine is one.
+
+    Returns:
+        What the file is good for; "" where nothing was written.
+    """
+    arm = found_arm(fit)
+    if arm is None:
+        return ""
+    write_whole(folder / FOUND, machine_text(arm.chain, title, is_known=True))
+    return (
+        f"{FOUND} has the lines of all joints as found, to put in the machine file's place: with "
+        f"nothing but the set-up {microns(arm.after)} are left then, {microns(arm.before)} now; "
+        "take all of them or none, and import again, which finds the reflector anew"
+    )

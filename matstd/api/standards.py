@@ -4,8 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-from matstd.api.effects import register_effects
-from matstd.api.runs import Runs, is_learnt_from, listed, read_run
+from matstd.api.runs import Runs, is_learnt_from, listed, read_run, register_effects
 from matstd.artefact import body
 from matstd.artefact.body import Standard, write_standard
 from matstd.artefact.brief import Task, read_task
@@ -28,6 +27,7 @@ from matstd.report.words import remark_sentence
 from matstd.stages.budgets import UNCORRECTED, budgets
 from matstd.twin.display import Displayed
 from matstd.twin.errors import BadArgument, DesignError, NotConforming
+from matstd.twin.files import results_folder
 from matstd.twin.model import Model
 from matstd.twin.record import Run
 from matstd.twin.units import UM
@@ -73,17 +73,22 @@ class Calibration(CalibrationFit, Displayed):
         if self.refusal:
             raise NotConforming(self.refusal)
 
-    def save(self, path: str | Path, cad: str | Path | None = None) -> None:
+    def save(self, path: str | Path, cad: str | Path | None = None, force: bool = False) -> None:
         """Write the calibrated standard, whole or not at all.
 
         Args:
             path: Standard file.
             cad: Folder for STEP, STL, 3MF and glTF of the standard as it is; None for none.
+            force: Replace files that the folder holds.
+
+        Raises:
+            DesignError: The folder is not empty.
         """
         if cad is not None:
             from matstd.cad_out.verify import export_standard  # the CAD kernel takes seconds
 
-            export_standard(self.standard, cad)
+            with results_folder(cad, force) as place:
+                export_standard(self.standard, place)
         write_standard(path, self.standard)
 
 

@@ -23,7 +23,7 @@ from matstd.cad_out.details import datum_touches, details_of, engraved_on
 from matstd.cad_out.making import Stiffness, making_of, stiffness_of, with_sag, write_making
 from matstd.cad_out.meshes import read_stl
 from matstd.cad_out.verify import Conformity, export_standard
-from matstd.diagnosis.answer import probed_volume, prove, seen_from
+from matstd.diagnosis.accuracy import probed_volume, prove, seen_from
 from matstd.diagnosis.files import write_uncertainty
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.task import TaskUncertainty, Visits
@@ -87,7 +87,7 @@ def design(brief: Brief, folder: Path, progress: Progress, workers: Workers = No
         face, at = placement.standard.patches[0], scan_poses(placement.touches)
         write_scan_path(folder / "scan_path.csv", face, brief.options.scan, at, brief.reach)
     with ThreadPoolExecutor(1) as beside:  # the kernel works in processes of its own
-        cad = beside.submit(_export, brief, placement.standard, folder)
+        cad = beside.submit(_export, brief, placement.standard, folder, proving.q)
         progress("identifiability", 0, 1)
         known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
         write_identifiability(folder / "identifiability.json", known)
@@ -167,10 +167,14 @@ def _worst(placement: Placement, study: Study) -> WorstRegions:
     return worst_regions(on_body, placement.proof, study.q, study.volumetric.recurrence)
 
 
-def _export(brief: Brief, standard: Standard, folder: Path) -> Conformity:
-    """STEP, STL, 3MF and glTF of a standard, measured; refused where a clamp stands in it."""
+def _export(brief: Brief, standard: Standard, folder: Path, q: Array) -> Conformity:
+    """STEP, STL, 3MF and glTF of a standard, measured; refused where a clamp stands in it.
+
+    Args:
+        q: Planned readings, (N, A), mm and rad.
+    """
     made = export_standard(standard, folder, author=brief.author, organisation=brief.organisation)
-    check_beside(brief, standard, read_stl(folder / "standard.stl"))
+    check_beside(brief, standard, read_stl(folder / "standard.stl"), q)
     return made
 
 

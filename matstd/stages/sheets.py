@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from matstd.compensation.field import MachineErrors
 from matstd.options import print_report
 from matstd.probe_paths.emit import Feeds
 from matstd.probe_paths.locate import RAISED, companions
@@ -16,6 +17,7 @@ def write_sheets(
     feeds: Feeds,
     printed_by: Printer | None,
     raised: float = RAISED,
+    errors: MachineErrors | None = None,
 ) -> None:
     """Write a sheet for every station, and the programs that go with it.
 
@@ -23,6 +25,7 @@ def write_sheets(
         stations: In their order.
         printed_by: Prints a sheet as PDF; None for no PDF.
         raised: By how much dry runs are raised, mm.
+        errors: Of the machine that plays the programs on the page; None for none.
     """
     setups: set[str] = set()
     for number, station in enumerate(stations):
@@ -31,5 +34,5 @@ def write_sheets(
         plan, words = station.plan, station.dialect
         others = companions(plan, words, feeds, raised, is_further=is_further)
         others.write(folder)
-        sheet = write_setup_page(folder, stations, number, others)
+        sheet = write_setup_page(folder, stations, number, others, errors)
         print_report(folder, printed_by, sheet.stem)

@@ -9,8 +9,8 @@ import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.probe_paths.campaign.as_programmed import check_numbers
+from matstd.probe_paths.campaign.stamps import check_log_stamp
 from matstd.probe_paths.control import UNDATED, LogPart
-from matstd.probe_paths.plan import calibration_hash, stated_serial
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
@@ -94,26 +94,22 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
     """Parts without touches of features that the standard lacks, and remarks on all of them.
 
     Raises:
-        BadFile: A log of another standard or another design of it, nothing but such touches in a
-            part, or numbers that cannot be right (`check_numbers`).
+        DesignError: A log of another standard or another design of it.
+        BadFile: Nothing but such touches in a part, or numbers that cannot be right
+            (`check_numbers`).
     """
     check_numbers(parts)
     kept: list[LogPart] = []
     remarks = [f"{part.path}: {remark}" for part in parts for remark in part.remarks]
     count = len(standard.features)
-    serial = stated_serial(standard.serial)
     for part in parts:
-        if part.heading.standard != standard.name:
-            raise BadFile(part.path, "STANDARD", part.heading.standard, standard.name)
-        if part.heading.serial and part.heading.serial != serial:
-            raise BadFile(part.path, "SERIAL", part.heading.serial, serial or "no serial number")
+        check_log_stamp(part.path, part.heading, standard)
         good = (part.feature >= 1) & (part.feature <= count)
         if len(good) and not np.any(good):
             raise BadFile(
                 part.path, f"line {part.line[0]}", f"feature {part.feature[0]}",
                 f"1 to {count}, a feature of {standard.name}",
             )  # fmt: skip
-        _check_design(part, standard)
         remarks += [
             f"{part.path}: line {part.line[i]}: feature {part.feature[i]} is none of 1 to {count}; "
             f"touch {part.number[i]} is left out"
@@ -127,19 +123,6 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
             )
         kept.append(_rows(part, np.flatnonzero(good)))
     return kept, remarks + _overlaps(kept)
-
-
-def _check_design(part: LogPart, standard: Standard) -> None:
-    """Refuse a log of another design; a calibrated standard has other numbers by right."""
-    stated = part.heading.calibration
-    if stated and standard.known is None:
-        balls = standard.spheres[:-1] if part.heading.ball else standard.spheres
-        ours = calibration_hash(replace(standard, spheres=balls))
-        if stated != ours:
-            raise BadFile(
-                part.path, "CALIBRATION", stated,
-                f"{ours}, the hash of '{standard.name}': the log is of another design",
-            )  # fmt: skip
 
 
 def _overlaps(parts: Sequence[LogPart]) -> list[str]:

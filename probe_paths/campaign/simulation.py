@@ -11,6 +11,7 @@ from matstd.artefact.body import Standard
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.evaluation import evaluate
+from matstd.probe_paths.campaign.stamps import check_program_stamp
 from matstd.probe_paths.campaign.virtual_run import VirtualRun, run_programs
 from matstd.probe_paths.control import LogPart, ReadProgram, read_log, read_program
 from matstd.probe_paths.plan import Probe
@@ -59,6 +60,7 @@ def simulate_search(
         NotReachable: A touch that meets nothing where it stands.
         DesignError: A program made for another standard.
     """
+    check_program_stamp(program, standard, believed=False)
     check_moves(program, standard, machine.chain)
     (run,) = run_programs([program], standard, machine, rng)
     run.check_done()
@@ -114,6 +116,7 @@ def visits(
         if not isinstance(program, ReadProgram):
             progress("moves of the programs", done, len(programs))
             program = read_program(program, chain, probe, dialect)
+            check_program_stamp(program, believed)
             check_moves(program, believed, chain)
         texts.append(program)
     out = []

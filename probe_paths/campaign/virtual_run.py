@@ -26,8 +26,8 @@ from matstd.probe_paths.control import (
     Value,
     step_times,
 )
-from matstd.probe_paths.plan import LINEAR, ProgramFrame, Sensor, stated_serial
-from matstd.twin.errors import DesignError, NotReachable
+from matstd.probe_paths.plan import LINEAR, ProgramFrame, Sensor
+from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.record import Labels, Touches
 
@@ -127,7 +127,6 @@ def _planned_touches(solvers: Sequence[ContactSolver]) -> list[Touches]:
 def _solver(
     program: ReadProgram, standard: Standard, machine: VirtualMachine, rng: np.random.Generator
 ) -> ContactSolver:
-    _check_standard(program, standard)
     noise = rng.normal(0.0, 1.0, len(program.touches)) * machine.noise
     return ContactSolver(program, standard, machine, noise)
 
@@ -162,27 +161,6 @@ def _run(contacts: ContactSolver, begin: float) -> VirtualRun:
         outcome=outcome,
         end=end,
     )
-
-
-def _check_standard(program: ReadProgram, standard: Standard) -> None:
-    if program.heading.standard != standard.name:
-        raise DesignError(
-            f"{program.path}: written for standard '{program.heading.standard}', "
-            f"found '{standard.name}'"
-        )
-    serial = stated_serial(standard.serial)
-    if program.heading.serial and program.heading.serial != serial:
-        raise DesignError(
-            f"{program.path}: written for serial number {program.heading.serial}, this standard "
-            f"has {serial or 'none'}"
-        )
-    names = list(program.heading.touched(standard).features)
-    for number, name in program.features.items():
-        if not 0 < number <= len(names) or names[number - 1] != name:
-            raise DesignError(
-                f"{program.path}: feature {number} is {name} in the program; standard "
-                f"'{standard.name}' has {', '.join(f'{i + 1} {n}' for i, n in enumerate(names))}"
-            )
 
 
 class _Control:

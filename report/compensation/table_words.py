@@ -63,6 +63,6 @@ def table_lines(played: VerifiedTables) -> Iterator[tuple[str, bool]]:
     if held:
         words = ", ".join(held_words(left) for left in held[:NAMED])
         more = f" and {len(held) - NAMED} more" if len(held) > NAMED else ""
-        yield f"- cannot represent: {words}{more}", False
+        yield f"- cannot represent, rms over the workspace: {words}{more}", False
     else:
         yield "- represents every error of the model", False

@@ -1,5 +1,6 @@
 """The geometry of the machine in words: estimates, their effect over the travel, changes."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from matstd.diagnosis.geometry import (
@@ -33,6 +34,9 @@ USUAL = (Quantity.SQUARENESS, Quantity.SCALE, *ARM)
 
 SPANS = (Quantity.STRAIGHTNESS, Quantity.ANGULAR, Quantity.ROTARY_MOTION)
 """Curves, reported by their peak to valley."""
+
+CLEAR = 2.0
+"""Standard uncertainties from which on a quantity is worth a line on the console."""
 
 NOTED = 8
 """Quantities reported on the console."""
@@ -90,6 +94,8 @@ def quantity_name(row: GeometryRow) -> str:
         case Quantity.ROTARY_LINE:
             line = f"line of {axis}"
             words = f"tilt of the {line} about {about}" if about else f"{line} in {letter}"
+        case Quantity.ROTARY_ZERO:
+            words = f"zero of {axis}"
         case Quantity.ROTARY_MOTION if letter == axis[0]:
             words = f"positioning of {axis}"
         case Quantity.ROTARY_MOTION:
@@ -115,9 +121,13 @@ def _line(row: GeometryRow) -> GeometryLine:
             is_noted=False,
         )
     notes = []
-    if row.is_beyond_expected or row.is_far:
-        size = row.usual if row.is_far and row.usual is not None else row.expected
-        notes.append(f"larger than expected (± {digits(size / factor, 2)} {unit})")
+    if row.is_far:
+        notes.append(
+            f"{digits(row.times_usual, 2)} times what is usual (± {expected}): the machine file or "
+            "the set-up is wrong"
+        )
+    elif row.is_beyond_expected:
+        notes.append(f"larger than expected (± {expected})")
     if row.has_changed and row.change is not None:
         notes.append(f"changed by {_value(row.change.value, row.change.u, factor, unit)}")
     is_noted = bool(notes)
@@ -164,17 +174,18 @@ def _value(value: float, u: float, factor: float, unit: str) -> str:
 
 
 def noted_lines(geometry: LearntGeometry) -> list[str]:
-    """The most important quantities: those that changed or exceed their expected size.
+    """The largest quantities, by what they do at the tool; changed ones stand first.
 
-    Without any, squareness and scales, zeros of joints and lengths of links, the clearest first;
-    without these, all that the run determines.
+    Lines of rotary axes always, of the others those that changed, exceed their expected size or
+    are clear of their uncertainty. Without any, squareness and scales, zeros of joints and lengths
+    of links; without these, all that the run determines.
     """
+    known = [r for r in geometry.rows if r.is_determined]
     noted = [r for r in geometry.rows if r.has_changed or _is_beyond(r) or _is_of_arm(r)]
-    if not noted:
-        known = [r for r in geometry.rows if r.is_determined]
-        noted = [r for r in known if _is_usual(r)] or known
+    noted += [r for r in known if r not in noted and (_is_line(r) or _is_clear(r))]
+    noted = noted or [r for r in known if _is_usual(r)] or known
     by_size = sorted(noted, key=lambda r: (not r.has_changed, -r.at_ends.value))
-    lines = [_noted(r) for i, r in enumerate(by_size) if i < NOTED or r.is_far]
+    lines = [_noted(r) for i, r in enumerate(by_size) if i < NOTED or r.is_far or _is_line(r)]
     more = len(noted) - len(lines)
     lines += [f"and {more} more in the table"] if more > 0 else []
     if any(step.rung is Rung.MODEL for step in geometry.ladder) and not any(
@@ -184,6 +195,42 @@ def noted_lines(geometry: LearntGeometry) -> list[str]:
             0, "the geometry differs from the model, but no single quantity changed beyond chance"
         )
     return lines
+
+
+def rotary_lines(geometry: LearntGeometry) -> list[str]:
+    """Line and zero of every rotary axis with what is usual of them, one sentence for each axis."""
+    rows = [r for r in geometry.rows if r.usual is not None]
+    return [
+        _rotary([r for r in rows if r.axes == axes]) for axes in dict.fromkeys(r.axes for r in rows)
+    ]
+
+
+def _rotary(rows: Sequence[GeometryRow]) -> str:
+    """`line and zero of C: EX0C 12.3 ± 1.0 µm, ..., EC0C not determined (usual: ± 64 µm, ...)`."""
+    parts = [f"{r.symbol} {value_words(r) if r.is_determined else 'not determined'}" for r in rows]
+    sizes = {}
+    for row in rows:
+        unit, factor = _UNITS[row.unit]
+        sizes[unit] = f"± {digits(row.expected / factor, 2)} {unit}"
+    return (
+        f"line and zero of {rows[0].axes[0]}: {', '.join(parts)}; usual {', '.join(sizes.values())}"
+    )
+
+
+def determined_comment(geometry: LearntGeometry) -> str:
+    """The determined quantities as comments at the head of a model file.
+
+    An estimate of one parameter shares what set-up and other parameters imitate; the quantities
+    here are those of the console and the page.
+    """
+    known = [line for line in geometry_lines(geometry) if line.is_determined]
+    if not known:
+        return ""
+    head = (
+        "# What the run determines, as reported. The estimates below are parameters, whose\n"
+        "# indistinguishable parts (of the set-up, of each other) are shared out by the prior.\n"
+    )
+    return head + "".join(f"#   {line.name}: {line.value}\n" for line in known) + "\n"
 
 
 def far_lines(geometry: LearntGeometry) -> list[str]:
@@ -203,6 +250,20 @@ def _noted(row: GeometryRow) -> str:
 
 def _is_beyond(row: GeometryRow) -> bool:
     return row.is_beyond_expected or row.is_far
+
+
+def _is_line(row: GeometryRow) -> bool:
+    """Whether it is the position of a rotary axis, the first that is asked of a five-axis machine.
+
+    Arms have many lines and small uses of each: there these are the lengths and zeros.
+    """
+    is_place = row.quantity is Quantity.ROTARY_LINE and row.unit == "mm"
+    return is_place and row.is_determined
+
+
+def _is_clear(row: GeometryRow) -> bool:
+    """Whether it exceeds its uncertainty by more than chance."""
+    return row.is_determined and abs(row.estimate.value) > CLEAR * row.estimate.u
 
 
 def _is_of_arm(row: GeometryRow) -> bool:

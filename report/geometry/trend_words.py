@@ -15,6 +15,7 @@ from matstd.report.geometry.geometry_words import (
     ladder_sentence,
     noted_lines,
     quantity_name,
+    rotary_lines,
     shown_unit,
 )
 from matstd.report.numbers import digits, microns
@@ -130,4 +131,5 @@ def console_lines(
     first += [(text, False) for text in copy_lines(touches, geometry, faults)]
     first += [(text, True) for text in trend_lines(trend)]
     noted = noted_lines(geometry) if trend is None else far_lines(geometry)
-    return first + [(text, False) for text in (ladder_sentence(geometry), *noted)]
+    rest = (ladder_sentence(geometry), *noted, *rotary_lines(geometry))
+    return first + [(text, False) for text in rest]

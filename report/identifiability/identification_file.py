@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from matstd.diagnosis.answer import Proof
+from matstd.diagnosis.accuracy import Proof
 from matstd.diagnosis.fit import Estimable, Fit, estimable
 from matstd.report.identifiability.identifiability_words import combination_words, freedom_words
 from matstd.report.numbers import shown

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, TypeVar
 
 if TYPE_CHECKING:
+    from markupsafe import Markup
     from matplotlib.figure import Figure
 
 T = TypeVar("T")
@@ -114,6 +115,21 @@ class KeyFigure:
 
 
 @dataclass(frozen=True, slots=True)
+class LiveView:
+    """What moves on a page, where its reader's browser runs scripts; HTML as it stands.
+
+    Attributes:
+        style: Style sheet, in the head.
+        place: Element that the script fills, below the head of the page; hidden until then.
+        script: Data and script, behind everything else.
+    """
+
+    style: Markup
+    place: Markup
+    script: Markup
+
+
+@dataclass(frozen=True, slots=True)
 class Page:
     """A whole page.
 
@@ -124,6 +140,8 @@ class Page:
         key: Its figures.
         sections: Those before the first title stand above the table of contents.
         foot: What the figures rest upon.
+        next: What to do now, in a sentence behind the lead; empty for nothing.
+        live: What moves, above the sections, which are then folded; None for a page of pictures.
     """
 
     title: str
@@ -132,3 +150,5 @@ class Page:
     key: Sequence[KeyFigure]
     sections: Sequence[Section]
     foot: Sequence[str] = ()
+    next: str = ""
+    live: LiveView | None = None

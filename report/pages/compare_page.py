@@ -20,11 +20,12 @@ from matstd.report.pages.run_sections import (
     residual_sections,
     run_foot,
 )
+from matstd.report.run_view import comparison_step, comparison_view
+from matstd.report.verdict import promise_words, repeatability_words
 from matstd.report.words import (
     comparison_sentence,
     learnt_lines,
     remark_sentence,
-    stated_noise,
     structure_words,
 )
 from matstd.twin.units import UM
@@ -83,6 +84,8 @@ def write_compare_page(
             outlier_section(found.fit),
         ],
         foot=run_foot(found.run, title),
+        next=comparison_step(found, title),
+        live=comparison_view(found, title),
     )
     path = Path(folder) / PAGE
     write_page(path, page)
@@ -90,11 +93,7 @@ def write_compare_page(
 
 
 def _key(found: Comparison) -> list[KeyFigure]:
-    run, noise, worst = found.run, found.fit.noise, found.worst
-    scatter = ""
-    if noise.replicates is not None:
-        size = noise.replicates * stated_noise(run) / UM
-        scatter = f"; {size:.2f} µm in {noise.replicates_dof} replicates"
+    run, worst = found.run, found.worst
     times = digits(abs(found.normalised[worst]), 2)
     return [
         KeyFigure(
@@ -106,7 +105,7 @@ def _key(found: Comparison) -> list[KeyFigure]:
             f"{found.residual[worst] / UM:+.2f} µm",
             f"worst touch, line {run.line[worst]}: {times} u",
         ),
-        KeyFigure(microns(stated_noise(run)), f"stated noise{scatter}"),
+        KeyFigure(microns(found.scatter), "scatter of the residual"),
         KeyFigure(str(len(run)), f"touches{extent(run.touches)}"),
     ]
 
@@ -116,12 +115,21 @@ def _opening(found: Comparison, reported: Mapping[str, Sequence[Reported]]) -> S
     fitted = _FITTED.format(count=len(found.fit.parameters))
     learnt = learnt_lines(found.learnt, reported) if found.learnt else []
     return Section(
-        sentences=[_PREDICTED if found.is_prediction else fitted, *learnt],
+        sentences=[_PREDICTED if found.is_prediction else fitted, *learnt, *_expected(found)],
         notes=[
             *(f"**{sentence(words)}**" for words in fault_sentences(found.faults)),
             *(sentence(remark_sentence(remark)) for remark in found.remarks),
         ],
     )
+
+
+def _expected(found: Comparison) -> list[str]:
+    """Repeatability, and the errors to expect of a model that was fitted here."""
+    repeats = repeatability_words(found.repeatability, found.scatter)
+    out = [sentence(f"repeatability: {repeats}")]
+    if found.promise is not None:
+        out.append(sentence(f"error to expect: {promise_words(found.promise)}"))
+    return out
 
 
 def _patterns(found: Comparison, title: str, rng: np.random.Generator) -> list[Section]:

@@ -10,7 +10,7 @@ from matstd.artefact.compare import IdentifiabilityReport, WorstRegions
 from matstd.artefact.place import Placement
 from matstd.cad_out.making import Making
 from matstd.cad_out.verify import Conformity
-from matstd.diagnosis.answer import Proof
+from matstd.diagnosis.accuracy import Proof
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.task import TaskUncertainty, Visits
 from matstd.probe_paths.campaign import Campaign

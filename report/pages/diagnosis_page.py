@@ -29,7 +29,9 @@ from matstd.report.pages.run_sections import (
 )
 from matstd.report.pages.trend_section import trend_sections
 from matstd.report.plots import draw_effect, draw_fall, draw_form, is_form
+from matstd.report.run_view import diagnosis_step, diagnosis_view
 from matstd.report.style import series
+from matstd.report.verdict import part_lines
 from matstd.report.words import (
     figures,
     remark_sentence,
@@ -78,6 +80,7 @@ def write_diagnosis_page(
         lead=verdict_sentence(result),
         key=_key(result),
         sections=[
+            _parts(result),
             _notes(result),
             *trend_sections(result.trend),
             _steps(result),
@@ -93,6 +96,8 @@ def write_diagnosis_page(
             outlier_section(result.fit),
         ],
         foot=run_foot(result.run, title),
+        next=diagnosis_step(result, title),
+        live=diagnosis_view(result, title),
     )
     path = Path(folder) / PAGE
     write_page(path, page)
@@ -107,13 +112,15 @@ def is_open(result: Diagnosis) -> bool:
 def _key(result: Diagnosis) -> list[KeyFigure]:
     look = "bad" if is_open(result) else "found" if result.verdict is Verdict.MISSING else "good"
     steps, stated = result.steps, stated_noise(result.run)
-    before = f"{steps[0].fit.test_rms / UM:.2f} → " if len(steps) > 1 else ""
+    before, after = result.promise_before, result.promise
+    fall = f"{before.elsewhere / UM:.2f} → " if len(steps) > 1 else ""
     held_out = int((result.run.split == "test").sum())
     noise = result.fit.noise
     return [
         KeyFigure(result.verdict.value, "verdict", look),
         KeyFigure(
-            f"{before}{steps[-1].fit.test_rms / UM:.2f} µm", "error of held-out touches, rms"
+            f"{fall}{after.elsewhere / UM:.2f} µm",
+            f"error to expect elsewhere, rms; at the same touches {microns(after.same)}",
         ),
         KeyFigure(
             microns(stated),
@@ -125,6 +132,12 @@ def _key(result: Diagnosis) -> list[KeyFigure]:
             f"touches{extent(result.run.touches)}{f'; {held_out} held out' if held_out else ''}",
         ),
     ]
+
+
+def _parts(result: Diagnosis) -> Section:
+    """The verdict in three parts, repeatability, and the errors to expect."""
+    rows = [[capital(name), sentence(words)] for name, words in part_lines(result)]
+    return Section("Verdict in parts", table=Table(("part", "finding"), rows))
 
 
 def _notes(result: Diagnosis) -> Section:

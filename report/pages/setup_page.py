@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from matstd.compensation.field import MachineErrors
 from matstd.probe_paths.campaign import setup_tolerance
 from matstd.probe_paths.language import LANGUAGES, Label, Q, interlocks
 from matstd.probe_paths.locate import Companions
@@ -15,9 +16,9 @@ from matstd.probe_paths.plan import (
 )
 from matstd.probe_paths.stations import Station
 from matstd.report.layout import Page, Picture, Section, Table, write_page
+from matstd.report.machine import PLAYBACK, write_playback
 from matstd.report.numbers import plural
 from matstd.report.plots import draw_setup
-from matstd.report.scenes import PLAYBACK, write_playback
 from matstd.twin.frames import fixed_xyz_angles
 from matstd.twin.units import DEG, MINUTE
 
@@ -60,7 +61,11 @@ _COMMON_STEPS = (
 
 
 def write_setup_page(
-    folder: Path, stations: Sequence[Station], number: int, others: Companions
+    folder: Path,
+    stations: Sequence[Station],
+    number: int,
+    others: Companions,
+    errors: MachineErrors | None = None,
 ) -> Path:
     """Write the sheet of a station with its drawing and playback; returns the path of the page.
 
@@ -69,12 +74,13 @@ def write_setup_page(
         stations: Of the campaign, in their order.
         number: Of the station, from 0.
         others: Programs that are run before its own.
+        errors: Of the machine that the playback shows; None for none.
     """
     station = stations[number]
     plan, programs, dialect = station.plan, station.programs, station.dialect
     page, picture, playback = (_named(name, station, number) for name in (PAGE, PICTURE, PLAYBACK))
     folder.mkdir(parents=True, exist_ok=True)
-    write_playback(folder / playback, plan, programs, dialect)
+    write_playback(folder / playback, plan, programs, dialect, errors)
     standard, many = plan.standard, len(stations) > 1
     serial = f", serial {standard.serial}" if standard.serial else ""
     which = f", set-up {station.setup} with tool {dialect.tool}" if many else ""
@@ -182,8 +188,8 @@ def _run(station: Station, others: Companions, playback: str) -> list[Section]:
         for p in station.programs.programs
     ]
     shown = (
-        f"[{playback}]({playback}), beside this sheet, plays the programs: table, standard, clamps "
-        "and probe over every motion, with line and touch."
+        f"[{playback}]({playback}), beside this sheet, plays the programs on the machine: every "
+        "motion with its line, readings, touch, clearance and the deviation that it finds."
     )
     return [
         Section("Run", table=Table(("program", "touches", "about, in min"), rows)),

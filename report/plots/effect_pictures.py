@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from matstd.diagnosis.answer import (
-    MAX_LOG_ODDS_CONFUSED,
     Candidate,
     ConfusionClass,
     Diagnosis,
     Step,
 )
 from matstd.diagnosis.fit import MIN_POSES, Fit
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import BoolArray
 from matstd.diagnosis.residual import Partial, Seen, binned, partial
 from matstd.report.effects import effect_cell, effect_title
@@ -210,13 +210,13 @@ def draw_rivals(confusion: ConfusionClass, colour: str = BLUE) -> Figure:
     apart = confusion.distinguished[: max(2, MOST_BARS - len(confusion.rivals))]
     rows = [*confusion.rivals[:MOST_BARS], *apart]
     names = [_named(e) for e in (confusion.effect, *(r.effect for r in rows))]
-    behind = np.array([0.0, *(max(r.log_odds, -MAX_LOG_ODDS_CONFUSED) for r in rows)]) / TEN
+    behind = np.array([0.0, *(max(r.log_odds, -POLICY.log_odds_alike) for r in rows)]) / TEN
     alike = 1 + min(len(confusion.rivals), MOST_BARS)
     drawn = figure(1.1 + ROW * len(names))
     ax = drawn.subplots()
     y = np.arange(len(names))[::-1]
     ax.axvspan(
-        -MAX_LOG_ODDS_CONFUSED / TEN, MAX_LOG_ODDS_CONFUSED / TEN, color=LINE, alpha=0.45, lw=0
+        -POLICY.log_odds_alike / TEN, POLICY.log_odds_alike / TEN, color=LINE, alpha=0.45, lw=0
     )
     ax.axvline(0.0, color=INK, lw=0.9)
     colours = np.array([colour] * alike + [SOFT] * (len(names) - alike))

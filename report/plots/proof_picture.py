@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from matstd.diagnosis.answer import Proof
+from matstd.diagnosis.accuracy import Proof
 from matstd.report.style import BLUE, RED, SOFT, figure, plain, series
 from matstd.twin.units import UM
 

@@ -1,12 +1,10 @@
 """Pictures in three dimensions, drawn without a screen in a process of their own.
 
 Files pass between the two processes, because a renderer without OpenGL ends the process it runs
-in; `*_scene` speaks to the rest of the house, `*_render` runs over there. Bodies of
-a playback are triangles, which the reader's browser draws.
+in; `*_scene` speaks to the rest of the house, `*_render` runs over there.
 """
 
-from matstd.report.scenes.playback import PLAYBACK, write_playback
 from matstd.report.scenes.standard_scene import draw_standard
 from matstd.report.scenes.volume_scene import Scene, draw_volumes
 
-__all__ = ["PLAYBACK", "Scene", "draw_standard", "draw_volumes", "write_playback"]
+__all__ = ["Scene", "draw_standard", "draw_volumes"]

@@ -11,7 +11,7 @@ import numpy as np
 from matstd.artefact.compare import DETECTION_POWER, FALSE_ALARM, MODEL_ERROR, Rival, WorstRegions
 from matstd.artefact.place import Placement
 from matstd.artefact.worth import CriterionOptions
-from matstd.diagnosis.answer import Proof
+from matstd.diagnosis.accuracy import Proof
 from matstd.diagnosis.fit import Fit
 from matstd.report.numbers import digits, percent, um
 from matstd.report.words.family_words import family_line

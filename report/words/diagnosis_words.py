@@ -83,7 +83,8 @@ def number_words(reported: Sequence[Reported]) -> list[tuple[str, str]]:
     """The same from the numbers that a model file keeps."""
     sines = [r for r in reported if r.quantity.startswith(SINE_PREFIX)]
     shown = sorted(reported, key=lambda r: _ORDER.index(r.role))
-    is_curve = any(r.quantity == "peak_to_valley" for r in shown)
+    # what sums up the coefficients, or is reported in place of final values beyond the run
+    is_curve = any(r.quantity == "peak_to_valley" or "change_at" in r.quantity for r in shown)
     if is_curve or sines or len(shown) > ALL_NUMBERS:
         shown = [r for r in shown if r.role is not Role.COEFFICIENT]
     if is_curve:  # its assumed smoothness is in the files
@@ -207,7 +208,7 @@ def promise_sentence(
         others: Effects of another run in the model, which the promise excludes.
     """
     word = "worse than promised" if found.rms > BROKEN * promised else "as good as promised"
-    expected = rms(found.u[found.counted])
+    expected = found.expected
     elsewhere = ""
     if expected > BROKEN * promised:
         elsewhere = (

@@ -4,22 +4,28 @@ from pathlib import Path
 
 import pytest
 
-from matstd.artefact.brief.standard_tables import BlankTable, LimitsTable, MaterialTable, check_body
+from matstd.api.machines import machine_file
+from matstd.artefact.brief import read_project
+from matstd.artefact.brief.contradictions import Faults, body_faults
+from matstd.artefact.brief.standard_tables import BlankTable, LimitsTable, MaterialTable
 from matstd.cad_out.making.cutting import CUTTERS
 from matstd.twin.errors import BadFile
+from matstd.twin.files import checked
 
 
 def check(**limits: float) -> None:
     """With a ball of 2 mm, on a table of 320 mm."""
-    table = LimitsTable(**limits)
-    check_body(BlankTable(), table, MaterialTable(), 1.0, 160.0, Path("project.toml"))
+    given = checked(LimitsTable, limits, "project.toml", "limits")
+    table = ("limits.table_radius_mm", 320.0)
+    path = Path("project.toml")
+    Faults(body_faults(BlankTable(), given, MaterialTable(), 1.0, table, path)).refuse()
 
 
 @pytest.mark.parametrize(
     ("limits", "told"),
     [
-        ({"min_concave_radius_mm": 0.5}, "a radius that the ball fits into"),
-        ({"min_concave_radius_mm": 2.9}, "found 2.9, expected 3 mm or more: a finishing"),
+        ({"min_concave_radius_mm": 0.5}, r"found 0\.5, expected a number, 3 mm or more"),
+        ({"min_concave_radius_mm": 2.9}, r"found 2\.9, expected a number, 3 mm or more"),
         ({"slot_pitch_mm": 0.01}, "found 0.01, expected 20 mm or more, or 0"),
     ],
 )
@@ -30,3 +36,57 @@ def test_what_no_cutter_or_table_has_is_refused(limits, told):
 
 def test_what_the_least_cutter_and_the_narrowest_table_have_is_taken():
     check(min_concave_radius_mm=0.5 * min(CUTTERS), slot_pitch_mm=20.0)
+
+
+def project(tmp_path: Path, text: str) -> Path:
+    """A project on a machine of the tool, with more keys."""
+    path = tmp_path / "project.toml"
+    head = f'format = "project/1"\nmachine = "{machine_file("hsm600u").as_posix()}"\nseed = 1\n'
+    path.write_text(head + "probe = { radius_mm = 3.0, length_mm = 160.0 }\n" + text, "utf-8")
+    return path
+
+
+def test_all_limits_are_named_at_once_with_the_keys_of_the_file(tmp_path):
+    text = "[workshop.table]\ndiameter_mm = 40.0\n[blank]\nbase_mm = [30.0, 30.0]\n"
+    with pytest.raises(BadFile) as caught:
+        read_project(project(tmp_path, text + "[standard]\nposes = 100\ntouches = 110\n"))
+    message = str(caught.value)
+    assert "3 faults: standard.poses: found 100 with touches = 110" in message
+    assert "workshop.table.diameter_mm: found a table of 40 mm" in message
+    assert "the smallest standard is 160 x 160 x 120 mm, so this machine is too small" in message
+    assert "blank.base_mm: found [30.0, 30.0], expected sides of 160 mm or more" in message
+    assert "table_radius_mm" not in message
+
+
+def test_a_renamed_key_is_refused_by_the_name_that_was_written(tmp_path):
+    with pytest.raises(BadFile, match=r"standard\.density_kg_m3: found 7\.8, expected a number fr"):
+        read_project(project(tmp_path, "[standard]\ndensity_kg_m3 = 7.8\n"))
+
+
+@pytest.mark.parametrize(
+    ("workspace", "words"),
+    [
+        ("X = [-0.2, 0.2]", r"workspace\.X: .*not 0\.4 of them; is it in metres, \[-200, 200\]\?"),
+        ("B = [-1.57, 0.35]", r"workspace\.B: .*is it in radians, \[-90, 20\]\?"),
+    ],
+)
+def test_a_workspace_in_other_units_is_refused(tmp_path, workspace, words):
+    with pytest.raises(BadFile, match=words):
+        read_project(project(tmp_path, f"[workspace]\n{workspace}\n"))
+
+
+@pytest.mark.parametrize("workspace", ["X = [0.0, 0.0]", "B = [-1.5, 0.5]", "X = [-5.0, 5.0]"])
+def test_a_narrow_workspace_is_read(tmp_path, workspace):
+    read_project(project(tmp_path, f"[workspace]\n{workspace}\n"))
+
+
+@pytest.mark.parametrize(
+    ("material", "words"),
+    [
+        ("density_kg_m3 = 7.8", r"density_kg_m3: found 7\.8, expected a number from 500 to 23000"),
+        ("expansion_1_K = 11.5", r"expansion_1_K: found 11\.5, .* from 0 to 0\.0003 1/K"),
+    ],
+)
+def test_figures_of_a_material_in_other_units_are_refused(tmp_path, material, words):
+    with pytest.raises(BadFile, match=words):
+        read_project(project(tmp_path, f"[material]\n{material}\n"))

@@ -73,7 +73,11 @@ def text_of(standard, tmp_path):
         ("thickness_mm = 30.0", "thickness_mm = -30.0", r"base\.thickness_mm: found -30\.0"),
         ("thickness_mm = 30.0", "thickness_mm = nan", r"base\.thickness_mm: found nan"),
         ("thickness_mm = 30.0", 'thickness_mm = "30"', r"base\.thickness_mm: found '30'"),
-        ("thickness_mm = 30.0\n", "", r"base\.thickness_mm: found nothing, expected this key"),
+        (
+            "thickness_mm = 30.0\n",
+            "",
+            r"base\.thickness_mm: found nothing, expected a number above 0 mm",
+        ),
         (
             "corner_radius_mm = 25.0",
             "corner_radius_mm = 150.0",

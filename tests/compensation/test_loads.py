@@ -50,7 +50,7 @@ def test_a_load_bends_its_own_blocks_alone(errors, tmp_path):
     datum = datum_of(errors.chain, {}, 100.0)
     program = read_part_program(path, Frame(errors.chain, datum))
     loaded = replace(program, loads=(Load(3, 3, (-200.0, 0.0, 0.0)),))
-    at = passed(loaded, errors)
+    at, _ = passed(loaded, errors)
     moved = deviation(errors, at)[:, 0] / UM
     lines = np.array([m.line for m in loaded.motions])
     assert set(np.round(moved, 6)) == {0.0, -10.0}

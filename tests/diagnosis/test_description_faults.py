@@ -1,6 +1,7 @@
 """Mistakes in the description: planted in the text of the files, named with their figures."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +12,9 @@ from matstd.diagnosis.faults.suspects import Fault
 from matstd.diagnosis.faults.trial import description_faults, faults_of_refused
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.report.geometry.fault_words import fault_sentences
+from matstd.twin.effects import LocationError
 from matstd.twin.errors import BadFile
+from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.library.ordinary import ordinary_model
 
 
@@ -105,3 +108,22 @@ def test_the_command_line_names_the_mistake_in_its_refusal(texts, tmp_path, caps
     told = capsys.readouterr().err
     assert "B moves in the direction opposite to that in the machine file" in " ".join(told.split())
     assert not out.exists()
+
+
+def test_what_a_found_effect_explains_is_no_mistake_of_the_description(texts) -> None:
+    """A pivot 2 mm off is named, unless something was found that does the same; others stay."""
+    run, machine = texts
+    moved = re.sub(r"(\[axis\.C\]\nrange = [^\n]*\npoint = )\[[^\]]*\]", r"\1[2.0, 0, 0]", machine)
+    read = read_back(run, moved)
+    fit = fit_run(read, ordinary_model(read.touches.chain))
+    (fault,) = description_faults(fit)
+    assert fault.fault is Fault.PIVOT
+    found = LocationError(read.touches.chain.symbol("EX0C"), 2.0)
+    # under a name of its own, as an effect that was found has it
+    beside = SimpleNamespace(
+        kind="found", name="found", parameters=found.parameters, terms=found.terms
+    )
+    assert description_faults(fit, beside=[beside]) == ()
+    backlash = parse_effect("backlash(X)", read.touches.chain)
+    (again,) = description_faults(fit, beside=[backlash])
+    assert (again.fault, again.axes) == (Fault.PIVOT, ("C",))

@@ -11,7 +11,8 @@ from matstd.diagnosis.answer.verdict import Verdict
 from matstd.diagnosis.files.model_writer import write_model
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
-from matstd.diagnosis.regression.memory import MIN_GAIN_MEMORY, Memory, likely_memory, whitener
+from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.regression.memory import Memory, likely_memory, whitener
 from matstd.diagnosis.remarks.run_remarks import remarks
 from matstd.report.words.remark_words import remark_sentence
 from matstd.report.words.verdict_words import verdict_sentence
@@ -86,7 +87,7 @@ def test_memory_is_found_beside_a_hundred_parameters(clean, correlation) -> None
     run = replace(clean, deviation=clean.deviation + noise)
     fit = fit_run(run, ordinary_model(run.touches.chain))
     memory, gain = likely_memory(run.touches, fit.u, fit.used, fit.X, fit.y)
-    assert gain > MIN_GAIN_MEMORY
+    assert gain > POLICY.memory_gain
     length = memory.time / np.median(np.diff(run.touches.time)) if memory.time else memory.length
     free = len(run) - fit.solution.effective_parameters
     u = np.sqrt((1.0 - correlation**2) / free)  # of a correlation from so many independent steps
@@ -96,7 +97,7 @@ def test_memory_is_found_beside_a_hundred_parameters(clean, correlation) -> None
 def test_white_noise_has_none(case) -> None:
     run = case(*SEED).run
     fit = fit_run(run, ordinary_model(run.touches.chain))
-    assert likely_memory(run.touches, fit.u, fit.used, fit.X, fit.y)[1] < MIN_GAIN_MEMORY
+    assert likely_memory(run.touches, fit.u, fit.used, fit.X, fit.y)[1] < POLICY.memory_gain
 
 
 def test_estimates_are_those_of_generalised_least_squares(noisy) -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.answer.proof import probed_volume, prove
+from matstd.diagnosis.accuracy.proof import probed_volume, prove
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.sensitivity.population.sampling import Population, drawn_errors
 from matstd.twin.frames import apply, fixed_xyz, inverse, pose

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.answer.ambiguity import MAX_LOG_ODDS_CONFUSED, confusion_class, plausibility
+from matstd.diagnosis.answer.ambiguity import confusion_class, plausibility
 from matstd.diagnosis.evidence.effect_signatures import (
     Grid,
     ResidualSpace,
@@ -14,6 +14,7 @@ from matstd.diagnosis.evidence.effect_signatures import (
 )
 from matstd.diagnosis.evidence.evidence import EffectSet, addition
 from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.search.refine import refined, with_moved_points
 from matstd.diagnosis.search.regrid import regridded
 from matstd.diagnosis.search.screening import Library, joined_shortlists
@@ -177,8 +178,8 @@ def test_look_alikes_are_a_class(planted) -> None:
     made = confusion_class(pool, found, ())
     everything = {made.effect.name, *(r.effect.name for r in made.rivals)}
     assert {"thermal-lag(EZZ)", "thermal-lag(EZX)"} <= everything
-    assert all(r.log_odds < MAX_LOG_ODDS_CONFUSED for r in made.rivals)
-    assert all(r.log_odds >= MAX_LOG_ODDS_CONFUSED for r in made.distinguished)
+    assert all(r.log_odds < POLICY.log_odds_alike for r in made.rivals)
+    assert all(r.log_odds >= POLICY.log_odds_alike for r in made.distinguished)
     assert "thermal-lag(EXX)" not in everything
     assert "backlash(X)" not in everything
 

@@ -8,7 +8,7 @@ import pytest
 from matstd.diagnosis.evidence.effect_signatures import ResidualSpace
 from matstd.diagnosis.evidence.evidence import EffectSet
 from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.regression.gross import FALSE_ALARM
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual.structure import Shape, find_structure
 from matstd.twin.model.model import Model
 from matstd.twin.units import UM
@@ -69,7 +69,7 @@ def test_noise_that_remembers_is_seen_by_its_neighbours(structure_of, noise) -> 
         coloured[i] = 0.6 * coloured[i - 1] * (i > 0) + 0.8 * white[i]
     found = structure_of(coloured)[1]
     (in_time,) = [s for s in found if s.shape is Shape.NEIGHBOURS and s.variables == ("time_s",)]
-    assert in_time.p_value < FALSE_ALARM
+    assert in_time.p_value < POLICY.false_alarm
     assert in_time.columns is None
 
 

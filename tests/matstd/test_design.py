@@ -210,7 +210,7 @@ def test_a_design_is_not_overwritten(made: Path, capsys: pytest.CaptureFixture[s
         (
             "table_radius_mm = 160.0",
             "table_radius_mm = 20.0",
-            "160 mm or more, the smallest base of a",
+            "160 mm or more: the smallest standard is 160 x 160 x 120 mm",
         ),
         ("max_mass_kg = 60.0", "max_mass_kg = 5.0", "more than 18.3 kg"),
         ("# slot_pitch_mm = 63.0", "slot_pitch_mm = 5.0", "found 5, expected 20 mm or more, or 0"),

@@ -9,6 +9,7 @@ import pytest
 from matstd.cli import main
 from matstd.twin.errors import DesignError
 from matstd.twin.files import results_folder
+from matstd.twin.files.whole import claimed, write_into
 
 
 def test_whole(tmp_path: Path) -> None:
@@ -67,6 +68,7 @@ def test_a_report_alone_is_not_overwritten(tmp_path: Path) -> None:
 WORKS = """
 import sys, time
 from matstd.twin.files import results_folder
+from matstd.twin.files.whole import claimed, write_into
 with results_folder(sys.argv[1]) as work:
     (work / "half.txt").write_text("half")
     print("works", flush=True)
@@ -233,3 +235,35 @@ def test_an_output_that_another_command_writes_meanwhile_is_not_lost(
     assert "run-2.csv" in capsys.readouterr().err
     assert (tmp_path / "run.csv").read_text() == "of another"
     assert (tmp_path / "run-2.csv").read_text() == template("run")
+
+
+def test_files_into_a_folder_of_others_are_not_overwritten_unasked(tmp_path: Path) -> None:
+    """The logs of a second run are kept beside those of the first."""
+    logs = tmp_path / "logs"
+    assert write_into(logs, {"MS_A_1.TXT": "first\n"}, newline="\r\n") == [logs / "MS_A_1.TXT"]
+    write_into(logs, {"MS_LOC.TXT": "search\n"})
+    with pytest.raises(DesignError, match=r"MS_A_1\.TXT: another run has written it .*logs-2"):
+        write_into(logs, {"MS_A_1.TXT": "second\n", "MS_A_2.TXT": "second\n"})
+    assert (logs / "MS_A_1.TXT").read_bytes() == b"first\r\n"
+    assert sorted(p.name for p in (tmp_path / "logs-2").iterdir()) == ["MS_A_1.TXT", "MS_A_2.TXT"]
+    write_into(logs, {"MS_A_1.TXT": "third\n"}, force=True)
+    assert (logs / "MS_A_1.TXT").read_text() == "third\n"
+
+
+def test_a_claimed_folder_is_refused_to_a_second_process(tmp_path: Path) -> None:
+    """While LinuxCNC writes into it, whether the second gives --force or not."""
+    out = tmp_path / "out"
+    code = (
+        "import sys; from matstd.twin.files.whole import claimed; from pathlib import Path\n"
+        "try:\n with claimed(sys.argv[1], force=True): print('in')\n"
+        "except Exception as error: print(error)"
+    )
+    words = [sys.executable, "-c", code, str(out)]
+    with claimed(out) as folder:
+        (folder / "linuxcnc.txt").write_text("half")
+        done = subprocess.run(words, capture_output=True, text=True, check=True)
+        assert "another run is writing it" in done.stdout
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert done.stdout == "in\n"
+    with pytest.raises(DesignError, match="--force"), claimed(out):
+        pass

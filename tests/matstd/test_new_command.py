@@ -4,14 +4,17 @@ import numpy as np
 import pytest
 
 from matstd.artefact.brief.project_file import read_project
+from matstd.artefact.feasibility import check_seat, feasibility
 from matstd.artefact.reach.touchable import ProbeReach
 from matstd.artefact.worth.touch_criterion import random_touches
 from matstd.cli import main
-from matstd.commands.machine.new import TEMPLATES, template
+from matstd.commands.machine.new import MACHINES, TEMPLATES, template
+from matstd.stages.proposal import workspace
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.files.run_file import read_run
 from matstd.twin.library.catalogue import load_user_effects, parse_effect
 from matstd.twin.library.trial import try_effect
+from matstd.twin.machine import Axis, make_chain, table_to_tool
 from matstd.twin.units import UM
 
 
@@ -90,3 +93,95 @@ def test_a_machine_that_is_there_stays_beside_a_new_project(tmp_path):
     machine.write_text("mine\n", encoding="utf-8")
     written("project", tmp_path)
     assert machine.read_text(encoding="utf-8") == "mine\n"
+
+
+TABLES = {
+    "trunnion": ["500"],
+    "swivel-45": ["630"],
+    "two-tables": ["320"],
+    "fork-portal": ["3000", "2000"],
+    "turn-mill": ["315"],
+    "three-axis": ["900", "500"],
+    "horizontal": ["500", "500"],
+    "cmm": ["900", "1200"],
+}
+"""Sizes of the tables that the templates state."""
+
+
+def like(kind, folder):
+    path = folder / "machine.toml"
+    assert main(["new", "machine", "--like", kind, "-o", str(path)]) == 0
+    return path
+
+
+@pytest.mark.parametrize("kind", MACHINES)
+def test_every_kind_of_machine_is_read_without_a_remark(kind, tmp_path):
+    assert read_machine(like(kind, tmp_path)).remarks == ()
+
+
+def test_the_inclined_table_stands_upright_at_half_a_turn(tmp_path):
+    """Half a turn about (0, 1, 1) takes z to y: the face of the table looks along Y."""
+    chain = read_machine(like("swivel-45", tmp_path))
+    q = np.zeros((1, len(chain.axes)))
+    q[0, chain.axis_index("B")] = np.pi
+    T_table_tool = table_to_tool(chain, q)[0]
+    # the tool's axis, Z of the machine, is Y of the turned table
+    np.testing.assert_allclose(T_table_tool[:3, 2], [0.0, 1.0, 0.0], atol=1e-7)
+
+
+def proposed(kind, folder, *more):
+    machine, path = like(kind, folder), folder / "made" / "project.toml"
+    words = ["--table-mm", *TABLES[kind]] if kind in TABLES else []
+    code = main(["new", "project", "--machine", str(machine), "-o", str(path), *words, *more])
+    return code, path
+
+
+@pytest.mark.parametrize(
+    "kind", ["two-tables", *(pytest.param(k, marks=pytest.mark.slow) for k in TABLES)]
+)
+def test_a_proposed_project_passes_the_first_checks_of_a_design(kind, tmp_path, capsys):
+    code, path = proposed(kind, tmp_path)
+    assert code == 0
+    brief = read_project(path)
+    check_seat(brief)
+    feasibility(brief).check()
+    said = capsys.readouterr().out
+    assert f"next: matstd design {path} -o OUT" in said
+    assert "the base covers" in said
+    for name, (low, high) in brief.ranges.items():
+        assert brief.chain.link(name).range[0] <= low < high <= brief.chain.link(name).range[1]
+
+
+def test_the_workspace_is_what_brings_the_tool_over_the_standard():
+    """Three axes, the tool 160 mm long, a base of 320 mm: 200 mm either way of its middle, and the
+    gauge point from 160 mm above the table to 160 + 220 mm."""
+    chain = make_chain(
+        "plain",
+        "[w f X Y Z t]",
+        {a: Axis(range=(-600.0, 600.0)) for a in "XYZ"},
+        (10.0, 0.0, -500.0),
+    )
+    found = dict(workspace(chain, 320.0, 220.0, 160.0, (0.0, 0.0, 0.0)))
+    assert found == {"X": [-190.0, 210.0], "Y": [-200.0, 200.0], "Z": [-340.0, -120.0]}
+
+
+def test_a_machine_that_is_too_small_is_told_in_one_message(tmp_path, capsys):
+    code, path = proposed("micro", tmp_path, "--table-mm", "40")
+    assert code == 2
+    said = capsys.readouterr().err
+    assert "a table of 40 mm: the smallest standard is 160 x 160 x 120 mm" in said
+    assert not path.exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["run", "--like", "cmm"], "--like cmm: expected it with `matstd new machine` alone"),
+        (["machine", "--machine", "m.toml"], "--machine m.toml: expected it with"),
+        (["project", "--table-mm", "40"], "--table-mm 40: expected it with --machine alone"),
+        (["project", "--machine", "m", "--table-mm", "0"], "--table-mm 0: expected a diameter"),
+    ],
+)
+def test_options_that_do_not_belong_together_are_refused(words, told, capsys):
+    assert main(["new", *words]) == 2
+    assert told in capsys.readouterr().err

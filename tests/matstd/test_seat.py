@@ -21,6 +21,7 @@ from matstd.twin.record import Setup
 EXAMPLES = Path(__file__).parents[2] / "examples"
 ALL = sorted([EXAMPLES / "hsm600u.toml", *(EXAMPLES / "machines").glob("*[!e].toml")])
 SIDES, CORNER, THICK = (280.0, 240.0), 25.0, 30.0
+ZERO = np.zeros((1, 6))
 NEAR = 0.6
 """Of the limit, mm: nearer, two methods may differ about what touches."""
 
@@ -237,9 +238,61 @@ def test_a_clamp_in_the_finished_standard_is_seen_by_its_mesh(tmp_path: Path) ->
     mesh = read_stl(tmp_path / "standard.stl")
     check_seat(project)
     with pytest.raises(BadFile, match=r"ARM beside the standard: it reaches 7\.0 mm into POST1"):
-        check_beside(project, Standing, mesh)  # type: ignore[arg-type]
+        check_beside(project, Standing, mesh, ZERO)  # type: ignore[arg-type]
     clear = with_bodies(example(), clamp | {"at_mm": [88.0, 40.0, 60.0]})
-    check_beside(clear, Standing, mesh)  # type: ignore[arg-type]
+    check_beside(clear, Standing, mesh, ZERO)  # type: ignore[arg-type]
+
+
+def cradle_post(radius: float, **more: object) -> Brief:
+    """A post of 20 x 20 mm on the cradle, on the way of the turning corners, along y."""
+    post = {"name": "POST", "on": "B", "sides_mm": [20.0, 20.0], "height_mm": 60.0}
+    return with_bodies(example(), post | {"at_mm": [0.0, radius, 0.0]} | more)
+
+
+def test_a_post_on_the_cradle_is_met_by_the_corners_that_turn_past_it() -> None:
+    """Corners of 280 x 240 mm, rounded by 25, reach hypot(115, 95) + 25 = 174.2 mm: the post is
+    clear of the side at 120 mm and stands on their way, as far as it is nearer than that."""
+    assert pytest.approx(149.16**2, rel=1e-4) == 115.0**2 + 95.0**2
+    assert refusal(cradle_post(186.0)) == ""
+    said = refusal(cradle_post(170.0))
+    assert "POST clear of what turns past it: at C = " in said
+    assert "into the base of the standard" in said
+    assert "would do" in said
+    carried = with_bodies(example(), {"name": "POST", "at_mm": [0.0, 170.0, 0.0],
+                                      "sides_mm": [20.0, 20.0], "height_mm": 60.0})  # fmt: skip
+    assert refusal(carried) == ""
+
+
+def test_a_post_on_the_cradle_clear_of_what_turns_within_the_workspace() -> None:
+    """With C between -5 and 5 degrees no corner comes to the post in front of the side."""
+    made = cradle_post(150.0, sides_mm=[20.0, 20.0])
+    assert refusal(made) != ""
+    held = replace(made, ranges=made.ranges | {"C": (-0.08, 0.08)})
+    assert refusal(held) == ""
+
+
+def test_the_finished_standard_is_looked_at_where_it_is_probed(tmp_path: Path) -> None:
+    """An arm of the cradle above the base meets a ball's post at C = 90 degrees alone."""
+    post = trimesh.creation.cylinder(radius=12.0, height=100.0).apply_translation([0, 100, 75])
+    trimesh.boolean.union([base_mesh(), post], engine="manifold").export(tmp_path / "standard.stl")
+
+    class Standing:
+        class _Post:
+            @staticmethod
+            def distance(points: np.ndarray) -> np.ndarray:
+                return np.hypot(points[:, 0], points[:, 1] - 100.0) - 12.0
+
+        bodies = {"POST1": _Post}  # noqa: RUF012
+
+    arm = {"name": "ARM", "on": "B", "at_mm": [-100.0, 0.0, 60.0], "sides_mm": [30.0, 20.0],
+           "height_mm": 9.0}  # fmt: skip
+    project = with_bodies(example(), arm)
+    mesh = read_stl(tmp_path / "standard.stl")
+    check_beside(project, Standing, mesh, ZERO)  # type: ignore[arg-type]
+    turned = ZERO.copy()
+    turned[0, project.chain.axis_index("C")] = np.pi / 2
+    with pytest.raises(BadFile, match=r"into POST1 at C = -?90 degrees"):
+        check_beside(project, Standing, mesh, np.vstack([turned, -turned]))  # type: ignore[arg-type]
 
 
 def test_the_command_refuses_before_it_designs(tmp_path: Path, capsys, monkeypatch) -> None:

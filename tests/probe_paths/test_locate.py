@@ -206,5 +206,5 @@ def test_a_log_of_another_standard_is_refused(log, design, tmp_path, capsys):
     other.write_text(log.read_text(encoding="ascii").replace("SMALL-1", "SMALL-2"), "ascii")
     out = tmp_path / "again"
     assert main(["replan", str(other), "--design", str(design), "-o", str(out)]) == 2
-    assert "STANDARD" in capsys.readouterr().err
+    assert "was written for SMALL-2" in capsys.readouterr().err
     assert not out.exists()

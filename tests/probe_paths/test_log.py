@@ -199,12 +199,15 @@ def test_touches_that_cannot_be_evaluated_are_named(parts, small, golden, chain)
     with pytest.raises(BadFile, match="one place for each set-up name"):
         evaluate([parts[0], elsewhere], small, chain, U)
     other = golden.standard((golden.sphere("SPH9", 0.0, 0.0),))
+    with pytest.raises(DesignError, match=r"written for another design of SMALL-1 "):
+        evaluate(parts, other, chain, U)
+    other = replace(other, known=Known("cmm.csv", small.fingerprint, {}))
     with pytest.raises(BadFile, match="expected 1 to 2, a feature of SMALL-1"):
         evaluate([replace(parts[0], feature=np.full(len(parts[0].feature), 3))], other, chain, U)
     first = small.spheres[0]
     moved = replace(first, centre=np.add(first.centre, [0.005, 0.0, 0.0]))
     another = replace(small, spheres=(moved, *small.spheres[1:]))
-    with pytest.raises(BadFile, match=r"CALIBRATION: found \w+, expected \w+, the hash of '"):
+    with pytest.raises(DesignError, match=r"written for another design of \S+ \(\w{12}\); you"):
         evaluate(parts, another, chain, U)
     found = replace(another, known=Known("cmm.csv", small.fingerprint, {}))
     assert len(evaluate(parts, found, chain, U)) == len(evaluate(parts, small, chain, U))

@@ -45,6 +45,20 @@ def elastic(touches):
     return [parse_effect(text, chain) for text in (*texts, *couplings)]
 
 
+def learnt(touches):
+    """What is learnt and never proposed: laws without a cause."""
+    chain = touches.chain
+    axis, other = chain.linear_axes[0], chain.linear_axes[1]
+    texts = (
+        f"law(EZ{axis},bump {other})",
+        f"law(bias,kink {axis})",
+        f"law(shift,lin time,quad {axis})",
+        f"law(tilt,sine {other})",
+        f"law(growth,curve {axis})",
+    )
+    return [parse_effect(text, chain) for text in texts]
+
+
 def carried_by_rotary(chain, axis):
     i = chain.link_index(axis)
     ground = chain.links[i + 1 :] if chain.link(axis).carries_workpiece else chain.links[:i]
@@ -67,6 +81,7 @@ ALL = [
             f"jump(E{touches.chain.linear_axes[0]}{touches.chain.linear_axes[0]})", touches.chain
         ),
         *elastic(touches),  # sections are the user's
+        *learnt(touches),
     )
 ]
 ALL += [("arm", e) for e in proposals(RUNS["arm"], ["joint-sag"])]

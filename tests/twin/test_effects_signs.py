@@ -147,6 +147,23 @@ BY_HAND = {
         0,
         -2.0,
     ),
+    # pushed down by 50 N: half of 8 um of play downwards
+    "play of Z": ("load-play(Z)", 8 * UM, touch(Z, force=np.array([[0.0, 0.0, -50.0]])), 0, 4.0),
+    "play of Z pulled": (
+        "load-play(Z)",
+        8 * UM,
+        touch(Z, force=np.array([[0.0, 0.0, 5.0]])),
+        0,
+        -4.0,
+    ),
+    # half of 0.1 um/N more under push than under pull, at 50 N: 2.5 um upwards, whichever way
+    "softer upwards": (
+        "load-play(Z)",
+        0.1 * UM,
+        touch(Z, force=np.array([[0.0, 0.0, -50.0]])),
+        1,
+        -2.5,
+    ),
     "ball too large": ("probe-radius", 4 * UM, touch(Y), 0, 4.0),
     "stylus square to the wall": ("stylus-bending", 4 * UM, touch(Y), 0, 4.0),
     "stylus at 30 deg": ("stylus-bending", 4 * UM, touch((0.5, 0.0, np.sqrt(0.75))), 0, 1.0),

@@ -47,6 +47,7 @@ class Stiffness(Declared):
     components: tuple[tuple[int, int], ...] = ((0, 0), (1, 0), (2, 1))
 
     kind = "stiffness"
+    is_by_parameter = True
 
     def on(self, chain: Chain, refuse: Refuse) -> Self:
         """With the component of an axis that yields."""

@@ -6,22 +6,15 @@ stood there and what was expected. Writers write whole files or none.
 
 from matstd.twin.files.error_file import errors_toml, read_errors
 from matstd.twin.files.folder import results_folder
-from matstd.twin.files.machine_file import MachineTables, Pair, Vector, read_machine
+from matstd.twin.files.keys import Table, checked
+from matstd.twin.files.machine_file import MachineTables, Pair, Vector, read_bodies, read_machine
 from matstd.twin.files.pose_file import read_poses, reading_columns
 from matstd.twin.files.run_file import SetupTable, read_run
 from matstd.twin.files.run_writer import write_run
 from matstd.twin.files.sensor_file import SensorRecord, read_sensors
 from matstd.twin.files.table import CsvTable
-from matstd.twin.files.toml import (
-    Table,
-    check_format,
-    checked,
-    parse_toml,
-    read_any_text,
-    read_text,
-)
+from matstd.twin.files.toml import check_format, parse_toml, read_any_text, read_text
 from matstd.twin.files.whole import (
-    refuse_own_input,
     refuse_to_overwrite,
     write_whole,
     written_whole,
@@ -40,6 +33,7 @@ __all__ = [
     "errors_toml",
     "parse_toml",
     "read_any_text",
+    "read_bodies",
     "read_errors",
     "read_machine",
     "read_poses",
@@ -47,7 +41,6 @@ __all__ = [
     "read_sensors",
     "read_text",
     "reading_columns",
-    "refuse_own_input",
     "refuse_to_overwrite",
     "results_folder",
     "write_run",

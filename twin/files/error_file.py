@@ -8,7 +8,8 @@ from pydantic import Field
 
 from matstd.twin.effects import ComponentError, LocationError
 from matstd.twin.errors import BadFile, UnknownSymbol
-from matstd.twin.files.toml import Table, check_format, checked, parse_toml, read_text
+from matstd.twin.files.keys import Table, checked
+from matstd.twin.files.toml import check_format, parse_toml, read_text
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Symbol
 from matstd.twin.model import Effect
@@ -21,10 +22,18 @@ LARGEST = 1e6
 class ErrorTable(Table):
     """One error in one shape; a location error has an amplitude alone."""
 
-    shape: Literal["constant", "linear", "parabolic", "sinusoidal"] | None = None
-    amplitude: float = Field(ge=-LARGEST, le=LARGEST)
+    shape: Literal["constant", "linear", "parabolic", "sinusoidal"] | None = Field(
+        default=None, examples=["linear"]
+    )
+    """`constant`, `linear`, `parabolic` or `sinusoidal`, for a component error; a location error
+    has none"""
+    amplitude: float = Field(ge=-LARGEST, le=LARGEST, examples=[12.0])
+    """peak amplitude, µm, or µrad for `EA.` `EB.` `EC.`"""
     periods: float = Field(default=1.0, gt=0.0, le=1e6)
+    """number of periods of a sinusoidal error: over the range of a linear axis, in one turn of a
+    rotary axis"""
     phase_deg: float = 0.0
+    """phase of a sinusoidal error"""
 
 
 def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
@@ -46,7 +55,7 @@ def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
             symbol = chain.symbol(name)
         except UnknownSymbol as error:
             raise BadFile.of(path, error) from None
-        several = isinstance(tables, list)
+        several = isinstance(tables, list) and bool(tables)  # an empty list is no error at all
         for i, table in enumerate(tables if several else [tables]):
             key = f"{name}[{i}]" if several else name
             entry = checked(ErrorTable, table, path, key)

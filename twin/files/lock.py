@@ -22,7 +22,7 @@ _MARK = "matstd works here; this folder goes when it is done\n"
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)
 """A file system that knows no locks."""
 
-_PATIENCE, _PAUSE = 60.0, 0.02
+PATIENCE, _PAUSE = 60.0, 0.02
 """Longest wait for a lock, which is held for milliseconds, and pause between tries, s."""
 
 
@@ -47,17 +47,20 @@ def is_abandoned(folder: Path) -> bool:
 
 
 @contextmanager
-def in_turn(path: Path) -> Iterator[None]:
+def in_turn(path: Path, patience: float = PATIENCE) -> Iterator[None]:
     """Keep every other process from this block for the same name, which need not exist.
 
     Where the file system knows no locks, the block runs without.
 
+    Args:
+        patience: Longest wait for another process, s.
+
     Raises:
-        DesignError: Another process has held the lock for a minute.
+        DesignError: Another process has held the lock for longer.
     """
     # of the name, which may itself be as long as names can be; a shared lock does no harm
     lock = path.with_name(f".matstd-{zlib.crc32(path.name.casefold().encode()):08x}.lock")
-    end = time.monotonic() + _PATIENCE
+    end = time.monotonic() + patience
     while time.monotonic() < end:
         try:
             file = lock.open("a", encoding="utf-8")
@@ -80,7 +83,7 @@ def in_turn(path: Path) -> Iterator[None]:
                     lock.unlink()
             return
         time.sleep(_PAUSE)
-    raise DesignError(f"{path}: another run has been writing it for a minute; try again")
+    raise DesignError(f"{path}: another run is writing it; wait for it, or choose another name")
 
 
 def _is_free(file: IO[str], without: bool = False) -> bool:

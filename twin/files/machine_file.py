@@ -6,7 +6,9 @@ from typing import Annotated
 from pydantic import Field, Strict
 
 from matstd.twin.errors import BadFile, BadValue, UnknownAxis
-from matstd.twin.files.toml import Table, check_format, checked, parse_toml, read_text
+from matstd.twin.files.keys import Table, checked
+from matstd.twin.files.machine_checks import machine_slips
+from matstd.twin.files.toml import check_format, parse_toml, read_text
 from matstd.twin.machine import Axis, Chain, make_chain
 from matstd.twin.units import DEG
 
@@ -22,11 +24,24 @@ Range = Annotated[tuple[Coordinate, Coordinate], Strict(False)]
 class AxisTable(Table):
     """`[axis.X]`: range in mm or degrees, point, pitch and expected errors in mm, direction."""
 
-    range: Range | None = None
-    point: Vector | None = None
-    direction: Vector | None = None
-    pitch: float | None = None
-    expected: float | None = None
+    range: Range | None = Field(default=None, examples=[[-200.0, 200.0]])
+    """smallest and largest reading, mm or degrees; needed for every axis that is programmed"""
+    point: Vector | None = Field(default=None, examples=[[0.0, 0.0, -420.0]])
+    """reference point of the angular errors of a linear axis, a point on the line of a rotary one:
+    mm, machine frame, every axis at zero. Default: the machine origin, with a remark for a rotary
+    axis"""
+    direction: Vector | None = Field(default=None, examples=[[0.0, 0.0, 1.0]])
+    """direction of travel or of the line, machine frame. Default: the direction of the letter"""
+    pitch: float | None = Field(default=None, examples=[10.0])
+    """pitch of the screw or scale of a linear axis, mm. `diagnose` searches for errors at it and
+    at its whole fractions even if the targets are too far apart to resolve them, and prefers them
+    among periods that the targets cannot distinguish. `diagnose --pitch X=10` has the same
+    effect"""
+    expected: float | None = Field(default=None, examples=[0.01])
+    """usual size of each translational error of a linear axis (EXX, EYX, EZX), mm. An error that
+    exceeds it significantly is reported as larger than expected; a fit is as free as the class of
+    the error permits. Default: that of the class, 77 µm. `matstd import` writes 1 µm and 15 ppm of
+    the travel"""
 
     def axis(self, name: str) -> Axis:
         """What the table says of the axis of that name, base units."""
@@ -46,15 +61,22 @@ class WorkpieceTable(Table):
     """`[workpiece]`: origin of the table frame, mm."""
 
     origin: Vector = (0.0, 0.0, 0.0)
+    """origin of the table frame, mm, machine frame, every axis at zero"""
 
 
 class MachineTables(Table):
     """A machine as it stands in its own file and in model files."""
 
-    name: str
-    chain: str
+    name: str = Field(examples=["Small mill"])
+    """name of the machine, for reports"""
+    chain: str = Field(examples=["[w C' B' X' f Y Z (C1) t]"])
+    """ISO notation from workpiece `w` over foundation `f` to tool `t`; a prime marks an axis that
+    carries the workpiece, brackets a spindle whose angle is not programmed, or an axis that stays
+    at zero, such as a quill `(W)` beside Z"""
     axis: dict[str, AxisTable]
+    """a table `[axis.X]` for every programmed axis"""
     workpiece: WorkpieceTable = WorkpieceTable()
+    """the table `[workpiece]`"""
 
     def made(self, path: str | Path, within: str = "") -> Chain:
         """The machine in base units; raises BadFile.
@@ -74,11 +96,42 @@ class MachineTables(Table):
 class MachineFile(MachineTables):
     """The whole file."""
 
-    format: str
+    format: str = Field(examples=["machine/1"])
+    """kind and version of the file, `"machine/1"`"""
+    bodies: dict[str, str] | None = None
+    """drawings of the bodies of the machine for `matstd show`. The key is a link (an axis, `w`,
+    `t`, or `f` for the foundation), the value an STL, OBJ, PLY or STEP file seen from the machine
+    file, in mm, machine frame with every axis at zero. Links without a drawing are plain solids.
+    No result depends on it"""
 
 
 def read_machine(path: str | Path) -> Chain:
     """Machine from its file; raises BadFile."""
+    chain = _read(path).made(path)
+    slips = [BadFile.of(path, slip) for slip in machine_slips(chain)]
+    if slips:
+        raise BadFile.several(slips)
+    return chain
+
+
+def read_bodies(path: str | Path) -> dict[str, Path]:
+    """Drawings of a machine's bodies by link: an axis, `w`, `t`, or `f` for the foundation.
+
+    They are seen from the machine file. Nothing but a picture depends on them.
+
+    Raises:
+        BadFile: A file of another kind, or a body of a link that the machine does not have.
+    """
+    tables = _read(path)
+    known = ["f", *(link.name for link in tables.made(path).links)]
+    drawings = tables.bodies or {}
+    for name in drawings:
+        if name not in known:
+            raise BadFile(path, "bodies", name, f"one of {', '.join(known)}")
+    return {name: Path(path).parent / file for name, file in drawings.items()}
+
+
+def _read(path: str | Path) -> MachineFile:
     data = parse_toml(read_text(path), path)
     check_format(data, "machine/1", path)
-    return checked(MachineFile, data, path).made(path)
+    return checked(MachineFile, data, path)

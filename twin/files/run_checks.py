@@ -17,6 +17,10 @@ Mask = NDArray[np.bool_]
 LARGEST_DEVIATION = 10.0
 """Deviations beyond this (mm) are refused: units are mixed up, or set-up or probe are wrong."""
 
+LARGEST_OF_INSTRUMENT = 100.0
+"""The same of a distance that an instrument beside the machine measured, mm: arms that were never
+calibrated are off by centimetres, and no ball has to touch."""
+
 LARGEST_ANGLE = 0.35
 """The same for an instrument that reads angles, rad; cheap encoders are off by some degrees."""
 
@@ -99,7 +103,9 @@ def _without_slips(run: Run, table: CsvTable, remarks: list[str]) -> Run:
     # an instrument of angles writes them times its arm, which may be a metre
     touches = run.touches
     arm = float(np.linalg.norm(touches.point, axis=1).max(initial=0.0))
-    absurd = LARGEST_ANGLE * arm if touches.instrument.reads_angle else LARGEST_DEVIATION
+    is_ball = touches.instrument.is_ball_on_standard
+    largest = LARGEST_DEVIATION if is_ball else LARGEST_OF_INSTRUMENT
+    absurd = LARGEST_ANGLE * arm if touches.instrument.reads_angle else largest
     far = np.flatnonzero((np.abs(run.deviation) > absurd) & ~astray)
     if len(far):
         where = "column dev_um" if "dev_um" in table else "deviation computed from the readings"

@@ -8,11 +8,12 @@ from pydantic import Field
 
 from matstd.twin.errors import BadFile, BadValue
 from matstd.twin.files import run_columns as columns
+from matstd.twin.files.keys import Table, checked
 from matstd.twin.files.machine_file import Coordinate, Vector, read_machine
 from matstd.twin.files.pose_file import FARTHEST, reading_columns, readings
 from matstd.twin.files.run_checks import checked_run, states_readings
 from matstd.twin.files.table import CsvTable
-from matstd.twin.files.toml import Table, check_format, checked, is_file, parse_toml, read_text
+from matstd.twin.files.toml import check_format, is_file, parse_toml, read_text
 from matstd.twin.frames import fixed_xyz, pose
 from matstd.twin.machine import Chain
 from matstd.twin.record import (
@@ -50,17 +51,24 @@ class ProbeTable(Table):
     beside the tool axis, mm.
     """  # noqa: D205
 
-    radius_mm: float = Field(ge=0.0, le=FARTHEST)
-    length_mm: float = Field(ge=0.0, le=FARTHEST)
+    radius_mm: float = Field(ge=0.0, le=FARTHEST, examples=[3.0])
+    """radius of the ball; 0 for an instrument without one"""
+    length_mm: float = Field(ge=0.0, le=FARTHEST, examples=[160.0])
+    """distance from gauge point to ball centre"""
     offset_mm: tuple[Coordinate, Coordinate] = Field(default=(0.0, 0.0), strict=False)
+    """offset of ball centre, or reflector, from the tool axis: x and y of the tool frame"""
 
 
 class SetupTable(Table):
     """`[setup.a]`: pose of the standard in the table frame."""
 
     origin_mm: Vector = (0.0, 0.0, 0.0)
+    """origin of the artefact frame in the table frame"""
     rotation_deg: Vector = (0.0, 0.0, 0.0)
+    """rotations about the fixed x, then y, then z of the table frame"""
     run: str = ""
+    """run that this set-up belongs to, if a file holds several (years, days); the diagnosis
+    reports what changed between them"""
 
     def setup(self, name: str) -> Setup:
         """The set-up in base units."""
@@ -71,22 +79,42 @@ class SetupTable(Table):
 class BodyTable(Table):
     """`standard`: what the calibrated piece expands by, and how its temperature is known."""
 
-    expansion_1_K: float  # noqa: N815  (K is the kelvin)
+    expansion_1_K: float = Field(examples=[11.5e-6])  # noqa: N815  (K is the kelvin)
+    """coefficient of expansion α, 1/K"""
     expansion_u_1_K: float | None = None  # noqa: N815
+    """its standard uncertainty. Default: a tenth of α (JCGM 100:2008, H.1.3.3: steel 11.5e-6
+    within ± 2e-6, rectangular)"""
     body_degC: float | None = None  # noqa: N815
+    """temperature of the standard, 0 to 50 °C. A column `T_body_degC` states it touch by touch and
+    takes precedence; a difference of more than 2 u between both is refused"""
     body_u_K: float | None = None  # noqa: N815
+    """its standard uncertainty, one error common to all touches. Default: 0.3 K for a stated
+    temperature, otherwise 2 K"""
 
 
 class HeadTable(Table):
     """The head of a run file."""
 
-    format: str
-    machine: str
+    format: str = Field(examples=["run/1"])
+    """kind and version of the file, `"run/1"`"""
+    machine: str = Field(examples=["machine.toml"])
+    """path of the machine file, relative to this file"""
     probe: ProbeTable
+    """ball and length of the probe, `probe = { radius_mm = 3.0, length_mm = 160.0 }`"""
     instrument: Instrument = Field(default=Instrument.TOUCH_PROBE, strict=False)
+    """instrument: `touch-probe`, `laser`, `tracker`, `dial-gauge`, `encoder`, `cmm`, `ball-bar`,
+    `autocollimator`; effects of probe and standard are searched only for a touch probe. An
+    autocollimator (or any instrument for angles) measures no displacement: `dev_um` is the angular
+    deviation of the table, seen from the tool, about p × n, times the length of p (1000 mm: µrad
+    become µm)"""
     u_um: float | None = Field(default=None, ge=columns.FINEST, le=columns.COARSEST)
+    """standard uncertainty of one touch, µm: repeatability and calibration of the standard.
+    Required here or as a column"""
     standard: BodyTable | None = None
+    """expansion and temperature of the calibrated piece, the table below; for a touch probe"""
     setup: dict[str, SetupTable] = Field(default_factory=dict)
+    """one table `[setup.NAME]` for every position of the standard. Default: one at the origin of
+    the table frame"""
 
 
 def read_run(path: str | Path, chain: Chain | None = None) -> Run:

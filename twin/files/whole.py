@@ -3,7 +3,7 @@
 import errno
 import os
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
@@ -25,6 +25,9 @@ NOT_WRITABLE = (
     errno.ENAMETOOLONG,
 )
 """Errors that a user can correct: a full disk, no permission to write."""
+
+AT_ONCE = 0.1
+"""Wait for a folder that another run holds for its whole duration, s."""
 
 UNFINISHED: set[Path] = set()
 """Unfinished files of this process; they are removed when it is ended."""
@@ -117,6 +120,58 @@ def write_whole(path: str | Path, text: str, newline: str = "\n") -> None:
     """
     with written_whole(path) as part:
         part.write_bytes(text.replace("\n", newline).encode("utf-8"))
+
+
+def write_into(
+    folder: str | Path, texts: Mapping[str, str], force: bool = False, newline: str = "\n"
+) -> list[Path]:
+    """Write several text files into a folder that may hold others; none is overwritten unasked.
+
+    If one of them exists when they are written, all are kept in a free folder beside it.
+
+    Args:
+        texts: By file name.
+        force: Whether files of the same names may be overwritten.
+
+    Raises:
+        DesignError: A file of the same name exists, or the folder cannot be written to.
+    """
+    folder = Path(os.path.realpath(folder))
+    with in_turn(folder):
+        is_taken = not force and any(os.path.lexists(folder / name) for name in texts)
+        place = free_name(folder) if is_taken else folder
+        paths = [place / name for name in texts]
+        for path, text in zip(paths, texts.values(), strict=True):
+            write_whole(path, text, newline)
+    if is_taken:
+        taken = next(name for name in texts if os.path.lexists(folder / name))
+        raise written_meanwhile(folder / taken, place)
+    return paths
+
+
+@contextmanager
+def claimed(folder: str | Path, force: bool = False) -> Iterator[Path]:
+    """A folder, made if need be, into which no other run writes while the block lasts.
+
+    For results that are kept whatever happens; those that appear whole have `results_folder`.
+
+    Args:
+        force: Whether it may hold files.
+
+    Raises:
+        DesignError: It holds files, another run is writing into it, or it cannot be made.
+    """
+    out = Path(folder)
+    if out.exists() and not out.is_dir():
+        raise DesignError(f"{out}: is a file, expected a folder or a name that is free")
+    with in_turn(Path(os.path.realpath(out)), patience=AT_ONCE):
+        if out.is_dir() and any(out.iterdir()) and not force:
+            raise DesignError(f"{out}: already exists; choose another folder or give --force")
+        try:
+            out.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise DesignError(f"{out}: cannot be made ({error.strerror or error})") from error
+        yield out
 
 
 def refuse_to_overwrite(path: str | Path, force: bool = False) -> None:

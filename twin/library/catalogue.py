@@ -32,8 +32,9 @@ from matstd.twin.effects import (
     probe,
     servo_lag,
 )
-from matstd.twin.elastic import body, stiffness, tool_point
+from matstd.twin.elastic import body, load_play, stiffness, tool_point
 from matstd.twin.errors import BadFile, DesignError, UnknownEffect
+from matstd.twin.laws import KIND as LAW
 from matstd.twin.library.trial import users_fault
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Kind, Title, columns, is_tunable, own_title
@@ -306,6 +307,7 @@ for _kind in (
     joint_sag.KIND,
     servo_lag.KIND,
     stiffness.KIND,
+    load_play.KIND,
     body.KIND,
     tool_point.KIND,
     probe.LOBING,
@@ -315,5 +317,6 @@ for _kind in (
     artefact.SLIP,
     artefact_form.KIND,
     artefact.DRIFT,
+    LAW,
 ):
     register(_kind)

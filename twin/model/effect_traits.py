@@ -4,7 +4,7 @@ Above the twin nothing depends on the class of an effect, only on its traits. An
 trait by an attribute or property of the same name; otherwise the default here holds.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from numbers import Integral, Real
 from typing import Any, NamedTuple
@@ -38,6 +38,9 @@ class Traits:
         is_reported_whole: Of a curve, whether the curve is reported as the effect alone explains
             it, without what the rest of the model could take over.
         is_tensor: Whether its parameters have no common size: reported is the rms that it explains.
+        is_by_parameter: Whether every parameter is a quantity of its own, without a common size.
+        changes: Of an effect that goes on beyond the run: what is reported in place of its final
+            values, as names of changes, each with two touches, before and after.
         is_shrunk: Whether its parameters share a prior whose size the run chooses; reported as a
             tensor, and weighed against single effects by what it predicts.
         is_table: Whether it could imitate most other effects; it is chosen only where it predicts
@@ -63,6 +66,8 @@ class Traits:
     is_curve: bool = False
     is_reported_whole: bool = False
     is_tensor: bool = False
+    is_by_parameter: bool = False
+    changes: Callable[[Touches], Sequence[tuple[str, Touches]]] | None = None
     is_shrunk: bool = False
     is_table: bool = False
     reversal: Callable[[Touches], Array] | None = None
@@ -93,6 +98,7 @@ _USUAL = {one.name: one.default for one in fields(Traits)}
 _TYPES: dict[str, Any] = {name: type(usual) for name, usual in _USUAL.items()} | {
     "symbol": Symbol,
     "reversal": Callable,
+    "changes": Callable,
     "harmonic": Real,
     "wave": Wave,
     "with_sines": Callable,

@@ -12,6 +12,7 @@ import numpy as np
 
 from matstd.twin.frames import Array
 from matstd.twin.machine import linear_directions
+from matstd.twin.record.instrument import Instrument
 from matstd.twin.record.run import Run
 from matstd.twin.record.touches import Touches, computed_deviation
 
@@ -42,9 +43,11 @@ def with_commanded(run: Run) -> Run:
     moved little (`MIN_RANGE_RATIO`) or stood at few places, as Z of a flat plate.
     """
     touches = run.touches
-    is_ball = touches.instrument.is_ball_on_standard & (touches.radius > 0.0)
+    if not touches.instrument.reads_by_the_axes:
+        return run
     implied = computed_deviation(touches)
-    holds = is_ball & (np.abs(implied) >= 0.5 * np.abs(run.deviation))
+    is_moved = (touches.radius > 0.0) | (touches.instrument is Instrument.DIAL_GAUGE)
+    holds = is_moved & (np.abs(implied) >= 0.5 * np.abs(run.deviation))
     residual = np.where(holds, _less_setups(touches, implied), 0.0)
     if not residual.any():
         return run

@@ -24,6 +24,11 @@ class Instrument(Enum):
         return self is Instrument.TOUCH_PROBE
 
     @property
+    def reads_by_the_axes(self) -> bool:
+        """Whether the axes move until it responds, so that their readings hold what it measured."""
+        return self in (Instrument.TOUCH_PROBE, Instrument.DIAL_GAUGE)
+
+    @property
     def reads_angle(self) -> bool:
         """Whether it feels how the tool turns relative to the table, and no displacement.
 

@@ -65,6 +65,24 @@ class AxisWarming(Declared):
             return touches.since_start
         return np.maximum(own_column(touches, self.clock.removeprefix(OWN)), 0.0)
 
+    def changes(self, touches: Touches) -> Sequence[tuple[str, Touches]]:
+        """What grew from the first to the last touch at either end of the probed readings.
+
+        Final values at the ends of the travel lie beyond a run that is short against the time
+        constant, or that probed a part of the travel.
+        """
+        clock, q = self._clock(touches), touches.reading(self.axis)
+        if not len(touches):
+            return ()
+        ends = touches[np.array([np.argmin(clock), np.argmax(clock)])]
+        out = []
+        for word, at in (("lowest", q.min()), ("highest", q.max())):
+            there = ends.q.copy()
+            there[:, touches.chain.axis_index(self.axis)] = at
+            moved = replace(ends, q=there, commanded=None)
+            out.append((f"change_at_{word}_reading", moved))
+        return out
+
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """The time constant, evenly spaced in its logarithm, up to that of the run."""
         spent = float(np.ptp(self._clock(touches))) if len(touches) else 1.0

@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Sequence
 
 from matstd.api.compensating import Compensation, ProgramOptions, compensate
-from matstd.api.effects import register_effects
+from matstd.api.runs import register_effects
 from matstd.compensation.field import State
 from matstd.console import say_each
 from matstd.options import named_numbers
@@ -26,21 +26,26 @@ def read_job(args: argparse.Namespace) -> Compensation:
         args.model,
         args.errors,
         tool_length=args.tool_length,
-        datum=_readings("--datum", args.datum),
+        datum=named_readings("--datum", args.datum),
         within=dict(_range(word) for word in args.within),
-        state=State(
-            time=args.after * MINUTE,
-            temperature=named_numbers("--temperature", args.temperature, _SUCH_AS),
-            spindle_rpm=args.rpm,
-            value=named_numbers("--value", args.value, _SUCH_AS),
-            force=tuple(args.load),
-        ),
+        state=machine_state(args),
         add=args.add,
         switch=named_numbers("--switch", args.switch, _SUCH_AS),
         active=args.active,
     )
     say_each(remark_sentence(remark) for remark in machine.remarks)
     return machine
+
+
+def machine_state(args: argparse.Namespace) -> State:
+    """What the options of `add_driven` say of the state of a machine."""
+    return State(
+        time=args.after * MINUTE,
+        temperature=named_numbers("--temperature", args.temperature, _SUCH_AS),
+        spindle_rpm=args.rpm,
+        value=named_numbers("--value", args.value, _SUCH_AS),
+        force=tuple(args.load),
+    )
 
 
 def program_options(args: argparse.Namespace) -> ProgramOptions:
@@ -62,7 +67,7 @@ def _by_tool(option: str, words: Sequence[str]) -> dict[int | str, float]:
     }
 
 
-def _readings(option: str, words: Sequence[str]) -> dict[str, float]:
+def named_readings(option: str, words: Sequence[str]) -> dict[str, float]:
     """Readings by axis: of linear axes in mm, of rotary axes, whose letter is A, B or C, in rad."""
     given = named_numbers(option, words, _SUCH_AS)
     return {axis: value * (DEG if axis[0] in "ABC" else 1.0) for axis, value in given.items()}
@@ -74,5 +79,5 @@ def _range(word: str) -> tuple[str, tuple[float, float]]:
     low, colon, high = ends.partition(":")
     if not colon:
         raise DesignError(f"--within {word}: expected an axis and its ends, such as X=-100:100")
-    both = [_readings("--within", [f"{name}={end}"])[name] for end in (low, high)]
+    both = [named_readings("--within", [f"{name}={end}"])[name] for end in (low, high)]
     return name, (both[0], both[1])

@@ -29,7 +29,7 @@ def add_state(parser: argparse.ArgumentParser) -> None:
         "AXIS=LOW:HIGH",
         "workspace for which the result is evaluated (mm, degrees; default: the whole travel)",
     )
-    _add_driven(parser)
+    add_driven(parser)
     _several(
         parser,
         "--switch",
@@ -52,7 +52,7 @@ def add_state(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _add_driven(parser: argparse.ArgumentParser) -> None:
+def add_driven(parser: argparse.ArgumentParser) -> None:
     """State of the machine, and errors that are added to its model."""
     parser.add_argument(
         "--after",

@@ -1,8 +1,15 @@
 """`matstd new`: commented minimal files that the readers accept."""
 
+from __future__ import annotations
+
 import argparse
 from importlib.resources import files
+from os.path import relpath
 from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matstd.stages.proposal import Proposal
 
 TEMPLATES = {
     "machine": "machine.toml",
@@ -12,6 +19,19 @@ TEMPLATES = {
 }
 """Kinds of files, and the template of each; that of an effect is Python, but no module of ours."""
 
+MACHINES = (
+    "trunnion",
+    "swivel-45",
+    "two-tables",
+    "fork-portal",
+    "turn-mill",
+    "three-axis",
+    "horizontal",
+    "micro",
+    "cmm",
+)
+"""Kinds of machines with a template of their own."""
+
 NEEDS_MACHINE = ("project", "run")
 """Kinds that name a machine file."""
 
@@ -19,6 +39,26 @@ NEEDS_MACHINE = ("project", "run")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("kind", choices=TEMPLATES, help="kind of file")
+    parser.add_argument(
+        "--like",
+        metavar="NAME",
+        choices=MACHINES,
+        help=f"for a machine: the kind that is most like yours: {', '.join(MACHINES)}",
+    )
+    parser.add_argument(
+        "--machine",
+        metavar="MACHINE.toml",
+        help="for a project: propose blank, probe, faces, place and workspace that suit this "
+        "machine",
+    )
+    parser.add_argument(
+        "--table-mm",
+        metavar="SIZE",
+        nargs="+",
+        type=float,
+        help="with --machine: diameter of the table, or its two sides, mm (default: from the "
+        "travels)",
+    )
     parser.add_argument(
         "-o",
         "--output",
@@ -29,26 +69,99 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--force", action="store_true", help="overwrite an existing output")
 
 
-def template(kind: str) -> str:
+def template(kind: str, like: str | None = None) -> str:
     """Text of a new file."""
-    text = files("matstd").joinpath("templates", TEMPLATES[kind]).read_text(encoding="utf-8")
+    name = TEMPLATES[kind] if like is None else f"machines/{like}.toml"
+    text = files("matstd").joinpath("templates", *name.split("/")).read_text(encoding="utf-8")
     return text.replace("\r\n", "\n")
 
 
 def run(args: argparse.Namespace) -> int:
     """Print the file, or write it whole and say what else was written."""
+    from matstd.twin.errors import BadArgument
+    from matstd.twin.files import refuse_to_overwrite
+
+    for option, kind in (("like", "machine"), ("machine", "project")):
+        if getattr(args, option) is not None and args.kind != kind:
+            raise BadArgument(option, getattr(args, option), f"it with `matstd new {kind}` alone")
+    _check_table(args)
+    if args.output is not None:
+        refuse_to_overwrite(args.output, args.force)
+    if args.machine is not None:
+        return _proposed(args)
+    text = template(args.kind, args.like)
     if args.output is None:
-        print(template(args.kind), end="")
+        print(text, end="")
         return 0
+    _written(args, text)
+    return 0
+
+
+def _check_table(args: argparse.Namespace) -> None:
+    """Refuse a size that is none, or without a machine."""
+    from matstd.twin.errors import BadArgument
+
+    size = args.table_mm
+    shown = " ".join(f"{value:g}" for value in size or ())
+    if size is not None and (len(size) > 2 or min(size) <= 0.0):
+        raise BadArgument("table_mm", shown, "a diameter or two sides in mm")
+    if size is not None and args.machine is None:
+        raise BadArgument("table_mm", shown, "it with --machine alone")
+
+
+def _written(args: argparse.Namespace, text: str) -> None:
+    """Write a template, and the machine file that it names."""
     from matstd.console import say
-    from matstd.twin.files import refuse_to_overwrite, write_whole
+    from matstd.twin.files import write_whole
 
     output = Path(args.output)
-    refuse_to_overwrite(output, args.force)
-    write_whole(output, template(args.kind))
+    write_whole(output, text)
     say(f"{output}: edit it, then pass it to matstd")
     machine = output.parent / TEMPLATES["machine"]
     if args.kind in NEEDS_MACHINE and not machine.exists():
         write_whole(machine, template("machine"))
         say(f"{machine}: its machine file; replace the numbers by those of your machine")
+
+
+def _proposed(args: argparse.Namespace) -> int:
+    """Write a project that suits a machine."""
+    from matstd.console import say, say_each
+    from matstd.stages.proposal import propose
+    from matstd.twin.files import write_whole
+
+    machine, output = Path(args.machine), args.output
+    folder = Path(output).parent if output is not None else Path()
+    named = Path(relpath(machine, folder)).as_posix()
+    found = propose(machine, named, tuple(args.table_mm) if args.table_mm else None)
+    if output is None:
+        print(found.text, end="")
+        return 0
+    write_whole(output, found.text)
+    brief = found.brief
+    say(
+        f"{output}: base {found.base:g} x {found.base:g} mm, {brief.blank.height:g} mm high, "
+        f"{brief.options.patches} faces, probe {brief.probe.length:g} mm long; seat, reach and "
+        "room are checked"
+    )
+    say_each(_gains(found))
     return 0
+
+
+def _gains(found: Proposal) -> list[str]:
+    """What the table was taken for, and what a larger base or another place would gain."""
+    size = " x ".join(f"{value:g}" for value in found.table)
+    lines = []
+    if found.is_assumed:
+        lines.append(f"table taken to be {size} mm, from the travels; state it with --table-mm")
+    covered = f"the base covers {100.0 * found.share_of_table(found.base):.0f} % of the table"
+    if found.larger is not None:
+        more = 100.0 * found.share_of_table(found.larger)
+        covered += f"; a base of {found.larger:g} mm would cover {more:.0f} %"
+    lines.append(covered + ": outside of what is probed the model extrapolates")
+    if found.other_place:
+        reach = found.other_place + 0.5 * found.base
+        lines.append(
+            f"a second set-up [setup.b] with origin_mm = [{found.other_place:g}, 0, 0] would probe "
+            f"out to {reach:g} mm from the middle of the table"
+        )
+    return lines

@@ -26,7 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Compare; the folder appears whole or not at all."""
     from matstd.api.comparing import Comparison, compare
-    from matstd.api.effects import register_effects
+    from matstd.api.runs import register_effects
     from matstd.progress import stages, turns
     from matstd.twin.files import results_folder
     from matstd.twin.words import deviations_in
@@ -49,6 +49,7 @@ def _report(args: argparse.Namespace, found: Comparison, arm: str) -> None:
     from matstd.console import say
     from matstd.report.geometry import console_lines
     from matstd.report.numbers import microns, signed
+    from matstd.report.verdict import promise_words, repeatability_words
     from matstd.report.words import (
         comparison_sentence,
         learnt_lines,
@@ -65,6 +66,9 @@ def _report(args: argparse.Namespace, found: Comparison, arm: str) -> None:
             say(line)
     elif saved is not None and saved.source.held_out_um > 0.0:
         say(promise_sentence(found, saved.source.held_out_um * UM, saved.left_out))
+    say(f"- repeatability: {repeatability_words(found.repeatability, found.scatter)}")
+    if found.promise is not None:
+        say(f"- error to expect: {promise_words(found.promise)}")
     for region in found.where:
         mean = signed(region.mean / UM, region.u / UM, "µm")
         is_off = abs(region.mean) > MIN_UNCERTAINTIES * region.u

@@ -52,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Diagnose; the folder appears whole or not at all."""
     from matstd.api.diagnosing import Diagnosis, diagnose
-    from matstd.api.effects import register_effects
+    from matstd.api.runs import register_effects
     from matstd.progress import stages, turns
     from matstd.twin.files import results_folder
     from matstd.twin.words import deviations_in
@@ -77,7 +77,35 @@ def run(args: argparse.Namespace) -> int:
             found.write_page(folder, printed_by)
     with deviations_in(found.run.touches.deviation_unit):
         _report(args, found, arm)
+    args.next = _next(args, found)
     return 0
+
+
+def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
+    """What follows from the verdict: measure, name the effect, or compensate."""
+    from pathlib import Path
+
+    import numpy as np
+
+    from matstd.diagnosis.answer import Verdict
+    from matstd.next_steps import called
+
+    model, again = Path(args.output) / "model.toml", f"{args.output}-2"
+    if found.verdict is Verdict.MISSING and not args.auto:
+        named = [step.effect.name for step in found.steps if step.effect is not None]
+        more = [word for name in named for word in ("--add", name)]
+        why = "with the effect in model.toml; then matstd compensate"
+        return called("diagnose", *args.run_files, *more, "-o", again), why
+    if found.verdict in (Verdict.UNEXPLAINED, Verdict.UNDECIDED) and found.plans:
+        plan = Path(args.output) / "next_measurement_1.csv"
+        words = called("diagnose", *args.run_files, "new.csv", "-o", again)
+        return words, f"after measuring {plan} into new.csv"
+    if found.verdict is Verdict.UNDECIDED:
+        words = called("diagnose", *args.run_files, "again.csv", "-o", again)
+        return words, "after the same programs have run again: repeated touches show the noise"
+    tool = np.median(found.run.touches.length)
+    words = called("compensate", model, "--tool-length", f"{tool:g}", "--tables", "tables")
+    return words, "tables for the control"
 
 
 def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
@@ -87,10 +115,13 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     from matstd.console import console, say
     from matstd.report.effects import plan_words, rival_words
     from matstd.report.geometry import console_lines
+    from matstd.report.verdict import part_lines
     from matstd.report.words import remark_sentence, scanned_sentence, verdict_sentence
     from matstd.twin.words import in_own_unit
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
+    for name, line in part_lines(result):
+        say(f"- {name}: {line}")
     right = ("p", "fitted µm", "held out µm", "chi²/dof")
     numbers = [Column(in_own_unit(word), justify="right", no_wrap=True) for word in right]
     words = [Column(word, overflow="fold", max_width=CELL_WIDTH) for word in ("effect", "size")]

@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING, Any
 from matstd.options import add_output, seen_from
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from matstd.importers import Sheet
+    from matstd.twin.machine import Chain
 
 _SIGN = {
     "positioning": "a deviation (actual - target) is the axis's own error; in the run it stands as "
@@ -46,7 +48,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
     parser.add_argument(
-        "--u-urad", type=float, help="standard uncertainty of one reading of a rotary axis, µrad"
+        "--u-urad",
+        type=float,
+        help="standard uncertainty of one reading of a rotary axis, or of the measured orientation "
+        "of a target on an arm, µrad",
+    )
+    parser.add_argument(
+        "--travel",
+        metavar=("AXIS", "LOW", "HIGH"),
+        nargs=3,
+        action="append",
+        default=[],
+        help="travel of an axis in the machine file that is written, mm or degrees (default: that "
+        "of the data; of joints without limits in --dh, whole half turns)",
     )
     parser.add_argument(
         "--in-order",
@@ -63,6 +77,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--sheet", metavar="NAME", help="sheet of a workbook (default: the first with data)"
+    )
+    parser.add_argument(
+        "--table",
+        metavar="N",
+        type=int,
+        help="number of the table in a file with several (default: the one with most readings)",
     )
     add_output(parser, "RUN.csv", "overwrite existing outputs")
 
@@ -170,16 +190,17 @@ def run(args: argparse.Namespace) -> int:
     from pathlib import Path
 
     from matstd.console import say
-    from matstd.importers import read_sheet
     from matstd.twin.errors import DesignError
     from matstd.twin.files import refuse_to_overwrite
 
     output = Path(args.output)
     refuse_to_overwrite(output, args.force)
     names = [n.strip() for n in args.columns.split(",")] if args.columns else ()
-    sheets = [read_sheet(path, args.sheet, names) for path in args.files]
+    sheets = [_chosen(args, path, names) for path in args.files]
     if args.in_order is not None and not (args.arm or args.part or args.standard):
         raise DesignError("--in-order: expected with --arm, --part or --standard alone")
+    if args.travel and (args.machine or args.map):
+        raise DesignError("--travel: expected without --machine, which states the travels")
     if len(sheets) > 1 and not (args.part or args.standard):
         raise DesignError(f"{args.files[1]}: one table at a time, except lists of points")
     for sheet in sheets:
@@ -191,6 +212,27 @@ def run(args: argparse.Namespace) -> int:
     else:
         _measured(args, sheets, output)
     return 0
+
+
+def _chosen(args: argparse.Namespace, path: str, names: Sequence[str]) -> Sheet:
+    """The table that `--table` names, or of which most can be read; others are listed."""
+    from matstd.commands.measured.kinds import readings_of
+    from matstd.console import say
+    from matstd.importers import read_sheet
+    from matstd.importers.sheets import listed_tables, most_read, read_tables
+
+    if args.table is not None:
+        return read_sheet(path, args.sheet, names, args.table)
+    tables = read_tables(path, args.sheet, names)
+    reader, axis = readings_of(args)
+    if reader is None or len(tables) == 1:
+        sheet = read_sheet(path, args.sheet, names) if len(tables) > 1 else tables[0]
+    else:
+        sheet = most_read(tables, reader, axis)
+    if len(tables) > 1:
+        say(f"- tables of {path}: {listed_tables(tables)}")
+        say(f"- table {sheet.number} is read; --table chooses another")
+    return sheet
 
 
 def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
@@ -217,7 +259,7 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
 
     from matstd.commands.measured.kinds import arm, circle, points, positioning
     from matstd.console import say
-    from matstd.importers import machine_text
+    from matstd.importers import machine_text, with_travels
     from matstd.importers.sheets import timed_by_rows
     from matstd.twin.files import refuse_to_overwrite, write_run, write_whole
     from matstd.twin.units import UM
@@ -227,6 +269,9 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     else:
         made = arm if args.arm else circle if args.circle else positioning
         measured, chain = made(args, sheets[0])
+    if args.travel:
+        measured = with_travels(measured, _travels(args.travel, chain))
+        chain = measured.touches.chain
     if args.in_order is not None:
         measured = timed_by_rows(measured, args.in_order)
     for sheet in sheets:
@@ -244,3 +289,19 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     say(f"- sign: {next(words for kind, words in _SIGN.items() if getattr(args, kind))}")
     if not args.machine:
         say(f"- {machine}: made from the data; check what is marked PLACEHOLDER")
+
+
+def _travels(stated: Sequence[Sequence[str]], chain: Chain) -> dict[str, tuple[float, float]]:
+    """Travels of `--travel`, mm and rad."""
+    from matstd.twin.errors import DesignError
+    from matstd.twin.units import DEG
+
+    out = {}
+    for axis, *ends in stated:
+        try:
+            low, high = map(float, ends)
+        except ValueError:
+            raise DesignError(f"--travel {axis} {' '.join(ends)}: expected two numbers") from None
+        unit = 1.0 if chain.link(axis).kind == "linear" else DEG
+        out[axis] = low * unit, high * unit
+    return out

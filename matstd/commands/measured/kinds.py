@@ -7,12 +7,37 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     import argparse
+    from collections.abc import Callable
 
     from matstd.importers import Sheet
     from matstd.importers.instruments import PositioningTest
     from matstd.importers.points import Meaning
     from matstd.twin.machine import Chain
     from matstd.twin.record import Run
+
+
+def readings_of(args: argparse.Namespace) -> tuple[Callable[[Sheet], int] | None, str]:
+    """Number of readings of a table for this kind of import, and its axis.
+
+    None with a mapping file, for which any table may be meant.
+    """
+    from matstd.importers import read_circle, read_positioning
+    from matstd.importers.arms import read_arm
+    from matstd.importers.points import read_points
+
+    if args.component or args.positioning:
+        name = args.component or ""
+        axis = name[-1:] or args.positioning
+        named = (args.target, args.actual)
+        return lambda t: len(read_positioning(t, axis, args.unit, named, name).target), axis
+    if args.circle:
+        plane, radius = args.circle.upper(), args.radius or 1.0
+        return lambda t: len(read_circle(t, plane, radius, args.unit).angle), ""
+    if args.arm:
+        return lambda t: int(read_arm(t).shots.sum()), ""
+    if args.part or args.standard:
+        return lambda t: len(read_points(t, args.unit).line), ""
+    return None, ""
 
 
 def positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
@@ -102,7 +127,8 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """An arm under a tracker as a run."""
     from matstd.console import say
     from matstd.importers import import_arm, read_sheet
-    from matstd.twin.units import UM
+    from matstd.importers.arms import oriented
+    from matstd.twin.units import UM, URAD
 
     found = import_arm(
         sheet,
@@ -112,6 +138,7 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         is_modified=args.modified,
         couplings=args.coupled,
         reflector=args.reflector,
+        u_angle=None if args.u_urad is None else _uncertainty(args, "u_urad", URAD),
     )
     pairs = zip(found.joints, found.chain.programmed_axes, strict=True)
     say(f"- axes: {', '.join(f'{column} is {axis}' for column, axis in pairs)}")
@@ -120,6 +147,13 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
         at = ", ".join(f"{v:.3f}" for v in place)
         say(f"- {name} at ({at}) mm of the tool frame, as {how}")
     say("- the tracker's frame is the set-up")
+    for name, moved in found.fixed.items():
+        say(
+            f"- {name} does not move with the arm (range {moved / UM:.3g} µm): its motion is "
+            "imported as columns in µm and may drive effects"
+        )
+    if args.u_urad is None and oriented(sheet) is not None:
+        say("- orientations of the target are not used: --u-urad states their standard uncertainty")
     if found.mistake is not None:
         words, left = found.mistake
         say(

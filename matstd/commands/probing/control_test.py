@@ -43,6 +43,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.artefact.body import read_standard
     from matstd.console import say, say_each
     from matstd.probe_paths.linuxcnc import installed, rehearse
+    from matstd.twin.files.whole import claimed
     from matstd.twin.units import MINUTE, UM
 
     user = installed(args.user)
@@ -50,14 +51,17 @@ def run(args: argparse.Namespace) -> int:
     standard = read_standard(design / "standard.toml")
     machine = planted_machine(args, design / "machine.toml", "linuxcnc")
     for_noise = np.random.default_rng(args.seed).spawn(2)[1]
-    files, out = _of_first_probe(programs_of(design)), _output_folder(args)
+    files = _of_first_probe(programs_of(design))
 
     def announce(made: ProgramSet) -> None:
         touches = sum(program.touches for program in made.programs)
         say(f"{touches} touches on LinuxCNC, about {made.duration / MINUTE:.0f} min")
 
-    made = rehearse(files, standard, machine, for_noise, out, args.touches, user, announce)
-    save_run(out / "run.csv", made.run, design / "machine.toml")
+    with claimed(args.output, args.force) as out:
+        for old in [*out.glob("*.TXT"), out / "run.csv"]:  # of an earlier run, which is replaced
+            old.unlink(missing_ok=True)
+        made = rehearse(files, standard, machine, for_noise, out, args.touches, user, announce)
+        save_run(out / "run.csv", made.run, design / "machine.toml")
     say(
         f"{out / 'run.csv'}: {len(made.run)} touches from LinuxCNC's own log, "
         f"u = {made.u / UM:.3f} µm with the latch"
@@ -76,20 +80,3 @@ def _of_first_probe(files: list[Path]) -> list[Path]:
     """Programs of the first probe in the first set-up; the others have other first letters."""
     first = files[0].stem.rpartition("_")[0]
     return [file for file in files if file.stem.rpartition("_")[0] == first]
-
-
-def _output_folder(args: argparse.Namespace) -> Path:
-    """An existing folder without files that the user did not ask to replace."""
-    from pathlib import Path
-
-    from matstd.twin.errors import DesignError
-
-    out = Path(args.output)
-    if out.exists() and not out.is_dir():
-        raise DesignError(f"{out}: is a file, expected a folder or a name that is free")
-    if out.is_dir() and any(out.iterdir()) and not args.force:
-        raise DesignError(f"{out}: already exists; choose another folder or give --force")
-    out.mkdir(parents=True, exist_ok=True)
-    for old in [*out.glob("*.TXT"), out / "run.csv"]:  # of an earlier run, which this one replaces
-        old.unlink(missing_ok=True)
-    return out

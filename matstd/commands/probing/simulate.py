@@ -90,7 +90,7 @@ def run(args: argparse.Namespace) -> int:
         )
     run = found.campaign.run
     rms = float(np.sqrt(np.mean(run.deviation**2))) / UM
-    found.save(args.output, args.machine, args.logs)
+    found.save(args.output, args.machine, args.logs, args.force)
     minutes = found.campaign.runs[-1].end / 60.0
     say(
         f"{args.output}: {len(run)} touches in {minutes:.0f} min, "
@@ -126,7 +126,8 @@ def _search(
             "and no run file: run it alone, with --logs FOLDER"
         )
     reader = "replan" if program.is_search else "evaluate"
-    for path in save_logs(args.logs, simulate_log(program, standard, machine, **_piece(args))):
+    logs = simulate_log(program, standard, machine, **_piece(args))
+    for path in save_logs(args.logs, logs, args.force):
         say(f"{path}: {len(program.touches)} touches; matstd {reader} reads it")
     return 0
 
@@ -171,8 +172,8 @@ def planted_machine(
     args: argparse.Namespace, machine: str | Path, control: str, sensors: str | None = None
 ) -> VirtualMachine:
     """The machine as it really is, with what the options of `add_planted` plant in it."""
-    from matstd.api.effects import register_effects
     from matstd.api.probing import virtual_machine
+    from matstd.api.runs import register_effects
     from matstd.twin.units import UM
 
     register_effects(*args.effects)

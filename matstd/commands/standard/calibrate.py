@@ -83,7 +83,7 @@ def run(args: argparse.Namespace) -> int:
     _show(found.verdicts)
     if not args.accept:
         found.check()
-    found.save(args.output, args.cad)
+    found.save(args.output, args.cad, args.force)
     first, *others = calibration_lines(found)
     say(f"{args.output}: {first}")
     say_each([*others, *verdict_lines(found.verdicts)])

@@ -5,7 +5,26 @@ from __future__ import annotations
 import argparse
 
 from matstd.options import SHEET, add_output, add_pdf
+from matstd.progress import Plan
 from matstd.workers import add_scheduler
+
+PLAN = Plan(
+    {
+        "reach": 0.02,
+        "placement": 0.44,
+        "identifiability": 0.02,
+        "maps": 0.05,
+        "random machines": 0.01,
+        "probing programs": 0.02,
+        "proof on the twin": 0.13,
+        "visits on the twin": 0.16,
+        "STEP and STL": 0.05,
+        "report": 0.10,
+    },
+    usual=110.0,
+)
+"""Shares of the stages in processor time (`python benchmarks/progress_estimate.py`), and seconds
+of the example on two idle cores."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     say_assumed(brief.chain)
     say_each(brief.remarks)
     say_each(standing_remarks(brief.chain, brief.setup.T_table_artefact))
-    with stages() as progress:
+    with stages(PLAN) as progress:
         made = project.design(
             args.output,
             force=args.force,

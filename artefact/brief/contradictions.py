@@ -1,0 +1,153 @@
+"""Keys of a project that contradict each other, all of them found before any work is done."""
+
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+
+from matstd.artefact.brief.standard_tables import (
+    BASE_THICKNESS,
+    LEAST_HEIGHT,
+    LEAST_SIDE,
+    STEEL,
+    BlankTable,
+    LimitsTable,
+    MaterialTable,
+    StandardTable,
+)
+from matstd.artefact.brief.workshop_tables import WorkshopTable
+from matstd.twin.errors import BadFile
+from matstd.twin.units import KG_M3
+
+MIN_SLOT_PITCH = 20.0
+"""Smallest distance between two slots of a table, mm (ISO 299)."""
+
+
+class Faults(list[BadFile]):
+    """Faults of a file that are found one after the other and reported together."""
+
+    @contextmanager
+    def collected(self) -> Iterator[None]:
+        """Keep a fault that is raised inside, and go on after the block."""
+        try:
+            yield
+        except BadFile as error:
+            self.extend(faults_of(error))
+
+    def refuse(self) -> None:
+        """Raise what was found.
+
+        Raises:
+            BadFile: All faults, in one line.
+        """
+        if self:
+            raise BadFile.several(self)
+
+
+def faults_of(error: BadFile) -> tuple[BadFile, ...]:
+    """The single faults of a refusal."""
+    several = error.facts.get("faults", (error,))
+    assert isinstance(several, tuple)
+    return several
+
+
+def as_written(error: BadFile, names: Mapping[str, str]) -> BadFile:
+    """A refusal with the names that keys have in the file."""
+
+    def named(fault: BadFile) -> BadFile:
+        where = str(fault.facts["where"])
+        facts = fault.facts
+        found, expected = facts["found"], str(facts["expected"])
+        return BadFile(str(facts["path"]), names.get(where, where), found, expected)
+
+    return BadFile.several([named(fault) for fault in faults_of(error)])
+
+
+def standard_faults(wanted: StandardTable, path: Path) -> Iterator[BadFile]:
+    """Keys of `[standard]` that contradict each other."""
+    if wanted.robust_share < 1.0 and not wanted.robust_machines:
+        yield BadFile(
+            path,
+            "standard.robust_share",
+            f"{wanted.robust_share:g} with robust_machines = 0",
+            "drawn machines of which that share is the worst, or no such key",
+        )
+    if wanted.poses * 2 > wanted.touches:
+        yield BadFile(
+            path,
+            "standard.poses",
+            f"{wanted.poses} with touches = {wanted.touches}",
+            f"two touches or more for every table pose: {wanted.touches // 2} poses at most",
+        )
+
+
+def material_faults(material: MaterialTable, path: Path) -> Iterator[BadFile]:
+    """Another material with the default density or expansion."""
+    for key in ("density_kg_m3", "expansion_1_K"):
+        if material.name != STEEL and key not in material.model_fields_set:
+            yield BadFile(
+                path,
+                f"material.{key}",
+                f"no value beside name = '{material.name}'",
+                f"that of this material; the default is that of {STEEL}",
+            )
+
+
+def table_key(workshop: WorkshopTable) -> str:
+    """The key that states the size of the table, as the file has it."""
+    if workshop.table is None:
+        return "limits.table_radius_mm"
+    name = "sides_mm" if workshop.table.diameter_mm is None else "diameter_mm"
+    return f"workshop.table.{name}"
+
+
+def body_faults(
+    blank: BlankTable,
+    limits: LimitsTable,
+    material: MaterialTable,
+    ball_mm: float,
+    table: tuple[str, float],
+    path: Path,
+) -> Iterator[BadFile]:
+    """What no blank can meet.
+
+    Args:
+        ball_mm: Radius of the ball of the probe.
+        table: The key that states the size of the table, and its smaller side.
+    """
+    sides, (key, width) = blank.base_mm, table
+    if width < LEAST_SIDE:
+        smallest = f"{LEAST_SIDE:g} x {LEAST_SIDE:g} x {LEAST_HEIGHT:g} mm"
+        yield BadFile(
+            path,
+            key,
+            f"a table of {width:g} mm",
+            f"{LEAST_SIDE:g} mm or more: the smallest standard is {smallest}, so this machine is "
+            "too small for the tool",
+        )
+    if min(sides) < LEAST_SIDE:
+        yield BadFile(path, "blank.base_mm", list(sides), f"sides of {LEAST_SIDE:g} mm or more")
+    elif max(sides) > width >= LEAST_SIDE:
+        expected = f"sides no larger than the table, {width:g} mm ({key})"
+        yield BadFile(path, "blank.base_mm", list(sides), expected)
+    if ball_mm > limits.min_concave_radius_mm:
+        yield BadFile(
+            path,
+            "limits.min_concave_radius_mm",
+            f"{limits.min_concave_radius_mm:g} with a ball of probe.radius_mm = {ball_mm:g}",
+            "a radius that the ball fits into",
+        )
+    if 0.0 < limits.slot_pitch_mm < MIN_SLOT_PITCH:
+        yield BadFile(
+            path,
+            "limits.slot_pitch_mm",
+            f"{limits.slot_pitch_mm:g}",
+            f"{MIN_SLOT_PITCH:g} mm or more, or 0 where screws may stand anywhere",
+        )
+    base = sides[0] * sides[1] * BASE_THICKNESS * material.density_kg_m3 * KG_M3
+    if base > limits.max_mass_kg:
+        yield BadFile(
+            path,
+            "limits.max_mass_kg",
+            f"{limits.max_mass_kg:g}",
+            f"more than {base:.1f} kg, which the base of the blank weighs by itself",
+        )

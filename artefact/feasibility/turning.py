@@ -1,0 +1,117 @@
+"""Bodies on other axes, which the standard and its table pass while rotary axes turn.
+
+A clamp on the cradle of a trunnion stands still while the table turns the standard past it.
+Programs turn through every reading between two table poses, so the whole workspace is looked at.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from matstd.artefact.brief import Brief
+from matstd.artefact.reach import Body, still_frames, table_face
+from matstd.artefact.seat import CONTACT_DEPTH, base_corners, common_part, overlap
+from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG
+
+STEP = 10.0 * DEG
+"""Distance of the readings that are looked at: at 200 mm from the axis 17 mm, less than a clamp."""
+
+PLACES = 5
+"""Readings of a linear axis between a body and the table that are looked at."""
+
+ROUGH, FINE = 24, 256
+"""Sides of the polygon round a disc: first, and where it decides."""
+
+
+@dataclass(frozen=True, eq=False)
+class Meeting:
+    """The pose at which a body reaches deepest into what turns.
+
+    Attributes:
+        number: Of the body in the file.
+        met: What it meets: `the base of the standard` or `the table`.
+        pose: Readings of the axes between body and table, mm and rad, by name.
+        depth: Shortest way by which it would leave the other, mm.
+    """
+
+    number: int
+    body: Body
+    met: str
+    pose: dict[str, float]
+    depth: float
+
+
+def between(brief: Brief, body: Body) -> list[str]:
+    """Axes between a body and the table, whose readings move one past the other."""
+    links = brief.chain.links
+    inner = [k.name for k in links if k.carries_workpiece and k.kind != "fixed"]
+    return inner[: inner.index(body.on)] if body.on in inner else []
+
+
+def meetings(brief: Brief, setup: Setup) -> Iterator[Meeting]:
+    """Bodies that the base of the standard or the table meets at a pose of the workspace."""
+    base = base_corners(brief.blank.base, setup.T_table_artefact)
+    for number, body in enumerate(brief.bodies):
+        if body.setup not in {"", setup.name} or not between(brief, body):
+            continue
+        q = _poses(brief, body)
+        frames = seen_from_face(brief, setup, body, q)
+        discs = [brief.table.corners(sides) for sides in (ROUGH, FINE)]
+        for met, rough, fine in (
+            ("the base of the standard", base, base),
+            ("the table", discs[0], discs[1]),
+        ):
+            depths = np.array([_depth(body, T, rough, ROUGH) for T in frames])
+            worst = int(np.argmax(depths))
+            if depths[worst] > CONTACT_DEPTH:
+                depth = _depth(body, frames[worst], fine, FINE)
+                if depth > CONTACT_DEPTH:
+                    names = between(brief, body)
+                    at = {name: float(q[worst, brief.chain.axis_index(name)]) for name in names}
+                    yield Meeting(number=number, body=body, met=met, pose=at, depth=depth)
+
+
+def seen_from_face(brief: Brief, setup: Setup, body: Body, q: Array) -> Array:
+    """Poses T_face_still (N, 4, 4) that take a body where the turned table sees it.
+
+    Args:
+        q: Readings, shape (N, A), mm and rad.
+    """
+    T_table_face = table_face(setup.T_table_artefact)
+    T_still_table = still_frames([body.on], brief.chain, q)[body.on]
+    return inverse(T_table_face) @ inverse(T_still_table) @ T_table_face
+
+
+def _poses(brief: Brief, body: Body) -> Array:
+    """Readings of a grid over the workspace of the axes between a body and the table, (N, A)."""
+    chain, steps = brief.chain, []
+    for name in between(brief, body):
+        low, high = brief.ranges[name]
+        is_rotary = chain.link(name).kind == "rotary"
+        count = int(np.ceil((high - low) / STEP)) + 1 if is_rotary else PLACES
+        steps.append(np.linspace(low, high, count if high > low else 1))
+    q = np.zeros((int(np.prod([len(s) for s in steps])), len(chain.axes)))
+    for name, values in zip(between(brief, body), np.meshgrid(*steps), strict=True):
+        q[:, chain.axis_index(name)] = values.ravel()
+    return q
+
+
+def _depth(body: Body, T_face_still: Array, other: Array, sides: int) -> float:
+    """Depth of a turned body inside the hull of some corners, mm."""
+    if body.mesh is not None:
+        corners = apply(T_face_still, body.mesh[0])
+        if _apart(corners, other):
+            return 0.0
+        common = common_part(corners, body.mesh[1], other)
+        return float(np.ptp(common, axis=0).min()) if len(common) else 0.0
+    turned = (apply(T_face_still, solid.corners(sides)) for solid in body.solids)
+    return max(0.0 if _apart(c, other) else overlap(c, other).depth for c in turned)
+
+
+def _apart(corners: Array, other: Array) -> bool:
+    """Whether the boxes round two bodies do not meet."""
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    return bool(np.any(low >= other.max(axis=0)) or np.any(high <= other.min(axis=0)))

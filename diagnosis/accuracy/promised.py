@@ -1,0 +1,161 @@
+"""What a model promises of its error: at the same touches again, and at other places.
+
+At the same touches a run predicts itself: what it does not know of the machine there, it has seen
+anyway. Elsewhere two things come on top. What the touches left open of the machine acts where they
+did not look, ``u_i^2 = c_i C c_i^T`` with C the covariance of the estimates and c_i the columns
+there, freed of what the placing of a standard takes up. And a law may hold only where it was seen:
+so blocks of a domain (half of a stroke, a set-up, a part of the time) are left out, and how much
+larger their errors are than their uncertainties multiplies it.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.regression import left_out, solve
+from matstd.twin.effects import setup_errors
+from matstd.twin.frames import Array
+from matstd.twin.machine import inverse_linear
+from matstd.twin.model import Model, columns
+from matstd.twin.record import Instrument, IntArray, Touches
+
+DRAWN = 1000
+"""Touches at other places, at least: their mean variance is known within a few per cent."""
+
+PARTS_OF_TIME = 3
+"""Parts of a run that are left out in turn."""
+
+MIN_BLOCKS = 3
+"""Set-ups from which standards are placed as set-ups stood; with fewer, poses are moved."""
+
+ON_STANDARD = (Instrument.TOUCH_PROBE, Instrument.CMM, Instrument.BALL_BAR)
+"""Instruments whose points are of a body that is placed as a whole."""
+
+LINEAR = 3
+"""Linear axes that bring the tool to any point."""
+
+MIN_ROWS = 4
+"""Touches that a block must leave out to be a test."""
+
+
+@dataclass(frozen=True, slots=True)
+class Domain:
+    """Blocks of one domain left out in turn.
+
+    Attributes:
+        name: A column of the run, `X_mm`; or `time_s`, `setup`.
+        ratio: Their errors over their uncertainties, rms; 1 for a model that holds there.
+    """
+
+    name: str
+    ratio: float
+
+
+@dataclass(frozen=True, slots=True)
+class Promise:
+    """Errors to expect of a model, rms of single touches, mm.
+
+    Attributes:
+        same: In another run of the same touches.
+        elsewhere: At other places, paths and set-ups within what was probed.
+        domains: Blocks left out, the worst first.
+    """
+
+    same: float
+    elsewhere: float
+    domains: tuple[Domain, ...]
+
+
+def promise(fit: Fit) -> Promise:
+    """What a fit promises; the other places are drawn alike each time."""
+    rng = np.random.default_rng(0)
+    found = sorted(_domains(fit), key=lambda d: -d.ratio)
+    worst = found[0].ratio if found else 1.0
+    touches, m = fit.run.touches, len(fit.model.parameters)
+    variances = []
+    for _ in range(1 + DRAWN // len(touches)):
+        there = other_places(touches, rng)
+        u = fit.u * fit.weight
+        variances.append(machine_variance(there, fit.model, fit.spread[:m], u))
+    square = fit.standardised_test_rms**2 + worst**2 * float(np.mean(variances))
+    return Promise(fit.test_rms, max(float(np.sqrt(square)), fit.test_rms), tuple(found))
+
+
+def machine_variance(touches: Touches, model: Model, root: Array, u: Array) -> Array:
+    """Variance of a prediction that no set-up takes up, (N,), mm^2.
+
+    Args:
+        root: Of the covariance of the model's parameters, (P, K), base units.
+        u: Noise of every touch, (N,), mm, beside which set-ups are estimated.
+    """
+    placed = setup_errors(touches)
+    sd = np.array([p.sd for e in placed for p in e.parameters])
+    S = model.columns(touches) @ root / u[:, None]
+    free = solve(columns(placed, touches) * sd / u[:, None], np.zeros(len(S))).Q
+    left = S - free @ (free.T @ S)
+    return np.asarray(np.einsum("np,np->n", left, left) * u**2)
+
+
+def other_places(touches: Touches, rng: np.random.Generator) -> Touches:
+    """The same touches where the axes did not stand together, each in the range it was probed in.
+
+    A rotary axis turns from pose to pose to where it stood in another pose. A standard is placed
+    where another set-up was, one coordinate like this, the next like that, and the linear axes
+    follow; without one, the linear axes move as the rotary ones do.
+    """
+    chain = touches.chain
+    q = (touches.q if touches.commanded is None else touches.commanded).copy()
+    poses = _labels(touches, touches.pose)
+    is_standing = touches.instrument in ON_STANDARD and len(chain.linear_axes) == LINEAR
+    moved = chain.rotary_axes if is_standing else chain.axes
+    for k in map(chain.axis_index, moved):
+        q[:, k] = _elsewhere(q[:, k], poses, rng)
+    if not is_standing:
+        there = replace(touches, q=q, commanded=None)
+        return replace(there, point=there.ball_artefact - touches.radius[:, None] * touches.normal)
+    setups = _labels(touches, np.zeros_like(touches.pose))
+    at = touches.point_table
+    label = setups if setups.max() + 1 >= MIN_BLOCKS else poses
+    point = np.column_stack([_elsewhere(at[:, k], label, rng) for k in range(LINEAR)])
+    target = point + touches.radius[:, None] * touches.normal_table
+    return replace(touches, q=inverse_linear(chain, target, q, touches.target), commanded=None)
+
+
+def _elsewhere(values: Array, label: IntArray, rng: np.random.Generator) -> Array:
+    """Values of labelled rows, each label moved to where another one lay, (N,)."""
+    count = np.bincount(label)
+    middle = np.bincount(label, values) / count
+    return values + (middle[rng.integers(len(count), size=len(count))] - middle)[label]
+
+
+def _labels(touches: Touches, pose: IntArray) -> IntArray:
+    key = np.column_stack([touches.setup, pose])
+    return np.unique(key, axis=0, return_inverse=True)[1].reshape(-1)
+
+
+def _domains(fit: Fit) -> Iterator[Domain]:
+    """Every domain whose blocks can be left out."""
+    for name, blocks in _blocks(fit):
+        if len(blocks) > 1 and min(map(len, blocks)) >= MIN_ROWS:
+            left = left_out(fit.solution.Q, fit.solution.residual, blocks)
+            yield Domain(name, float(np.sqrt(left.squared / fit.used.sum())))
+
+
+def _blocks(fit: Fit) -> Iterator[tuple[str, Sequence[IntArray]]]:
+    """Rows of the fit, by numbers within it, of the blocks of every domain."""
+    touches = fit.run.touches
+    for axis in touches.chain.programmed_axes:
+        q = touches.reading(axis)[fit.used]
+        upper = q > np.median(q)
+        unit = "deg" if touches.chain.link(axis).kind == "rotary" else "mm"
+        yield f"{axis}_{unit}", (np.flatnonzero(~upper), np.flatnonzero(upper))
+    order = np.argsort(touches.time[fit.used], kind="stable")
+    yield "time_s", np.array_split(order, PARTS_OF_TIME)
+    setup = touches.setup[fit.used]
+    yield "setup", [np.flatnonzero(setup == k) for k in np.unique(setup)]
+    if touches.force is not None:
+        load = np.linalg.norm(touches.force, axis=1)[fit.used]
+        heavy = load > np.median(load)
+        yield "force", (np.flatnonzero(~heavy), np.flatnonzero(heavy))

@@ -1,0 +1,180 @@
+"""The verdict in three parts: the geometry, the effects that have names, and what remains.
+
+A run scatters by more than its repeats. The ordinary geometry takes a share of that, named effects
+take theirs, and the remainder has its own size, beside which the noise is what repeats show. So a
+good name and an open question stand beside one another, and neither hides the other.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from matstd.diagnosis.accuracy import Repeatability
+from matstd.diagnosis.answer.ambiguity import Rival
+from matstd.diagnosis.faults import DescriptionFault
+from matstd.diagnosis.geometry import GeometryRow, LearntGeometry
+from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.residual import Structure
+from matstd.twin.model import Effect
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GeometryPart:
+    """What the ordinary model learnt.
+
+    Attributes:
+        changed: Quantities that differ from the earlier model, or from run to run.
+        beyond: Quantities larger than such a machine has, which hint at the description.
+        hints: Mistakes of the description that explain the run better.
+        left: Scatter of the residual of the geometric model alone, mm.
+    """
+
+    changed: tuple[GeometryRow, ...]
+    beyond: tuple[GeometryRow, ...]
+    hints: tuple[DescriptionFault, ...]
+    left: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class NamedEffect:
+    """An effect with a name, and its weight in this run.
+
+    Attributes:
+        explained: Root mean square of the scatter that it takes away, mm.
+        share: The same as a share of the mean square beyond repeatability, 0 to 1.
+        runner_up: The next best explanation of what it explains; None for one that the user named,
+            and where no other effect of the library acts on these touches.
+        is_headline: Whether it is certain, larger than its uncertainty, and large enough to name.
+    """
+
+    effect: Effect
+    p_value: float
+    explained: float
+    share: float
+    runner_up: Rival | None
+    is_headline: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Remainder:
+    """What is left beside geometry and names.
+
+    Attributes:
+        scatter: Of the whole residual, mm, degrees of freedom accounted for.
+        size: Of what is beyond repeatability, or of its strongest pattern where no repeats show
+            that, mm.
+        share: The same as a share of the mean square beyond repeatability, 0 to 1.
+        lack_of_fit: Probability by chance of so much more scatter than that of repeats; 1 without.
+        patterns: What it varies with.
+        is_real: Whether it is beyond chance.
+    """
+
+    scatter: float
+    size: float
+    share: float
+    lack_of_fit: float
+    patterns: tuple[Structure, ...]
+    is_real: bool
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class VerdictParts:
+    """The three parts, and what the data themselves repeat by."""
+
+    geometry: GeometryPart
+    named: tuple[NamedEffect, ...]
+    remains: Remainder
+    repeatability: Repeatability
+
+    @property
+    def headline(self) -> tuple[NamedEffect, ...]:
+        """Effects that may stand in a headline."""
+        return tuple(n for n in self.named if n.is_headline)
+
+    @property
+    def explained(self) -> float:
+        """Root mean square of the scatter that all names together take away, mm."""
+        return float(np.sqrt(sum(n.explained**2 for n in self.named)))
+
+    @property
+    def is_unexplained(self) -> bool:
+        """Whether nothing is named, or more remains than the names explain."""
+        return self.remains.is_real and (not self.headline or self.remains.size > self.explained)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Weighed:
+    """A step of the diagnosis as the parts need it: scatter is of what it leaves, mm."""
+
+    effect: Effect
+    p_value: float
+    scatter: float
+    runner_up: Rival | None
+    is_significant: bool
+
+
+def verdict_parts(
+    start: float,
+    dof: float,
+    steps: Sequence[Weighed],
+    left: Sequence[Structure],
+    geometry: LearntGeometry,
+    faults: Sequence[DescriptionFault],
+    repeats: Repeatability,
+) -> VerdictParts:
+    """The three parts of a verdict.
+
+    Shares are of the mean square beyond repeatability, ``s_0^2 - s_r^2``; without repeats, of that
+    beyond what is left apart from its strongest pattern.
+
+    Args:
+        start: Scatter of the residual of the starting model, mm.
+        dof: Degrees of freedom of the last residual.
+        left: Patterns that count in the last residual, beyond doubt and beyond what is stated.
+    """
+    scatter = steps[-1].scatter if steps else start
+    chance = repeats.lack_of_fit(scatter, dof)
+    known = repeats.known
+    is_beyond = known is not None and scatter > POLICY.repeat_ratio * known.size
+    structured = scatter * float(np.sqrt(min(max((s.share for s in left), default=0.0), 1.0)))
+    size = structured if known is None else max(repeats.excess(scatter), structured)
+    is_real = bool(left) or (is_beyond and chance < POLICY.false_alarm)
+    whole = max(start**2 - scatter**2 + size**2, 1e-300)
+    named, before = [], start
+    for step in steps:
+        fall = max(before**2 - step.scatter**2, 0.0)
+        named.append(
+            NamedEffect(
+                effect=step.effect,
+                p_value=step.p_value,
+                explained=float(np.sqrt(fall)),
+                share=min(fall / whole, 1.0),
+                runner_up=step.runner_up,
+                is_headline=bool(
+                    step.is_significant
+                    and step.p_value < POLICY.false_alarm
+                    and np.sqrt(fall) > POLICY.headline_noise_share * repeats.stated
+                ),
+            )
+        )
+        before = min(before, step.scatter)
+    rows = geometry.rows
+    return VerdictParts(
+        geometry=GeometryPart(
+            changed=tuple(r for r in rows if r.has_changed),
+            beyond=tuple(r for r in rows if r.is_beyond_expected or r.is_far),
+            hints=tuple(faults),
+            left=start,
+        ),
+        named=tuple(named),
+        remains=Remainder(
+            scatter=scatter,
+            size=size,
+            share=min(size**2 / whole, 1.0),
+            lack_of_fit=chance,
+            patterns=tuple(left),
+            is_real=is_real,
+        ),
+        repeatability=repeats,
+    )

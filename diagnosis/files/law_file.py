@@ -1,0 +1,114 @@
+"""law.json ("law/1"): laws that were learnt, for other programs."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from matstd.diagnosis.fit import file_unit
+from matstd.diagnosis.laws import Estimate, Learning, LearntLaw, SecondRun, amplitudes, places
+from matstd.twin.files import write_whole
+from matstd.twin.laws import Law
+from matstd.twin.text import json_text
+from matstd.twin.units import DEG, UM
+
+FORMAT = "law/1"
+
+_PLACES = {"mm": ("mm", 1.0), "rad": ("deg", DEG), "s": ("s", 1.0)}
+"""Unit of a parameter of a shape in files, and one of it in the base unit."""
+
+
+def law_table(
+    learning: Learning, run_name: str, effect_names: list[str], second: SecondRun | None
+) -> dict[str, Any]:
+    """Everything of `law.json`, in the units that stand in its names."""
+    fit, policy = learning.after, learning.policy
+    table: dict[str, Any] = {
+        "format": FORMAT,
+        "run": run_name,
+        "touches": len(fit.run),
+        "noise_um": float(np.median(fit.u)) / UM,
+        "stated_noise_um": float(np.median(fit.run.u)) / UM,
+        "laws": [
+            _law(learning, one, name) for one, name in zip(learning.laws, effect_names, strict=True)
+        ],
+        "held_out": [
+            {"blocks": h.what, "without_um": h.before / UM, "with_um": h.after / UM}
+            for h in learning.held_out
+        ],
+        "policy": {name: getattr(policy, name) for name in policy.__dataclass_fields__},
+    }
+    if learning.refused is not None:
+        refused = learning.refused
+        table["refused"] = {"law": refused.law.name, "log_evidence": refused.score}
+    if second is not None:
+        table["second_run"] = {
+            "touches": second.touches,
+            "without_um": second.without / UM,
+            "with_um": second.learnt / UM,
+        }
+    return table
+
+
+def write_laws(
+    path: str | Path,
+    learning: Learning,
+    run_name: str,
+    effect_names: list[str],
+    second: SecondRun | None = None,
+) -> None:
+    """Write `law.json`, whole or not at all.
+
+    Args:
+        effect_names: Of the laws in `effect.py`, in their order.
+    """
+    write_whole(path, json_text(law_table(learning, run_name, effect_names, second)))
+
+
+def _law(learning: Learning, one: LearntLaw, effect: str) -> dict[str, Any]:
+    policy = learning.policy
+    return {
+        "law": one.law.name,
+        "effect": effect,
+        "family": "*".join(f.shape.word for f in one.law.factors),
+        "carrier": one.law.carrier.name,
+        "carriers_alike": [c.name for c in one.alike],
+        "variables": [f.driver.name for f in one.law.factors],
+        "formula": " times ".join(
+            f"{f.shape.formula}, x = {f.driver.name}" for f in one.law.factors
+        ),
+        "amplitudes": [_amplitude(a) for a in amplitudes(learning, one.law)],
+        "parameters": [_place(p) for p in places(learning, one.law)],
+        "log_evidence": one.score,
+        "log_evidence_of_curve": one.curve if np.isfinite(one.curve) else None,
+        "class": [{"law": law.name, "share": share} for law, share in one.members(policy)],
+        "rivals": [
+            {"law": r.law.name, "parameters": _plain(r.law), "log_odds_against": r.log_odds}
+            for r in one.rivals[: policy.most_rivals]
+        ],
+    }
+
+
+def _plain(law: Law) -> dict[str, float]:
+    """Parameters of a rival, base units."""
+    return {name: float(value) for name, value in law.tuning.items()}
+
+
+def _amplitude(one: Estimate) -> dict[str, Any]:
+    suffix, factor = file_unit(one.unit)
+    return {
+        "name": one.name,
+        "unit": "" if suffix == "1" else suffix,
+        "value": one.value / factor,
+        "u": None if one.u is None else one.u / factor,
+    }
+
+
+def _place(one: Estimate) -> dict[str, Any]:
+    unit, factor = _PLACES.get(one.unit, (one.unit if one.unit != "1" else "", 1.0))
+    return {
+        "name": one.name,
+        "unit": unit,
+        "value": one.value / factor,
+        "u": None if one.u is None else one.u / factor,
+    }

@@ -1,0 +1,37 @@
+"""Laws: what a model leaves, learnt as a carrier times shapes of variables, without a cause.
+
+In: a fit of a model to a run. Out: `Learning`: laws with formula, uncertainty and rivals, and how
+well touches that were left out are predicted with them. Curves over every variable screen what the
+remainder depends on (`screening`), the grammar of shapes makes formulas of them (`formulas`), and a
+formula is kept where it predicts at least as well as the curve (`search`).
+"""
+
+from matstd.diagnosis.laws.estimates import (
+    Estimate,
+    SecondRun,
+    amplitudes,
+    curve_of,
+    partial_residual,
+    places,
+    second_run,
+)
+from matstd.diagnosis.laws.learn import HeldOut, Learning, LearntLaw, Rival, fitted, learn_laws
+from matstd.diagnosis.laws.policy import POLICY, LawPolicy
+
+__all__ = [
+    "POLICY",
+    "Estimate",
+    "HeldOut",
+    "LawPolicy",
+    "Learning",
+    "LearntLaw",
+    "Rival",
+    "SecondRun",
+    "amplitudes",
+    "curve_of",
+    "fitted",
+    "learn_laws",
+    "partial_residual",
+    "places",
+    "second_run",
+]

@@ -1,0 +1,174 @@
+"""Numbers of a law with their uncertainties, and what a second run says of it."""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from matstd.diagnosis.fit import Fit, fit_run
+from matstd.diagnosis.laws.learn import Learning
+from matstd.twin.frames import Array
+from matstd.twin.laws import Driver, Law
+from matstd.twin.model import Model, columns
+from matstd.twin.record import Run, with_commanded, without_copies
+
+
+class Estimate(NamedTuple):
+    """One number of a law.
+
+    Attributes:
+        unit: Base unit.
+        u: Standard uncertainty; None where it follows from the machine or is no estimate.
+    """
+
+    name: str
+    value: float
+    u: float | None
+    unit: str
+
+
+def amplitudes(learning: Learning, law: Law) -> list[Estimate]:
+    """Amplitudes of a law that was learnt."""
+    fit = learning.tangent
+    place = fit.of_effect(law.name)
+    u = np.sqrt(np.diag(fit.covariance)[place])
+    theta = learning.after.theta[learning.after.of_effect(law.name)]
+    return [
+        Estimate(p.name, float(value), float(sd), p.unit)
+        for p, value, sd in zip(law.parameters, theta, u, strict=True)
+    ]
+
+
+def places(learning: Learning, law: Law) -> list[Estimate]:
+    """Parameters of its shapes; of an edge half the gap between the touches on either side."""
+    fit, out = learning.tangent, []
+    tangents = {t.index: fit.of_effect(t.name) for t in fit.tangents if t.effect.name == law.name}
+    drivers = [f.driver for f in law.factors for _ in f.shape.places]
+    jumps = [f.shape.jumps for f in law.factors for _ in f.shape.places]
+    for i, (name, value) in enumerate(law.tuning.items()):
+        u = None
+        if i in tangents:
+            u = float(np.sqrt(fit.covariance[tangents[i], tangents[i]][0, 0]))
+        elif jumps[i] and name.startswith("x"):
+            u = _half_gap(drivers[i], fit, value) / np.sqrt(3.0)
+        out.append(Estimate(name, value, u, law.units[i]))
+    return out
+
+
+def _half_gap(driver: Driver, fit: Fit, value: float) -> float:
+    """Half the distance of the touches on either side of a place."""
+    x = np.sort(driver.values(fit.run.touches)[fit.used])
+    i = int(np.clip(np.searchsorted(x, value), 1, len(x) - 1))
+    return 0.5 * float(x[i] - x[i - 1])
+
+
+def partial_residual(learning: Learning, law: Law) -> tuple[Array, Array]:
+    """Residual with the law put back, and the law itself, at every touch, (N,) each, mm."""
+    fit = learning.after
+    own = columns([law], fit.run.touches) @ fit.theta[fit.of_effect(law.name)]
+    return np.asarray(fit.residual + own), np.asarray(own)
+
+
+def curve_of(learning: Learning, law: Law, factor: int, x: Array) -> tuple[Array, Array]:
+    """One factor of a law over its variable, in units of the carrier, with its uncertainty.
+
+    The other factor is where it is largest. The uncertainty is that of amplitudes and parameters
+    together, by differences.
+
+    Args:
+        factor: Number of the factor.
+        x: Values of its variable, (M,), base unit.
+
+    Returns:
+        Values and standard uncertainty, (M,) each, mm or rad.
+    """
+    fit = learning.tangent
+    theta = learning.after.theta[learning.after.of_effect(law.name)]
+    first = slice(0, len(theta))
+    indices = [t.index for t in fit.tangents if t.effect.name == law.name]
+    rows = np.concatenate(
+        [
+            np.r_[fit.of_effect(law.name)],
+            *(np.r_[fit.of_effect(t.name)] for t in fit.tangents if t.effect.name == law.name),
+        ]
+    )
+    covariance = fit.covariance[np.ix_(rows, rows)]
+    other = _other_factor(learning, law, factor, theta)
+    S = _values(law, factor, x, law.places, other)
+    slope = [S]
+    weights = theta.reshape(law.carrier.count, -1)
+    way = int(np.argmax(np.abs(weights).sum(axis=1)))
+    pick = np.zeros((law.carrier.count, S.shape[1]))
+    pick[way] = 1.0
+    wide = (S[:, None, :] * pick[None]).reshape(len(x), -1)
+    slope = [wide]
+    inner = law.inner(fit.run.touches)
+    for i in indices:
+        step = 0.02 * float(inner[i].grid[-1] - inner[i].grid[-2]) or 1e-9
+        moved = []
+        for sign in (1.0, -1.0):
+            at = list(law.places)
+            at[i] += sign * step
+            moved.append(_values(law, factor, x, tuple(at), other) @ weights[way])
+        slope.append(((moved[0] - moved[1]) / (2.0 * step))[:, None])
+    A = np.hstack(slope)
+    value = wide @ theta[first]
+    return value, np.sqrt(np.maximum(np.einsum("np,pk,nk->n", A, covariance, A), 0.0))
+
+
+def _other_factor(learning: Learning, law: Law, factor: int, theta: Array) -> Array | None:
+    """Columns of the other factor where it acts most, (coefficients,); None without one."""
+    if len(law.factors) == 1:
+        return None
+    other = law.factors[1 - factor]
+    start = 0 if factor == 1 else len(law.factors[0].shape.places)
+    own = law.places[start : start + len(other.shape.places)]
+    x = other.driver.values(learning.after.run.touches)
+    S = np.stack(other.shape.values(x, *own), axis=1)
+    del theta
+    return np.asarray(S[int(np.argmax(np.abs(S).sum(axis=1)))])
+
+
+def _values(law: Law, factor: int, x: Array, at: tuple[float, ...], other: Array | None) -> Array:
+    """Columns of a law over one variable, the other factor held, (M, coefficients)."""
+    start = 0 if factor == 0 else len(law.factors[0].shape.places)
+    shape = law.factors[factor].shape
+    S = np.stack(shape.values(x, *at[start : start + len(shape.places)]), axis=1)
+    if other is None:
+        return S
+    pair = S[:, :, None] * other if factor == 0 else other[:, None] * S[:, None, :]
+    return np.asarray(pair.reshape(len(x), -1))
+
+
+@dataclass(frozen=True, eq=False)
+class SecondRun:
+    """Another run of the machine, whose set-ups and ordinary model are fitted anew.
+
+    Attributes:
+        without: Root mean square of what the model leaves, per degree of freedom, mm.
+        learnt: The same with the laws taken off as they were learnt.
+    """
+
+    touches: int
+    without: float
+    learnt: float
+
+    @property
+    def is_better(self) -> bool:
+        """Whether the laws predict it better than none."""
+        return self.learnt < self.without
+
+
+def second_run(learning: Learning, run: Run) -> SecondRun:
+    """How well the laws predict another run; raises NotEnoughData."""
+    run = with_commanded(without_copies(run))
+    model: Model = learning.before.model
+    before = fit_run(run, model)
+    freed = replace(run, deviation=run.deviation - learning.predicted(run))
+    after = fit_run(freed, model)
+    u = float(np.median(run.u))
+    return SecondRun(
+        touches=len(run),
+        without=u * before.noise.chi2_ratio**0.5,
+        learnt=u * after.noise.chi2_ratio**0.5,
+    )

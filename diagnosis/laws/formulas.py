@@ -1,0 +1,323 @@
+"""From a curve to a formula: every shape of the grammar at every point of its grid, then refined.
+
+A shape of one variable, times the columns of a carrier, is scanned over its grid as one product of
+matrices. A product of two shapes is found by turns: with one factor in place, the carrier times
+that factor is a carrier like any other.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from matstd.diagnosis.laws.screening import Bearer, Field
+from matstd.diagnosis.laws.space import MIN_OWN, Space
+from matstd.twin.frames import Array
+from matstd.twin.laws import SHAPES, Driver, Factor, Law, Shape, grid, shapes_of
+
+BLOCK = 2000
+"""Columns that are projected at a time."""
+
+MOST_STEPS = 400
+"""Most evaluations of a refinement."""
+
+SIMPLE_HARMONICS = (1, 2, 3, 4)
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A law at some parameters, and what it explains.
+
+    Attributes:
+        bearer: Its carrier, with columns.
+        explained: Squared residual.
+        parameters: Number of amplitudes and of parameters that the run determines.
+        score: Log evidence, parameters charged.
+    """
+
+    bearer: Bearer
+    law: Law
+    explained: float
+    parameters: int
+    score: float
+
+
+class Part(NamedTuple):
+    """One factor at a point of its grid."""
+
+    factor: Factor
+    places: tuple[float, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Grids:
+    """Columns of all shapes of the variables of a run, made once."""
+
+    space: Space
+    field: Field
+
+    @cached_property
+    def _made(self) -> dict[str, list[tuple[Shape, Array, Array]]]:
+        return {}
+
+    def of(self, driver: Driver) -> list[tuple[Shape, Array, Array]]:
+        """Every shape of a variable with its grid (G, places) and columns (coefficients, N, G)."""
+        if driver.name not in self._made:
+            x = self.field.x[driver.name]
+            out = []
+            for shape in shapes_of(driver, x):
+                points = grid(shape, driver, x)
+                columns = [np.stack(shape.values(x, *p))[:, self.space.used] for p in points]
+                if columns:
+                    out.append((shape, points, np.stack(columns, axis=2)))
+            self._made[driver.name] = out
+        return self._made[driver.name]
+
+
+def columns_of(field: Field, space: Space, parts: Sequence[Part]) -> Array:
+    """Columns of a product of shapes at the rows used, (N, coefficients)."""
+    out = np.ones((space.count, 1))
+    for part in parts:
+        x = field.x[part.factor.driver.name]
+        found = part.factor.shape.values(x, *part.places)
+        own = np.stack([np.broadcast_to(f, x.shape) for f in found], axis=1)[space.used]
+        out = (out[:, :, None] * own[:, None, :]).reshape(len(out), -1)
+    return out
+
+
+def spread(C: Array, S: Array) -> Array:
+    """Carrier columns (N, k) times shape columns (N, m), (N, k m)."""
+    return np.asarray((C[:, :, None] * S[:, None, :]).reshape(len(C), -1))
+
+
+def scan(grids: Grids, C: Array, driver: Driver, each: int = 1) -> list[tuple[Part, float, int]]:
+    """The best points of every shape of a variable, for a carrier.
+
+    Args:
+        C: Columns of the carrier, or of the carrier times a first factor, (N, k).
+        each: How many points of every shape.
+
+    Returns:
+        Shape and place, squared residual explained, number of its parameters.
+    """
+    space, out = grids.space, []
+    bases = [space.basis * C[:, i : i + 1] for i in range(C.shape[1])]
+    for shape, points, columns in grids.of(driver):
+        explained = np.concatenate(
+            [
+                _explained(space, C, bases, columns[:, :, at : at + BLOCK])
+                for at in range(0, columns.shape[2], BLOCK)
+            ]
+        )
+        for g in np.argsort(-explained)[:each]:
+            part = Part(Factor(shape, driver), tuple(float(v) for v in points[g]))
+            count = C.shape[1] * len(shape.coefficients) + len(shape.free)
+            out.append((part, float(explained[g]), count))
+    return out
+
+
+def _explained(space: Space, C: Array, bases: Sequence[Array], S: Array) -> Array:
+    """Squared residual that the carrier times the shape explains at every point, (G,)."""
+    m, _, points = S.shape
+    pairs = [(i, j) for i in range(C.shape[1]) for j in range(m)]
+    U = [bases[i].T @ S[j] for i, j in pairs]
+    b = np.stack([(C[:, i] * space.r) @ S[j] for i, j in pairs], axis=1)
+    raw = np.stack([C[:, i] ** 2 @ S[j] ** 2 for i, j in pairs], axis=1)
+    if len(pairs) == 1:
+        own = raw[:, 0] - np.einsum("pg,pg->g", U[0], U[0])
+        is_own = own > MIN_OWN * raw[:, 0]
+        return np.where(is_own, b[:, 0] ** 2 / np.where(is_own, own, 1.0), 0.0)
+    G = np.empty((points, len(pairs), len(pairs)))
+    for a, (i, j) in enumerate(pairs):
+        for c, (h, g) in enumerate(pairs[: a + 1]):
+            cross = (C[:, i] * C[:, h]) @ (S[j] * S[g])
+            G[:, a, c] = G[:, c, a] = cross - np.einsum("pg,pg->g", U[a], U[c])
+    size = np.sqrt(np.maximum(raw, 1e-300))
+    G = G / (size[:, :, None] * size[:, None, :])
+    values, vectors = np.linalg.eigh(G)
+    along = np.einsum("gab,ga->gb", vectors, b / size) ** 2
+    is_own = values > MIN_OWN
+    return np.asarray(np.where(is_own, along / np.where(is_own, values, 1.0), 0.0).sum(axis=1))
+
+
+def candidate(
+    space: Space, field: Field, bearer: Bearer, parts: Sequence[Part], extra: int = 0
+) -> Candidate:
+    """A law with what it explains, exactly."""
+    S = columns_of(field, space, parts)
+    explained = space.explained(spread(bearer.C, S))
+    law = Law(
+        bearer.carrier,
+        tuple(p.factor for p in parts),
+        tuple(v for p in parts for v in p.places),
+    )
+    count = len(law.parameters) + len(law.free) + extra
+    score = float(space.gained(np.array(explained))) - space.charge(count)
+    return Candidate(bearer=bearer, law=law, explained=explained, parameters=count, score=score)
+
+
+def single_formulas(grids: Grids, bearer: Bearer, driver: Driver, most: int) -> list[Candidate]:
+    """Formulas of one variable at one carrier, the best first."""
+    space = grids.space
+    ranked = sorted(
+        scan(grids, bearer.C, driver),
+        key=lambda one: space.charge(one[2]) - float(space.gained(np.array(one[1]))),
+    )
+    return [candidate(space, grids.field, bearer, [part]) for part, _, _ in ranked[:most]]
+
+
+def product_formulas(
+    grids: Grids, bearer: Bearer, drivers: Sequence[Driver], most: int
+) -> list[Candidate]:
+    """Products of two shapes at one carrier, the best first.
+
+    Either variable begins with its simple shapes; from the best pairs on, each factor is scanned
+    anew with the other in place.
+    """
+    space = grids.space
+    found: list[tuple[tuple[Part, ...], float, int]] = []
+    orders = (
+        [tuple(drivers)] if drivers[0] == drivers[1] else [tuple(drivers), tuple(drivers[::-1])]
+    )
+    for first, second in orders:
+        for part in _simple(grids, first):
+            C = spread(bearer.C, columns_of(grids.field, space, [part]))
+            free = len(part.factor.shape.free)
+            for other, explained, count in scan(grids, C, second):
+                found.append(((part, other), explained, count + free))
+
+    def value(one: tuple[tuple[Part, ...], float, int]) -> float:
+        return space.charge(one[2]) - float(space.gained(np.array(one[1])))
+
+    found.sort(key=value)
+    again: list[tuple[tuple[Part, ...], float, int]] = []
+    for parts, _, _ in found[:3]:
+        C = spread(bearer.C, columns_of(grids.field, space, [parts[1]]))
+        free = len(parts[1].factor.shape.free)
+        for other, explained, count in scan(grids, C, parts[0].factor.driver):
+            again.append(((other, parts[1]), explained, count + free))
+    ranked = sorted(found + again, key=value)
+    out: list[Candidate] = []
+    names: set[str] = set()
+    for parts, _, _ in ranked:
+        ordered = parts if parts[0].factor.driver == drivers[0] else parts[::-1]
+        one = candidate(space, grids.field, bearer, ordered)
+        if one.law.name not in names:
+            names.add(one.law.name)
+            out.append(one)
+        if len(out) == most:
+            break
+    return out
+
+
+def _simple(grids: Grids, driver: Driver) -> list[Part]:
+    """Shapes of a variable with which a product is begun."""
+    words: list[tuple[str, tuple[float, ...]]]
+    x = grids.field.x[driver.name]
+    zero, unit = driver.zero, driver.scale
+    if driver.nature == "sign":
+        words = [("sign", ())]
+    elif driver.nature == "rotary":
+        words = [("harmonic", (float(k),)) for k in SIMPLE_HARMONICS]
+        words += [("half-wave", (p,)) for p in np.radians([0.0, 90.0, 180.0, 270.0])]
+        words += [("lin", (zero, unit))]
+        if np.ptp(x) > np.pi:
+            words += [("harmonic", (float(k),)) for k in (5, 6, 7, 8, 9, 10, 12)]
+    else:
+        low, high = float(x.min()), float(x.max())
+        words = [("lin", (zero, unit)), ("quad", (zero, unit))]
+        words += [("kink", (p, unit)) for p in np.quantile(x, (0.3, 0.6))]
+        words += [("step", (p,)) for p in np.quantile(x, (0.25, 0.5, 0.75))]
+        words += [("bump", (p, 0.25 * (high - low))) for p in np.quantile(x, (0.2, 0.4, 0.6, 0.8))]
+        if driver.nature == "time":
+            words += [("exp", (0.0, w * (high - low))) for w in (0.1, 0.4)]
+    return [Part(Factor(SHAPES[word], driver), places) for word, places in words]
+
+
+def refined(space: Space, field: Field, start: Candidate) -> Candidate:
+    """The law with its parameters where they explain most, between and beyond points of the grid.
+
+    Nelder and Mead's simplex, since edges make the sum of squares jump; amplitudes follow from the
+    parameters in closed form.
+    """
+    from scipy.optimize import minimize
+
+    law = start.law
+    if not law.free or law.is_curve_alone:
+        return start
+    values = np.array(law.places)
+    free = np.array(law.free)
+    inner = law.inner(space.touches)
+    steps = np.array([float(inner[i].grid[-1] - inner[i].grid[-2]) for i in free])
+    spans = [np.ptp(field.x[f.driver.name]) for f in law.factors for _ in f.shape.places]
+
+    def parts_at(at: Array) -> list[Part]:
+        moved = values.copy()
+        moved[free] = values[free] + at * steps
+        out, first = [], 0
+        for factor in law.factors:
+            count = len(factor.shape.places)
+            out.append(Part(factor, tuple(float(v) for v in moved[first : first + count])))
+            first += count
+        return out
+
+    def left(at: Array) -> float:
+        parts = parts_at(at)
+        if not _is_allowed(law, [v for p in parts for v in p.places], spans):
+            return space.square
+        S = columns_of(field, space, parts)
+        if not np.all(np.isfinite(S)):
+            return space.square
+        return space.square - space.explained(spread(start.bearer.C, S))
+
+    best = np.zeros(len(free))
+    for size in (1.0, 0.2):
+        simplex = np.vstack([best, best + size * np.eye(len(free))])
+        options = {
+            "initial_simplex": simplex,
+            "maxfev": MOST_STEPS // 2 * max(len(free) - 1, 1),
+            "xatol": 1e-3,
+            "fatol": 1e-3,
+        }
+        found = minimize(left, best, method="Nelder-Mead", options=options)
+        if found.fun <= left(best):
+            best = found.x
+    return candidate(space, field, start.bearer, parts_at(best))
+
+
+def _is_allowed(law: Law, places: Sequence[float], spans: Sequence[float]) -> bool:
+    """Whether widths are widths, and edges in their order."""
+    named = dict(zip(law.place_names, places, strict=True))
+    for (name, value), span in zip(named.items(), spans, strict=True):
+        base = name.split("-")[0]
+        if base in ("w", "wa", "wb", "period") and abs(value) < 2e-3 * span and base != "period":
+            return False
+        if base in ("w", "wa", "wb", "period") and abs(value) > 30.0 * span:
+            return False
+        if base == "p" and not 0.1 < value < 8.0:
+            return False
+    for end in ("", "-2"):
+        if f"x1{end}" in named and f"x2{end}" in named:
+            gap = named[f"x2{end}"] - named[f"x1{end}"]
+            if gap < 1e-3 * max(spans):
+                return False
+    return not ("wa" in named and named["wb"] < 1.2 * named["wa"])
+
+
+def with_curve(
+    space: Space,
+    field: Field,
+    bearer: Bearer,
+    driver: Driver,
+    length: float,
+    size: float,
+    first: Sequence[Part] = (),
+) -> Law:
+    """A smooth curve over a variable, without a formula, where wanted times a first factor."""
+    low, high = field.domain(driver)
+    curve = Part(Factor(SHAPES["curve"], driver), (low, high, length, size))
+    parts = [*first, curve]
+    factors, places = zip(*parts, strict=True)
+    return Law(bearer.carrier, factors, tuple(v for own in places for v in own))

@@ -1,0 +1,274 @@
+"""Laws that a model lacks, learnt from a run one after the other, and what they predict."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from matstd.diagnosis.fit import Fit, fit_run
+from matstd.diagnosis.laws.policy import POLICY, LawPolicy
+from matstd.diagnosis.laws.search import Searched, search_law
+from matstd.diagnosis.laws.space import Space
+from matstd.diagnosis.regression import left_out
+from matstd.twin.compute import one_blas_thread
+from matstd.twin.frames import Array
+from matstd.twin.laws import Carrier, Law
+from matstd.twin.library import ordinary_model
+from matstd.twin.model import Effect, Model, columns
+from matstd.twin.record import Run, with_commanded, without_copies
+
+IntArray = NDArray[np.int64]
+
+MIN_TOUCHES = 30
+"""Fewer touches than this leave no law that could be told from another."""
+
+TIME_BLOCKS, PLACE_BLOCKS = 10, 5
+"""Blocks of time, and of the range of a variable, that are left out one after the other."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rival:
+    """A law beside the chosen one.
+
+    Attributes:
+        log_odds: Of the chosen law against it.
+    """
+
+    law: Law
+    log_odds: float
+
+
+@dataclass(frozen=True, eq=False)
+class LearntLaw:
+    """One law with what speaks for it.
+
+    Attributes:
+        law: With the parameters of its shapes.
+        alike: Carriers that do the same at every touch of this run.
+        score: Log evidence that it gains, all charges taken off.
+        curve: That of the best law without a formula.
+        rivals: Other laws, the nearest first; those within the policy's odds are its class.
+    """
+
+    law: Law
+    alike: tuple[Carrier, ...]
+    score: float
+    curve: float
+    rivals: tuple[Rival, ...]
+
+    def members(self, policy: LawPolicy) -> list[tuple[Law, float]]:
+        """Laws that cannot be told apart, with their shares of a prediction."""
+        near, seen = [], {_what(self.law)}
+        for rival in self.rivals:
+            if rival.log_odds < policy.class_odds and _what(rival.law) not in seen:
+                seen.add(_what(rival.law))
+                near.append(rival)
+        laws = [self.law, *(r.law for r in near[: policy.most_members - 1])]
+        odds = np.array([0.0, *(r.log_odds for r in near[: policy.most_members - 1])])
+        shares = np.exp(-np.maximum(odds, 0.0))
+        return list(zip(laws, (shares / shares.sum()).tolist(), strict=True))
+
+
+def _what(law: Law) -> tuple[str, ...]:
+    """Carrier and variables: shapes of the same are no other explanation."""
+    return (law.carrier.name, *sorted(f.driver.name for f in law.factors))
+
+
+@dataclass(frozen=True, eq=False)
+class HeldOut:
+    """Error of touches that were left out, without and with the laws.
+
+    Attributes:
+        what: "poses", "times", or a variable whose range was cut into blocks.
+        before: Root mean square error with the model alone, mm.
+        after: With the laws, mm.
+    """
+
+    what: str
+    before: float
+    after: float
+
+
+@dataclass(frozen=True, eq=False)
+class Learning:
+    """What a model lacked, as laws.
+
+    Attributes:
+        before: The fit without laws.
+        after: With them; the same where there are none.
+        tangent: With the displacements of their parameters besides, which gives uncertainties.
+        laws: Those that were learnt, in their order.
+        refused: The best law where none was accepted; None where nothing at all was found.
+        held_out: Errors of touches left out.
+    """
+
+    before: Fit
+    after: Fit
+    tangent: Fit
+    laws: tuple[LearntLaw, ...]
+    refused: LearntLaw | None
+    held_out: tuple[HeldOut, ...]
+    policy: LawPolicy
+
+    @cached_property
+    def members(self) -> tuple[tuple[Effect, Array, float], ...]:
+        """Laws over which predictions average, with their amplitudes and shares.
+
+        Amplitudes of a member are those that it has in the place of the law that was chosen.
+        """
+        out: list[tuple[Effect, Array, float]] = []
+        run, chosen = self.before.run, [one.law for one in self.laws]
+        for i, one in enumerate(self.laws):
+            for law, share in one.members(self.policy):
+                effects = [*chosen[:i], law, *chosen[i + 1 :]]
+                fit = self.after if law is one.law else fitted(run, self.before, effects)
+                out.append((law, fit.theta[fit.of_effect(law.name)], share))
+        return tuple(out)
+
+    def predicted(self, run: Run) -> Array:
+        """Deviation that the laws add at the touches of any run, (N,), mm."""
+        out = np.zeros(len(run))
+        for law, theta, share in self.members:
+            out += share * (columns([law], run.touches) @ theta)
+        return out
+
+    @property
+    def u(self) -> Array:
+        """Standard uncertainty of the amplitudes and parameters; see `tangent`."""
+        return np.sqrt(np.diag(self.tangent.covariance))
+
+
+def fitted(run: Run, before: Fit, laws: Sequence[Effect], with_tangents: bool = False) -> Fit:
+    """The model with laws, fitted to a run; gross errors are looked for anew."""
+    model = Model(before.model.chain, (*before.model.effects, *laws))
+    fit = fit_run(run, model)
+    if not with_tangents:
+        return fit
+    theta = fit.theta[: len(model.parameters)]
+    return fit_run(run, model, free_inner=theta, gross=fit.gross)
+
+
+@one_blas_thread()
+def learn_laws(
+    run: Run, model: Model | None = None, policy: LawPolicy = POLICY, start: Fit | None = None
+) -> Learning:
+    """Laws that explain what a model leaves of a run.
+
+    Args:
+        model: Machine and effects to begin with; None for the ordinary geometric model.
+        start: A fit of that model to this run, where there is one.
+
+    Raises:
+        NotEnoughData: So few touches that nothing can be said.
+    """
+    if start is None:
+        run = with_commanded(without_copies(run))
+        start = fit_run(run, model or ordinary_model(run.touches.chain))
+    run = start.run
+    current, laws, refused = start, [], None
+    for _ in range(policy.most_laws if int(start.used.sum()) >= MIN_TOUCHES else 0):
+        searched = search_law(Space.of(current), policy)
+        best = _learnt(searched)
+        if best is None:
+            break
+        fit = fitted(run, start, [*(one.law for one in laws), best.law])
+        if best.score < policy.min_score or not predicts_better(current, fit, policy):
+            refused = best
+            break
+        laws.append(best)
+        current = fit
+    tangent = fitted(run, start, [one.law for one in laws], True) if laws else start
+    return Learning(
+        before=start,
+        after=current,
+        tangent=tangent,
+        laws=tuple(laws),
+        refused=refused,
+        held_out=tuple(_held_out(start, current, [one.law for one in laws])),
+        policy=policy,
+    )
+
+
+def _learnt(searched: Searched) -> LearntLaw | None:
+    """The choice of a search with its rivals; None where there is no candidate."""
+    if not searched.candidates:
+        return None
+    first = searched.candidates[0]
+    law = replace(first.law, carrier=_usual(first.law, first.bearer.alike))
+    alike = [c for c in (first.bearer.carrier, *first.bearer.alike) if c.name != law.carrier.name]
+    rivals = [
+        Rival(replace(c.law, carrier=_usual(c.law, c.bearer.alike)), first.score - c.score)
+        for c in searched.candidates[1:]
+    ]
+    return LearntLaw(
+        law=law,
+        alike=tuple(alike),
+        score=first.score,
+        curve=searched.curve,
+        rivals=tuple(sorted(rivals, key=lambda r: r.log_odds)),
+    )
+
+
+def _usual(law: Law, alike: Sequence[Carrier]) -> Carrier:
+    """Of carriers that do the same that of the axis which the law is a function of."""
+    axes = [f.driver.name for f in law.factors]
+    for axis in axes:
+        for carrier in (law.carrier, *alike):
+            symbol = carrier.symbol
+            if symbol is not None and symbol.link == axis and not symbol.is_angular:
+                return carrier
+    return law.carrier
+
+
+def predicts_better(before: Fit, after: Fit, policy: LawPolicy) -> bool:
+    """Whether touches left out, by poses and by times, are predicted better with a law."""
+    for groups in (pose_groups(before), time_groups(before)):
+        was, now = _error(before, groups), _error(after, _same(groups, before, after))
+        if now > (1.0 - policy.least_gain) * was:
+            return False
+    return True
+
+
+def pose_groups(fit: Fit) -> list[IntArray]:
+    """Rows of the run, by table pose in every set-up, as the fit has them."""
+    rows = np.flatnonzero(fit.used)
+    return [rows[g] for g in fit.groups]
+
+
+def time_groups(fit: Fit) -> list[IntArray]:
+    """Rows of the run in blocks one after the other."""
+    return list(np.array_split(np.flatnonzero(fit.used), TIME_BLOCKS))
+
+
+def _same(groups: Sequence[IntArray], before: Fit, after: Fit) -> list[IntArray]:
+    """The same blocks; the rows that only the other fit uses join the block before them."""
+    del before
+    return [g[after.used[g]] for g in groups]
+
+
+def _error(fit: Fit, groups: Sequence[IntArray]) -> float:
+    """Robust error of rows left out block by block, mm: the median would not see a corner."""
+    place = np.full(len(fit.used), -1)
+    place[fit.used] = np.arange(int(fit.used.sum()))
+    inside = [place[g][place[g] >= 0] for g in groups]
+    found = left_out(fit.solution.Q, fit.solution.residual, [g for g in inside if len(g)])
+    rows = np.concatenate(inside)
+    return float(np.sqrt(np.mean((found.error * fit.u[fit.used])[rows] ** 2)))
+
+
+def _held_out(before: Fit, after: Fit, laws: Sequence[Law]) -> list[HeldOut]:
+    """Errors of touches left out: by poses, by times, and by blocks of every variable of a law."""
+    blocks = {"poses": pose_groups(before), "times": time_groups(before)}
+    touches = before.run.touches
+    for driver in dict.fromkeys(f.driver for law in laws for f in law.factors):
+        rows = np.flatnonzero(before.used)
+        x = driver.values(touches)[rows]
+        if len(np.unique(x)) > PLACE_BLOCKS:
+            order = rows[np.argsort(x, kind="stable")]
+            blocks[driver.name] = list(np.array_split(order, PLACE_BLOCKS))
+    return [
+        HeldOut(what, _error(before, groups), _error(after, _same(groups, before, after)))
+        for what, groups in blocks.items()
+    ]

@@ -1,0 +1,44 @@
+"""Every threshold of learning a law, once, with its reason."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LawPolicy:
+    """What decides whether there is a law, and which.
+
+    Attributes:
+        tried_singles: Log evidence charged for choosing one of all carriers, variables and shapes.
+        tried_products: The same for a product of two shapes: some hundred times as many are tried.
+        switch_of_level: Charged for a jump over a temperature: what jumps happens at an instant as
+            a rule, and over a temperature that only rises both are the same.
+        quick: Charged for a sine of more than eight periods in the range: some thousand
+            frequencies are tried.
+        unusual: Charged for a shape that is met seldom where another has as few parameters: a power
+            or a saturation over time looks like an exponential.
+        min_score: Log evidence that a law must gain beyond all charges: odds of 150 : 1.
+        least_gain: Share by which held-out errors must fall with a law.
+        curve_margin: Log evidence by which a curve must beat every formula to be kept instead.
+        shorter: Log evidence below which the shorter of two formulas is taken.
+        class_odds: Log odds within which laws cannot be told apart; predictions average over them.
+        most_laws: Laws learnt one after the other.
+        most_members: Most laws over which a prediction averages.
+        most_rivals: Rivals that are reported.
+    """
+
+    tried_singles: float = 8.0
+    tried_products: float = 14.0
+    switch_of_level: float = 4.0
+    quick: float = 4.0
+    unusual: float = 2.0
+    min_score: float = 5.0
+    least_gain: float = 0.0
+    curve_margin: float = 0.0
+    shorter: float = 2.0
+    class_odds: float = 4.0
+    most_laws: int = 3
+    most_members: int = 6
+    most_rivals: int = 8
+
+
+POLICY = LawPolicy()

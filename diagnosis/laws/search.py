@@ -1,0 +1,225 @@
+"""One law: screened by curves, made a formula, refined, beside its rivals."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from matstd.diagnosis.laws.formulas import (
+    Candidate,
+    Grids,
+    Part,
+    candidate,
+    columns_of,
+    product_formulas,
+    refined,
+    single_formulas,
+    spread,
+    with_curve,
+)
+from matstd.diagnosis.laws.policy import LawPolicy
+from matstd.diagnosis.laws.screening import (
+    LENGTHS,
+    Bearer,
+    Field,
+    Found,
+    curve_evidence,
+    fast_sines,
+    field_of,
+    normal_equations,
+    pairs,
+    singles,
+    waves_of,
+)
+from matstd.diagnosis.laws.space import Space
+from matstd.twin.laws import SHAPES, Driver, Factor, Law
+
+TOP_SINGLES, TOP_PAIRS, TOP_SQUARES = 14, 6, 2
+"""Carriers with one variable, with two, and with one twice, for which formulas are looked for."""
+
+MIN_SHARE_SINGLE, MIN_SHARE_PAIR = 0.4, 0.6
+"""Share of the best evidence of a curve from which a formula is looked for."""
+
+MIN_GAIN_PAIR = 3.0
+"""Log evidence that a second variable must add to a curve."""
+
+CLEAR = 5.0
+"""Log evidence by which a formula of one shape is so much better than the curve that no product of
+two shapes of that variable is looked for."""
+
+UNUSUAL = ("power", "saturation", "dead-band", "pulse", "saw", "quad-about")
+"""Shapes that are charged for being met seldom."""
+
+QUICK = 8.0
+"""Periods within the range from which a sine is quick."""
+
+PER_DRIVER = 3
+"""Most carriers of one variable among them: others would crowd out a second variable."""
+
+REFINED = 24
+"""Candidates whose parameters are refined."""
+
+
+@dataclass(frozen=True, eq=False)
+class Searched:
+    """What a search for one law found.
+
+    Attributes:
+        candidates: Laws with refined parameters, the best first; the first is the choice.
+        curve: Best log evidence of a law without a formula, charged as the candidates are.
+    """
+
+    space: Space
+    field: Field
+    candidates: tuple[Candidate, ...]
+    curve: float
+
+
+def search_law(space: Space, policy: LawPolicy) -> Searched:
+    """The laws that explain most of what a model leaves, beside one another."""
+    field = field_of(space)
+    grids = Grids(space, field)
+    one, two = singles(space, field), pairs(space, field)
+    found: list[Candidate] = []
+    for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SINGLES):
+        found += single_formulas(grids, f.bearer, f.drivers[0], 4)
+    found += _fast(space, field)
+    if not found or max(c.score for c in found) < one[0].evidence + CLEAR:
+        for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SQUARES):
+            found += product_formulas(grids, f.bearer, (f.drivers[0], f.drivers[0]), 2)
+    for f in _worth(_gaining(two, one), one, MIN_SHARE_PAIR, TOP_PAIRS):
+        found += product_formulas(grids, f.bearer, f.drivers, 4)
+    promising = sorted(_distinct(found), key=lambda c: -_charged(c, field, policy).score)
+    polished = [_charged(refined(space, field, c), field, policy) for c in promising[:REFINED]]
+    curves = _curves(space, field, one, polished, policy)
+    ranked = sorted(polished, key=lambda c: -c.score)
+    best_curve = max((c.score for c in curves), default=-np.inf)
+    if not ranked or best_curve > ranked[0].score + policy.curve_margin:
+        ranked = sorted([*curves, *ranked], key=lambda c: -c.score)
+    ranked = _shorter_first(ranked, policy)
+    return Searched(space=space, field=field, candidates=tuple(ranked), curve=float(best_curve))
+
+
+def _worth(found: Sequence[Found], beside: Sequence[Found], share: float, most: int) -> list[Found]:
+    """Those whose curve comes near the best of all, of every variable a few carriers."""
+    top = max([f.evidence for f in (*found[:1], *beside[:1])], default=0.0)
+    count: dict[tuple[str, ...], int] = {}
+    out = []
+    for f in found:
+        names = tuple(d.name for d in f.drivers)
+        if len(out) >= most or f.evidence < share * top or f.evidence <= 0.0:
+            break
+        count[names] = count.get(names, 0) + 1
+        if count[names] <= PER_DRIVER:
+            out.append(f)
+    return out
+
+
+def _gaining(two: Sequence[Found], one: Sequence[Found]) -> list[Found]:
+    """Pairs of variables that say more than either of the two at the same carrier."""
+    alone = {(f.bearer.carrier.name, f.drivers[0].name): f.evidence for f in one}
+    return [
+        f
+        for f in two
+        if f.evidence > MIN_GAIN_PAIR + max(alone[f.bearer.carrier.name, d.name] for d in f.drivers)
+    ]
+
+
+def _fast(space: Space, field: Field) -> list[Candidate]:
+    """Sines that are too quick for a curve, refined like the others."""
+    return [
+        candidate(space, field, bearer, [Part(Factor(SHAPES["sine"], driver), (period,))])
+        for bearer, driver, period, _ in fast_sines(space, field, 4)
+    ]
+
+
+def _distinct(found: Sequence[Candidate]) -> list[Candidate]:
+    """Every law once, at its best place."""
+    best: dict[str, Candidate] = {}
+    for one in found:
+        name = one.law.name
+        if name not in best or one.score > best[name].score:
+            best[name] = one
+    return list(best.values())
+
+
+def _charged(one: Candidate, field: Field, policy: LawPolicy) -> Candidate:
+    """The candidate with what trying so many costs."""
+    charge = policy.tried_singles if len(one.law.factors) == 1 else policy.tried_products
+    for factor in one.law.factors:
+        is_corner = factor.shape.jumps or factor.shape.word == "ramp"
+        if is_corner and factor.driver.nature == "level":
+            charge += policy.switch_of_level
+        if factor.shape.word in UNUSUAL:
+            charge += policy.unusual
+        if factor.shape.word == "sine":
+            period = one.law.tuning["period"]
+            charge += policy.quick * (np.ptp(field.x[factor.driver.name]) > QUICK * period)
+    return replace(one, score=one.score - float(charge))
+
+
+def _shorter_first(ranked: Sequence[Candidate], policy: LawPolicy) -> list[Candidate]:
+    """Of formulas that predict alike the one with fewest parameters comes first."""
+    if not ranked:
+        return []
+    near = [c for c in ranked if c.score > ranked[0].score - policy.shorter]
+    first = min(near, key=lambda c: (len(c.law.factors), c.parameters, -c.score))
+    return [first, *(c for c in ranked if c is not first)]
+
+
+def _curves(
+    space: Space,
+    field: Field,
+    one: Sequence[Found],
+    formulas: Sequence[Candidate],
+    policy: LawPolicy,
+) -> list[Candidate]:
+    """Laws without a formula: the best curves, alone or times a factor that a formula has."""
+    out = []
+    for f in one[:3]:
+        if len(np.unique(field.used(f.drivers[0], space))) > 2:
+            law = with_curve(space, field, f.bearer, f.drivers[0], f.length, f.size)
+            out.append(_curve_candidate(space, f.bearer, law, f.evidence - policy.tried_singles))
+    products = [c for c in formulas if len(c.law.factors) == 2][:3]
+    for c in products:
+        for kept, other in ((0, 1), (1, 0)):
+            first = _part(c.law, kept)
+            driver = c.law.factors[other].driver
+            made = _curve_times(space, field, c.bearer, first, driver)
+            if made is not None:
+                law, evidence = made
+                charge = policy.tried_products + space.charge(len(first.factor.shape.free))
+                out.append(_curve_candidate(space, c.bearer, law, evidence - charge))
+    return out
+
+
+def _part(law: Law, which: int) -> Part:
+    """One factor of a law with its places."""
+    start = 0 if which == 0 else len(law.factors[0].shape.places)
+    count = len(law.factors[which].shape.places)
+    return Part(law.factors[which], law.places[start : start + count])
+
+
+def _curve_times(
+    space: Space, field: Field, bearer: Bearer, first: Part, driver: Driver
+) -> tuple[Law, float] | None:
+    """A curve over a variable, times a factor that is in place; None over two values."""
+    B, weights, lengths = waves_of(space, field, driver)
+    if len(weights) == 1:
+        return None
+    C = spread(bearer.C, columns_of(field, space, [first]))
+    G, b, scale = normal_equations(space, C, B)
+    evidence, which, size = curve_evidence(space, G, b, np.tile(weights, (1, C.shape[1])))
+    law = with_curve(
+        space, field, bearer, driver, lengths[which], size / max(scale, 1e-300), [first]
+    )
+    return law, evidence
+
+
+def _curve_candidate(space: Space, bearer: Bearer, law: Law, score: float) -> Candidate:
+    return Candidate(
+        bearer=bearer, law=law, explained=0.0, parameters=len(law.parameters), score=score
+    )
+
+
+__all__ = ["LENGTHS", "Searched", "search_law"]

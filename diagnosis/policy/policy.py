@@ -1,0 +1,98 @@
+"""Thresholds of the diagnosis, and the false-alarm rate of a run that follows from them."""
+
+from dataclasses import asdict, dataclass
+
+KINDS_OF_ALARM = 3
+"""Kinds of tests that can each raise a false alarm: effects, patterns, lack of fit to repeats."""
+
+
+@dataclass(frozen=True, slots=True)
+class Policy:
+    """What decides, in the order in which it is asked.
+
+    Attributes:
+        false_alarm: Probability that noise is taken for a gross error, a pattern, a region or an
+            effect: of each kind of test, all its trials together. One run in a thousand is what a
+            user accepts who runs one a week.
+        log_evidence_gain: Least gain of log evidence, and of the log density of held-out poses, of
+            an effect: odds of twenty to one, which pay for what the prior of its size leaves open.
+        touches_explained: Least number of touches that an effect explains; a single one may be an
+            accident.
+        material_share: Share of the squared residual that a pattern must hold. In ten thousand rows
+            less is beyond chance too, but would improve a prediction by half a per cent at most.
+        error_share: Error of held-out blocks with the richer of two explanations over that with the
+            simpler, below which it replaces it. Blocks are few, and 3 % are within their scatter.
+        error_share_beside_memory: The same where the simpler one is noise with memory, found from
+            all rows in sight of them.
+        log_odds_without_name: Log odds by which a pattern without a name must beat all named
+            effects together to say that they only imitate it.
+        log_odds_alike: Log odds below which two explanations are not distinguished: 100 to 1.
+        log_odds_ruled_out: Log odds by which a rival on a coarse grid is behind beyond what a finer
+            one could mend.
+        significant_ratio: Standard uncertainties from which a size is significant (GUM, k = 2).
+        headline_noise_share: Size of an effect over the stated noise below which no headline names
+            it: nobody compensates a tenth of the noise.
+        chance_of_member: Probability by chance from which a member of a set that was chosen by
+            prediction falls, if its size does not speak for it: its company was judged as a whole.
+        certain_p: Probability by chance below which an effect stands although none of its numbers
+            is significant: six numbers of a slip that three touches saw.
+        close_p: Probability by chance below which the effect nearest to a remainder is named
+            however little it leaves better.
+        credible_noise: Noise over the stated one that is not believed unless repeats show it.
+            Statements are wrong by a factor of two, not more, on public records of known noise.
+        repeat_dof: Degrees of freedom of repeated touches that show the noise within a third.
+        repeat_ratio: Residual over the scatter of repeated touches up to which they account for it:
+            what a set-up and an hour add to the scatter of touches made one after the other.
+        noise_ratio_open: Noise over the stated one from which further periods are looked for.
+        noise_ratio_covered: Residual over stated noise below which a pattern is within what was
+            stated. Scatter of a hundred touches does not reach so low.
+        memory_gain: Gain of log likelihood by which noise with memory must beat white noise: a
+            chance of 6e-5, since twice the gain is chi-squared with one degree of freedom.
+        memory_noise: Noise over the stated one above which a wandering residual is no noise.
+        memory_noise_alone: The same if no effect is beside it: users misjudge their noise by less,
+            and an error that follows the order of probing looks the same.
+        memory_loud_noise: Noise with memory over the stated one from which it may have a cause.
+        p_beside_memory: Probability by chance below which a pattern is reported beside noise with
+            memory, since a residual of real parts never follows a memory exactly.
+        detection_power: Standard deviations of the test's statistic above its threshold at the size
+            that is called detectable: four of five runs.
+    """
+
+    false_alarm: float = 1e-3
+    log_evidence_gain: float = 3.0
+    touches_explained: float = 1.5
+    material_share: float = 0.01
+    error_share: float = 0.97
+    error_share_beside_memory: float = 0.85
+    log_odds_without_name: float = 15.0
+    log_odds_alike: float = 4.605170185988092  # log 100
+    log_odds_ruled_out: float = 15.0
+    significant_ratio: float = 2.0
+    headline_noise_share: float = 0.1
+    chance_of_member: float = 0.05
+    certain_p: float = 1e-12
+    close_p: float = 1e-6
+    credible_noise: float = 2.5
+    repeat_dof: int = 5
+    repeat_ratio: float = 1.5
+    noise_ratio_open: float = 1.5
+    noise_ratio_covered: float = 0.7
+    memory_gain: float = 8.0
+    memory_noise: float = 3.0
+    memory_noise_alone: float = 2.0
+    memory_loud_noise: float = 1.3
+    p_beside_memory: float = 1e-4
+    detection_power: float = 0.84
+
+    @property
+    def false_alarm_of_run(self) -> float:
+        """Most probable share of runs with nothing hidden that say otherwise."""
+        return KINDS_OF_ALARM * self.false_alarm
+
+    def table(self) -> dict[str, float]:
+        """Every threshold by name, and what follows for a run."""
+        return {**asdict(self), "false_alarm_of_run": self.false_alarm_of_run}
+
+
+POLICY = Policy()
+"""By which every diagnosis decides."""

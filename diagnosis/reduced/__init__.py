@@ -1,0 +1,20 @@
+"""A run reduced to what the error of any set of effects follows from, without its touches.
+
+In: a `Diagnosis` or a `Comparison`. Out: a `Board`: effects to switch (`Switch`), and matrices
+(`Reduced`) of which fitted and held-out error of every set follow, as a fit to the touches gives
+them; geometry and set-ups are refitted each time. Live pages evaluate them in the browser.
+"""
+
+from matstd.diagnosis.reduced.board import Board, compared_board, diagnosed_board
+from matstd.diagnosis.reduced.levels import Errors, Level, Reduced
+from matstd.diagnosis.reduced.switches import Switch
+
+__all__ = [
+    "Board",
+    "Errors",
+    "Level",
+    "Reduced",
+    "Switch",
+    "compared_board",
+    "diagnosed_board",
+]

@@ -1,0 +1,111 @@
+"""Laws that no library has: learnt from a run, with files, page and an effect of the user's own."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+from matstd.api.diagnosing import named_effects
+from matstd.api.runs import GEOMETRY, Runs, StartingModel, read_run, starting_run
+from matstd.api.saved import REPORT_FILES, Saveable
+from matstd.diagnosis import laws
+from matstd.diagnosis.files import SavedModel, model_text, parsed_model, write_laws
+from matstd.diagnosis.laws import SecondRun, learn_laws, second_run
+from matstd.report.laws import effect_names, effect_text, write_law_page
+from matstd.report.pages import Printer, write_pdf
+from matstd.twin.files import write_whole
+from matstd.twin.model import Model
+from matstd.twin.record import Run
+from matstd.twin.versions import versions
+from matstd.twin.words import deviations_in
+
+EFFECT, LAW = "effect.py", "law.json"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LearntLaws(Saveable, laws.Learning):
+    """Laws that explain what a model leaves of a run; `learn` returns it.
+
+    Attributes:
+        second: What a second run says of them; None without one.
+        title: Names of the runs.
+
+    Example:
+        >>> found = learn("run.csv", add=["thermal-lag(EZZ)"])
+        >>> found.laws, found.effect_text
+        ((), '')
+    """
+
+    sometimes = (EFFECT, "pictures/*.png", *REPORT_FILES)
+    second: SecondRun | None = None
+    title: str = ""
+
+    @property
+    def model_text(self) -> str:
+        """Text of the model file, the laws in it."""
+        made_with = f"material-standard {versions()['material-standard']}"
+        promised = self.held_out[0].after if self.held_out else None
+        return model_text(self.after, self.title, None, made_with, promised)
+
+    @property
+    def model(self) -> SavedModel:
+        """What the model file says of the machine, for another run or a compensation."""
+        return parsed_model(self.model_text, "model.toml", self.after.model.effects)
+
+    @property
+    def effect_text(self) -> str:
+        """Text of `effect.py`; "" where no law was learnt."""
+        return effect_text(self, self.title) if self.laws else ""
+
+    def write(self, folder: Path) -> str:
+        """Write law.json, model.toml and, with a law, effect.py; as of `Saveable`."""
+        with deviations_in(self.after.run.touches.deviation_unit):
+            write_laws(folder / LAW, self, self.title, effect_names(self), self.second)
+            write_whole(folder / "model.toml", self.model_text)
+            if self.laws:
+                write_whole(folder / EFFECT, self.effect_text)
+        return ""
+
+    def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
+        """Write the page into an existing folder."""
+        with deviations_in(self.after.run.touches.deviation_unit):
+            write_law_page(self, folder, self.title, self.second)
+            if printed_by is not None:
+                write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
+
+
+def learn(
+    runs: Runs,
+    model: StartingModel = GEOMETRY,
+    *,
+    add: Sequence[str] = (),
+    second: Run | str | Path | None = None,
+    pitch: Mapping[str, float] | None = None,
+) -> LearntLaws:
+    """Learn laws that a model lacks: what carries them, what they depend on, and their formula.
+
+    Args:
+        runs: A run, the path of a run file, or several of one machine in their order.
+        model: Starting model: `"geometry"`, `"setup"`, a model, or the path of a model file, whose
+            effects are fitted anew.
+        add: Effects that are in the model besides, by name.
+        second: Another run of the machine, in which the laws are tried.
+        pitch: Pitches of screws or scales by axis, mm.
+
+    Raises:
+        BadFile: A file that cannot be read, or a model of another machine.
+        BadArgument: A name that means nothing here.
+        NotEnoughData: So few touches that nothing can be said.
+
+    Example:
+        >>> found = learn("run.csv", add=["thermal-lag(EZZ)"])
+        >>> f"{1e3 * found.after.rms:.2f} µm remain, {len(found.laws)} laws"
+        '0.59 µm remain, 0 laws'
+    """
+    same = "so that its estimates are made anew: no touch counts twice"
+    run, start, _, title = starting_run(runs, model, same, pitch=pitch)
+    other = read_run(second) if isinstance(second, str | Path) else second
+    added = named_effects(add, start.effects, run)
+    found = learn_laws(run, Model(start.chain, (*start.effects, *added)))
+    known = {f.name: getattr(found, f.name) for f in fields(found)}
+    said = None if other is None or not found.laws else second_run(found, other)
+    return LearntLaws(**known, second=said, title=title)

@@ -1,0 +1,94 @@
+"""`matstd show`: one page on which a machine moves, with its errors and a program."""
+
+from __future__ import annotations
+
+import argparse
+
+from matstd.commands.compensation.options import add_driven, add_program
+from matstd.options import add_output
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument("machine", metavar="MACHINE.toml", help="machine file")
+    known = parser.add_mutually_exclusive_group()
+    known.add_argument("--errors", metavar="ERRORS.toml", help="errors of the machine")
+    known.add_argument("--model", metavar="MODEL.toml", help="model of a diagnosis of this machine")
+    parser.add_argument(
+        "--program",
+        metavar="PROGRAM",
+        nargs="+",
+        default=[],
+        help="a part program (.H, .ngc), or probing programs in their order",
+    )
+    parser.add_argument(
+        "--standard",
+        metavar="STANDARD.toml",
+        help="standard that the probing programs touch; also shows the clearance of the probe",
+    )
+    parser.add_argument(
+        "--tool-length",
+        metavar="MM",
+        type=float,
+        default=150.0,
+        help="length of the tool, from the spindle gauge point to the tip (150)",
+    )
+    parser.add_argument(
+        "--datum",
+        metavar="AXIS=READING",
+        nargs="+",
+        default=[],
+        help="axis readings (mm, degrees) at which the preset is taken (default: 0)",
+    )
+    parser.add_argument(
+        "--control",
+        metavar="NAME|FILE.toml",
+        default="itnc530",
+        help="control that probing programs are written for; needed for your own dialect (itnc530)",
+    )
+    add_program(parser)
+    parser.add_argument("--loads", metavar="LOADS.csv", help="process forces by program line")
+    add_driven(parser)
+    parser.add_argument(
+        "--effects",
+        metavar="FILE.py",
+        action="append",
+        default=[],
+        help="file with your own effects; may be repeated",
+    )
+    add_output(parser, "PAGE.html")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Write the page."""
+    from matstd.api.runs import register_effects
+    from matstd.api.showing import show
+    from matstd.commands.compensation.job import machine_state, named_readings, program_options
+    from matstd.console import say, say_assumed
+    from matstd.progress import stages
+    from matstd.report.machine import shown_lines
+    from matstd.twin.files import refuse_to_overwrite
+
+    refuse_to_overwrite(args.output, args.force)
+    register_effects(*args.effects)
+    with stages() as progress:
+        page = show(
+            args.machine,
+            args.errors,
+            model=args.model,
+            program=args.program,
+            standard=args.standard,
+            tool_length=args.tool_length,
+            datum=named_readings("--datum", args.datum),
+            options=program_options(args),
+            control=args.control,
+            state=machine_state(args),
+            add=args.add,
+            progress=progress,
+        )
+        page.save(args.output, args.force)
+    for line in shown_lines(page.shown):
+        say(line)
+    say_assumed(page.shown.chain)
+    say(f"{args.output}: open it in a browser; it loads nothing")
+    return 0

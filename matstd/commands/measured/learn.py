@@ -1,0 +1,87 @@
+"""`matstd learn`: a law for what a model leaves, where the library has none."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from matstd.options import add_measured, asked_printer, pitches, starting_model
+
+if TYPE_CHECKING:
+    from matstd.api.learning import LearntLaws
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument(
+        "run_files",
+        metavar="RUN.csv",
+        nargs="+",
+        help="measurements; several runs of one machine in order of time",
+    )
+    parser.add_argument(
+        "--second-run",
+        metavar="RUN2.csv",
+        help="another run of the machine, in which the law is tried; nothing is learnt from it",
+    )
+    parser.add_argument(
+        "--add",
+        metavar="EFFECT",
+        action="extend",
+        nargs="+",
+        default=[],
+        help="effects that are in the model besides",
+    )
+    add_measured(parser, "model in which a law is missing (default: the ordinary geometric model)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Learn; the folder appears whole or not at all."""
+    from matstd.api.learning import LearntLaws, learn
+    from matstd.api.runs import register_effects
+    from matstd.progress import stages
+    from matstd.twin.files import results_folder
+    from matstd.twin.words import deviations_in
+
+    register_effects(*args.effects)
+    model, pitch, printed_by = starting_model(args), pitches(args), asked_printer(args)
+    with results_folder(args.output, args.force, LearntLaws.sometimes) as folder, stages() as show:
+        show("law", 0, 1)
+        found = learn(args.run_files, model, add=args.add, second=args.second_run, pitch=pitch)
+        found.write(folder)
+        if not args.no_report:
+            show("report", 0, 1)
+            found.write_page(folder, printed_by)
+    with deviations_in(found.after.run.touches.deviation_unit):
+        _report(args, found)
+    return 0
+
+
+def _report(args: argparse.Namespace, found: LearntLaws) -> None:
+    """The law, its rival, its errors elsewhere, and the files."""
+    from matstd.console import say
+    from matstd.report.laws import (
+        held_out_sentence,
+        law_sentence,
+        looks_like,
+        no_law_sentence,
+        rival_sentence,
+        second_run_sentence,
+    )
+    from matstd.report.numbers import sentence
+
+    if not found.laws:
+        say(no_law_sentence(found), style="bold")
+    for one in found.laws:
+        say(sentence(law_sentence(found, one)), style="bold")
+        for line in filter(None, [rival_sentence(one), looks_like(one.law)]):
+            say(f"- {line}")
+    if found.laws:
+        say(f"- {held_out_sentence(found)}")
+    if found.second is not None:
+        say(f"- {second_run_sentence(found.second)}")
+    for line in found.after.run.remarks:
+        say(f"- {line}")
+    first = "" if args.no_report else "report.html, "
+    names = "effect.py (--effects), " if found.laws else ""
+    say(f"{args.output}: look at {first}{names}law.json, model.toml")

@@ -1,0 +1,250 @@
+"""A first project for a machine: blank, probe, faces, place and workspace from travels and table.
+
+What is proposed passes the checks with which a design begins (seat, reach, room); the largest base
+that does is taken, up to `USUAL`.
+"""
+
+import tempfile
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+
+from matstd.artefact.brief import Brief, project_text, read_project
+from matstd.artefact.feasibility import check_seat, feasibility
+from matstd.twin.errors import BadFile, DesignError, NotBuildable, NotReachable
+from matstd.twin.files import read_machine
+from matstd.twin.frames import Array, fixed_xyz
+from matstd.twin.machine import Chain, table_to_tool
+from matstd.twin.units import DEG
+
+USUAL, LARGEST, LEAST = 320.0, 400.0, 160.0
+"""Sides of a base, mm: the largest that is proposed unasked (24 kg), the largest that the gain is
+stated of, and the smallest there is."""
+
+STEP = 40.0
+"""Between two bases that are tried, mm."""
+
+HEIGHT, LEAST_HEIGHT = 220.0, 120.0
+"""Height of a standard, mm, of a base of 280 and more, and the smallest there is."""
+
+SLENDER = 0.8
+"""Height over base of smaller ones."""
+
+LENGTHS = (160.0, 100.0, 220.0)
+"""Lengths of probes that are tried, mm: the usual one, one for small machines, one for deep."""
+
+FACES = {280.0: 6, 240.0: 5, 200.0: 4, 0.0: 3}
+"""Number of faces by the side of the base from which on it has room for them."""
+
+SHARE_OF_TRAVEL = 0.8
+"""Size of a table over the shorter travel across the tool, where no size is stated."""
+
+ROOM = 1.25
+"""Workspace over base: workpieces are a quarter larger than what is probed."""
+
+UPRIGHT, ON_ITS_SIDE = (0.0, 0.0, 0.0), (-90.0, 0.0, 0.0)
+"""Ways to stand that are tried: on a face that looks along Z, or along Y; degrees."""
+
+ROUNDING = 1e-6
+"""By which a travel may miss a whole millimetre or degree."""
+
+
+@dataclass(frozen=True)
+class Proposal:
+    """A project that passes the first checks of a design.
+
+    Attributes:
+        text: Of the project file.
+        brief: The same, resolved.
+        table: Sides of the table, or its diameter, mm.
+        is_assumed: Whether the size of the table was derived from the travels.
+        larger: Side of the next base that would be possible, mm; None where there is none.
+    """
+
+    text: str
+    brief: Brief
+    table: tuple[float, ...]
+    is_assumed: bool
+    larger: float | None
+
+    @property
+    def base(self) -> float:
+        """Side of the base, mm."""
+        return 2.0 * float(self.brief.blank.base.half_size[0])
+
+    def share_of_table(self, base: float) -> float:
+        """Share of the face of the table under a base, at most 1."""
+        a, b = self.table[0], self.table[-1]
+        area = 0.25 * np.pi * a * a if len(self.table) == 1 else a * b
+        return min(1.0, base * base / area)
+
+    @property
+    def other_place(self) -> float:
+        """Farthest place of a second set-up along x of the table, mm; 0 where there is none."""
+        farthest = np.floor(0.5 * (self.table[0] - self.base) / 10.0) * 10.0
+        setup = self.brief.setup
+        for place in np.arange(farthest, 0.0, -10.0):
+            T = setup.T_table_artefact.copy()
+            T[0, 3] += place
+            moved = replace(setup, T_table_artefact=T)
+            try:
+                check_seat(replace(self.brief, setups=(moved,)))
+            except BadFile:
+                continue
+            return float(place)
+        return 0.0
+
+
+def propose(machine: Path, named: str, table: tuple[float, ...] | None = None) -> Proposal:
+    """The largest standard up to the usual one that a machine can be probed on.
+
+    Args:
+        machine: Machine file.
+        named: Its path as the project file has it.
+        table: Diameter of the table, or its two sides, mm; None derives it from the travels.
+
+    Raises:
+        DesignError: A machine on which no standard can be probed, and what binds.
+    """
+    chain = read_machine(machine)
+    size = table or (_assumed_table(chain),)
+    if min(size) < LEAST:
+        raise DesignError(
+            f"{machine}: a table of {min(size):g} mm: the smallest standard is "
+            f"{LEAST:g} x {LEAST:g} x {LEAST_HEIGHT:g} mm; this machine is too small for the tool"
+        )
+    first: DesignError | None = None
+    for base, length, turn in product(_bases(size, USUAL), LENGTHS, _turns(chain)):
+        made = _tables(chain, base, length, turn, size, machine)
+        try:
+            brief = _checked(made, machine)
+        except (NotReachable, NotBuildable, BadFile) as error:
+            first = first or error
+            continue
+        larger = [side for side in _bases(size, LARGEST) if side > base]
+        text = _head(named) + project_text({**made, "": {**made[""], "machine": named}})
+        return Proposal(
+            text=text,
+            brief=brief,
+            table=size,
+            is_assumed=table is None,
+            larger=larger[0] if larger else None,
+        )
+    raise DesignError(f"{machine}: no standard from {LEAST:g} mm up can be probed here: {first}")
+
+
+def _turns(chain: Chain) -> tuple[tuple[float, ...], ...]:
+    """Ways to stand, that on the face square to the axis of a rotary table first."""
+    inner = (k for k in chain.links if k.carries_workpiece and k.kind != "fixed")
+    table = next(inner, None)
+    is_across = table is not None and table.kind == "rotary" and abs(table.direction[1]) > 0.7
+    return (ON_ITS_SIDE, UPRIGHT) if is_across else (UPRIGHT, ON_ITS_SIDE)
+
+
+def _head(machine: str) -> str:
+    return (
+        f"# A design project for {machine}.   matstd design THIS.toml -o OUT\n"
+        "# All keys with their defaults: docs/formats/project.md\n"
+    )
+
+
+def _assumed_table(chain: Chain) -> float:
+    """Diameter of a table that suits the travels across the tool, mm, in tens."""
+    widths = [np.ptp(chain.link(a).range) for a in chain.linear_axes if a[0] != "Z"]
+    return float(np.floor(SHARE_OF_TRAVEL * min(widths, default=0.0) / 10.0) * 10.0)
+
+
+def _bases(table: tuple[float, ...], most: float) -> Iterator[float]:
+    """Sides of bases that stand on a table, the largest first, mm."""
+    largest = min(most, np.floor(min(table) / STEP) * STEP)
+    yield from np.arange(largest, LEAST - 1.0, -STEP).tolist()
+
+
+def _checked(tables: Mapping[str, Mapping[str, object]], machine: Path) -> Brief:
+    """The project, resolved and past the first checks; raises the refusal."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "project.toml"
+        path.write_text(project_text(tables), encoding="utf-8")
+        brief = replace(read_project(path), path=Path("project.toml"), machine_path=machine)
+    check_seat(brief)
+    feasibility(brief).check()
+    return brief
+
+
+def _tables(
+    chain: Chain,
+    base: float,
+    length: float,
+    turn: tuple[float, ...],
+    table: tuple[float, ...],
+    machine: Path,
+) -> dict[str, dict[str, object]]:
+    """Keys of a project by table."""
+    height = max(LEAST_HEIGHT, min(HEIGHT, np.floor(SLENDER * base / 10.0) * 10.0))
+    sides = [float(side) for side in table]
+    outline: dict[str, object] = {"diameter_mm": sides[0]}
+    if len(table) > 1:
+        outline = {"sides_mm": sides}
+    faces = next(count for side, count in FACES.items() if base >= side)
+    return {
+        "": {"format": "project/1", "machine": machine.resolve().as_posix(), "seed": 1},
+        "probe": {"radius_mm": 3.0, "length_mm": length},
+        "workspace": dict(workspace(chain, base, height, length, turn)),
+        "standard": {"name": "FFS-1", "patches": faces} | _down(turn),
+        "blank": {"base_mm": [base, base], "height_mm": height},
+        "setup.a": {"origin_mm": [0.0, 0.0, 0.0], "rotation_deg": list(turn)},
+        "workshop.table": outline,
+        "simulation": {"noise_um": 1.0, "machines": 3},
+    }
+
+
+def _down(turn: tuple[float, ...]) -> dict[str, object]:
+    """Direction of weight: of a standard on a face along Y, the spindle is horizontal."""
+    return {} if not any(turn) else {"down": "-Y"}
+
+
+def workspace(
+    chain: Chain, base: float, height: float, length: float, turn: tuple[float, ...]
+) -> Iterator[tuple[str, list[float]]]:
+    """Readings by axis at which the tool point is in a box over the seat, within the travels.
+
+    The box is `ROOM` times as wide as the base. Linear readings follow from the tool point, which
+    they shift by their directions: a linear equation at every table pose.
+
+    Args:
+        turn: Rotation of the standard about x, y, z of the table, degrees.
+    """
+    half = 0.5 * ROOM * base
+    corners = np.array(list(product((-half, half), (-half, half), (0.0, height))))
+    corners = corners @ fixed_xyz(np.array(turn) * DEG).T
+    rotary = [a for a in chain.programmed_axes if chain.link(a).kind == "rotary"]
+    ends = {a: np.clip(chain.link(a).range, -180.0 * DEG, 180.0 * DEG) for a in rotary}
+    poses = list(product(*(np.linspace(low, high, 7) for low, high in (ends[a] for a in rotary))))
+    linear = list(chain.linear_axes)
+    turned = [dict(zip(rotary, pose, strict=True)) for pose in poses]
+    found = np.concatenate([_readings(chain, linear, at, corners, length) for at in turned])
+    for name in chain.programmed_axes:
+        low, high = chain.link(name).range
+        if name in rotary:
+            low, high = ends[name] / DEG
+        else:
+            inside = np.clip(found[:, linear.index(name)], low, high)
+            low, high = inside.min(), inside.max()
+        yield name, [float(np.ceil(low - ROUNDING)), float(np.floor(high + ROUNDING))]
+
+
+def _readings(
+    chain: Chain, linear: list[str], rotary: Mapping[str, float], points: Array, length: float
+) -> Array:
+    """Linear readings, (N, L), mm, that bring the tool point to points of the table frame."""
+    q = np.zeros((1 + len(linear), len(chain.axes)))
+    for name, angle in rotary.items():
+        q[:, chain.axis_index(name)] = angle
+    for k, name in enumerate(linear):
+        q[1 + k, chain.axis_index(name)] = 1.0
+    tips = table_to_tool(chain, q) @ np.array([0.0, 0.0, -length, 1.0])
+    slopes = (tips[1:] - tips[0])[:, :3].T
+    return np.asarray(np.linalg.lstsq(slopes, (points - tips[0, :3]).T, rcond=None)[0].T)

@@ -1,0 +1,164 @@
+"""The page of laws that were learnt: the law, its picture, its rivals, its errors elsewhere."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from matstd.diagnosis.laws import Estimate, Learning, LearntLaw, SecondRun, amplitudes, places
+from matstd.report.laws.law_pictures import draw_before_after, draw_law
+from matstd.report.laws.law_words import (
+    amplitude_words,
+    carrier_words,
+    formula_words,
+    held_out_sentence,
+    law_sentence,
+    looks_like,
+    no_law_sentence,
+    odds_words,
+    place_words,
+    rival_sentence,
+    second_run_sentence,
+    variable_words,
+)
+from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
+from matstd.report.numbers import digits, microns, sentence
+from matstd.twin.units import UM
+
+PAGE, PICTURES = "report.html", "pictures"
+
+_WHAT = (
+    "A law states what the remainder depends on and how it looks. It has no cause: that is for you "
+    "to find. It was chosen among all carriers, variables and shapes by the evidence of the run, "
+    "with a charge for all that was tried, and is kept because it predicts touches that were left "
+    "out better than the model alone."
+)
+_ALIKE = (
+    "Laws that the run cannot tell apart form a class; predictions average over it with these "
+    "shares. A run in which they differ decides: other axis positions for other carriers, another "
+    "course of time for a temperature."
+)
+_FOOT = (
+    "Uncertainties are standard uncertainties (k = 1) of the fit with all parameters of the law; "
+    "of an edge that of the gap between touches. That another law might be true is not in them."
+)
+
+
+def write_law_page(
+    learning: Learning, folder: str | Path, title: str, second: SecondRun | None
+) -> None:
+    """Write `report.html` and its pictures into a folder."""
+    sections: list[Section] = []
+    for i, one in enumerate(learning.laws, start=1):
+        sections += _law_sections(learning, one, i)
+    if learning.laws:
+        sections += [_held_out(learning, second)]
+    page = Page(
+        title=f"Laws learnt from {title}",
+        heading=f"What the model leaves of {title}",
+        lead=_lead(learning),
+        key=_key(learning, second),
+        sections=[Section(sentences=[_WHAT] if learning.laws else []), *sections],
+        foot=[_FOOT],
+    )
+    write_page(Path(folder) / PAGE, page)
+
+
+def _lead(learning: Learning) -> str:
+    if not learning.laws:
+        return no_law_sentence(learning)
+    return " ".join(sentence(law_sentence(learning, one)) for one in learning.laws)
+
+
+def _key(learning: Learning, second: SecondRun | None) -> list[KeyFigure]:
+    first = learning.held_out[0] if learning.held_out else None
+    out = []
+    if first is not None:
+        size = f"{digits(first.before / UM)} → {microns(first.after)}"
+        out.append(KeyFigure(size, "poses left out, without and with the law", "good"))
+    if second is not None:
+        size = f"{digits(second.without / UM)} → {microns(second.learnt)}"
+        out.append(KeyFigure(size, "second run", "good" if second.is_better else "bad"))
+    chi2 = learning.before.noise.chi2_ratio, learning.after.noise.chi2_ratio
+    out.append(
+        KeyFigure(f"{digits(chi2[0])} → {digits(chi2[1])}", "chi-square per degree of freedom")
+    )
+    stated = float(np.median(learning.before.run.u))
+    out.append(KeyFigure(microns(stated), "stated noise"))
+    out.append(KeyFigure(str(len(learning.before.run)), "touches"))
+    return out
+
+
+def _law_sections(learning: Learning, one: LearntLaw, number: int) -> list[Section]:
+    law = one.law
+    several = len(learning.laws) > 1
+    numbers = [_row(a, amplitude_words(a)) for a in amplitudes(learning, law)][:6]
+    if law.is_curve_alone:
+        numbers = []
+    numbers += [_row(p, place_words(p)) for p in places(learning, law)]
+    picture = Picture(
+        f"{PICTURES}/law_{number}.png",
+        "The law with twice its uncertainty, and the touches with the law put back. Each touch is "
+        "divided by its lever on the carrier; touches with a small lever are not drawn.",
+        draw_law(learning, law),
+    )
+    table = Table(("parameter", "value"), numbers, "Numbers of the law")
+    first = [f"**{formula_words(law)}**", *filter(None, [looks_like(law), rival_sentence(one)])]
+    return [
+        Section(
+            f"Law {number}" if several else "The law",
+            sentences=first,
+            pictures=[picture],
+            table=table,
+        ),
+        _rivals(learning, one),
+    ]
+
+
+def _row(one: Estimate, words: str) -> list[str]:
+    value = words.removeprefix(f"{one.name} ")
+    return [one.name, value if one.u is not None else f"{value} (fixed)"]
+
+
+def _rivals(learning: Learning, one: LearntLaw) -> Section:
+    members = {law.name: share for law, share in one.members(learning.policy)}
+    shown = [(one.law, 0.0), *((r.law, r.log_odds) for r in one.rivals)]
+    rows = [
+        [
+            formula_words(law),
+            carrier_words(law.carrier),
+            ", ".join(dict.fromkeys(variable_words(f.driver) for f in law.factors)),
+            "–" if i == 0 else odds_words(odds),
+            f"{100 * members[law.name]:.0f} %" if law.name in members else "",
+        ]
+        for i, (law, odds) in enumerate(shown[: learning.policy.most_rivals + 1])
+    ]
+    columns = ("formula", "carrier", "variables", "odds against it", "share of predictions")
+    return Section("Rivals", sentences=[_ALIKE], table=Table(columns, rows, best=[0]), is_part=True)
+
+
+def _held_out(learning: Learning, second: SecondRun | None) -> Section:
+    words = {"poses": "table poses", "times": "stretches of time"}
+    rows: list[Sequence[str]] = [
+        [f"blocks of {words.get(h.what, h.what)}", microns(h.before), microns(h.after)]
+        for h in learning.held_out
+    ]
+    notes = []
+    if second is not None:
+        rows.append([f"second run, {second.touches} touches", microns(second.without),
+                     microns(second.learnt)])  # fmt: skip
+        notes = [second_run_sentence(second)]
+    caption = "Error of touches that were left out, root mean square"
+    return Section(
+        "Error elsewhere",
+        sentences=[held_out_sentence(learning)],
+        table=Table(("left out", "without the law", "with it"), rows, caption),
+        pictures=[
+            Picture(
+                f"{PICTURES}/before_after.png",
+                "Residual over the variables of the law, without it (above) and with it (below).",
+                draw_before_after(learning),
+            )
+        ],
+        notes=notes,
+    )

@@ -1,0 +1,240 @@
+"""Laws in words: formula, numbers, what carries them, how they compare with their rivals."""
+
+import math
+import re
+
+from matstd.diagnosis.laws import (
+    Estimate,
+    Learning,
+    LearntLaw,
+    SecondRun,
+    amplitudes,
+    places,
+)
+from matstd.report.numbers import digits, microns, span, with_uncertainty
+from matstd.twin.laws import Carrier, Driver, Law
+from matstd.twin.units import DEG, MINUTE, UM, URAD
+from matstd.twin.words import listed
+
+_VARIABLES = {
+    "time": "time",
+    "since-setup": "time since set-up",
+    "since-pose": "time since the pose was reached",
+    "since-switch": "time since the speed changed",
+    "rpm": "spindle speed",
+    "load": "load",
+    "azimuth": "azimuth of the contact",
+    "latitude": "latitude of the contact",
+}
+_CARRIERS = {
+    "bias": "the reading of the probe along the normal",
+    "shift": "a displacement of the standard",
+    "tilt": "a tilt of the standard",
+    "growth": "a growth of the standard",
+}
+_SHAPES = {
+    "sign": "a reversal",
+    "lin": "a straight line",
+    "lin-from": "a straight line",
+    "quad": "a parabola",
+    "quad-about": "a parabola",
+    "cubic": "a third power",
+    "power": "a power",
+    "bump": "a bump",
+    "bump-before": "a bump that ends at its top",
+    "bump-after": "a bump that begins at its top",
+    "pulse": "a pulse that dies away",
+    "step": "a step",
+    "window": "a sector within which it acts",
+    "ramp": "a ramp",
+    "plateau": "a plateau with flanks",
+    "kink": "a kink",
+    "kink-before": "a kink",
+    "saturation": "a saturation",
+    "dead-band": "a dead band",
+    "exp": "an exponential decay",
+    "settling": "an exponential settling",
+    "two-exp": "two exponentials",
+    "log": "a logarithm",
+    "sine": "a sine",
+    "harmonic": "waves of a turn",
+    "square": "a square wave",
+    "saw": "a saw-tooth",
+    "half-wave": "a half-wave",
+    "hysteresis": "a hysteresis loop",
+    "play": "a play that follows",
+    "curve": "a smooth curve without a formula",
+}
+_PLACE_NAMES = {
+    "x0": "at", "x1": "from", "x2": "to", "w": "width", "wa": "fast", "wb": "slow", "p": "exponent",
+    "period": "period", "phase": "phase", "k": "waves a turn", "length": "correlation length",
+}  # fmt: skip
+_LOOKS = {
+    ("bump", "linear"): "It looks like a hose or a cable chain, or a worn place of a guide.",
+    ("plateau", "linear"): "It looks like a worn zone of a scale or of a guide.",
+    ("window", "linear"): "It looks like a hose, a stop or a damaged stretch of a scale.",
+    (
+        "step",
+        "time",
+    ): "It looks like something that was changed or moved: a stylus, a clamp, a part.",
+    ("square", "time"): "It looks like something that switches: coolant, a pump, a chiller.",
+    ("saw", "time"): "It looks like a controller with two limits: a cooler, a level.",
+    ("sine", "time"): "It looks like a cycle of a cooler or of the room.",
+    ("sine", "linear"): "It looks like a screw, a rack or the interpolation of an encoder.",
+    ("exp", "time"): "It looks like something that relaxes or warms: a clamping, a drive.",
+    ("settling", "time"): "It looks like something that relaxes or warms: a clamping, a drive.",
+    ("log", "time"): "It looks like creep.",
+    ("kink", "linear"): "It looks like a counterweight, a bearing or a stop that begins to carry.",
+    ("kink-before", "linear"): "It looks like a counterweight, a bearing or a stop.",
+    ("kink", "level"): "It looks like a threshold: a thermostat, a gap that closes.",
+    ("play", "level"): "It looks like friction between bodies that expand differently.",
+    ("hysteresis", "level"): "It looks like friction between bodies that expand differently.",
+    ("harmonic", "rotary"): "It looks like cogging, a bearing or the disc of an encoder.",
+}
+
+
+def variable_words(driver: Driver) -> str:
+    """A variable: `Y`, `temperature of spindle`, `direction of X`."""
+    name = driver.name
+    if name.startswith("last-"):
+        return f"direction of {name.removeprefix('last-')}"
+    if name.startswith("trend-T-"):
+        return f"rise of the temperature {name.removeprefix('trend-T-')}"
+    if name.startswith("T-"):
+        return f"temperature {name.removeprefix('T-')}"
+    return _VARIABLES.get(name, name.removeprefix("V-"))
+
+
+def carrier_words(carrier: Carrier) -> str:
+    """A carrier: `EZX`, `a displacement of the standard`."""
+    return _CARRIERS.get(carrier.name, carrier.name)
+
+
+def formula_words(law: Law) -> str:
+    """`EZX = a exp(-((Y - x0)/w)^2)`."""
+    parts = []
+    for factor in law.factors:
+        text, _, u = factor.shape.formula.partition(", u = ")
+        x = factor.driver.name
+        if u:
+            text = text.replace("u", f"({_replaced(u, x)})", 1) if "u" in text else text
+        text = _replaced(text, x)
+        parts.append(f"[{text}]" if len(law.factors) > 1 else text)
+    lead = "" if any(len(f.shape.coefficients) > 1 for f in law.factors) else "a "
+    return f"{law.carrier.name} = {lead}{' '.join(parts)}"
+
+
+def _replaced(text: str, x: str) -> str:
+    return re.sub(r"\bx\b", x, text)
+
+
+def amplitude_words(one: Estimate) -> str:
+    """`-10.3 ± 0.3 µm`."""
+    scale, unit = {"mm": (UM, "µm"), "rad": (URAD, "µrad"), "1": (1.0, "")}.get(
+        one.unit, (1.0, one.unit)
+    )
+    words = with_uncertainty(one.value / scale, None if one.u is None else one.u / scale, unit)
+    return f"{one.name} {words}" if one.name != "amplitude" else words
+
+
+def place_words(one: Estimate) -> str:
+    """`x0 = 7.0 ± 0.4 mm`."""
+    scale, unit = {"mm": (1.0, "mm"), "rad": (DEG, "°"), "degC": (1.0, "°C"), "1": (1.0, "")}.get(
+        one.unit, (1.0, one.unit)
+    )
+    if one.unit == "s":
+        scale, unit = (MINUTE, "min") if abs(one.value) > 5 * MINUTE else (1.0, "s")
+    words = with_uncertainty(one.value / scale, None if one.u is None else one.u / scale, unit)
+    return f"{one.name} {words}"
+
+
+def law_sentence(learning: Learning, one: LearntLaw) -> str:
+    """What was learnt, in a sentence or two."""
+    law = one.law
+    shapes = " times ".join(
+        f"{_SHAPES[f.shape.word]} over {variable_words(f.driver)}" for f in law.factors
+    )
+    size = _size(learning, law)
+    where = [place_words(p) for p in places(learning, law) if p.u is not None]
+    alike = [c.name for c in one.alike]
+    borne = f", or {listed(alike, 'or')}, which this run cannot tell from it" if alike else ""
+    details = f" ({', '.join(where)})" if where else ""
+    return (
+        f"{carrier_words(law.carrier)}{borne}: {size}, {shapes}{details}".replace("  ", " ") + "."
+    )
+
+
+def _size(learning: Learning, law: Law) -> str:
+    found = amplitudes(learning, law)
+    if law.is_curve_alone:
+        rms = _rms(learning, law)
+        return f"{microns(rms)} rms at the touches"
+    if len(found) == 1:
+        return amplitude_words(found[0])
+    total = math.sqrt(sum(a.value**2 for a in found))
+    u = math.sqrt(sum((a.value * (a.u or 0.0)) ** 2 for a in found)) / max(total, 1e-300)
+    return amplitude_words(Estimate("amplitude", total, u, found[0].unit))
+
+
+def _rms(learning: Learning, law: Law) -> float:
+    from matstd.diagnosis.laws import partial_residual
+
+    own = partial_residual(learning, law)[1]
+    return float((own**2).mean() ** 0.5)
+
+
+def looks_like(law: Law) -> str:
+    """What a metrologist would look for; empty where nothing is known."""
+    factors = [(f.shape.word, f.driver.nature) for f in law.factors]
+    return next((_LOOKS[f] for f in factors if f in _LOOKS), "")
+
+
+def rival_sentence(one: LearntLaw) -> str:
+    """The nearest law of another carrier or variable, with its odds."""
+    own = {f.driver.name for f in one.law.factors}
+    for rival in one.rivals:
+        others = {f.driver.name for f in rival.law.factors}
+        if rival.law.carrier.name != one.law.carrier.name or others != own:
+            return f"Second choice: {formula_words(rival.law)} (odds {odds_words(rival.log_odds)})."
+    return ""
+
+
+def odds_words(log_odds: float) -> str:
+    """`40 : 1`."""
+    if log_odds > math.log(1e6):
+        return "> 10⁶ : 1"
+    value = math.exp(max(log_odds, 0.0))
+    return f"{digits(value, 2) if value < 100 else f'{round(value, -1):.0f}'} : 1"
+
+
+def no_law_sentence(learning: Learning) -> str:
+    """What is said where no law was learnt."""
+    noise = microns(float(learning.before.rms))
+    touches = int(learning.before.used.sum())
+    return (
+        f"No law: what the model leaves of {touches} touches ({noise} rms) follows no carrier and "
+        "variable beyond chance."
+    )
+
+
+def held_out_sentence(learning: Learning) -> str:
+    """The error of touches left out, without and with the laws."""
+    first = learning.held_out[0]
+    return (
+        f"Touches of poses left out are predicted with {microns(first.after)} rms instead of "
+        f"{microns(first.before)}."
+    )
+
+
+def second_run_sentence(second: SecondRun) -> str:
+    """What a second run says."""
+    words = f"A second run ({second.touches} touches): {microns(second.without)} without the law, "
+    words += f"{microns(second.learnt)} with it"
+    if second.is_better:
+        return f"{words}."
+    return f"{words}: the law does not hold there. Do not use it to predict."
+
+
+def span_words(seconds: float) -> str:
+    """A span of time."""
+    return span(seconds)

@@ -1,0 +1,131 @@
+"""Numbers and scripts inside a page: arrays as base64, modules one after the other.
+
+A module loaded from a disk may import no other file. So the modules of a page stand in one script,
+each a function with names of its own, in an order in which every one finds those that it imports;
+their text stays as it is written, for whoever looks at the source of a page.
+"""
+
+import base64
+import json
+import re
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+from numpy.typing import ArrayLike
+
+from matstd.twin.words import in_own_unit
+
+TREE = dict[str, Any]
+"""What JSON holds, with packed arrays."""
+
+_KINDS = ("f8", "f4", "i4", "u4", "i2", "u2", "i1", "u1")
+_IMPORT = re.compile(r'^import (\{[^}]*\}|\* as \w+) from "\.{1,2}/(?:parts/)?(\w+)\.js";', re.M)
+_EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const) (\w+))", re.M)
+_FOLDERS = ("parts", "pages")
+
+
+def packed(
+    values: ArrayLike, kind: str = "f4", *, unit: str = "", name: str = "", grain: float = 1.0
+) -> TREE:
+    """An array as the scripts unpack it (`parts/data.js`).
+
+    Args:
+        values: Numbers of any shape; for kinds of whole numbers they must be finite.
+        kind: `f8`, `f4`, or of whole numbers `i4`, `u4`, `i2`, `u2`, `i1`, `u1`.
+        unit: As it is shown.
+        name: As it is shown.
+        grain: What one step of a whole number is; values are rounded to it.
+
+    Raises:
+        ValueError: A kind that there is none of, or numbers that do not fit into it.
+    """
+    if kind not in _KINDS:
+        raise ValueError(f"kind {kind!r}, expected one of {', '.join(_KINDS)}")
+    array = np.asarray(values)
+    if kind[0] != "f":
+        steps = np.rint(np.asarray(array, dtype=np.float64) / grain)
+        limits = np.iinfo(kind)
+        if not np.all((steps >= limits.min) & (steps <= limits.max)):
+            raise ValueError(f"numbers outside {limits.min} to {limits.max} steps of {grain}")
+        array = steps
+    data = np.ascontiguousarray(array, dtype=f"<{kind}").tobytes()
+    return {
+        "kind": kind,
+        "shape": list(array.shape),
+        "unit": in_own_unit(unit),
+        "name": name,
+        "grain": grain,
+        "base64": base64.b64encode(data).decode("ascii"),
+    }
+
+
+def scripted(page: str, data: TREE) -> Markup:
+    """Elements that make a page move: its data and its script with all parts that this imports.
+
+    Args:
+        page: Name of a module in `report/live/pages`, without `.js`.
+        data: For `pageData()`; JSON with packed arrays.
+
+    Raises:
+        KeyError: No such module.
+    """
+    modules = "\n".join(_modules(page))
+    assert "</script" not in modules, page
+    return Markup(
+        '<script type="application/json" id="live-data">{}</script>\n'
+        '<script type="module">\n{}</script>\n'
+    ).format(_json(data), Markup(modules))
+
+
+def style() -> Markup:
+    """The style sheet of everything that the parts make, with its colours, light and dark."""
+    return Markup("<style>\n{}</style>").format(Markup(_text("parts", "live.css")))
+
+
+def _json(tree: TREE) -> Markup:
+    text = json.dumps(tree, allow_nan=False, separators=(",", ":"))
+    # nothing in a script element may look like its end, or like a comment
+    return Markup(text.replace("<", "\\u003c"))
+
+
+def _modules(page: str) -> list[str]:
+    """A module behind all that it imports, each as a function of its own."""
+    found: dict[str, str] = {}
+
+    def visit(name: str) -> None:
+        text = _sources()[name]
+        for _, other in _IMPORT.findall(text):
+            if other not in found:
+                visit(other)
+        exported = ", ".join(_EXPORT.findall(text))
+        body = _EXPORT.sub("", _IMPORT.sub(_bound, text))
+        found[name] = f"const {name}_js = (() => {{\n{body}return {{ {exported} }};\n}})();\n"
+
+    visit(page)
+    return list(found.values())
+
+
+def _bound(match: re.Match[str]) -> str:
+    """An import as names of a module that stands above."""
+    names, module = match.groups()
+    return f"const {names.removeprefix('* as ').replace(' as ', ': ')} = {module}_js;"
+
+
+@cache
+def _sources() -> dict[str, str]:
+    """Every module of this part, by name: names of files are unique."""
+    found = {}
+    for folder in _FOLDERS:
+        place = files("matstd.report.live") / folder
+        for file in sorted(place.iterdir() if place.is_dir() else (), key=lambda f: f.name):
+            if file.name.endswith(".js"):
+                assert file.name not in found, file.name
+                found[file.name] = file.read_text(encoding="utf-8")
+    return {name.removesuffix(".js"): text for name, text in found.items()}
+
+
+def _text(folder: str, file: str) -> str:
+    return (files("matstd.report.live") / folder / file).read_text(encoding="utf-8")

@@ -1,0 +1,137 @@
+// The standard in space: what was touched, every touch in the colour of its residual, needles.
+
+import { element, slider } from "../parts/elements.js";
+import { digits, signed } from "../parts/numbers.js";
+import { bytes, colour } from "../parts/theme.js";
+import { View3D, rgb } from "../parts/view3d.js";
+
+const MOST = 2.5;  // of the scale's end, the longest needle
+const NEEDLE = 0.05;  // length of the needle of the largest residual, over the size of the scene
+
+export class Touched {
+  constructor(place, data, { mark, choose }) {
+    Object.assign(this, { data, mark: m => this.ring(m), tellMark: mark, choose, stretch: 1 });
+    this.place = place;
+    this.canvas = element("canvas", {
+      role: "img", "aria-label": "Touched points in the frame of the standard, coloured by "
+        + "residual. Arrow keys turn, shift and arrows move, plus and minus zoom, 0 shows all.",
+    });
+    this.hint = element("div", { class: "tip", hidden: true });
+    this.legend = element("div", { class: "legend" });
+    const length = slider({
+      label: "needles", low: 0, high: 10, value: 1, step: 0.05, words: v => `× ${v.toFixed(1)}`,
+      input: v => { this.stretch = v; this.needles(); },
+    });
+    const all = element("button", { type: "button", text: "show all",
+      onclick: () => { this.view.camera.reset(); this.view.request(); } });
+    place.append(this.canvas, this.hint,
+      element("div", { class: "below" }, this.legend, length, all));
+    this.made();
+  }
+
+  made() {
+    const { data } = this, t = data.touches, n = t.count;
+    this.view = new View3D(this.canvas, { camera: { turn: -1.1, tilt: 0.55 } });
+    this.view.layers = [];
+    this.body = data.body && this.view.mesh({ corners: data.body.values });
+    this.dots = this.view.points({ positions: t.point.values, colours: new Uint8Array(3 * n),
+      size: n > 5000 ? 4 : 7 });
+    this.arrows = this.view.lines({ positions: new Float32Array(6 * n), size: n > 5000 ? 1 : 2,
+      colours: new Uint8Array(3 * n) });
+    this.circle = this.view.points({ positions: new Float32Array(3), colours: new Uint8Array(3),
+      size: 13, isVisible: false, isPickable: false });
+    this.view.fit();
+    this.recolour();
+    this.canvas.addEventListener("pointermove", e => this.over(e));
+    this.canvas.addEventListener("pointerleave", () => this.tellMark(-1));
+    let pressed = null;
+    this.canvas.addEventListener("pointerdown", e => { pressed = [e.offsetX, e.offsetY]; });
+    this.canvas.addEventListener("click", e => {
+      if (pressed && Math.hypot(e.offsetX - pressed[0], e.offsetY - pressed[1]) > 4) return;
+      this.chosenFeature(e);
+    });
+  }
+
+  recolour() {
+    this.view.ground = colour("wash");
+    if (this.body) this.body.colour = rgb(colour("body"));
+    this.view.request();
+  }
+
+  over(e) {
+    if (e.buttons) return;
+    const found = this.view.pick(e.offsetX, e.offsetY);
+    this.tellMark(found && found.layer === this.dots ? found.index : -1);
+  }
+
+  /** A click on a touch chooses its feature; beside all, nothing. */
+  chosenFeature(e) {
+    const found = this.view.pick(e.offsetX, e.offsetY), { feature, count } = this.data.touches;
+    if (!found || found.layer !== this.dots) {
+      this.choose(null);
+      return;
+    }
+    const own = feature.values[found.index];
+    this.choose(Array.from({ length: count }, (_, i) => i).filter(i => feature.values[i] === own));
+  }
+
+  show(shown) {
+    this.shown = shown;
+    const { colours, chosen } = shown, faint = bytes(colour("line"));
+    const out = Uint8Array.from(colours);
+    if (chosen) {
+      for (let i = 0; i < this.data.touches.count; i++) {
+        if (!chosen.has(i)) for (let k = 0; k < 3; k++) out[3 * i + k] = faint[k];
+      }
+    }
+    this.dots.set("colours", out);
+    this.arrows.set("colours", out);
+    this.needles();
+    const { limit } = shown, { unit } = this.data;
+    const scale = element("i", { class: "scale" });
+    const hasGross = this.data.touches.state.values.includes(1);
+    this.legend.replaceChildren(`−${digits(limit, 2)}`, scale, `+${digits(limit, 2)} ${unit}`,
+      ...(hasGross ? [element("i", { class: "gross" }), "gross error"] : []));
+    this.legend.title = "measured minus predicted; the scale is that of the starting model";
+  }
+
+  needles() {
+    const { point, normal, count, state } = this.data.touches, { residual, limit } = this.shown;
+    const unit = NEEDLE * this.view.camera.size * this.stretch / limit, out = this.arrows.positions;
+    for (let i = 0; i < count; i++) {
+      const most = state.values[i] === 1 ? 0 : MOST * limit;  // gross errors have no needle
+      const high = Math.max(-most, Math.min(most, residual[i]));
+      for (let k = 0; k < 3; k++) {
+        const from = point.values[3 * i + k];
+        out[6 * i + k] = from;
+        out[6 * i + 3 + k] = from + unit * high * normal.values[3 * i + k];
+      }
+    }
+    this.arrows.isVisible = this.stretch > 0;
+    this.arrows.set("positions", out);
+  }
+
+  ring({ marked, residual, now }) {
+    this.circle.isVisible = marked >= 0;
+    this.hint.hidden = marked < 0;
+    if (marked >= 0) {
+      this.circle.positions = this.data.touches.point.values.slice(3 * marked, 3 * marked + 3);
+      this.circle.set("colours", Uint8Array.from(bytes(colour("ink"))));
+      this.circle.set("positions", this.circle.positions);
+      this.hint.textContent = described(this.data, marked, residual, now);
+    }
+    this.view.request();
+  }
+}
+
+/** A touch in a line: number, feature, line, pose, reading, residual with its uncertainty. */
+export function described(data, i, residual, now) {
+  const t = data.touches, state = ["", "; gross error, left out", "; held out"][t.state.values[i]];
+  const feature = t.features[t.feature.values[i]];
+  const setup = t.setups.length > 1 ? `, set-up ${t.setups[t.setup.values[i]]}` : "";
+  const readings = data.columns.filter(c => / in (mm|°)$/.test(c.name) && c.name.length < 9)
+    .map(c => `${c.name.replace(/ in .*/, "")} ${digits(c.values[i], 4)}`).join(" ");
+  return `touch ${i + 1}${feature ? ` on ${feature}` : ""}, line ${t.line.values[i]}${setup}, pose `
+    + `${t.pose.values[i]}; ${readings}; measured ${signed(t.measured.values[i])}, residual `
+    + `${signed(residual[i])} ± ${digits(t.u.values[i] * now.s, 2)} ${data.unit}${state}`;
+}

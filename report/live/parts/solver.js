@@ -1,0 +1,190 @@
+// Fitted and held-out error of any set of effects, from the matrices of `diagnosis/reduced`.
+//
+// A set is a list of columns, each a mix of stored ones: [[index, weight], ...]; the last column of
+// a set is the deviation. Matrices are upper triangles, row by row.
+
+const MAX_PASSES = 5, SETTLED = 0.005, PRIOR_DOF = 4;
+
+/** Place of element (i, j), i <= j, in a triangle of a matrix of n rows. */
+function place(i, j, n) {
+  return i <= j ? i * n - i * (i - 1) / 2 + j - i : j * n - j * (j - 1) / 2 + i - j;
+}
+
+/** T^T M T as a full matrix in rows; M: the triangle in `values` that begins at `first`. */
+export function mixed(values, first, n, columns) {
+  const k = columns.length, out = new Float64Array(k * k);
+  for (let a = 0; a < k; a++) {
+    for (let b = a; b < k; b++) {
+      let sum = 0;
+      for (const [i, w] of columns[a]) {
+        for (const [j, v] of columns[b]) sum += w * v * values[first + place(i, j, n)];
+      }
+      out[a * k + b] = out[b * k + a] = sum;
+    }
+  }
+  return out;
+}
+
+/** Lower factor of Cholesky of a full matrix in rows. */
+export function factorised(S, k) {
+  const L = new Float64Array(k * k);
+  for (let i = 0; i < k; i++) {
+    for (let j = 0; j <= i; j++) {
+      let sum = S[i * k + j];
+      for (let m = 0; m < j; m++) sum -= L[i * k + m] * L[j * k + m];
+      L[i * k + j] = i === j ? Math.sqrt(Math.max(sum, 1e-300)) : sum / L[j * k + j];
+    }
+  }
+  return L;
+}
+
+/** Solution of S x = b by its factor. */
+export function solved(L, k, b) {
+  const x = Float64Array.from(b);
+  for (let i = 0; i < k; i++) {
+    for (let m = 0; m < i; m++) x[i] -= L[i * k + m] * x[m];
+    x[i] /= L[i * k + i];
+  }
+  for (let i = k - 1; i >= 0; i--) {
+    for (let m = i + 1; m < k; m++) x[i] -= L[m * k + i] * x[m];
+    x[i] /= L[i * k + i];
+  }
+  return x;
+}
+
+/** Trace of S^-1 H; H full, of rows `wide`. */
+function traceSolved(L, k, H, wide) {
+  let sum = 0;
+  const column = new Float64Array(k);
+  for (let j = 0; j < k; j++) {
+    for (let i = 0; i < k; i++) column[i] = H[i * wide + j];
+    sum += solved(L, k, column)[j];
+  }
+  return sum;
+}
+
+function quadratic(c, H, k) {
+  let sum = 0;
+  for (let i = 0; i < k; i++) for (let j = 0; j < k; j++) sum += c[i] * c[j] * H[i * k + j];
+  return sum;
+}
+
+export class Solver {
+  /** reduced: as `report/run_view/run_data.py` packs it. */
+  constructor(reduced) {
+    Object.assign(this, reduced);
+    this.triangle = this.size * (this.size + 1) / 2;
+    this.logs = this.levels.map(level => Math.log(level.s));
+  }
+
+  /** Weights of the levels at a size of the noise: Lagrange in its logarithm. */
+  shares(s) {
+    const x = this.logs, at = Math.max(x[0], Math.min(x[x.length - 1], Math.log(s)));
+    return x.map((a, i) => x.reduce((w, b, j) => (j === i ? w : w * (at - b) / (a - b)), 1));
+  }
+
+  /** The named matrix of a set at a size of the noise; `weights`: of the levels, null for the first. */
+  matrix(name, columns, weights, size = this.size, first = 0) {
+    if (!weights) return mixed(this.first[name].values, first, size, columns);
+    let out = null;
+    weights.forEach((w, l) => {
+      const part = mixed(this.levels[l][name].values, first, size, columns);
+      if (!out) out = new Float64Array(part.length);
+      for (let i = 0; i < part.length; i++) out[i] += w * part[i];
+    });
+    return out;
+  }
+
+  number(name, weights) {
+    if (!weights) return this.first[name];
+    return weights.reduce((sum, w, l) => sum + w * this.levels[l][name], 0);
+  }
+
+  /**
+   * Errors with a set: { fitted, heldOut, s, estimate, spread, c, groups }, in the unit of the data;
+   * c: of the set's columns in the residual; groups: error of each group left out.
+   */
+  errors(columns) {
+    const k = columns.length - 1, wide = k + 1;
+    let s = 1, weights = this.first ? null : this.shares(1), L, a, c;
+    for (let left = MAX_PASSES - 1; left >= 0; left--) {
+      const G = this.matrix("G", columns, weights), H2 = this.matrix("H2", columns, weights);
+      const S = new Float64Array(k * k), whole = s * this.weight;
+      for (let i = 0; i < k; i++) {
+        for (let j = 0; j < k; j++) S[i * k + j] = G[i * wide + j] + (i === j ? whole ** 2 : 0);
+      }
+      L = factorised(S, k);
+      a = solved(L, k, Float64Array.from({ length: k }, (_, i) => G[i * wide + k]));
+      c = Float64Array.from({ length: wide }, (_, i) => (i < k ? -a[i] : 1));
+      this.S = S;
+      const dof = this.count - this.number("freedom", weights) - traceSolved(L, k, H2, wide);
+      const better = Math.sqrt((quadratic(c, H2, wide) + PRIOR_DOF) / (Math.max(dof, 0) + PRIOR_DOF));
+      if (Math.abs(better / s - 1) < SETTLED || !left) break;
+      s = better;
+      weights = this.shares(s);
+    }
+    const fitted = Math.sqrt(Math.max(quadratic(c, this.matrix("H1", columns, weights), wide), 0));
+    const spread = this.spread(L, k, s * this.weight);
+    const held = this.tested.length
+      ? this.ofTestRows(columns, c, s) : this.leftOut(columns, c, L, k, weights);
+    return { fitted, s, estimate: a, spread, c, ...held };
+  }
+
+  /** Standard uncertainties of the estimates, in units of the prior. */
+  spread(L, k, whole) {
+    return Float64Array.from({ length: k }, (_, i) => {
+      const unit = new Float64Array(k);
+      unit[i] = 1;
+      return whole * Math.sqrt(Math.max(solved(L, k, unit)[i], 0));
+    });
+  }
+
+  ofTestRows(columns, c, s) {
+    let square = 0;
+    this.shares(s).forEach((w, l) => {
+      const H = mixed(this.tested[l].values, 0, this.size, columns);
+      square += w * quadratic(c, H, columns.length);
+    });
+    return { heldOut: Math.sqrt(Math.max(square, 0)), groups: [] };
+  }
+
+  /** Every group predicted by a fit to the others, and what that means for another run. */
+  leftOut(columns, c, L, k, weights) {
+    const wide = k + 1, squares = [], { S } = this;
+    for (let g = 0; g < this.groupSizes.length; g++) {
+      const F = this.matrix("F", columns, weights, this.size, g * this.triangle);
+      const v = new Float64Array(k), own = new Float64Array(k * k);
+      for (let i = 0; i < k; i++) {
+        for (let j = 0; j < wide; j++) v[i] += F[i * wide + j] * c[j];
+        for (let j = 0; j < k; j++) own[i * k + j] = S[i * k + j] - F[i * wide + j];
+      }
+      const x = solved(factorised(own, k), k, v);
+      let square = quadratic(c, F, wide);
+      for (let i = 0; i < k; i++) square += v[i] * x[i];
+      squares.push(square);
+    }
+    const inner = columns.slice(0, k);
+    const H3 = k ? this.matrix("H3", inner, weights, this.size - 1) : new Float64Array(0);
+    const more = k ? traceSolved(L, k, H3, k) : 0;
+    const newRun = this.number("newRun", weights) + this.weight ** 2 * more;
+    const total = squares.reduce((sum, q) => sum + q, 0);
+    return {
+      heldOut: Math.sqrt(Math.max(total / this.count * newRun, 0)),
+      groups: squares.map((q, g) => Math.sqrt(Math.max(q / this.groupSizes[g] * newRun, 0))),
+    };
+  }
+}
+
+/** Weights of values at places x in the cubic through the four nearest ones to a place. */
+export function cubicWeights(x, at) {
+  const out = new Float64Array(x.length);
+  if (x.length === 1) return out.fill(1);
+  let i = 0;
+  while (i < x.length - 2 && x[i + 1] < at) i++;
+  const first = Math.max(0, Math.min(x.length - 4, i - 1)), last = Math.min(first + 4, x.length);
+  for (let a = first; a < last; a++) {
+    out[a] = 1;
+    for (let b = first; b < last; b++) if (b !== a) out[a] *= (at - x[b]) / (x[a] - x[b]);
+  }
+  return out;
+}

@@ -1,0 +1,298 @@
+"""Errors of a machine as functions of its readings, exact enough to be evaluated elsewhere.
+
+A page has no Python. So the six components that every error adds at every link are written as
+Chebyshev series of the readings on which they depend, which reproduce smooth functions to the last
+digits of a double. What a series leaves (steps, kinks) is measured and stated with it.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from matstd.compensation.field import MachineErrors
+from matstd.report.effects import effect_title
+from matstd.twin.frames import Array
+from matstd.twin.machine import parse_symbol
+from matstd.twin.numbers import rms_length
+
+EXACT = 1e-13
+"""Error of a series, of the size of its function, from which it counts as the function itself."""
+
+MOST_READINGS = 3
+"""Of which one error may depend; of more there would be too many coefficients for a page."""
+
+_DEGREES = {1: (4, 16, 64, 256, 1024), 2: (4, 16, 48), 3: (4, 8, 16)}
+"""Degrees that are tried, by the number of readings."""
+
+_CHECKED = 64  # poses at which dependence and error are looked at
+_SEED = 20  # of these poses: the same machine gives the same page
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """One component of one error at one link.
+
+    ``E = sum_jk c_jk T_j(u) T_k(v)``, u and v readings scaled to [-1, 1].
+
+    Attributes:
+        part: `twist` or `place`, as in a `Contribution`.
+        link: Index of the link.
+        component: Index in X Y Z A B C.
+        readings: Columns of the readings that it depends on; one past the last axis is the time.
+        coefficients: One dimension a reading, mm or rad.
+        side: Axis and sign of the last motion with which it applies; None for always.
+        off: Largest error of the series at the poses that were checked, mm or rad.
+    """
+
+    part: str
+    link: int
+    component: int
+    readings: tuple[int, ...]
+    coefficients: Array
+    side: tuple[int, int] | None
+    off: float
+
+
+@dataclass(frozen=True, eq=False)
+class ErrorFunction:
+    """One error that is switched as a whole.
+
+    Attributes:
+        name: Symbol of ISO 230-1, or effect.
+        words: Under which it is switched: its axis, class and kind.
+        series: What it adds.
+        size: Rms of the deviation of the tool point that it makes over the workspace, mm.
+        u: Standard uncertainty of that from the model, mm.
+        title: In words; empty for that of its symbol.
+        left_out: Whether it depends on more than a page can hold; then it has no series.
+    """
+
+    name: str
+    words: tuple[str, ...]
+    series: tuple[Series, ...]
+    size: float
+    u: float
+    title: str = ""
+    left_out: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class _Space:
+    """Readings, and time behind them, over which the functions hold.
+
+    Attributes:
+        low, high: Of the readings and the time, (A + 1,).
+    """
+
+    errors: MachineErrors
+    low: Array
+    high: Array
+
+    def at(self, x: Array, sides: Array) -> Array:
+        """All components, twist before place, (N, 2 L 6).
+
+        Args:
+            x: Readings and time, (N, A + 1).
+            sides: Of the last motion of every axis, (N, A).
+        """
+        touches = self.errors.touches(x[:, :-1], 0.0, sides, x[:, -1])
+        found = self.errors.contribution(touches)
+        return np.concatenate(
+            [np.asarray(part).reshape(len(x), -1) for part in (found.twist, found.place)], axis=1
+        )
+
+    def drawn(self, rng: np.random.Generator) -> Array:
+        """Poses anywhere, (N, A + 1)."""
+        return rng.uniform(self.low, self.high, (_CHECKED, len(self.low)))
+
+
+def error_functions(errors: MachineErrors, length: float, duration: float) -> list[ErrorFunction]:
+    """Every group of errors as functions, the largest first.
+
+    Args:
+        length: Of the tool with which sizes are stated, mm.
+        duration: From the time of the state of these errors on, over which they hold, s.
+    """
+    limits = np.array([errors.chain.link(a).range for a in errors.chain.axes] + [(0.0, duration)])
+    rng = np.random.default_rng(_SEED)
+    out = []
+    for name in errors.groups:
+        alone = errors.only(name)
+        space = _Space(alone, limits[:, 0], limits[:, 1])
+        series = _series(space, rng)
+        x = space.drawn(rng)
+        sides = rng.choice([-1.0, 1.0], (len(x), len(errors.chain.axes)))
+        touches = alone.touches(x[:, :-1], length, sides, x[:, -1])
+        columns = alone.columns(touches)
+        theta = np.concatenate(alone.theta)
+        spread = columns @ np.hstack([alone.root, alone.tool_root])
+        out.append(
+            ErrorFunction(
+                name=name,
+                words=tuple(sorted(alone.words(name) - {"all", name})),
+                series=() if series is None else tuple(series),
+                size=rms_length(columns @ theta),
+                u=float(np.sqrt(np.einsum("nik,nik->", spread, spread) / len(spread))),
+                title="" if parse_symbol(name) else effect_title(alone.effects[0]),
+                left_out=series is None,
+            )
+        )
+    return sorted(out, key=lambda one: -one.size)
+
+
+def _series(space: _Space, rng: np.random.Generator) -> list[Series] | None:
+    """All components of one error; None where it cannot be written so."""
+    axes = len(space.low) - 1
+    x, still = space.drawn(rng), np.zeros((_CHECKED, axes))
+    parts: list[tuple[tuple[int, int] | None, Callable[[Array], Array]]] = [
+        (None, lambda x: space.at(x, np.zeros((len(x), axes))))
+    ]
+    plain, total = space.at(x, still), space.at(x, still)
+    sides = rng.choice([-1.0, 1.0], still.shape)
+    for axis, sign in product(range(axes), (-1, 1)):
+        moved = still.copy()
+        moved[:, axis] = sign
+        extra = space.at(x, moved) - plain
+        if np.any(extra):
+            parts.append(((axis, sign), _on_one_side(space, axis, sign)))
+            total += np.where(sides[:, [axis]] == sign, extra, 0.0)
+    whole = space.at(x, sides)
+    # sides of several axes have to add up, or no sum of functions is right
+    if np.abs(whole - total).max() > 1e-9 * max(np.abs(whole).max(), 1e-12):
+        return None
+    out: list[Series] = []
+    for side, function in parts:
+        found = _functions(space, function, side, x, rng)
+        if found is None:
+            return None
+        out += found
+    return out
+
+
+def _on_one_side(space: _Space, axis: int, sign: int) -> Callable[[Array], Array]:
+    """What an axis that comes from one side adds to what holds without a side."""
+
+    def extra(x: Array) -> Array:
+        sides = np.zeros((len(x), len(space.low) - 1))
+        plain = space.at(x, sides)
+        sides[:, axis] = sign
+        return space.at(x, sides) - plain
+
+    return extra
+
+
+def _functions(
+    space: _Space,
+    function: Callable[[Array], Array],
+    side: tuple[int, int] | None,
+    x: Array,
+    rng: np.random.Generator,
+) -> list[Series] | None:
+    """Series of all components that are not zero everywhere; None for too many readings."""
+    values = function(x)
+    alive = np.flatnonzero(np.any(values, axis=0))
+    on: dict[int, list[int]] = {int(entry): [] for entry in alive}
+    for reading in range(len(space.low)):
+        moved = x.copy()
+        moved[:, reading] = rng.uniform(space.low[reading], space.high[reading], len(x))
+        change = np.abs(function(moved) - values).max(axis=0)
+        for entry in on:
+            if change[entry] > EXACT * np.abs(values[:, entry]).max():
+                on[entry].append(reading)
+    out = []
+    # components that depend on the same readings are sampled together
+    for readings in sorted({tuple(r) for r in on.values()}):
+        if len(readings) > MOST_READINGS:
+            return None
+        mine = [entry for entry, r in on.items() if tuple(r) == readings]
+        for entry, c, off in _fitted(space, function, readings, mine, x, values):
+            part, rest = divmod(entry, values.shape[1] // 2)
+            link, component = divmod(rest, 6)
+            out.append(
+                Series(
+                    part=("twist", "place")[part],
+                    link=link,
+                    component=component,
+                    readings=readings,
+                    coefficients=c,
+                    side=side,
+                    off=off,
+                )
+            )
+    return out
+
+
+def _fitted(
+    space: _Space,
+    function: Callable[[Array], Array],
+    readings: tuple[int, ...],
+    entries: list[int],
+    x: Array,
+    values: Array,
+) -> Iterator[tuple[int, Array, float]]:
+    """Coefficients of some components, of the lowest degree that is exact, with what they leave."""
+    size = np.abs(values[:, entries]).max(axis=0)
+    if not readings:
+        for entry in entries:
+            yield entry, values[0, entry], float(np.ptp(values[:, entry]))
+        return
+    low, high = space.low[list(readings)], space.high[list(readings)]
+    u = (2.0 * x[:, list(readings)] - (low + high)) / (high - low)
+    for degree in _DEGREES[len(readings)]:
+        c = _coefficients(space, function, readings, entries, degree)
+        found = series_at(c, u)
+        off = np.abs(found - values[:, entries]).max(axis=0)
+        if np.all(off <= EXACT * size):
+            break
+    for k, entry in enumerate(entries):
+        yield entry, _shortened(c[..., k], size[k]), float(off[k])
+
+
+def _coefficients(
+    space: _Space,
+    function: Callable[[Array], Array],
+    readings: tuple[int, ...],
+    entries: list[int],
+    degree: int,
+) -> Array:
+    """Interpolation at the Chebyshev points of the first kind, one dimension a reading."""
+    from scipy.fft import dct
+
+    n = degree + 1
+    points = np.cos(np.pi * (np.arange(n) + 0.5) / n)
+    grid = np.stack(np.meshgrid(*[points] * len(readings), indexing="ij"), axis=-1)
+    grid = grid.reshape(-1, len(readings))
+    x = np.tile(0.5 * (space.low + space.high), (len(grid), 1))
+    low, high = space.low[list(readings)], space.high[list(readings)]
+    x[:, list(readings)] = 0.5 * ((low + high) + grid * (high - low))
+    c = function(x)[:, entries].reshape(*[n] * len(readings), len(entries))
+    for axis in range(len(readings)):
+        c = dct(c, axis=axis) / n
+        c[(slice(None),) * axis + (0,)] *= 0.5
+    return np.asarray(c)
+
+
+def series_at(c: Array, u: Array) -> Array:
+    """Values of series at scaled readings, (N, ...).
+
+    Args:
+        c: Coefficients, one dimension a reading, then any others.
+        u: Readings scaled to [-1, 1], (N, R).
+    """
+    out = c[None]
+    for k in range(u.shape[1]):
+        T = np.cos(np.arange(out.shape[1]) * np.arccos(np.clip(u[:, [k]], -1.0, 1.0)))
+        out = np.einsum("nj,nj...->n...", T, np.broadcast_to(out, (len(u), *out.shape[1:])))
+    return out
+
+
+def _shortened(c: Array, size: float) -> Array:
+    """Without the tail of the series that is rounding."""
+    keep = np.abs(c) > 1e-3 * EXACT * size
+    for axis in range(c.ndim):
+        others = tuple(k for k in range(c.ndim) if k != axis)
+        alive = np.flatnonzero(keep.any(axis=others))
+        c = np.take(c, range(int(alive[-1]) + 1 if len(alive) else 1), axis=axis)
+    return c

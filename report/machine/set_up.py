@@ -1,0 +1,126 @@
+"""Standard, clamps and probe of probing programs as bodies of the machine, and their clearance."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from matstd.artefact.body import FreeformPatch, Standard
+from matstd.artefact.reach import Solid, Workshop, table_face
+from matstd.probe_paths.plan import Probe, ToolClearance
+from matstd.report.machine.played import Played
+from matstd.report.machine.solids import Drawn, ball, box, cylinder
+from matstd.report.style import series
+from matstd.twin.frames import Array, apply, inverse, pose
+from matstd.twin.machine import Chain
+from matstd.twin.record import Setup
+
+_BODY, _BALL, _TABLE, _CLAMP, _PROBE = "#b9bec4", "#f0e442", "#dde2e8", "#d55e00", "#5c6878"
+_CELLS = 14  # cells a side of a face
+_NOSE = 150.0  # mm of the spindle's nose that are drawn
+
+
+class SetUp(NamedTuple):
+    """What stands on the machine while it probes.
+
+    Attributes:
+        standard: That is probed.
+        setup: Where it stands.
+        probe: In the spindle.
+        workshop: What stands beside it.
+    """
+
+    standard: Standard
+    setup: Setup
+    probe: Probe
+    workshop: Workshop
+
+
+def set_up_bodies(chain: Chain, stands: SetUp) -> list[Drawn]:
+    """Everything that is set up, in the frame of the machine with every axis at zero."""
+    T = stands.setup.T_table_artefact
+    T_table_face, origin = table_face(T), chain.table_origin
+    out = [
+        Drawn(
+            s.on or "w",
+            _TABLE if s is stands.workshop.table else _CLAMP,
+            origin + _solid(s, T_table_face),
+        )
+        for s in stands.workshop.solids
+    ]
+    out += [
+        Drawn("w", colour, origin + apply(T, corners))
+        for colour, corners in _standard(stands.standard)
+    ]
+    return [*out, probe_body(stands.probe)]
+
+
+def probe_body(probe: Probe) -> Drawn:
+    """A probe in the spindle, with the spindle's nose."""
+    parts, low = [ball(probe.radius)], 0.0
+    for high, radius in (*probe.stack, (probe.length + _NOSE, probe.nose_radius)):
+        parts.append(cylinder(radius, radius, low, high))
+        low = high
+    return Drawn("t", _PROBE, np.concatenate(parts) - np.array([0.0, 0.0, probe.length]))
+
+
+def with_clearance(chain: Chain, played: Played, stands: SetUp) -> Played:
+    """A program with the gap between the tool above its ball and the nearest body at each position.
+
+    Where the probe changes, or the standard is clamped anew, a program has another set-up.
+    """
+    gaps = ToolClearance(
+        chain=chain,
+        standard=stands.standard,
+        setup=stands.setup,
+        probe=stands.probe,
+        workshop=stands.workshop,
+    )
+    clearance, nearest = gaps.gap(played.q)
+    return replace(played, clearance=clearance, nearest=nearest)
+
+
+def _solid(solid: Solid, T_table_face: Array) -> Array:
+    """A box or a disc of the workshop."""
+    if solid.is_disc:
+        corners = cylinder(solid.half_size[0], solid.half_size[0], solid.low, solid.high)
+    else:
+        corners = box(solid.half_size, solid.low, solid.high)
+    return apply(T_table_face @ solid.T_face_solid, corners)
+
+
+def _standard(standard: Standard) -> list[tuple[str, Array]]:
+    """Base, core, balls on their posts and faces on their pillars, artefact frame."""
+    base = standard.base
+    grey = [box(base.half_size, 0.0, base.thickness)]
+    if standard.core is not None:
+        core = standard.core
+        grey.append(cylinder(core.low_radius, core.high_radius, base.thickness, core.height))
+    balls = []
+    for s in standard.spheres:
+        at = np.array([*s.centre[:2], 0.0])
+        grey.append(cylinder(s.foot_radius, s.stem_radius, s.foot, float(s.centre[2])) + at)
+        balls.append(ball(s.radius) + s.centre)
+    out = [(_BODY, np.concatenate(grey))]
+    out += [(_BALL, np.concatenate(balls))] if balls else []
+    out += [(series(k), _pillar(patch)) for k, patch in enumerate(standard.patches)]
+    return out
+
+
+def _pillar(patch: FreeformPatch) -> Array:
+    """The face as a grid and the walls of its pillar."""
+    u, v = (np.linspace(-half, half, _CELLS + 1) for half in patch.half_size)
+    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1)
+    lid = patch.point(uv.reshape(-1, 2)).reshape(*uv.shape[:2], 3)
+    a, b, c, d = lid[:-1, :-1], lid[1:, :-1], lid[1:, 1:], lid[:-1, 1:]
+    parts = [np.stack(t, axis=2).reshape(-1, 3, 3) for t in ((a, b, c), (a, c, d))]
+    down = patch.T_artefact_patch @ pose(t=np.array([0.0, 0.0, -patch.depth]))
+    for edge in (lid[:, 0], lid[-1], lid[::-1, -1], lid[0, ::-1]):
+        local = apply(inverse(patch.T_artefact_patch), edge)
+        foot = apply(down, local * [1.0, 1.0, 0.0])
+        for t in (
+            (edge[:-1], foot[:-1], foot[1:]),
+            (edge[:-1], foot[1:], edge[1:]),
+        ):
+            parts.append(np.stack(t, axis=1))
+    return np.concatenate(parts)

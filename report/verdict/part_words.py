@@ -1,0 +1,153 @@
+"""Lines on the three parts of a verdict, on repeatability and on the errors to expect."""
+
+import math
+from collections.abc import Sequence
+
+from matstd.diagnosis.accuracy import Promise, Repeatability, Scatter
+from matstd.diagnosis.answer import (
+    Diagnosis,
+    GeometryPart,
+    NamedEffect,
+    Remainder,
+    Step,
+)
+from matstd.diagnosis.geometry import GeometryRow
+from matstd.diagnosis.policy import POLICY
+from matstd.report.effects import effect_words
+from matstd.report.geometry import estimate_words, fault_sentences, quantity_name
+from matstd.report.numbers import digits, microns, noun, p_value, percent
+from matstd.report.words import sizes, structure_words
+from matstd.twin.words import listed
+
+NAMED = 3
+"""Quantities of the geometry that are written out; of more, the first ones."""
+
+MAX_LOG10 = 12.0
+"""Odds are not written with more zeros: beyond, their number means nothing."""
+
+HOLDS = 1.25
+"""Errors of left-out blocks over their uncertainties up to which a model holds there."""
+
+
+def part_lines(result: Diagnosis) -> list[tuple[str, str]]:
+    """Heading and words of every part, in the order in which they are read."""
+    parts = result.parts
+    steps = {s.effect.name: s for s in result.steps if s.effect is not None}
+    named = [_named(one, steps[one.effect.name]) for one in parts.named]
+    return [
+        ("geometry", _geometry(parts.geometry)),
+        ("named effects", "; ".join(named) or _nothing_named(result)),
+        ("what remains", _remains(parts.remains, parts.repeatability)),
+        ("repeatability", repeatability_words(parts.repeatability, parts.remains.scatter)),
+        ("error to expect", promise_words(result.promise, result.promise_before)),
+    ]
+
+
+def _geometry(part: GeometryPart) -> str:
+    """What the ordinary model learnt, what changed, what is too large, what that hints at."""
+    out = [f"the ordinary model leaves a scatter of {microns(part.left)}"]
+    if part.changed:
+        out.append(f"changed: {_rows(part.changed)}")
+    if part.beyond:
+        out.append(f"larger than such a machine has: {_rows(part.beyond)}")
+    if part.hints:
+        out += fault_sentences(part.hints[:1])
+    elif len([row for row in part.beyond if row.is_far]) > 1:
+        out.append("the machine file or the set-up may be wrong")
+    return "; ".join(out)
+
+
+def _rows(rows: Sequence[GeometryRow]) -> str:
+    words = [f"{quantity_name(r)} {estimate_words(r.estimate, r.unit)}" for r in rows[:NAMED]]
+    more = len(rows) - len(words)
+    return f"{', '.join(words)} and {more} more" if more else listed(words)
+
+
+def _named(one: NamedEffect, step: Step) -> str:
+    """An effect with its size, its share, its probability by chance and its closest rival."""
+    size = sizes(step, 2)
+    weight = f"explains {percent(one.share)} of the excess ({microns(one.explained)} rms)"
+    doubt = "" if one.is_headline else ", not certain by itself"
+    by_name = ", added by name" if step.is_named else ""
+    inside = ", ".join(word for word in (size, weight, f"p = {p_value(one.p_value)}") if word)
+    return f"{effect_words(one.effect)}: {inside}{doubt}{by_name}{_rival(one)}"
+
+
+def _rival(one: NamedEffect) -> str:
+    if one.runner_up is None:
+        return ""
+    name, odds = one.runner_up.effect.name, one.runner_up.log_odds
+    alike = " (not distinguished)" if odds < POLICY.log_odds_alike else ""
+    return f"; closest rival {name}, odds {odds_words(odds)}{alike}"
+
+
+def odds_words(log_odds: float) -> str:
+    """Odds for the first against the second.
+
+    Example:
+        >>> odds_words(0.0), odds_words(math.log(25.0)), odds_words(40.0), odds_words(-1.0)
+        ('1 : 1', '25 : 1', '1e12 : 1', '1 : 2.7')
+    """
+    power = abs(log_odds) / math.log(10.0)
+    if power >= MAX_LOG10:
+        times = f"1e{MAX_LOG10:.0f}"
+    else:
+        times = digits(10.0**power, 2) if power < 4.0 else f"1e{power:.0f}"
+    times = times.removesuffix(".0")
+    return f"{times} : 1" if log_odds >= 0.0 else f"1 : {times}"
+
+
+def _nothing_named(result: Diagnosis) -> str:
+    """The library effect that comes closest where none is named."""
+    if not result.candidates:
+        return "none; no effect of the library applies to these touches"
+    best = result.candidates[0]
+    return f"none; closest by itself {best.effect}, p = {p_value(best.p_value)}"
+
+
+def _remains(part: Remainder, repeats: Repeatability) -> str:
+    """How much is beyond repeatability, and what it depends on."""
+    if not part.is_real:
+        return "nothing beyond chance"
+    beyond = "beyond repeatability" if repeats.known else "in its strongest pattern"
+    words = f"{microns(part.size)} rms {beyond}, {percent(part.share)} of the excess"
+    if not part.patterns:
+        return f"{words}; it depends on no recorded variable"
+    names = dict.fromkeys(noun(v) for p in part.patterns for v in p.variables)
+    first = structure_words(part.patterns[0])
+    others = [n for n in names if n not in first][:NAMED]
+    also = f" (also {listed(others)})" if others else ""
+    return f"{words}; it {first}{also}"
+
+
+def repeatability_words(found: Repeatability, scatter: float) -> str:
+    """Scatter of the residual beside that of repeated touches and the stated noise.
+
+    Args:
+        scatter: Of the residual, mm.
+    """
+    kinds = (("replicates", found.replicates), ("re-visited places", found.revisits))
+    seen: list[Scatter] = []
+    repeats = []
+    for name, one in kinds:
+        if one is not None and one not in seen:
+            seen.append(one)
+            repeats.append(f"{microns(one.size)} in {name} ({one.dof} degrees of freedom)")
+    near = found.neighbours
+    near_words = [] if near is None else [f"at most {microns(near.size)} between near neighbours"]
+    shown = listed([*repeats, *near_words]) if repeats or near_words else "no touch was repeated"
+    return f"stated {microns(found.stated)}; {shown}; scatter of the residual {microns(scatter)}"
+
+
+def promise_words(after: Promise, before: Promise | None = None) -> str:
+    """Errors to expect at other places and at the same touches; and where the model fails."""
+    fall = "" if before is None or before is after else f"{microns(before.elsewhere)} → "
+    fails = [d for d in after.domains if d.ratio > HOLDS]
+    words = (
+        f"{fall}{microns(after.elsewhere)} at other places within the probed range, "
+        f"{microns(after.same)} at the same touches"
+    )
+    if not fails:
+        return words
+    worst = listed([f"{noun(d.name)} ({digits(d.ratio, 2)} times)" for d in fails[:NAMED]])
+    return f"{words}; blocks left out by {worst} are worse than their uncertainty"

@@ -1,0 +1,104 @@
+"""Laws without a cause: found in exactly simulated runs, and none where there is none."""
+
+import json
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from simulator_case import read_back
+from simulator_experiment import MACHINES
+from simulator_laws import law_case
+
+from matstd.cli import main
+from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.laws import amplitudes, learn_laws, places, second_run
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.units import UM
+
+
+@pytest.fixture(scope="module")
+def stylus():
+    """A stylus that is changed: the probe reads elsewhere from then on."""
+    texts = law_case(np.random.default_rng(5), "hmc1995", "stylus", (30.0, 31.0), poses=4)
+    runs = [read_back(text, MACHINES["hmc1995"]) for text in texts[:3]]
+    return texts, runs, learn_laws(runs[0])
+
+
+def test_a_law_is_found_with_its_carrier_variable_and_shape(stylus) -> None:
+    (*_, truth), _, found = stylus
+    (one,) = found.laws
+    assert one.law.name == "law(bias,step time)"
+    (size,), (instant,) = amplitudes(found, one.law), places(found, one.law)
+    hidden = truth["hidden"][0]["amplitude"] * UM
+    assert abs(size.value - hidden) < 3.0 * size.u < 0.2 * hidden
+    assert abs(instant.value - 6200.0) < 2.0 * instant.u
+    assert all(h.after < h.before for h in found.held_out[:2])
+
+
+def test_a_second_run_is_predicted(stylus) -> None:
+    _, (_, second, free), found = stylus
+    said = second_run(found, second)
+    true = (
+        np.median(free.u)
+        * fit_run(free, ordinary_model(free.touches.chain)).noise.chi2_ratio ** 0.5
+    )
+    assert said.learnt < 1.1 * true
+    assert said.without > 1.3 * true
+
+
+def test_nothing_is_learnt_where_nothing_is_hidden() -> None:
+    text, *_ = law_case(np.random.default_rng(8), "hmc1995", None, poses=3)
+    found = learn_laws(read_back(text, MACHINES["hmc1995"]))
+    assert found.laws == ()
+    assert found.after is found.before
+
+
+def test_few_touches_leave_no_law() -> None:
+    text, *_ = law_case(np.random.default_rng(5), "hmc1995", "stylus", (30.0, 31.0), poses=2)
+    run = read_back(text, MACHINES["hmc1995"])
+    assert learn_laws(run[:28]).laws == ()
+
+
+def test_the_command_writes_an_effect_that_the_other_commands_take(
+    stylus, tmp_path, capsys, unrendered
+) -> None:
+    texts = stylus[0]
+    for name, text in (("run.csv", texts[0]), ("two.csv", texts[1])):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    (tmp_path / "machine.toml").write_text(MACHINES["hmc1995"], encoding="utf-8")
+    out = tmp_path / "out"
+    arguments = ["--second-run", str(tmp_path / "two.csv"), "-o", str(out)]
+    assert main(["learn", str(tmp_path / "run.csv"), *arguments]) == 0
+    said = capsys.readouterr().out
+    assert "a step over time" in said
+    assert "A second run" in said
+    table = json.loads((out / "law.json").read_text(encoding="utf-8"))
+    assert table["laws"][0]["family"] == "step"
+    assert table["second_run"]["with_um"] < table["second_run"]["without_um"]
+    effect = out / "effect.py"
+    assert len(effect.read_text(encoding="utf-8").splitlines()) < 45
+    ruff = [sys.executable, "-m", "ruff", "check", "-q", "--select", "E9,F", str(effect)]
+    subprocess.run(ruff, check=True)
+    model = ["--model", str(out / "model.toml"), "--no-report", "-o", str(tmp_path / "compared")]
+    assert main(["compare", str(tmp_path / "two.csv"), *model]) == 0
+    own = ["--effects", str(effect), "--no-report", "-o", str(tmp_path / "own")]
+    assert main(["compare", str(tmp_path / "two.csv"), *own]) == 0
+    assert parse_effect("learnt-law", stylus[1][0].touches.chain).name == "learnt-law"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("seed", "label", "family"),
+    [(1, "hsm600u", "gate"), (2, "hsm600u", "harmonic_by_direction"), (3, "fork", "worn_zone")],
+)
+def test_products_and_plateaus_are_found(seed, label, family) -> None:
+    *texts, truth = law_case(np.random.default_rng(seed), label, family, (30.0, 40.0))
+    run, second, free = (read_back(text, MACHINES[label]) for text in texts)
+    found = learn_laws(run)
+    assert found.laws
+    names = {f.driver.name for f in found.laws[0].law.factors}
+    assert names == set(truth["hidden"][0]["variables"])
+    model = ordinary_model(run.touches.chain)
+    true = np.median(free.u) * fit_run(free, model).noise.chi2_ratio ** 0.5
+    assert second_run(found, second).learnt < 1.1 * true

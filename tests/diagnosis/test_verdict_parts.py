@@ -1,0 +1,152 @@
+"""The verdict in three parts, repeatability, and errors to expect; sums worked by hand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from matstd.diagnosis.accuracy import Repeatability, Scatter, other_places, promise, repeatability
+from matstd.diagnosis.answer import diagnose
+from matstd.diagnosis.answer.parts import Weighed, verdict_parts
+from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.geometry import LearntGeometry
+from matstd.diagnosis.residual import Shape, Structure
+from matstd.report.verdict import part_lines
+from matstd.report.verdict.part_words import odds_words
+from matstd.twin.frames import apply
+from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.machine import tip
+
+UM = 1e-3
+NO_GEOMETRY = LearntGeometry((), (), ())
+
+
+def weighed(chain, name, scatter, p=1e-9, is_significant=True):
+    return Weighed(
+        effect=parse_effect(name, chain),
+        p_value=p,
+        scatter=scatter * UM,
+        runner_up=None,
+        is_significant=is_significant,
+    )
+
+
+def parts(start, steps, left=(), repeats=None, dof=100.0):
+    known = repeats or Repeatability(1.0 * UM, None, None, None)
+    return verdict_parts(start * UM, dof, steps, left, NO_GEOMETRY, (), known)
+
+
+def pattern(share):
+    return Structure(Shape.SMOOTH, ("X_mm",), "Z", 1e-9, share, 30.0, None)
+
+
+@pytest.fixture(scope="module")
+def hidden(case):
+    return case(33, "hmc1995").run
+
+
+def test_shares_of_names_and_remainder_add_up(hidden):
+    """5 um fall to 4, then to 3; repeats show 1: of 24 um^2, 9 and 7 are named and 8 remain."""
+    chain = hidden.touches.chain
+    repeats = Repeatability(1.0 * UM, Scatter(1.0 * UM, 50), None, None)
+    steps = [weighed(chain, "backlash(X)", 4.0), weighed(chain, "backlash(Y)", 3.0)]
+    found = parts(5.0, steps, repeats=repeats)
+    assert [n.share for n in found.named] == pytest.approx([9 / 24, 7 / 24])
+    assert found.remains.share == pytest.approx(8 / 24)
+    assert found.remains.size == pytest.approx(np.sqrt(8.0) * UM)
+    assert found.remains.is_real
+    assert not found.is_unexplained  # 16 um^2 are named, 8 remain
+
+
+def test_more_left_than_named_is_unexplained(hidden):
+    steps = [weighed(hidden.touches.chain, "backlash(X)", 4.0)]
+    assert parts(5.0, steps, [pattern(0.9)]).is_unexplained  # 9 um^2 named, 14.4 in a pattern
+    assert not parts(5.0, steps, [pattern(0.3)]).is_unexplained  # 4.8
+    assert not parts(5.0, steps).is_unexplained
+    assert parts(5.0, [], [pattern(0.01)]).is_unexplained  # nothing is named
+
+
+@pytest.mark.parametrize(
+    ("scatter", "p", "is_significant", "is_headline"),
+    [
+        (4.0, 1e-4, True, True),
+        (4.0, 2e-3, True, False),  # chance of more than one in a thousand
+        (4.0, 1e-9, False, False),  # within twice its uncertainty
+        (4.9996, 1e-9, True, False),  # 0.063 um beside a stated noise of 1
+    ],
+)
+def test_what_may_stand_in_a_headline(hidden, scatter, p, is_significant, is_headline):
+    step = weighed(hidden.touches.chain, "backlash(X)", scatter, p, is_significant)
+    assert parts(5.0, [step]).named[0].is_headline is is_headline
+
+
+def test_lack_of_fit_is_judged_by_repeats():
+    """A chi-square of 33 beside repeats as good as stated is no noise."""
+    repeats = Repeatability(1.0 * UM, Scatter(1.0 * UM, 20), None, None)
+    found = parts(5.74, [], repeats=repeats)
+    assert found.is_unexplained
+    assert found.remains.lack_of_fit < 1e-3
+    few = Repeatability(1.0 * UM, Scatter(1.0 * UM, 4), None, None)
+    assert not parts(5.74, [], repeats=few).is_unexplained
+
+
+def test_repeatability_of_known_noise(hidden):
+    """Replicates, re-visits and neighbours show the noise that was put in, not the stated one."""
+    rng = np.random.default_rng(1)
+    rows = np.repeat(np.arange(len(hidden)), 2)
+    run = hidden[rows]
+    fit = fit_run(run, ordinary_model(run.touches.chain))
+    noise = rng.normal(0.0, 2.0 * UM, len(run))
+    known = replace(run, deviation=run.deviation - fit.residual + noise)
+    found = repeatability(fit_run(known, ordinary_model(run.touches.chain)))
+    assert found.known is not None
+    assert found.known.dof >= len(hidden)
+    assert found.known.size == pytest.approx(2.0 * UM, rel=0.1)
+    assert found.stated == pytest.approx(np.sqrt(np.mean(run.u**2)))
+
+
+def test_other_places_are_consistent_touches(case):
+    """The nominal ball stands at its radius from the point wherever the axes have moved."""
+    t = case(33, "hmc1995").run.touches
+    there = other_places(t, np.random.default_rng(0))
+    ball = tip(there.chain, there.q, there.target)
+    gap = ball - apply(there.T_table_artefact, there.point)
+    moved = gap - there.radius[:, None] * there.normal_table
+    # a set-up moves as a whole: the ball is off its old point by one vector for each set-up
+    for number in np.unique(there.setup):
+        spread = np.ptp(moved[there.setup == number], axis=0)
+        assert spread == pytest.approx(np.zeros(3), abs=0.2)
+    assert np.ptp(there.q, axis=0).max() > 0.0
+
+
+def test_a_promise_elsewhere_is_at_least_the_one_here(hidden):
+    fit = fit_run(hidden, ordinary_model(hidden.touches.chain))
+    found = promise(fit)
+    assert found.elsewhere >= found.same == fit.test_rms
+    assert promise(fit).elsewhere == found.elsewhere  # drawn alike each time
+    assert {"X_mm", "time_s", "setup"} <= {d.name for d in found.domains}
+
+
+def test_lines_of_the_parts_are_read_in_their_order(hidden):
+    chain = hidden.touches.chain
+    found = diagnose(hidden, candidates=[parse_effect("backlash(X)", chain)])
+    lines = part_lines(found)
+    assert [name for name, _ in lines] == [
+        "geometry",
+        "named effects",
+        "what remains",
+        "repeatability",
+        "error to expect",
+    ]
+    assert (
+        f"{found.promise.elsewhere / UM:.2f} µm at other places" in dict(lines)["error to expect"]
+    )
+    assert "backlash(X)" in dict(lines)["named effects"]
+
+
+def test_odds_in_words():
+    assert [odds_words(v) for v in (np.log(3.0), np.log(1e6), 900.0)] == [
+        "3.0 : 1".replace(".0", ""),
+        "1e6 : 1",
+        "1e12 : 1",
+    ]

@@ -1,0 +1,186 @@
+"""Laws from outside any library, for the exact simulator, each by its own formula.
+
+`law_case` simulates a machine with one law, and a second run of the same machine and law with other
+set-ups, poses and noise, with and without the law: what is left of the latter is the error that the
+true law itself leaves.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from simulator import probe, run_text
+from simulator_case import Ordinary, read_back, visible_size
+from simulator_effects import SMALL, Hidden, unit_of
+from simulator_experiment import MACHINES, STATED_NOISE, random_experiment
+
+
+class Family(NamedTuple):
+    """What a law moves, of what it depends, and how it looks."""
+
+    carrier: str
+    variables: tuple[str, ...]
+    shapes: tuple[str, ...]  # words of the grammar that are right
+    act: Callable  # (state, amplitude) -> what it adds
+
+
+def component(name, variables, shapes, formula):
+    """A law of one component error."""
+    return Family(name, variables, shapes, lambda s, a: {name: a * unit_of(name) * formula(s)})
+
+
+def played(x, width):
+    out, last = np.empty(len(x)), x[0]
+    for i, value in enumerate(x):
+        last = min(max(last, value - width), value + width)
+        out[i] = last
+    return out
+
+
+def since_first(s, label):
+    """Time since the first touch with the same label."""
+    out = np.empty(len(s))
+    for value in np.unique(label):
+        rows = label == value
+        out[rows] = s.time[rows] - s.time[rows].min()
+    return out
+
+
+def families(rng, machine) -> dict[str, Family]:
+    """One law of every family, its places drawn."""
+    A = str(rng.choice(machine.linear))
+    own, aside = f"E{A}{A}", f"E{rng.choice(list('XYZ'))}{A}"
+    axis = machine.axis(A)
+    x0 = {"X": rng.uniform(-60, 60), "Y": rng.uniform(-50, 50), "Z": rng.uniform(-300, -200)}[A]
+    if not machine.rotary and A == "Y":
+        x0 -= 120.0
+    period, tau = rng.uniform(2.5, 8.0), rng.uniform(500.0, 1200.0)
+    towards = rng.normal(size=3)
+    towards /= np.linalg.norm(towards)
+
+    def worn(s):
+        return 0.5 + 0.5 * np.cos(np.pi * np.clip((np.abs(s.q[A] - x0) - 25.0) / 20.0, 0.0, 1.0))
+
+    def gate(s):
+        return np.exp(-(((s.q["X"] - 10.0) / 40.0) ** 2)) * (s.q["Y"] > x0)
+
+    def relaxing(s, a):
+        amount = a * SMALL * np.exp(-since_first(s, s.setup) / tau)
+        return {"shift": amount[:, None] * towards}
+
+    out = {
+        "worn_zone": component(own, (A,), ("plateau",), worn),
+        "kink": component(
+            aside, (A,), ("kink", "kink-before"), lambda s: np.maximum(0.0, s.q[A] - x0) / 100.0
+        ),
+        "saturation": component(
+            aside, (A,), ("saturation",), lambda s: np.tanh((s.q[A] - x0) / 25.0)
+        ),
+        "encoder": component(own, (A,), ("sine",), lambda s: np.sin(2 * np.pi * s.q[A] / period)),
+        "power": component(
+            aside, (A,), ("power",), lambda s: ((axis.high - s.q[A]) / 300.0) ** 2.5
+        ),
+        "worn_backlash": component(
+            own,
+            (A, f"last-{A}"),
+            ("sign*bump",),
+            lambda s: 0.5 * s.last_move[A] * np.exp(-(((s.q[A] - x0) / 40.0) ** 2)),
+        ),
+        "gate": component("EZZ", ("X", "Y"), ("bump*step",), gate),
+        "temperature_hysteresis": component(
+            aside,
+            ("T-scaleZ",),
+            ("play", "hysteresis"),
+            lambda s: played(s.temperature["scaleZ"], 0.7) - 20.0,
+        ),
+        "threshold": component(
+            aside,
+            ("T-spindle",),
+            ("kink", "kink-before"),
+            lambda s: np.maximum(0.0, s.temperature["spindle"] - 25.0),
+        ),
+        "temperature_position": component(
+            "EZZ",
+            ("T-spindle", "Y"),
+            ("lin*quad",),
+            lambda s: (s.temperature["spindle"] - 20.0) * (s.q["Y"] / 300.0) ** 2,
+        ),
+        "pump": component(
+            "EZZ", ("time",), ("sine",), lambda s: np.sin(2.0 * np.pi * s.time / 1000.0 + 1.0)
+        ),
+        "chiller": component(
+            "EXX", ("time",), ("saw",), lambda s: 2.0 * np.mod(s.time / 1300.0, 1.0) - 1.0
+        ),
+        "two_bodies": component(
+            aside,
+            ("time",),
+            ("two-exp", "pulse"),
+            lambda s: np.exp(-s.time / 600.0) - np.exp(-s.time / 3000.0),
+        ),
+        "ramp": Family(
+            "bias",
+            ("time",),
+            ("ramp",),
+            lambda s, a: {"bias": a * SMALL * np.clip((s.time - 3000.0) / 2500.0, 0.0, 1.0)},
+        ),
+        "stylus": Family(
+            "bias", ("time",), ("step",), lambda s, a: {"bias": a * SMALL * (s.time > 6200.0)}
+        ),
+        "relaxing": Family("shift", ("since-setup",), ("exp", "settling"), relaxing),
+    }
+    if machine.rotary:
+        out["harmonic_by_direction"] = component(
+            "EZC",
+            ("C", "last-B"),
+            ("sign*harmonic",),
+            lambda s: s.last_move["B"] * np.sin(2.0 * s.q["C"]),
+        )
+    return out
+
+
+FAMILIES = (
+    "worn_zone", "kink", "saturation", "encoder", "power", "worn_backlash", "gate",
+    "temperature_hysteresis", "threshold", "temperature_position", "pump", "chiller", "two_bodies",
+    "ramp", "stylus", "relaxing", "harmonic_by_direction",
+)  # fmt: skip
+
+
+def law_case(rng, label, family=None, signal_to_noise=(15.0, 60.0), poses=10):
+    """Texts of a run, of a second one, of the second one without the law, and the truth.
+
+    Args:
+        rng: Source of all that is random.
+        label: Which machine.
+        family: Word of the law; None hides nothing.
+        signal_to_noise: Range from which its visibility is drawn.
+        poses: Table poses of every set-up.
+    """
+    first, second = random_experiment(rng, label, poses), random_experiment(rng, label, poses)
+    second.errors = first.errors
+    hidden, truth = [], {"hidden": [], "machine": label, "noise_um": STATED_NOISE * 1e3}
+    if family is not None:
+        law = families(rng, first.machine)[family]
+        effect = Hidden(f"?{family}", "unknown", law.act)
+        plain = run_text(first, probe(first, [], np.zeros(len(first.time))), False)
+        ordinary = Ordinary(read_back(plain, MACHINES[label]).touches)
+        per_unit, _ = visible_size(first, effect, ordinary, STATED_NOISE)
+        effect.amplitude = rng.uniform(*signal_to_noise) / max(per_unit, 1e-9)
+        hidden.append(effect)
+        truth["hidden"].append(
+            {
+                "effect": effect.name,
+                "family": family,
+                "shapes": list(law.shapes),
+                "carrier": law.carrier,
+                "variables": list(law.variables),
+                "amplitude": round(float(effect.amplitude), 4),
+                "signal_to_noise": round(float(per_unit * effect.amplitude), 2),
+            }
+        )
+    noise, other = (rng.normal(0.0, STATED_NOISE, len(e.time)) for e in (first, second))
+    return (
+        run_text(first, probe(first, hidden, noise), False),
+        run_text(second, probe(second, hidden, other), False),
+        run_text(second, probe(second, [], other), False),
+        truth,
+    )

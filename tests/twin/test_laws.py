@@ -1,0 +1,85 @@
+"""Laws as effects: shapes by hand, carriers by hand, names that lead back."""
+
+import numpy as np
+import pytest
+from made_up import made_up
+
+from matstd.twin.errors import UnknownEffect
+from matstd.twin.laws import SHAPES, drivers, grid, play, shapes_of
+from matstd.twin.library import parse_effect
+from matstd.twin.model import columns
+from matstd.twin.units import UM
+
+
+def one(word, x, *places):
+    (column,) = SHAPES[word].values(np.array(x, dtype=float), *places)
+    return column
+
+
+def test_shapes_are_what_their_formulas_say() -> None:
+    assert one("bump", [10.0, 20.0], 10.0, 10.0) == pytest.approx([1.0, np.exp(-1.0)])
+    assert one("bump-before", [9.0, 11.0], 10.0, 1.0) == pytest.approx([np.exp(-1.0), 0.0])
+    assert one("window", [0.0, 1.0, 3.0], 0.5, 2.0) == pytest.approx([0.0, 1.0, 0.0])
+    assert one("ramp", [0.0, 1.5, 9.0], 1.0, 2.0) == pytest.approx([0.0, 0.5, 1.0])
+    assert one("plateau", [0.0, 1.5, 2.5, 3.1], 1.0, 2.0, 1.0) == pytest.approx([0, 1, 0.5, 0])
+    assert one("kink", [1.0, 4.0], 2.0, 2.0) == pytest.approx([0.0, 1.0])
+    assert one("dead-band", [-4.0, 0.5, 4.0], 0.0, 1.0, 1.0) == pytest.approx([-3.0, 0.0, 3.0])
+    assert one("exp", [0.0, 60.0], 0.0, 60.0) == pytest.approx([1.0, np.exp(-1.0)])
+    assert one("log", [0.0, 60.0], 0.0, 60.0) == pytest.approx([0.0, np.log(2.0)])
+    assert one("square", [1.0, 3.0], 4.0, 0.0) == pytest.approx([1.0, -1.0])
+    assert one("saw", [0.0, 1.0, 3.0], 4.0, 0.0) == pytest.approx([-1.0, -0.5, 0.5])
+    assert one("half-wave", [np.pi / 2, -np.pi / 2], 0.0) == pytest.approx([1.0, 0.0])
+
+
+def test_a_play_follows_only_while_it_is_pushed() -> None:
+    x = np.array([0.0, 1.0, 3.0, 2.0, 0.0, -3.0])
+    assert play(x, 1.0) == pytest.approx([0.0, 0.0, 2.0, 2.0, 1.0, -2.0])
+
+
+def test_code_of_effect_files_computes_what_the_shape_does() -> None:
+    """The expression that is written for a user, evaluated, against the function that is fitted."""
+    x = np.array([-3.0, -0.4, 0.3, 1.7, 2.9, 6.0])
+    values = {"zero": -4.0, "unit": 2.0, "x0": 0.5, "w": 1.5, "p": 1.7, "period": 3.0, "k": 3.0,
+              "phase": 0.4, "x1": -1.0, "x2": 2.0, "wa": 1.0, "wb": 4.0}  # fmt: skip
+    for shape in (s for s in SHAPES.values() if s.code):
+        places = [values.get(name, 1.0) for name in shape.places]
+        expected = shape.values(x, *places)
+        for code, column in zip(shape.code, expected, strict=False):
+            text = code.format(**values)
+            found = eval(text, {"np": np, "x": x, "play": play})
+            assert np.broadcast_to(found, x.shape) == pytest.approx(column), shape.word
+
+
+def test_every_shape_has_a_grid_with_its_parameters() -> None:
+    touches = made_up("hsm600u")
+    for driver in drivers(touches):
+        x = driver.values(touches)
+        for shape in shapes_of(driver, x):
+            points = grid(shape, driver, x)
+            assert points.ndim == 2, shape.word
+            assert points.shape[1] == len(shape.places), shape.word
+            if len(points):
+                columns_ = np.stack(shape.values(x, *points[len(points) // 2]))
+                assert np.all(np.isfinite(columns_)), shape.word
+
+
+def test_a_bump_lifts_by_its_amplitude_along_the_normal() -> None:
+    """EZY = a exp(-((Y - x0)/w)^2): a lifted tool sees the surface lower, ``-n_z a``."""
+    touches = made_up("hsm600u")
+    law = parse_effect("law(EZY,bump Y)", touches.chain).tuned(20.0, 50.0)
+    y = touches.reading("Y")
+    # EZZ moves the tip as EZY does: the column of a constant shape is that of the carrier
+    per_mm = touches.signature.of(touches.chain.twist_of(touches.chain.symbol("EZY")))
+    found = columns([law], touches)[:, 0] * 10.0 * UM
+    assert found == pytest.approx(10.0 * UM * np.exp(-(((y - 20.0) / 50.0) ** 2)) * per_mm)
+
+
+def test_names_that_mean_nothing_are_refused() -> None:
+    chain = made_up("hsm600u").chain
+    for text, said in (
+        ("law(EZY,hump Y)", "a shape of"),
+        ("law(EZY,bump W)", "is no variable of a law"),
+        ("law(EZY)", "2 to 3 arguments"),
+    ):
+        with pytest.raises(UnknownEffect, match=said):
+            parse_effect(text, chain)

@@ -1,0 +1,28 @@
+"""Laws that are stated by what they look like: a carrier times shapes of variables.
+
+In: the name of a variable, of a shape, of a carrier. Out: `Law`, an effect like any other, but
+without a cause. `driver` gives variables of touches by name, `shape` the grammar of curves, `grids`
+where their parameters are scanned.
+"""
+
+from matstd.twin.laws.driver import Driver, driver_of, drivers
+from matstd.twin.laws.grids import grid, shapes_of
+from matstd.twin.laws.law import KIND, Carrier, Factor, Law, carrier_of
+from matstd.twin.laws.shape import SHAPES, Shape, curve_columns, play
+
+__all__ = [
+    "KIND",
+    "SHAPES",
+    "Carrier",
+    "Driver",
+    "Factor",
+    "Law",
+    "Shape",
+    "carrier_of",
+    "curve_columns",
+    "driver_of",
+    "drivers",
+    "grid",
+    "play",
+    "shapes_of",
+]

@@ -1,0 +1,336 @@
+"""`law(carrier, shape variable, ...)`: an effect that is stated by what it looks like.
+
+A law moves a carrier (a component of a link, the standard, the reading of the probe) by an
+amplitude times one or two shapes, each a function of one variable:
+
+    law(EZX,bump Y)            EZX = a exp(-((Y - x0)/w)^2)
+    law(EXY,lin T-scaleX,quad Y)    EXY = a u_T u_Y^2
+    law(shift,exp since-setup)      the standard moves by (a, b, c) exp(-t/tau)
+    law(EBY,curve Y)           a smooth curve without a formula
+
+The library has effects with a cause; a law has none. It is learnt from what a model leaves, and
+predicts as any effect does.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from matstd.twin.fields import check_count, component_symbol, refusal
+from matstd.twin.frames import Array
+from matstd.twin.laws.driver import Driver, driver_of
+from matstd.twin.laws.grids import grid
+from matstd.twin.laws.shape import SHAPES, Shape
+from matstd.twin.machine import Chain, Symbol
+from matstd.twin.model import Inner, Kind, Parameter, Term, Title, Where
+from matstd.twin.record import Touches
+from matstd.twin.units import DEG, HOUR, T_REF, UM, URAD
+
+FREE_LENGTH, FREE_ANGLE = 1000.0 * UM, 10000.0 * URAD
+"""Prior standard deviation of an amplitude: what is learnt is not drawn towards zero. Of a curve
+its own `size` is the prior."""
+
+SHIFT, BIAS, GROWTH, TILT = "shift", "bias", "growth", "tilt"
+PARTS = {SHIFT: 3, BIAS: 1, GROWTH: 1, TILT: 3, "shift-x": 1, "shift-y": 1, "shift-z": 1}
+"""Carriers that are no component of a link, with their number of amplitudes."""
+
+
+@dataclass(frozen=True)
+class Carrier:
+    """What a law moves.
+
+    Attributes:
+        name: A component error, `EZX`, or one of `PARTS`.
+        symbol: Of a component error.
+    """
+
+    name: str
+    symbol: Symbol | None = None
+
+    @property
+    def count(self) -> int:
+        """Number of amplitudes."""
+        return PARTS.get(self.name, 1)
+
+    @property
+    def is_angular(self) -> bool:
+        """Whether its amplitudes are angles."""
+        return self.name == TILT or (self.symbol is not None and self.symbol.is_angular)
+
+    @property
+    def unit(self) -> str:
+        """Base unit of an amplitude: of a growth it is a strain."""
+        return "rad" if self.is_angular else "1" if self.name == GROWTH else "mm"
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """Of its amplitudes; one empty word where there is one alone."""
+        return {SHIFT: ("X", "Y", "Z"), TILT: ("A", "B", "C")}.get(self.name, ("",))
+
+    def entries(self, touches: Touches) -> list[tuple[int, Where, Array | float]]:
+        """Amplitude, entry and factor of all that it moves."""
+        if self.symbol is not None:
+            return [(0, touches.chain.twist_of(self.symbol), 1.0)]
+        if self.name == BIAS:
+            return [(0, Where("bias"), 1.0)]
+        if self.name == SHIFT:
+            return [(i, Where("shift", 0, i), 1.0) for i in range(3)]
+        if self.name.startswith("shift-"):
+            return [(0, Where("shift", 0, "xyz".index(self.name[-1])), 1.0)]
+        p = touches.point_table
+        if self.name == GROWTH:
+            return [(0, Where("shift", 0, i), p[:, i]) for i in range(3)]
+        arm = p - _centre(touches)
+        turned: list[tuple[int, Where, Array | float]] = []
+        for turn in range(3):
+            a, b = (turn + 1) % 3, (turn + 2) % 3
+            turned += [(turn, Where("shift", 0, b), arm[:, a])]
+            turned += [(turn, Where("shift", 0, a), -arm[:, b])]
+        return turned
+
+    def columns(self, touches: Touches) -> Array:
+        """Deviation along the normal per unit of every amplitude, (N, count)."""
+        out = np.zeros((len(touches), self.count))
+        for k, where, factor in self.entries(touches):
+            out[:, k] += factor * touches.signature.of(where)
+        return out
+
+
+def _centre(touches: Touches) -> Array:
+    """Middle of the points of the set-up of every touch, table frame, (N, 3), mm."""
+    count = np.maximum(np.bincount(touches.setup, minlength=len(touches.setups)), 1)
+    p = touches.point_table
+    mean = [np.bincount(touches.setup, p[:, i], len(touches.setups)) / count for i in range(3)]
+    return np.stack(mean, axis=1)[touches.setup]
+
+
+def carrier_of(name: str, chain: Chain) -> Carrier:
+    """The carrier of a name; raises UnknownSymbol or UnknownEffect."""
+    return Carrier(name) if name in PARTS else Carrier(name, component_symbol(chain, name))
+
+
+class Factor(NamedTuple):
+    """A shape of one variable."""
+
+    shape: Shape
+    driver: Driver
+
+    @property
+    def name(self) -> str:
+        """`bump Y`."""
+        return f"{self.shape.word} {self.driver.name}"
+
+
+@dataclass(frozen=True)
+class Law:
+    """Amplitudes times one or two shapes, at a carrier.
+
+    Attributes:
+        factors: Shapes with their variables, one or two.
+        places: Values of their parameters, one after the other, base units.
+        is_sought: Whether they are still to be found: by a scan over all that makes sense.
+    """
+
+    carrier: Carrier
+    factors: tuple[Factor, ...]
+    places: tuple[float, ...]
+    is_sought: bool = False
+
+    kind = "law"
+
+    @cached_property
+    def name(self) -> str:
+        """`law(EZX,bump Y)`."""
+        return f"law({','.join([self.carrier.name, *(f.name for f in self.factors)])})"
+
+    @property
+    def title(self) -> Title:
+        """What it looks like, and what carries it."""
+        text = " times ".join(f"{f.shape.word} over {f.driver.name}" for f in self.factors)
+        return Title(f"{self.carrier.name}: {text}", _bearer(self.carrier))
+
+    @property
+    def symbol(self) -> Symbol | None:
+        """Component error that it acts on."""
+        return self.carrier.symbol
+
+    @property
+    def is_curve_alone(self) -> bool:
+        """Whether it has no formula."""
+        return any(f.shape.word == "curve" for f in self.factors)
+
+    @property
+    def is_tensor(self) -> bool:
+        """Reported by the rms that it explains where coefficients have no meaning."""
+        return self.is_curve_alone
+
+    @property
+    def needs_history(self) -> bool:
+        """Whether the order of touches matters."""
+        return any(f.shape.remembers for f in self.factors)
+
+    @cached_property
+    def parameters(self) -> Sequence[Parameter]:
+        """Amplitudes: of every direction of the carrier, for every coefficient of the shapes."""
+        unit = "1" if self.is_curve_alone else self.carrier.unit
+        free = FREE_ANGLE if unit == "rad" else FREE_LENGTH
+        sd = 1.0 if self.is_curve_alone else free
+        return tuple(
+            Parameter(" ".join(w for w in (way, word) if w) or "amplitude", unit, sd)
+            for way in self.carrier.words
+            for word in self._coefficients
+        )
+
+    @property
+    def _coefficients(self) -> list[str]:
+        words = [""]
+        for factor in self.factors:
+            words = [f"{w} {c}".strip() for w in words for c in factor.shape.coefficients]
+        return words
+
+    def amounts(self, touches: Touches) -> list[Array]:
+        """What the carrier does per unit of every coefficient, (N,) each."""
+        out, start = [np.ones(len(touches))], 0
+        for factor in self.factors:
+            count = len(factor.shape.places)
+            x = factor.driver.values(touches)
+            found = factor.shape.values(x, *self.places[start : start + count])
+            out = [a * b for a in out for b in found]
+            start += count
+        return out
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Amounts at the entries of the carrier."""
+        amounts = self.amounts(touches)
+        m = len(amounts)
+        return tuple(
+            Term(way * m + k, where, factor * amount)
+            for way, where, factor in self.carrier.entries(touches)
+            for k, amount in enumerate(amounts)
+        )
+
+    @cached_property
+    def place_names(self) -> tuple[str, ...]:
+        """Name of every parameter of the shapes: `x0`, of a second shape of one name `x0-2`."""
+        names = [name for f in self.factors for name in f.shape.places]
+        first = len(self.factors[0].shape.places)
+        return tuple(
+            f"{n}-2" if i >= first and n in names[:first] else n for i, n in enumerate(names)
+        )
+
+    @cached_property
+    def units(self) -> tuple[str, ...]:
+        """Base unit of every parameter of the shapes; "1" of a number."""
+        return tuple(
+            "1" if _is_number(name, f.driver) else "rad" if name == "phase" else f.driver.unit
+            for f in self.factors
+            for name in f.shape.places
+        )
+
+    def inner(self, touches: Touches) -> Sequence[Inner]:
+        """The parameters of the shapes: about where they are, or the scan that looks for them."""
+        out, i = [], 0
+        for factor in self.factors:
+            x = factor.driver.values(touches)
+            span = float(np.ptp(x))
+            scan = grid(factor.shape, factor.driver, x) if self.is_sought else None
+            for k, name in enumerate(factor.shape.places):
+                if scan is None:
+                    value = self.places[i]
+                    values = value + _spacing(name, value, span) * np.array([-1.0, 0.0, 1.0])
+                else:
+                    values = np.unique(scan[:, k])
+                is_free = k in factor.shape.free and not factor.shape.jumps
+                unit = self.units[i] if self.units[i] in ("mm", "rad", "s") else "1"
+                is_instant = factor.driver.nature == "time" and factor.shape.jumps
+                made = Inner(self.place_names[i], unit, values, is_free)
+                out.append(made._replace(acts="at an instant") if is_instant else made)
+                i += 1
+        return tuple(out)
+
+    def tuned(self, *values: float) -> Self:
+        """The same law with these parameters of its shapes."""
+        return replace(self, places=tuple(float(v) for v in values))
+
+    @property
+    def tuning(self) -> Mapping[str, float]:
+        """Present parameters of its shapes, base units."""
+        return dict(zip(self.place_names, self.places, strict=True))
+
+    @property
+    def free(self) -> tuple[int, ...]:
+        """Which of the parameters of the shapes a run determines."""
+        out, start = [], 0
+        for factor in self.factors:
+            out += [start + k for k in factor.shape.free]
+            start += len(factor.shape.places)
+        return tuple(out)
+
+
+def _is_number(name: str, driver: Driver) -> bool:
+    return name in ("p", "length", "size") or not driver.unit
+
+
+def _spacing(name: str, value: float, span: float) -> float:
+    """Step of a scan about a parameter: places by shares of the range, widths of themselves."""
+    if name == "phase":
+        return 10.0 * DEG
+    if name[-1].isdigit() and name[0] == "x":
+        return 0.03 * span
+    if name == "period":
+        return min(0.1 * abs(value), 0.1 * value**2 / max(span, 1e-300))
+    return 0.2 * abs(value) or 0.03 * span or 1.0
+
+
+def _bearer(carrier: Carrier) -> str:
+    """Axis or body that carries it."""
+    if carrier.symbol is not None:
+        return carrier.symbol.link
+    return "probe" if carrier.name == BIAS else "standard"
+
+
+_USUAL = {"time": (0.0, 3.0 * HOUR), "level": (T_REF, T_REF + 10.0), "sign": (-1.0, 1.0),
+          "rotary": (-np.pi, np.pi)}  # fmt: skip
+"""Range of a variable before any touches are known."""
+
+
+def make(chain: Chain, arguments: Sequence[str]) -> Law:
+    """From the carrier and one or two factors; raises a child of DesignError."""
+    check_count(KIND.usage, arguments, 2, 3)
+    factors = []
+    for text in arguments[1:]:
+        word, _, name = text.strip().partition(" ")
+        if word not in SHAPES:
+            raise refusal(KIND.usage, arguments, f"a shape of {', '.join(SHAPES)}")
+        factors.append(Factor(SHAPES[word], driver_of(name.strip(), chain)))
+    places = [v for f in factors for v in _middle(f, chain)]
+    return Law(carrier_of(arguments[0].strip(), chain), tuple(factors), tuple(places), True)
+
+
+def _middle(factor: Factor, chain: Chain) -> tuple[float, ...]:
+    """Parameters of a shape in the middle of what makes sense over the travel of its variable."""
+    driver = factor.driver
+    low, high = (
+        chain.link(driver.name).range if driver.name in chain.axes else _USUAL[driver.nature]
+    )
+    points = grid(factor.shape, driver, np.linspace(low, high, 50))
+    return tuple(float(v) for v in points[len(points) // 2])
+
+
+KIND = Kind(
+    word="law",
+    arguments="carrier,shape variable[,shape variable]",
+    title="law that was learnt",
+    synonyms="discrepancy, empirical law, curve, unknown cause",
+    formula="E = a f(variable), or a f(variable) g(variable); f, g: bump, step, ramp, kink, power, "
+    "exp, log, sine, square, window, hysteresis, curve ... (matstd learn finds them)",
+    units="a: µm or µrad; of the shapes the unit of their variable",
+    typical="what matstd learn found",
+    source="learnt from measurements: no cause is stated",
+    make=make,
+    propose=lambda touches: (),
+    classes=(Law,),
+)

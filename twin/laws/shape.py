@@ -1,0 +1,234 @@
+"""Shapes of a law: functions of one variable, with the values of their parameters to be scanned.
+
+A shape gives one column per linear coefficient at every touch and is of order one, so that the
+amplitude of a law is a size. Parameters that stand in the formula otherwise than as a factor are
+`places` of it, in the unit of the variable or a number. Times count from the start of what they are
+measured from; `log`, `decay` and `settling` begin there.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from matstd.twin.frames import Array
+
+Values = Callable[..., Sequence[Array]]
+"""Columns at values x (N,) of the variable for the parameters of the shape, (N,) each."""
+
+
+@dataclass(frozen=True)
+class Shape:
+    """One family of curves.
+
+    Attributes:
+        word: Its name, as in `law(EZX,bump Y)`.
+        formula: With x the variable.
+        code: The same as Python expressions on arrays, one per coefficient: x is the variable.
+        places: Names of its parameters: ending in `0` to `9` or named `phase` they are places,
+            `zero` and `unit` are fixed with the machine, others are widths.
+        coefficients: Words of its linear coefficients; one empty word where there is one alone.
+        jumps: Whether the curve jumps at its places, so that only touches on either side fix them.
+        remembers: Whether the order of touches matters.
+    """
+
+    word: str
+    formula: str
+    code: tuple[str, ...]
+    values: Values
+    places: tuple[str, ...] = ()
+    coefficients: tuple[str, ...] = ("",)
+    jumps: bool = False
+    remembers: bool = False
+
+    @property
+    def free(self) -> tuple[int, ...]:
+        """Which of the parameters a run determines; the others follow from the machine."""
+        return tuple(i for i, name in enumerate(self.places) if name not in FIXED)
+
+
+FIXED = ("zero", "unit", "k", "low", "high", "length", "size")
+"""Parameters that follow from the machine or from the data before a formula is fitted."""
+
+WAVES = 32
+"""Waves of a curve without a formula: half waves over its domain, from none on."""
+
+
+def play(x: Array, width: float) -> Array:
+    """Output of a play of half width w: it follows x only while x pushes it, (N,).
+
+    Reference:
+        Krasnoselskii and Pokrovskii, Systems with Hysteresis (1989): the play operator.
+    """
+    out = np.empty(len(x))
+    last = float(x[0]) if len(x) else 0.0
+    for i, value in enumerate(x.tolist()):
+        last = min(max(last, value - width), value + width)
+        out[i] = last
+    return out
+
+
+def curve_waves(length: float) -> Array:
+    """Weights of the waves of a smooth curve of a correlation length, sum of squares 1, (WAVES,).
+
+    The finer a wave, the less is expected of it: ``w_k ~ 1/(1 + (k pi l)^2)``, the spectral density
+    of a Matern process of smoothness 3/2, l as a share of the domain.
+    """
+    weight = 1.0 / (1.0 + (np.pi * np.arange(WAVES) * length) ** 2)
+    return np.asarray(weight / np.linalg.norm(weight))
+
+
+def curve_columns(x: Array, low: float, high: float, length: float) -> Array:
+    """Waves of a smooth curve over its domain; beyond it stays what it is at the edge, (N, WAVES).
+
+    Reference:
+        Solin and Sarkka, Statistics and Computing 30 (2020): Gaussian processes by waves.
+    """
+    share = np.clip((x - low) / (high - low), 0.0, 1.0)
+    return np.asarray(np.cos(np.pi * share[:, None] * np.arange(WAVES)) * curve_waves(length))
+
+
+def _curve(x: Array, low: float, high: float, length: float, size: float) -> Sequence[Array]:
+    return list((size * curve_columns(x, low, high, length)).T)
+
+
+def _gauss(x: Array, x0: float, width: float) -> Array:
+    return np.asarray(np.exp(-(((x - x0) / width) ** 2)))
+
+
+def _turn(x: Array, period: float) -> Array:
+    return np.asarray(2.0 * np.pi * x / period)
+
+
+def _sine(x: Array, period: float) -> Sequence[Array]:
+    return np.sin(_turn(x, period)), np.cos(_turn(x, period))
+
+
+def _one(function: Callable[..., Array]) -> Values:
+    """A shape of a single coefficient."""
+
+    def values(x: Array, *places: float) -> Sequence[Array]:
+        return (function(x, *places),)
+
+    return values
+
+
+def _shape(
+    word: str, formula: str, code: str, function: Callable[..., Array], *places: str, **more: bool
+) -> Shape:
+    return Shape(
+        word=word, formula=formula, code=(code,), values=_one(function), places=places, **more
+    )
+
+
+def _several(
+    word: str,
+    formula: str,
+    code: tuple[str, ...],
+    values: Values,
+    places: tuple[str, ...],
+    coefficients: tuple[str, ...],
+) -> Shape:
+    """A shape of several coefficients."""
+    return Shape(
+        word=word,
+        formula=formula,
+        code=code,
+        values=values,
+        places=places,
+        coefficients=coefficients,
+    )
+
+
+SHAPES: dict[str, Shape] = {
+    shape.word: shape
+    for shape in (
+        _shape("sign", "sgn(x)", "x", lambda x: x),
+        _shape("lin", "u, u = (x - zero)/unit", "(x - {zero}) / {unit}",
+               lambda x, zero, unit: (x - zero) / unit, "zero", "unit"),
+        _several("lin-from", "a u + b, u = (x - zero)/unit", ("(x - {zero}) / {unit}", "x * 0 + 1"),
+              lambda x, zero, unit: ((x - zero) / unit, np.ones(len(x))), ("zero", "unit"),
+              ("slope", "constant")),
+        _shape("quad", "u^2, u = (x - zero)/unit", "((x - {zero}) / {unit}) ** 2",
+               lambda x, zero, unit: ((x - zero) / unit) ** 2, "zero", "unit"),
+        _shape("quad-about", "((x - x0)/unit)^2", "((x - {x0}) / {unit}) ** 2",
+               lambda x, x0, unit: ((x - x0) / unit) ** 2, "x0", "unit"),
+        _shape("cubic", "u^3, u = (x - zero)/unit", "((x - {zero}) / {unit}) ** 3",
+               lambda x, zero, unit: ((x - zero) / unit) ** 3, "zero", "unit"),
+        _shape("power", "|u|^p, u = (x - zero)/unit",
+               "np.maximum(np.abs(x - {zero}) / {unit}, 1e-9) ** {p}",
+               lambda x, zero, unit, p: np.maximum(np.abs(x - zero) / unit, 1e-9) ** p,
+               "zero", "unit", "p"),
+        _shape("bump", "exp(-((x - x0)/w)^2)", "np.exp(-(((x - {x0}) / {w}) ** 2))",
+               _gauss, "x0", "w"),
+        _shape("bump-before", "exp(-((x - x0)/w)^2) for x < x0, else 0",
+               "np.exp(-(((x - {x0}) / {w}) ** 2)) * (x < {x0})",
+               lambda x, x0, w: _gauss(x, x0, w) * (x < x0), "x0", "w", jumps=True),
+        _shape("bump-after", "exp(-((x - x0)/w)^2) for x > x0, else 0",
+               "np.exp(-(((x - {x0}) / {w}) ** 2)) * (x > {x0})",
+               lambda x, x0, w: _gauss(x, x0, w) * (x > x0), "x0", "w", jumps=True),
+        _shape("pulse", "v exp(1 - v), v = max(0, x - x0)/w",
+               "np.maximum(x - {x0}, 0.0) / {w} * np.exp(1.0 - np.maximum(x - {x0}, 0.0) / {w})",
+               lambda x, x0, w: _pulse(np.maximum(x - x0, 0.0) / w), "x0", "w"),
+        _shape("step", "1 for x > x0, else 0", "(x > {x0}) * 1.0",
+               lambda x, x0: (x > x0) * 1.0, "x0", jumps=True),
+        _shape("window", "1 for x1 < x < x2, else 0", "((x > {x1}) & (x < {x2})) * 1.0",
+               lambda x, x1, x2: ((x > x1) & (x < x2)) * 1.0, "x1", "x2", jumps=True),
+        _shape("ramp", "0 before x1, 1 after x2, a line between",
+               "np.clip((x - {x1}) / ({x2} - {x1}), 0.0, 1.0)",
+               lambda x, x1, x2: np.clip((x - x1) / max(x2 - x1, 1e-9), 0.0, 1.0), "x1", "x2"),
+        _shape("plateau", "1 between x1 and x2, gone a width w outside (half cosine)",
+               "0.5 + 0.5 * np.cos(np.pi * np.clip(np.maximum({x1} - x, x - {x2}) / {w}, 0, 1))",
+               lambda x, x1, x2, w: 0.5 + 0.5 * np.cos(
+                   np.pi * np.clip(np.maximum(x1 - x, x - x2) / w, 0.0, 1.0)), "x1", "x2", "w"),
+        _shape("kink", "max(0, x - x0)/unit", "np.maximum(x - {x0}, 0.0) / {unit}",
+               lambda x, x0, unit: np.maximum(x - x0, 0.0) / unit, "x0", "unit"),
+        _shape("kink-before", "max(0, x0 - x)/unit", "np.maximum({x0} - x, 0.0) / {unit}",
+               lambda x, x0, unit: np.maximum(x0 - x, 0.0) / unit, "x0", "unit"),
+        _shape("saturation", "tanh((x - x0)/w)", "np.tanh((x - {x0}) / {w})",
+               lambda x, x0, w: np.tanh((x - x0) / w), "x0", "w"),
+        _shape("dead-band", "max(0, |x - x0| - w) sgn(x - x0)/unit",
+               "np.maximum(np.abs(x - {x0}) - {w}, 0.0) * np.sign(x - {x0}) / {unit}",
+               lambda x, x0, w, unit: np.maximum(np.abs(x - x0) - w, 0.0) * np.sign(x - x0) / unit,
+               "x0", "w", "unit"),
+        _shape("exp", "exp(-(x - zero)/w)", "np.exp(-(x - {zero}) / {w})",
+               lambda x, zero, w: np.exp(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w"),
+        _shape("settling", "1 - exp(-(x - zero)/w)", "1.0 - np.exp(-(x - {zero}) / {w})",
+               lambda x, zero, w: -np.expm1(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w"),
+        _several("two-exp", "a exp(-(x - zero)/w1) + b exp(-(x - zero)/w2)",
+              ("np.exp(-(x - {zero}) / {wa})", "np.exp(-(x - {zero}) / {wb})"),
+              lambda x, zero, wa, wb: (np.exp(-(x - zero) / wa), np.exp(-(x - zero) / wb)),
+              ("zero", "wa", "wb"), ("fast", "slow")),
+        _shape("log", "log(1 + (x - zero)/w)", "np.log1p(np.maximum(x - {zero}, 0.0) / {w})",
+               lambda x, zero, w: np.log1p(np.maximum(x - zero, 0.0) / w), "zero", "w"),
+        _several("sine", "a sin(2 pi x/period) + b cos(2 pi x/period)",
+              ("np.sin(2 * np.pi * x / {period})", "np.cos(2 * np.pi * x / {period})"),
+              _sine, ("period",), ("sin", "cos")),
+        _several("harmonic", "a sin(k x) + b cos(k x)", ("np.sin({k} * x)", "np.cos({k} * x)"),
+              lambda x, k: (np.sin(k * x), np.cos(k * x)), ("k",), ("sin", "cos")),
+        _shape("square", "sgn sin(2 pi x/period + phase)",
+               "np.sign(np.sin(2 * np.pi * x / {period} + {phase}))",
+               lambda x, period, phase: np.sign(np.sin(_turn(x, period) + phase)),
+               "period", "phase", jumps=True),
+        _shape("saw", "2 frac(x/period + phase/2 pi) - 1",
+               "2.0 * np.mod(x / {period} + {phase} / (2 * np.pi), 1.0) - 1.0",
+               lambda x, period, phase: 2.0 * np.mod(x / period + phase / (2.0 * np.pi), 1.0) - 1.0,
+               "period", "phase", jumps=True),
+        _shape("half-wave", "max(0, sin(x + phase))", "np.maximum(np.sin(x + {phase}), 0.0)",
+               lambda x, phase: np.maximum(np.sin(x + phase), 0.0), "phase"),
+        _shape("hysteresis", "x less a play of half width w, over unit",
+               "(x - play(x, {w})) / {unit}",
+               lambda x, w, unit: (x - play(x, w)) / unit, "w", "unit", remembers=True),
+        _shape("play", "play of half width w that follows x, from zero, over unit",
+               "(play(x, {w}) - {zero}) / {unit}",
+               lambda x, zero, w, unit: (play(x, w) - zero) / unit, "zero", "w", "unit",
+               remembers=True),
+        _several("curve", "smooth curve without a formula, flat beyond its domain", (), _curve,
+              ("low", "high", "length", "size"), tuple(f"c{k}" for k in range(WAVES))),
+    )
+}  # fmt: skip
+"""Every shape by its word; a new one is a line here and its grid in `matstd.twin.laws.grids`."""
+
+
+def _pulse(v: Array) -> Array:
+    return np.asarray(v * np.exp(1.0 - v))
