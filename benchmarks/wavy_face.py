@@ -99,19 +99,13 @@ class Bench:
         return self.some([each_at(f, middles(f, side), self.poses) for f in body.patches], count)
 
     def show(self, name: str, body: Standard, measured: Measurement) -> HiddenPower:
-        """Print the figures of a layout; bumps of X, Y and Z are averaged by their squares."""
+        """Print the figures of a layout."""
         start = time.process_time()
         found = hidden_power(self.criterion.on(body), measured, self.places)
-        columns = []
-        for width, bump in ((40.0, False), (25.0, False), (40.0, True), (20.0, True)):
-            for along in self.brief.chain.linear_axes:
-                mine = [
-                    i
-                    for i, e in enumerate(found.effects)
-                    if (e.width, e.is_bump, e.direction) == (width, bump, along)
-                ]
-                signal = np.sqrt(np.mean(found.signal[mine] ** 2))
-                columns.append(f"{signal:4.1f};{min(found.power[mine].mean(), 0.999):.2f}"[:9])
+        columns = [
+            f"{signal:4.1f};{min(power, 0.999):.2f}"
+            for signal, power in zip(found.signal, found.power, strict=True)
+        ]
         seconds = time.process_time() - start
         print(f"{name:42s} {'  '.join(columns)}  {seconds:.0f} s", flush=True)
         return found

@@ -80,6 +80,7 @@ EXCUSED = {
     "artefact/reach/touchable.py": "reason that a refusal counts",
     "cad_out/details/tolerances.py": "general notes of the drawing and the STEP file",
     "artefact/certify/cmm_points_file.py": "remarks of a reader on single lines, like its refusals",
+    "artefact/hidden/scan_path.py": "comment in the head of a file that is written",
     "artefact/certify/dmis.py": "comments in a program that is written",
     "cad_out/verify/conformity.py": "list of what is out of its limit, for one refusal",
     "diagnosis/drift/log_file.py": "remarks of a reader on a log, like its refusals",

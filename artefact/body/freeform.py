@@ -79,6 +79,13 @@ class FreeformPatch:
         x, y = np.meshgrid(gu, gv, indexing="ij")
         return apply(self.T_artefact_patch, np.stack([x, y, self.heights], axis=-1))
 
+    def mean_plane(self) -> "FreeformPatch":
+        """The flat pad in its place: the plane with its mean slopes through its mean height."""
+        j = self.jet(self.grid())
+        gu, gv = greville(self.knots_u, self.degree[0]), greville(self.knots_v, self.degree[1])
+        heights = j.h.mean() + j.hu.mean() * gu[:, None] + j.hv.mean() * gv
+        return replace(self, heights=heights)
+
     def scaled(self, k: float) -> "FreeformPatch":
         """The patch of a body scaled by k about its origin."""
         T = self.T_artefact_patch.copy()

@@ -12,6 +12,7 @@ from typing import Literal
 import numpy as np
 
 from matstd.artefact.brief.task_file import Task
+from matstd.artefact.hidden import Scan
 from matstd.artefact.layout import Blank
 from matstd.artefact.reach import (
     Body,
@@ -45,6 +46,9 @@ class PlacementOptions:
         sites: Number of random faces to choose from.
         noise: Standard deviation of one touch, mm.
         criterion: By which faces, balls, poses and touches are chosen.
+        family: Features beside the balls: `faces`, `flat`, `wavy`, or `auto` for those that win.
+        goal: What decides between the families: `prove` or `identify`.
+        scan: How a control scans faces; None where it touches only.
     """
 
     name: str = "FFS"
@@ -55,6 +59,9 @@ class PlacementOptions:
     noise: float = 1.0 * UM
     criterion: CriterionOptions = field(default_factory=lambda: CriterionOptions(potential=0.3))
     choice: TouchOptions = field(default_factory=TouchOptions)
+    family: str = "faces"
+    goal: Literal["prove", "identify"] = "prove"
+    scan: Scan | None = None
 
 
 @dataclass(frozen=True)

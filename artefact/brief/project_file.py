@@ -22,6 +22,7 @@ from matstd.artefact.brief.material_table import MaterialTable
 from matstd.artefact.brief.standard_tables import (
     BlankTable,
     LimitsTable,
+    ScanTable,
     StandardTable,
 )
 from matstd.artefact.brief.task_file import Task, read_task
@@ -81,7 +82,7 @@ class MonteCarloTable(Table):
 
 
 class CalibrationTable(Table):
-    """`[calibration]`: standard uncertainties: place and rotations of a patch, centre of a ball."""
+    """`[calibration]`: standard uncertainties of place, rotations and form."""
 
     patch_um: float = Field(default=1.0, ge=0.0)
     """uncertainty of every coordinate of a freeform face"""
@@ -92,6 +93,9 @@ class CalibrationTable(Table):
     scale_ppm: float = Field(default=1.0, ge=0.0, le=1000.0)
     """uncertainty of all lengths, one error that all features share: scales and temperature of the
     CMM; it enters the proof on the twin and the fits of its runs"""
+    form_um: float = Field(default=0.3, ge=0.0)
+    """uncertainty of the surface of a freeform face at a point, alike over 6 mm; counts where
+    families of features are compared"""
 
     def calibration(self) -> Calibration:
         """In base units."""
@@ -100,6 +104,7 @@ class CalibrationTable(Table):
             patch_tilt=self.patch_urad * URAD,
             ball=self.ball_um * UM,
             scale=self.scale_ppm * 1e-6,
+            form=self.form_um * UM,
         )
 
 
@@ -157,6 +162,8 @@ class ProjectTable(Table):
     """position of the standard on the table, as in a [run](measurements.md#run). It is designed
     for the first set-up. In every further one the same positions are touched again, at those table
     poses of the first at which they are reachable"""
+    scan: ScanTable | None = None
+    """how the control scans a wavy face; without it faces are touched"""
     calibration: CalibrationTable = CalibrationTable()
     """expected uncertainties of the features of the standard"""
     simulation: SimulationTable = SimulationTable()
@@ -220,7 +227,11 @@ def _resolved(table: ProjectTable, path: Path, remarks: tuple[str, ...]) -> Brie
         ranges=ranges,
         errors=errors,
         setups=tuple(setups),
-        options=wanted.options(table.simulation.noise_um * UM, table.calibration.calibration()),
+        options=wanted.options(
+            table.simulation.noise_um * UM,
+            table.calibration.calibration(),
+            None if table.scan is None else table.scan.scan(),
+        ),
         task=_task(table, ranges, path),
         probes=probes,
         table=face,

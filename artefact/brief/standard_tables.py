@@ -6,10 +6,11 @@ from pydantic import Field
 
 from matstd.artefact.body import Base, Limits, Material
 from matstd.artefact.brief.brief import PlacementOptions
+from matstd.artefact.hidden import Scan
 from matstd.artefact.layout import Blank, Fittings
 from matstd.artefact.worth import Calibration, CriterionOptions, TouchOptions
 from matstd.twin.files import Pair, Table
-from matstd.twin.units import DEG
+from matstd.twin.units import DEG, UM
 
 BASE_THICKNESS = 30.0
 """Thickness of the plate of every standard, mm."""
@@ -74,8 +75,16 @@ class StandardTable(Table):
     down: Literal["+X", "-X", "+Y", "-Y", "+Z", "-Z"] = "-Z"
     """direction of weight in machine coordinates, `-Y` for a horizontal machine; the sag of the
     standard depends on it"""
+    family: Literal["auto", "faces", "flat", "wavy"] = "faces"
+    """features beside the balls: `faces` (small freeform faces), `flat` (flat pads in their
+    places), `wavy` (one large wavy face) or `auto`: the one that shows effects best that nobody
+    named, see [design](../design.md#which-features)"""
+    goal: Literal["prove", "identify"] = "prove"
+    """goal of `auto`: `prove`, or `identify` for the family that leaves least unknown"""
 
-    def options(self, noise: float, calibration: Calibration) -> PlacementOptions:
+    def options(
+        self, noise: float, calibration: Calibration, scan: Scan | None = None
+    ) -> PlacementOptions:
         """The options in base units; noise in mm."""
         return PlacementOptions(
             name=self.name,
@@ -91,6 +100,34 @@ class StandardTable(Table):
                 calibration=calibration,
             ),
             choice=TouchOptions(self.touches, self.poses, self.proof_touches),
+            family=self.family,
+            goal=self.goal,
+            scan=scan,
+        )
+
+
+class ScanTable(Table):
+    """`[scan]`: how the control scans a wavy face; without it faces are touched."""
+
+    lines_mm: float = Field(default=5.0, ge=0.5, le=50.0)
+    """distance of two lines"""
+    pitch_mm: float = Field(default=2.5, ge=0.05, le=20.0)
+    """distance of two recorded points on a line"""
+    noise_um: float = Field(default=2.0, gt=0.0)
+    """standard deviation of one point"""
+    memory_mm: float = Field(default=1.0, ge=0.0, le=50.0)
+    """distance over which the noise falls to 1/e; points within it are not independent"""
+    feed_mm_min: float = Field(default=1000.0, gt=0.0)
+    """feed of the scan"""
+
+    def scan(self) -> Scan:
+        """In base units."""
+        return Scan(
+            between=self.lines_mm,
+            pitch=self.pitch_mm,
+            u=self.noise_um * UM,
+            memory=self.memory_mm,
+            feed=self.feed_mm_min,
         )
 
 

@@ -23,7 +23,8 @@ class Feasibility:
 
     Attributes:
         poses: Candidate table poses, (K, R), rad, at which Z can rise above the standard.
-        room: Patches that stand side by side; None where too little is reached.
+        room: Patches that stand side by side; None where too little is reached, or where the
+            project asks for no small faces.
         refusal: Binding limit with the feasible changes that were found; None where nothing binds.
     """
 
@@ -56,6 +57,8 @@ def feasibility(brief: Brief) -> Feasibility:
         nearest = " or ".join(wishes) or f"no other {TRIED_CHANGES} alone"
         beyond = NotReachable(f"{brief.path}: {found.against}; {nearest} would do")
         return Feasibility(found.tried, found.poses, refusal=beyond)
+    if brief.options.family in ("auto", "wavy"):  # no small face is a condition
+        return Feasibility(found.tried, found.poses)
     room = room_of(brief, found.poses)
     try:
         check_room(room)

@@ -5,7 +5,9 @@ power of fields over the workspace and of short errors of one axis, in every dir
 """
 
 from matstd.artefact.hidden.scan_lines import Scan, scanned
+from matstd.artefact.hidden.scan_path import write_scan_path
 from matstd.artefact.hidden.smooth_effects import (
+    SIZE,
     HiddenEffect,
     HiddenPower,
     Measurement,
@@ -17,6 +19,7 @@ from matstd.artefact.hidden.smooth_effects import (
 )
 
 __all__ = [
+    "SIZE",
     "HiddenEffect",
     "HiddenPower",
     "Measurement",
@@ -27,4 +30,5 @@ __all__ = [
     "possible_places",
     "scanned",
     "touched",
+    "write_scan_path",
 ]

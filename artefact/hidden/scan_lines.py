@@ -21,7 +21,8 @@ from matstd.twin.frames import Array
 from matstd.twin.units import UM
 
 _STRETCH = 8.0  # mm of line in one mean: less than half of the narrowest effect that is asked for
-_EDGE = 3.0  # mm that lines stay away from the trimmed edge
+EDGE = 3.0
+"""Distance of lines from the trimmed edge, mm."""
 
 
 @dataclass(frozen=True)
@@ -53,12 +54,12 @@ class Scan:
 
     def points(self, face: FreeformPatch) -> int:
         """Number of recorded points on a face."""
-        a, b = (2.0 * (half - _EDGE) for half in face.half_size)
+        a, b = (2.0 * (half - EDGE) for half in face.half_size)
         return int((a // self.between + 1) * (b // self.pitch + 1))
 
     def minutes(self, face: FreeformPatch) -> float:
         """Duration of the lines and of the ways between them, min: slopes are followed."""
-        a, b = (2.0 * (half - _EDGE) for half in face.half_size)
+        a, b = (2.0 * (half - EDGE) for half in face.half_size)
         longer = float(np.mean(1.0 / np.cos(face.slope(face.grid(4.0)))))
         return ((a // self.between + 1) * b * longer + a) / self.feed
 
@@ -72,7 +73,7 @@ def scanned(
         poses: Table poses at which the face is scanned, (K, R), rad.
         clear: Whether angle and travel are asked for; False where they are known to do.
     """
-    a, b = (half - _EDGE for half in face.half_size)
+    a, b = (half - EDGE for half in face.half_size)
     # as many means a length across the lines as along them: neighbours of several lines are one too
     across = max(1, round(_STRETCH / scan.between))
     u = np.arange(-a, a + 1e-9, across * scan.between)

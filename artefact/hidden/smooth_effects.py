@@ -81,19 +81,14 @@ class HiddenEffect:
     """Effects of one kind that a machine may have.
 
     Attributes:
-        axes: Linear axes over whose readings it varies: one for a bump, all for a field.
-        direction: Linear axis along which it displaces the tool.
+        is_bump: Whether it is a short error of one axis, whichever; else a field over all of them.
         width: Full width at half of the height, mm.
+        direction: Linear axis along which it displaces the tool.
     """
 
-    axes: tuple[str, ...]
-    direction: str
+    is_bump: bool
     width: float
-
-    @property
-    def is_bump(self) -> bool:
-        """Whether it is a short error of one axis."""
-        return len(self.axes) == 1
+    direction: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,15 +110,18 @@ class HiddenPower:
     @property
     def worst(self) -> int:
         """The kind that shows least."""
-        return int(np.argmin(self.power))
+        return int(np.argmin(self.signal))
+
+    @property
+    def least_signal(self) -> float:
+        """Signal of the kind that shows least: what is compared, because powers end at one."""
+        return float(self.signal[self.worst])
 
 
 def hidden_effects(reach: ProbeReach) -> tuple[HiddenEffect, ...]:
-    """Every kind of effect of a machine: fields, then bumps of each of its linear axes."""
-    linear = tuple(reach.chain.linear_axes)
-    kinds = [(linear, width) for width in FIELD_WIDTHS]
-    kinds += [((name,), width) for name in linear for width in BUMP_WIDTHS]
-    return tuple(HiddenEffect(axes, along, width) for axes, width in kinds for along in linear)
+    """Every kind of effect of a machine: fields, then bumps, along each of its linear axes."""
+    kinds = [(False, width) for width in FIELD_WIDTHS] + [(True, width) for width in BUMP_WIDTHS]
+    return tuple(HiddenEffect(*kind, along) for kind in kinds for along in reach.chain.linear_axes)
 
 
 def possible_places(
@@ -145,30 +143,30 @@ def hidden_power(
     criterion: Criterion,
     measured: Measurement,
     places: Array,
-    effects: Sequence[HiddenEffect] = (),
+    with_power: bool = True,
 ) -> HiddenPower:
     """How surely some measurements show effects that no model has.
 
     Args:
         criterion: On the standard, whose calibration counts.
         places: Where bumps may be, readings of the linear axes, (K, 3), mm.
-        effects: Of which the power is wanted; empty for all. The test knows nothing of them.
+        with_power: False for the signals alone, in a fifth of the time.
     """
-    effects = tuple(effects) or hidden_effects(criterion.reach)
+    effects = hidden_effects(criterion.reach)
     at = _At.of(criterion.reach, measured)
-    test, fields = _field_test(criterion, at), {}
+    test, fields = _field_test(criterion, at, with_power), dict[float, Array]()
     signals, powers = [], []
     for effect in effects:
         if effect.is_bump:
             f = at.decorrelated(at.bumps(effect, places))
             signals.append(np.sqrt(np.mean(test.signal(f) ** 2)))
-            powers.append(float(test.power(f).mean()))
+            powers.append(float(test.power(f).mean()) if with_power else np.nan)
             continue
         if effect.width not in fields:
             fields[effect.width] = at.field(effect.width)
         F = at.decorrelated(at.along(effect) * fields[effect.width])
         signals.append(np.sqrt(np.sum(test.signal(F) ** 2)))
-        powers.append(test.power_of_field(F))
+        powers.append(test.power_of_field(F) if with_power else np.nan)
     return HiddenPower(effects, np.array(signals), np.array(powers))
 
 
@@ -203,14 +201,17 @@ class _At:
         return self.lever[:, [self.axes.index(effect.direction)]]
 
     def bumps(self, effect: HiddenEffect, places: Array) -> Array:
-        """Deviations of a bump at every place, `SIZE` rms over the range of the places, (N, K)."""
-        own = self.axes.index(effect.axes[0])
-        q, centre = self.q[:, own], places[:, own]
-        span = max(float(np.ptp(centre)), effect.width)
-        # the square of the bump has the integral A^2 w sqrt(pi / (8 ln 2))
-        peak = SIZE * np.sqrt(span / (effect.width * np.sqrt(np.pi / (2.0 * _BUMP))))
-        bump = peak * np.exp(-_BUMP * (q[:, None] - centre) ** 2 / effect.width**2)
-        return np.asarray(self.along(effect) * bump)
+        """Deviations of a bump of each axis at every place, (N, 3 K), mm.
+
+        `SIZE` is its root mean square over the range of the places.
+        """
+        out = []
+        for q, centre in zip(self.q.T, places.T, strict=True):
+            span = max(float(np.ptp(centre)), effect.width)
+            # the square of the bump has the integral A^2 w sqrt(pi / (8 ln 2))
+            peak = SIZE * np.sqrt(span / (effect.width * np.sqrt(np.pi / (2.0 * _BUMP))))
+            out.append(peak * np.exp(-_BUMP * (q[:, None] - centre) ** 2 / effect.width**2))
+        return np.asarray(self.along(effect) * np.concatenate(out, axis=1))
 
     def field(self, width: float) -> Array:
         """Factor of the covariance of a field along one direction, (N, M), mm."""
@@ -235,7 +236,7 @@ class _At:
         return low_rank(SIZE**2 * np.sum(self.lever**2, axis=1), column, _LEFT_OUT)[0]
 
 
-def _field_test(criterion: Criterion, at: _At) -> FieldTest:
+def _field_test(criterion: Criterion, at: _At, with_power: bool) -> FieldTest:
     """The test for any effect beside all that the model and the calibration explain."""
     touches = at.measured.touches
     explained = [criterion.noise * criterion.whitened(touches)]
@@ -243,7 +244,8 @@ def _field_test(criterion: Criterion, at: _At) -> FieldTest:
         explained.append(criterion.calibration.columns(criterion.body, touches))
         explained.append(form_columns(criterion.body, touches, criterion.calibration.form))
     B = at.decorrelated(np.concatenate(explained, axis=1))
-    return field_test(B, at.decorrelated(at.any_field()), FALSE_ALARM)
+    F = at.any_field() if with_power else SIZE * at.lever
+    return field_test(B, at.decorrelated(F), FALSE_ALARM)
 
 
 def form_columns(body: Standard, touches: Requests, u: float) -> Array:

@@ -199,8 +199,10 @@ def _widest_radius(ball: DatumSphere) -> float:
     return max(ball.radius, ball.foot_radius)
 
 
-def holes_on(blank: Blank, balls: Sequence[DatumSphere] = ()) -> tuple[MountingHole, ...]:
-    """Three screw holes as far apart as base, table, slots and balls allow.
+def holes_on(
+    blank: Blank, balls: Sequence[DatumSphere] = (), faces: Sequence[FreeformPatch] = ()
+) -> tuple[MountingHole, ...]:
+    """Three screw holes as far apart as base, table, slots, balls and faces allow.
 
     Two are on one slot, the third on another; the slots run along x, one through the middle. The
     standard rests on the pads round its holes, and three pads never rock.
@@ -219,6 +221,8 @@ def holes_on(blank: Blank, balls: Sequence[DatumSphere] = ()) -> tuple[MountingH
     for ball in balls:
         apart = np.hypot(*(places - ball.centre[:2]).T)
         good &= apart >= _widest_radius(ball) + fit.bore_radius + _HOLE_GAP
+    for face in faces:
+        good &= _distance_to_pillar([face], places)[:, 0] >= fit.bore_radius + _HOLE_GAP
     mirrored = good.reshape(len(xs), -1)[::-1].reshape(-1)
     pair, third = places[good & mirrored & (places[:, 0] > 0.0)], places[good]
     legs = [np.linalg.norm(pair[:, None] * [s, 1.0] - third, axis=-1) for s in (-1.0, 1.0)]

@@ -4,7 +4,17 @@ In: a `Brief`. Out: a `Placement`: the standard checked against every limit, its
 criterion, its rivals, and a certificate.
 """
 
+from matstd.artefact.place.family import CLEAR_LEAD, Family, FamilyFigures
 from matstd.artefact.place.placement import Placement, design_standard
 from matstd.artefact.place.proving import proving_touches
+from matstd.artefact.place.wavy_choice import scan_poses
 
-__all__ = ["Placement", "design_standard", "proving_touches"]
+__all__ = [
+    "CLEAR_LEAD",
+    "Family",
+    "FamilyFigures",
+    "Placement",
+    "design_standard",
+    "proving_touches",
+    "scan_poses",
+]

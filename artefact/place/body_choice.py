@@ -162,7 +162,7 @@ class BodyChoice:
                     fitting=len(chosen),
                 )
             faces = sorted((there.faces[k] for k in chosen), key=_azimuth_of_face)
-            made = self._assembled(name, serial, faces, standing, holes)
+            made = _assembled(self.blank, name, serial, faces, standing, holes)
             broken = [c for c in constraints(made, limits) if c.slack < 0.0]
             blamed = [c.features for c in broken]
             blamed = blamed or [
@@ -258,21 +258,8 @@ class BodyChoice:
         The faces were placed to hide few touches on the balls; now the balls move to where fewest
         of theirs are hidden.
         """
-        faces = list(made.patches)
-        free = [bool(faces_beside(faces, [ball], self.blank).all()) for ball in places.balls]
-        clear = np.array(free)[places.group]
-        clear &= ~in_the_way(self.criterion.reach, self.blank, faces, places.touches).any(axis=0)
-        if not clear.any():
-            return None
-        balls = places.best(len(made.spheres), touches, clear)
-        try:
-            holes = holes_on(self.blank, balls)
-        except NotBuildable:
-            return None
-        again = self._assembled(made.name, made.serial, faces, balls, holes)
-        is_whole = len(balls) == len(made.spheres)
-        broken = any(c.slack < 0.0 for c in constraints(again, self.blank.limits))
-        return again if is_whole and not broken else None
+        again = balls_beside(made.patches, len(made.spheres), places, touches)
+        return None if again is None else replace(again, name=made.name, serial=made.serial)
 
     def _most_informative(
         self, faces: list[FreeformPatch], fits: Which, poses: Array, count: int, take: int
@@ -292,27 +279,57 @@ class BodyChoice:
                 chosen = best_groups(objective, W, group, count, take, None, fits, begin)
         return chosen
 
-    def _assembled(
-        self,
-        name: str,
-        serial: str,
-        faces: list[FreeformPatch],
-        balls: list[DatumSphere],
-        holes: tuple[MountingHole, ...],
-    ) -> Standard:
-        """A standard of faces and balls, numbered by their azimuth."""
-        balls = sorted(balls, key=lambda b: _azimuth(b.centre))
-        return Standard(
-            name=name,
-            serial=serial,
-            material=self.blank.material,
-            base=self.blank.base,
-            core=None,
-            patches=tuple(replace(p, name=f"FF{i}") for i, p in enumerate(faces, 1)),
-            spheres=tuple(replace(b, name=f"SPH{i}") for i, b in enumerate(balls, 1)),
-            holes=holes,
-            blank_height=self.blank.height,
-        )
+
+def balls_beside(
+    faces: Sequence[FreeformPatch], count: int, places: BallPlaces, touches: int
+) -> Standard | None:
+    """The most informative balls beside some faces; None where a limit is violated or few fit.
+
+    Only balls count that leave room beside the faces, and touches that no face obstructs.
+
+    Args:
+        touches: Number that will be made on the balls.
+    """
+    blank, pillars = places.blank, list(faces)
+    clear = np.ones(len(places.group), dtype=bool)
+    if pillars:
+        free = [bool(faces_beside(pillars, [ball], blank).all()) for ball in places.balls]
+        clear = np.array(free)[places.group]
+        reach = places.criterion.reach
+        clear[clear] = ~in_the_way(reach, blank, pillars, places.touches[clear]).any(axis=0)
+    if not clear.any():
+        return None
+    balls = places.best(count, touches, clear)
+    try:
+        holes = holes_on(blank, balls, pillars if len(pillars) == 1 else ())
+    except NotBuildable:
+        return None
+    made = _assembled(blank, "", "", pillars, balls, holes)
+    broken = any(c.slack < 0.0 for c in constraints(made, blank.limits))
+    return None if len(balls) < count or broken else made
+
+
+def _assembled(
+    blank: Blank,
+    name: str,
+    serial: str,
+    faces: list[FreeformPatch],
+    balls: list[DatumSphere],
+    holes: tuple[MountingHole, ...],
+) -> Standard:
+    """A standard of faces and balls, numbered by their azimuth."""
+    balls = sorted(balls, key=lambda b: _azimuth(b.centre))
+    return Standard(
+        name=name,
+        serial=serial,
+        material=blank.material,
+        base=blank.base,
+        core=None,
+        patches=tuple(replace(p, name=f"FF{i}") for i, p in enumerate(faces, 1)),
+        spheres=tuple(replace(b, name=f"SPH{i}") for i, b in enumerate(balls, 1)),
+        holes=holes,
+        blank_height=blank.height,
+    )
 
 
 def body_choice(

@@ -28,17 +28,13 @@ from matstd.artefact.compare import (
     task_normals,
 )
 from matstd.artefact.feasibility import check_blank
-from matstd.artefact.place.body_choice import body_choice
-from matstd.artefact.place.identifying import (
-    Identifying,
-    ball_bases,
-    identifying_choice,
-    with_moved_balls,
-    with_proof,
-)
-from matstd.artefact.place.proving import informative_touches, proving_touches
+from matstd.artefact.place.body_choice import BodyChoice, body_choice
+from matstd.artefact.place.families import Built, built_family, site_of
+from matstd.artefact.place.family import Family, FamilyFigures
+from matstd.artefact.place.proving import informative_touches
 from matstd.artefact.reach import Requests, joined
 from matstd.artefact.worth import (
+    BallPlaces,
     Criterion,
     Visibility,
     ball_places,
@@ -50,6 +46,7 @@ from matstd.artefact.worth import (
 )
 from matstd.information.selection import Certificate
 from matstd.twin.compute import Progress, silent
+from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array
 
 _CRITERION, _PLACES, _RIVALS, _CHOSEN = 1, 7, 72, 99
@@ -79,6 +76,8 @@ class Placement:
         power_of_balls: Of as many further touches on the balls, which are no proof: errors of a
             ball went into the model.
         power_exact: As `power`, with exactly known positions of the faces.
+        family: Features that the standard has beside its balls.
+        families: Figures of every family that was tried.
         unreachable: Artefacts that are not compared: too few touches are possible on them.
     """
 
@@ -93,6 +92,8 @@ class Placement:
     power_in_volume: Power
     power_of_balls: Power
     power_exact: Power
+    family: Family = Family.FACES
+    families: tuple[FamilyFigures, ...] = ()
     unreachable: tuple[str, ...] = ()
 
     @property
@@ -143,19 +144,17 @@ def design_standard(
     progress("placement", _CRITERION, 100)
     all_poses = poses_within(reach.chain, brief.rotary, choice.poses) if poses is None else poses
     places = ball_places(criterion.plain, blank, all_poses, rng)
-    bodies = body_choice(places, all_poses, options.patches, options.sites, rng)
+    bodies = _small_faces(brief, places, all_poses, rng)
     progress("placement", _PLACES, 100)
     library = _visible_effects(criterion, max(choice.touches, _MIN_FREE_TOUCHES), rng)
     rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)
     progress("placement", _RIVALS, 100)
-    bases = ball_bases(criterion.plain, rivals, places, all_poses, options)
-    first = identifying_choice(criterion, bodies, bases, options)
-    found = with_moved_balls(criterion, bodies, places, first, bases[0].value, all_poses, choice)
-    found, on_faces = with_proof([found, first], reach, choice.proof)
-    on_body, here = criterion.on(found.standard), criterion.on(replace(found.standard, patches=()))
-    proof, powers = _proof_and_powers(on_body, found, on_faces, choice.proof, library, rng)
-    requests, tried = found.tried[found.chosen], found.tried
-    standard = with_error_shares(criterion, found.standard, proof)
+    site = site_of(brief, criterion, places, bodies, rivals, all_poses)
+    built, families = built_family(site)
+    requests, proof, tried = built.requests, built.proof, built.found.tried
+    here = criterion.on(replace(built.standard, patches=()))
+    powers = _powers(criterion.on(built.standard), built, choice.proof, library, rng)
+    standard = with_error_shares(criterion, built.standard, proof)
     progress("placement", _CHOSEN, 100)
     lots = random_lots(tried, len(requests), rng)
     own = evaluate_rival(
@@ -169,36 +168,44 @@ def design_standard(
         criterion=criterion,
         prior_rms=prior_rms(criterion),
         rivals=(own, *rivals),
-        certificate=found.nearness,
+        certificate=built.found.nearness,
         power=powers[0],
         power_in_volume=powers[1],
         power_of_balls=powers[2],
         power_exact=powers[3],
+        family=built.family,
+        families=families,
         unreachable=unreachable,
     )
 
 
-def _proof_and_powers(
-    criterion: Criterion,
-    found: Identifying,
-    on_faces: Requests,
-    count: int,
-    library: Visibility,
-    rng: np.random.Generator,
-) -> tuple[Requests, tuple[Power, Power, Power, Power]]:
-    """Touches that prove, and their powers.
+def _small_faces(
+    brief: Brief, places: BallPlaces, all_poses: Array, rng: np.random.Generator
+) -> BodyChoice | None:
+    """Candidate small faces; None where the project wants none, or where none of `auto` fit."""
+    options = brief.options
+    if options.family == Family.WAVY:
+        return None
+    try:
+        return body_choice(places, all_poses, options.patches, options.sites, rng)
+    except NotBuildable:
+        if options.family != "auto":
+            raise
+        return None
 
-    Powers over the task, in the volume, of the balls, and over the task with exactly known faces.
-    """
-    standard, requests = found.standard, found.tried[found.chosen]
-    proof = proving_touches(criterion, standard, on_faces, requests, count)
-    others = found.tried[~found.chosen]
-    others = others if len(others) >= count else found.tried  # too few others: repeat the same ones
+
+def _powers(
+    criterion: Criterion, built: Built, count: int, library: Visibility, rng: np.random.Generator
+) -> tuple[Power, Power, Power, Power]:
+    """Powers of the proof: over the task, in the volume, of the balls, with exactly known faces."""
+    proof, requests, tried = built.proof, built.requests, built.found.tried
+    others = tried[~built.found.chosen]
+    others = others if len(others) >= count else tried  # too few others: repeat the same ones
     more = informative_touches(criterion, others, requests, min(count, len(others)))
     effects, normals = library.effects, task_normals(criterion, proof, rng)
     known = replace(criterion.calibration, patch=0.0, patch_tilt=0.0)
     exact = replace(criterion, calibration=known)
-    return proof, (
+    return (
         proof_power(criterion, requests, proof, effects, rng, normals),
         proof_power(criterion, requests, proof, effects, rng),
         proof_power(criterion, requests, more, effects, rng),

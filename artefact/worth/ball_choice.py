@@ -5,13 +5,14 @@ criterion from the same places. Every touch that machine and probe can make on t
 poses is a row of information.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from matstd.artefact.body import DatumSphere
-from matstd.artefact.layout import Blank, balls_fit, balls_on_posts
+from matstd.artefact.body import DatumSphere, FreeformPatch
+from matstd.artefact.layout import Blank, balls_fit, balls_on_posts, faces_beside
 from matstd.artefact.reach import Requests, joined, spread_poses
 from matstd.artefact.worth.touch_choice import each_at, sphere_grid
 from matstd.artefact.worth.touch_criterion import Criterion
@@ -21,6 +22,7 @@ from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
 _PLACES = 500  # that are tried; a third of them is barred beside freeform faces
+_MORE = 12  # times as many are drawn where faces bar most of the base
 _DIRECTIONS = 9  # touches tried on each, at each of the poses
 _POSES = 20  # table poses, spread over the user's
 
@@ -61,18 +63,26 @@ class BallPlaces:
 
 
 def ball_places(
-    criterion: Criterion, blank: Blank, poses: Array, rng: np.random.Generator
+    criterion: Criterion,
+    blank: Blank,
+    poses: Array,
+    rng: np.random.Generator,
+    beside: Sequence[FreeformPatch] = (),
 ) -> BallPlaces:
     """Balls all over a blank.
 
     Args:
         criterion: What they are chosen for, without potential terms.
         poses: Table poses to choose from, (K, R), rad.
+        beside: Faces beside which they leave room for cutter and probe.
 
     Raises:
         NotReachable: The machine reaches no touch on any of them.
     """
-    balls = balls_on_posts(blank, _PLACES, rng)
+    balls = balls_on_posts(blank, _PLACES * (_MORE if beside else 1), rng)
+    if beside:
+        free = [ball for ball in balls if faces_beside(beside, [ball], blank).all()]
+        balls = [replace(ball, name=f"{i}") for i, ball in enumerate(free[:_PLACES])]
     some, grid = spread_poses(poses, _POSES), sphere_grid(_DIRECTIONS)
     wanted = joined([each_at(ball, grid, some) for ball in balls])
     wanted = wanted[criterion.reach.is_reachable(wanted)]

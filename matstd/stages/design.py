@@ -17,7 +17,8 @@ from matstd.artefact.brief import Brief
 from matstd.artefact.certify import like_task
 from matstd.artefact.compare import WorstRegions, identifiability_report, worst_regions
 from matstd.artefact.feasibility import check_beside, check_seat, feasibility
-from matstd.artefact.place import Placement, design_standard
+from matstd.artefact.hidden import write_scan_path
+from matstd.artefact.place import Family, Placement, design_standard, scan_poses
 from matstd.cad_out.details import details_of
 from matstd.cad_out.making import Stiffness, making_of, stiffness_of, with_sag, write_making
 from matstd.cad_out.meshes import read_stl
@@ -86,6 +87,9 @@ def design(brief: Brief, folder: Path, progress: Progress, workers: Workers = No
     _check_first_mode(brief, stiffness)
     plans = _plans(brief, placement)
     _write_standard(folder, placement.standard)
+    if placement.family is Family.WAVY and brief.options.scan is not None:
+        face, at = placement.standard.patches[0], scan_poses(placement.touches)
+        write_scan_path(folder / "scan_path.csv", face, brief.options.scan, at, brief.reach)
     with ThreadPoolExecutor(1) as beside:  # the kernel works in processes of its own
         cad = beside.submit(_export, brief, placement.standard, folder, proving.q)
         progress("identifiability", 0, 1)

@@ -14,6 +14,7 @@ from matstd.artefact.worth import CriterionOptions
 from matstd.diagnosis.accuracy import Proof
 from matstd.diagnosis.fit import Fit
 from matstd.report.numbers import digits, percent, um
+from matstd.report.words.family_words import family_line
 from matstd.twin.numbers import rms
 from matstd.twin.units import DEG
 from matstd.twin.words import listed
@@ -119,14 +120,15 @@ def _extrapolated(placement: Placement, workspace: Mapping[str, tuple[float, flo
 
 
 def design_lines(placement: Placement, workspace: Mapping[str, tuple[float, float]]) -> list[str]:
-    """The verdict, the error in the probed volume, the effect of the faces on identification."""
+    """What is built, the verdict, the error in the volume, what the faces cost identification."""
     own = placement.own
     others = [r for r in placement.rivals if r is not own and r.body is not None]
     line = f"in the probed volume the tool point is known to {um(own.rms)} rms"
     if others:
         rival = min(others, key=lambda r: r.rms)
         line += f"; the best other artefact there, {rival.name}, would leave {um(rival.rms)}"
-    lines = [verdict_of_design(placement, workspace), line, identification_sentence(placement)]
+    verdict = verdict_of_design(placement, workspace)
+    lines = [family_line(placement), verdict, line, identification_sentence(placement)]
     return [words for words in lines if words]
 
 

@@ -295,3 +295,27 @@ def test_groups_of_errors_reach_the_placement(reach, workspace, chain, monkeypat
         columns = [[n in p for p in parameters].index(True) for n in names]
         spread.append(np.ptp(scale[:, columns], axis=1).max())
     assert spread[0] < 1e-12 < 0.1 < spread[1]
+
+
+@pytest.mark.parametrize("family", ["wavy", "flat", "auto"])
+def test_other_families_meet_every_limit_and_identify_as_balls_do(reach, workspace, family):
+    options = replace(OPTIONS, family=family, choice=TouchOptions(touches=120, poses=8, proof=40))
+    made = design_standard(brief_of(reach, workspace, options), np.random.default_rng(3))
+    check(made.standard, Limits())
+    assert len(made.standard.holes) == 3
+    assert len(made.proof) == 40
+    balls = min(r.rms_user for r in made.rivals if r.body is not None and not r.body.patches)
+    if family == "wavy":
+        assert made.family == "wavy"
+        assert len(made.standard.patches) == 1
+        assert min(made.standard.patches[0].half_size) > 50.0
+        assert made.own.rms_user <= 1.05 * balls  # chosen by the criterion, within 2 % of its root
+    if family == "auto":
+        built = {one.family for one in made.families if not one.refused}
+        assert {"balls", "faces", "flat"} <= built
+        own = next(one for one in made.families if one.family == made.family)
+        fit = [f for f in made.families if f.family != "balls" and f.rms_user <= 1.02 * balls]
+        assert own.signal == max((f.signal for f in fit), default=own.signal)
+    own = next(one for one in made.families if one.family == made.family)
+    assert own.rms_user == pytest.approx(made.own.rms_user, rel=1e-9)
+    assert own.touches == 160

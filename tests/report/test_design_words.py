@@ -41,6 +41,7 @@ def placement(own: float, spheres: float, block: float = 9.0, scatter: float = 0
         power_of_balls=power,
         power_exact=power,
         standard=body,
+        families=(),
     )
 
 

@@ -66,8 +66,8 @@ def run(args: argparse.Namespace) -> int:
             pdf=bool(args.pdf),
         )
     say_each(made.remarks)
-    verdict, *others = design_lines(made.placement, brief.ranges)
-    say(verdict, style="bold")
+    built, *others = design_lines(made.placement, brief.ranges)
+    say(built, style="bold")
     say_each(others)
     # a pose is visited twice
     dropped = dict.fromkeys(str(r) for one in made.stations for r in one.plan.refused)

@@ -1,0 +1,213 @@
+"""Designs the families that may be built, and chooses the one that wins."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from matstd.artefact.body import Standard, check
+from matstd.artefact.brief import Brief, PlacementOptions
+from matstd.artefact.compare import Rival
+from matstd.artefact.hidden import hidden_power, possible_places
+from matstd.artefact.layout import with_spheres
+from matstd.artefact.place.body_choice import BodyChoice
+from matstd.artefact.place.family import Family, FamilyFigures, chosen_family, flat_pads
+from matstd.artefact.place.identifying import (
+    Base,
+    Identifying,
+    ball_bases,
+    identifying_choice,
+    with_moved_balls,
+    with_proof,
+)
+from matstd.artefact.place.proving import informative_touches, proving_touches, touches_on_faces
+from matstd.artefact.place.wavy_choice import measurement_on, wavy_choice
+from matstd.artefact.reach import Requests, joined
+from matstd.artefact.worth import BallPlaces, Criterion, touches_to_choose_from
+from matstd.information.criteria import Posterior
+from matstd.twin.errors import NotBuildable, NotReachable
+from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
+
+
+@dataclass(frozen=True, eq=False)
+class Built:
+    """One family, designed: its standard with the touches that identify, and those that prove."""
+
+    family: Family
+    found: Identifying
+    proof: Requests
+
+    @property
+    def standard(self) -> Standard:
+        """Its body."""
+        return self.found.standard
+
+    @property
+    def requests(self) -> Requests:
+        """The touches that identify."""
+        return self.found.tried[self.found.chosen]
+
+
+@dataclass(frozen=True, eq=False)
+class Site:
+    """What all families of one design share: candidates, criterion, rivals.
+
+    Attributes:
+        bodies: Candidate small faces; None where none is wanted or none fits.
+        all_poses: Candidate table poses, (K, R), rad.
+        effects_at: Where bumps may be, readings of the linear axes, (K, 3), mm.
+    """
+
+    brief: Brief
+    criterion: Criterion
+    places: BallPlaces
+    bodies: BodyChoice | None
+    rivals: tuple[Rival, ...]
+    bases: list[Base]
+    all_poses: Array
+    effects_at: Array
+
+    @property
+    def options(self) -> PlacementOptions:
+        """Wishes of the project."""
+        return self.brief.options
+
+    @property
+    def best_balls(self) -> float:
+        """Error over the workspace that the best balls alone leave, mm; infinite without any."""
+        alone = [r.rms_user for r in self.rivals if r.body is not None and not r.body.patches]
+        return min(alone, default=np.inf)
+
+
+def site_of(
+    brief: Brief,
+    criterion: Criterion,
+    places: BallPlaces,
+    bodies: BodyChoice | None,
+    rivals: tuple[Rival, ...],
+    all_poses: Array,
+) -> Site:
+    """What the families share."""
+    bases = ball_bases(criterion.plain, rivals, places, all_poses, brief.options)
+    at = possible_places(brief.reach, criterion.volume, all_poses, np.random.default_rng(0))
+    return Site(
+        brief=brief,
+        criterion=criterion,
+        places=places,
+        bodies=bodies,
+        rivals=rivals,
+        bases=bases,
+        all_poses=all_poses,
+        effects_at=at,
+    )
+
+
+def built_family(site: Site) -> tuple[Built, tuple[FamilyFigures, ...]]:
+    """The family that the project names, or the one that wins; and the figures of all tried.
+
+    Raises:
+        NotBuildable: The named family cannot be built, or none can.
+        NotReachable: The machine reaches too few touches.
+    """
+    wanted = site.options.family
+    if wanted != "auto":
+        one = _built(site, Family(wanted))
+        return one, (_figures(site, one),)
+    made, figures, refusals = dict[Family, Built](), [_of_balls(site)], []
+    for family in (Family.FACES, Family.FLAT, Family.WAVY):
+        try:
+            made[family] = _built(site, family, made.get(Family.FACES))
+        except (NotBuildable, NotReachable) as error:
+            refusals.append(error)
+            figures.append(FamilyFigures(family, refused=str(error)))
+            continue
+        figures.append(_figures(site, made[family]))
+    if not made:
+        raise refusals[0]
+    others = tuple(one for one in figures if one.family in made)
+    return made[chosen_family(others, site.options.goal, site.best_balls)], tuple(figures)
+
+
+def _of_balls(site: Site) -> FamilyFigures:
+    """What the best balls alone would give, with the touches of the proof on them too."""
+    base, criterion, choice = site.bases[0], site.criterion, site.options.choice
+    body = with_spheres(site.places.blank, [ball.centre for ball in base.balls])
+    here, poses = criterion.on(body), np.unique(base.touches.rotary, axis=0)
+    tried = touches_to_choose_from(criterion.reach, body, body.spheres, poses, choice.touches)
+    count = min(choice.proof, len(tried))
+    more = informative_touches(here, tried, base.touches, count)
+    return _figures_of(site, Family.BALLS, body, base.touches, more)
+
+
+def _built(site: Site, family: Family, like: Built | None = None) -> Built:
+    """One family designed; flat pads stand where `like` has faces."""
+    count, reach = site.options.choice.proof, site.criterion.reach
+    if family is Family.FACES:
+        found, on_faces = _with_faces(site)
+    else:
+        found = _flat(site, like) if family is Family.FLAT else _wavy(site)
+        on_faces = touches_on_faces(reach, found.standard, found.poses, count)
+    here = site.criterion.on(found.standard)
+    chosen = found.tried[found.chosen]
+    return Built(family, found, proving_touches(here, found.standard, on_faces, chosen, count))
+
+
+def _wavy(site: Site) -> Identifying:
+    """Balls round one wavy face."""
+    return wavy_choice(
+        site.criterion,
+        site.places,
+        site.bases[0],
+        site.all_poses,
+        site.options,
+        site.effects_at,
+        np.random.default_rng(site.brief.seed),
+    )
+
+
+def _flat(site: Site, like: Built | None) -> Identifying:
+    """Flat pads in the places of small faces."""
+    found = _with_faces(site)[0] if like is None else like.found
+    found = replace(found, standard=flat_pads(found.standard))
+    check(found.standard, site.brief.blank.limits)
+    return found
+
+
+def _with_faces(site: Site) -> tuple[Identifying, Requests]:
+    """Balls with small faces between them, and the possible touches on the faces."""
+    options, choice, bodies = site.options, site.options.choice, site.bodies
+    if bodies is None:
+        raise NotBuildable(f"{options.patches} small faces do not fit")
+    first = identifying_choice(site.criterion, bodies, site.bases, options)
+    found = with_moved_balls(
+        site.criterion, bodies, site.places, first, site.bases[0].value, site.all_poses, choice
+    )
+    return with_proof([found, first], site.criterion.reach, choice.proof)
+
+
+def _figures(site: Site, one: Built) -> FamilyFigures:
+    """What a designed family gives."""
+    return _figures_of(site, one.family, one.standard, one.requests, one.proof)
+
+
+def _figures_of(
+    site: Site, family: Family, body: Standard, requests: Requests, proof: Requests
+) -> FamilyFigures:
+    """Figures of a body with touches that identify and touches that prove."""
+    criterion = site.criterion
+    here = criterion.on(replace(body, patches=()))
+    after = Posterior(here.known_rows(requests), here.prior_sd, here.model.names)
+    scan = site.options.scan if family is Family.WAVY else None
+    touches = joined([requests, proof])
+    measured = measurement_on(criterion, body, touches, scan)
+    power = hidden_power(criterion.plain.on(body), measured, site.effects_at)
+    least = power.effects[power.worst]
+    return FamilyFigures(
+        family=family,
+        rms_user=rms(after.predicted_sd(here.tip_user)),
+        signal=power.least_signal,
+        power=float(power.power[power.worst]),
+        least=(least.is_bump, least.width, least.direction),
+        touches=len(touches),
+        scan_points=0 if scan is None else sum(scan.points(face) for face in body.patches),
+    )

@@ -1,0 +1,200 @@
+"""One large wavy face with balls round it: its size and its waves, by what they show.
+
+Every wave that cutter, probe and blank allow is judged by the signal of the effect that nobody
+named and that it shows least (`matstd.artefact.hidden`). The largest face comes first that leaves
+the balls enough: they identify, and may cost no more than 2 % against balls alone.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from matstd.artefact.body import FreeformPatch, Standard
+from matstd.artefact.brief import PlacementOptions
+from matstd.artefact.hidden import Measurement, Scan, hidden_power, measured_together, scanned
+from matstd.artefact.hidden import touched as single
+from matstd.artefact.layout import Blank, Wave, wavy_face
+from matstd.artefact.place.body_choice import balls_beside
+from matstd.artefact.place.family import MOST_COST
+from matstd.artefact.place.identifying import Base, Identifying
+from matstd.artefact.reach import Requests, spread_poses
+from matstd.artefact.worth import (
+    BallPlaces,
+    Criterion,
+    ball_places,
+    chosen_poses,
+    chosen_touches_on,
+    each_at,
+    face_grid,
+    touches_to_choose_from,
+)
+from matstd.twin.errors import NotBuildable, NotReachable
+from matstd.twin.frames import Array
+
+_RIMS = (42.0, 46.0, 50.0, 55.0, 60.0, 70.0)
+"""Mm between the sides of face and base, the largest face first: a post with its fillet and room
+for a cutter needs 42 mm."""
+
+_LEAST_HALF = 40.0  # mm, of a face that is worth its block
+_WAVELENGTHS, _FLATNESS = (45.0, 60.0, 80.0), (0.0, 0.9)
+_SOME = 3  # every third identifying touch stands for all while waves are compared
+_POSES = 6  # table poses of the touches on the face while waves are compared
+_SCAN_POSES = 3  # table poses at which a face is scanned, where the machine has several
+
+
+def wavy_choice(
+    criterion: Criterion,
+    places: BallPlaces,
+    base: Base,
+    all_poses: Array,
+    options: PlacementOptions,
+    effects_at: Array,
+    rng: np.random.Generator,
+) -> Identifying:
+    """The wavy face that shows most, and the balls and touches that identify beside it.
+
+    Args:
+        base: The best balls alone.
+        effects_at: Where bumps may be, readings of the linear axes, (K, 3), mm.
+
+    Raises:
+        NotBuildable: No wavy face fits beside as many balls, or all cost too much.
+    """
+    wave = _best_wave(criterion, places.blank, base, all_poses, options, effects_at)
+    refused = "no balls fit beside it"
+    for size in _sizes(places.blank):
+        face = wavy_face("FF1", places.blank, replace(wave, half_size=size))
+        ring = ball_places(criterion.plain, places.blank, all_poses, rng, [face])
+        made = balls_beside([face], options.balls, ring, options.choice.touches)
+        if made is None:
+            continue
+        made = replace(made, name=options.name, serial=options.serial)
+        try:
+            found = _identifying(criterion, made, all_poses, options)
+        except NotReachable as error:
+            refused = str(error)
+            continue
+        cost = np.sqrt(found.nearness.value / base.value) if base.value else 1.0
+        if cost <= MOST_COST:
+            return found
+        refused = f"it costs {100.0 * (cost - 1.0):.1f} % of the identification"
+    raise NotBuildable(f"no wavy face beside {len(base.balls)} balls: {refused}")
+
+
+def measurement_on(
+    criterion: Criterion,
+    standard: Standard,
+    touches: Requests,
+    scan: Scan | None,
+) -> Measurement:
+    """Touches, and the scan of the face where the control can."""
+    lots = [single(touches, criterion.noise)]
+    if scan is not None:
+        some = scan_poses(touches)
+        lots += [scanned(face, scan, some, criterion.reach) for face in standard.patches]
+    return measured_together([lot for lot in lots if len(lot)])
+
+
+def scan_poses(touches: Requests) -> Array:
+    """Table poses at which a face is scanned: a few of those of the touches, (K, R), rad."""
+    return spread_poses(np.unique(touches.rotary, axis=0), _SCAN_POSES)
+
+
+def _sizes(blank: Blank) -> Iterator[tuple[float, float]]:
+    """Half sides of faces on a blank, the largest first."""
+    for rim in _RIMS:
+        a, b = (half - rim for half in blank.base.half_size)
+        if min(a, b) >= _LEAST_HALF:
+            yield round(a, 1), round(b, 1)
+
+
+def _best_wave(
+    criterion: Criterion,
+    blank: Blank,
+    base: Base,
+    all_poses: Array,
+    options: PlacementOptions,
+    effects_at: Array,
+) -> Wave:
+    """The wave of which the least visible effect shows most."""
+    size = min(_sizes(blank), key=lambda half: half[0] * half[1], default=None)
+    if size is None:
+        raise NotBuildable(
+            f"no wavy face of {2 * _LEAST_HALF:g} mm fits on a base of "
+            f"{2 * blank.base.half_size[0]:g} x {2 * blank.base.half_size[1]:g} mm beside balls"
+        )
+    best, most, refused = None, 0.0, ""
+    poses = spread_poses(all_poses, _POSES)
+    balls = base.touches[::_SOME]
+    bare = _bare(blank, base)
+    for wave in _waves(size, blank):
+        try:
+            face = wavy_face("FF1", blank, wave)
+        except NotBuildable as error:
+            refused = str(error)
+            continue
+        touches = _some_touches(criterion, face, poses, options.choice.proof)
+        if touches is None:
+            refused = "the probe touches none of it"
+            continue
+        body = replace(bare, patches=(face,))
+        lots = [single(balls, criterion.noise)]
+        lots.append(measurement_on(criterion, body, touches, options.scan))
+        here = criterion.plain.on(body)
+        signal = hidden_power(here, measured_together(lots), effects_at, False).least_signal
+        if signal > most:
+            best, most = wave, signal
+    if best is None:
+        raise NotBuildable(f"no wavy face: {refused}")
+    return best
+
+
+def _waves(size: tuple[float, float], blank: Blank) -> Iterator[Wave]:
+    for wavelength in _WAVELENGTHS:
+        for flatness in _FLATNESS:
+            yield Wave(
+                middle=(0.0, 0.0),
+                half_size=size,
+                wavelength=wavelength,
+                slope=blank.limits.max_slope,
+                flatness=flatness,
+            )
+
+
+def _bare(blank: Blank, base: Base) -> Standard:
+    """The balls alone, without holes."""
+    return Standard(
+        name="",
+        serial="",
+        material=blank.material,
+        base=blank.base,
+        core=None,
+        patches=(),
+        spheres=base.balls,
+        holes=(),
+        blank_height=blank.height,
+    )
+
+
+def _some_touches(
+    criterion: Criterion, face: FreeformPatch, poses: Array, count: int
+) -> Requests | None:
+    """Touches all over a face, each at one of the poses; None where none is possible."""
+    grid = face_grid(face.half_size, int(np.ceil(np.sqrt(count))))
+    turns = poses[np.arange(len(grid)) % len(poses)]
+    one = each_at(face, grid, poses[:1])
+    touches = replace(one, rotary=turns)
+    touches = touches[criterion.reach.is_reachable(touches)]
+    return touches if len(touches) else None
+
+
+def _identifying(
+    criterion: Criterion, made: Standard, all_poses: Array, options: PlacementOptions
+) -> Identifying:
+    """Table poses and touches on the balls of a standard."""
+    bare, choice = replace(made, patches=()), options.choice
+    poses = chosen_poses(criterion.plain.on(bare), made, made.spheres, all_poses, choice)
+    tried = touches_to_choose_from(criterion.reach, made, made.spheres, poses, choice.touches)
+    chosen, nearness = chosen_touches_on(criterion.on(bare), tried, choice)
+    return Identifying(standard=made, poses=poses, tried=tried, chosen=chosen, nearness=nearness)

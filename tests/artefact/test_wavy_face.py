@@ -1,0 +1,161 @@
+"""One wavy face: as steep as cutter and limits allow, within the blank, smooth."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from matstd.artefact.body.limits import Limits, max_slope, min_concave_radius
+from matstd.artefact.body.standard import Base
+from matstd.artefact.hidden.scan_lines import Scan, scanned
+from matstd.artefact.hidden.scan_path import scan_path, write_scan_path
+from matstd.artefact.layout.blank import Blank
+from matstd.artefact.layout.wavy import Wave, wavy_face
+from matstd.artefact.place.family import (
+    Family,
+    FamilyFigures,
+    chosen_family,
+    flat_pads,
+)
+from matstd.twin.errors import NotBuildable
+from matstd.twin.units import DEG, UM
+
+BLANK = Blank()
+WAVE = Wave((0.0, 0.0), (80.0, 70.0), 60.0, 45.0 * DEG)
+
+
+@pytest.mark.parametrize("flatness", [0.0, 0.9])
+@pytest.mark.parametrize("wavelength", [45.0, 60.0, 80.0])
+def test_waves_reach_one_limit_and_exceed_none(wavelength, flatness):
+    face = wavy_face("FF1", BLANK, replace(WAVE, wavelength=wavelength, flatness=flatness))
+    slope, radius, limits = max_slope(face), min_concave_radius(face), BLANK.limits
+    assert slope <= limits.max_slope
+    assert radius >= limits.min_concave_radius
+    assert slope > 0.95 * limits.max_slope or radius < 1.05 * limits.min_concave_radius
+
+
+def test_a_sine_is_the_sine_of_the_formula():
+    """Slope sqrt(2) A k and radius 1 / (A k^2) at the height that the net was given."""
+    face = wavy_face("FF1", BLANK, replace(WAVE, wavelength=80.0, slope=30.0 * DEG))
+    k = 2.0 * np.pi / 80.0
+    amplitude = np.tan(30.0 * DEG / 1.03) / (np.sqrt(2.0) * k)
+    assert min_concave_radius(face) == pytest.approx(1.0 / (amplitude * k**2), rel=0.05)
+    height = face.height(face.grid(1.0))
+    assert np.ptp(height) == pytest.approx(4.0 * amplitude, rel=0.03)
+
+
+def test_normals_point_everywhere():
+    face = wavy_face("FF1", BLANK, WAVE)
+    n = face.normal(face.grid(2.0))
+    assert np.abs(n.mean(axis=0)[:2]).max() < 0.05
+    azimuth = np.histogram(np.arctan2(n[:, 1], n[:, 0]), bins=8, range=(-np.pi, np.pi))[0]
+    assert azimuth.min() > 0.5 * azimuth.mean()
+
+
+def test_the_face_stands_on_the_base_and_under_the_top():
+    face = wavy_face("FF1", BLANK, WAVE)
+    z = face.point(face.grid(2.0))[:, 2]
+    assert z.min() > BLANK.base.thickness + 8.0
+    low = replace(BLANK, height=60.0)
+    with pytest.raises(NotBuildable, match=r"waves of 60 mm and 45 degrees rise to .* 60 mm high"):
+        wavy_face("FF1", low, WAVE)
+
+
+def test_a_cutter_that_is_too_large_makes_flatter_waves():
+    radii = (6.0, 12.0, 25.0)
+    blanks = [replace(BLANK, limits=Limits(min_concave_radius=radius)) for radius in radii]
+    slopes = [max_slope(wavy_face("FF1", blank, WAVE)) for blank in blanks]
+    assert all(a >= b for a, b in pairwise(slopes))
+    assert slopes[-1] < 0.7 * slopes[0]
+
+
+def test_the_mean_plane_of_a_wave_is_level(upright):
+    face = wavy_face("FF1", BLANK, WAVE).mean_plane()
+    assert np.degrees(max_slope(face)) < 5.0
+    pads = flat_pads(upright)
+    for pad, own in zip(pads.patches, upright.patches, strict=True):
+        grid = own.grid()
+        assert np.abs(pad.curvature(grid)).max() < 1e-9
+        assert pad.height(grid).mean() == pytest.approx(own.height(grid).mean(), abs=0.05)
+
+
+@pytest.mark.parametrize(
+    ("goal", "signals", "lefts", "wins"),
+    [
+        ("prove", (10.0, 8.0, 8.0, 16.0), (1.0, 1.01, 1.01, 1.01), Family.WAVY),
+        ("prove", (10.0, 9.7, 9.0, 9.0), (1.0, 1.01, 1.01, 1.01), Family.FACES),
+        ("prove", (10.0, 9.0, 9.5, 16.0), (1.0, 1.01, 1.01, 1.03), Family.FLAT),
+        ("identify", (10.0, 8.0, 8.0, 16.0), (1.0, 1.01, 1.02, 0.99), Family.WAVY),
+        ("identify", (10.0, 8.0, 8.0, 16.0), (1.0, 1.01, 1.02, 1.02), Family.FACES),
+    ],
+)
+def test_the_family_that_wins(goal, signals, lefts, wins):
+    figures = tuple(
+        FamilyFigures(family, rms_user=left * UM, signal=signal)
+        for family, signal, left in zip(Family, signals, lefts, strict=True)
+    )
+    assert chosen_family(figures[1:], goal, 1.0 * UM) is wins
+
+
+def test_a_family_that_cannot_be_built_does_not_win():
+    figures = (
+        FamilyFigures(Family.FACES, 1.0 * UM, 5.0),
+        FamilyFigures(Family.WAVY, refused="no room"),
+    )
+    assert chosen_family(figures, "prove", 1.0 * UM) is Family.FACES
+    assert chosen_family(figures, "identify", 1.0 * UM) is Family.FACES
+
+
+def test_means_of_a_scan_have_the_noise_of_their_points(criterion):
+    """A thousand points that share their noise are worth as many as are independent."""
+    rng = np.random.default_rng(4)
+    scan = Scan(pitch=0.8, u=2.0 * UM, memory=1.5)
+    r = np.exp(-0.8 / 1.5)
+    noise = np.zeros((40_000, 10))
+    noise[:, 0] = rng.normal(size=40_000)
+    for i in range(1, 10):
+        noise[:, i] = r * noise[:, i - 1] + np.sqrt(1.0 - r**2) * rng.normal(size=40_000)
+    assert scan.u_of_mean == pytest.approx(2.0 * UM * noise.mean(axis=1).std(), rel=0.02)
+    assert Scan(pitch=0.8, memory=0.0).u_of_mean == pytest.approx(2.0 * UM / np.sqrt(10.0))
+    face = wavy_face("FF1", replace(BLANK, base=Base((100.0, 100.0))), WAVE)
+    lines = scanned(face, Scan(), np.array([[0.0]]), criterion.reach)
+    density = 4.0 * 77.0 * 67.0 / len(lines)  # area of one mean
+    assert density == pytest.approx(10.0 * 8.0, rel=0.12)
+    assert scan.points(face) > 5000
+    assert 3.0 < Scan().minutes(face) < 10.0
+
+
+def test_the_path_of_a_scan_runs_forth_and_back(criterion, tmp_path):
+    face, scan, pose = wavy_face("FF1", BLANK, WAVE), Scan(between=10.0), np.array([[0.0]])
+    points, line = scan_path(face, scan, pose, criterion.reach)
+    assert len(points) == pytest.approx(scan.points(face), rel=0.05)
+    assert line[0] == 1
+    assert set(np.diff(line).tolist()) == {0, 1}
+    steps = np.linalg.norm(np.diff(points.point, axis=0), axis=1)
+    assert steps.max() < 1.5 * scan.between / np.cos(45.0 * DEG)  # never back over the face
+    assert steps[np.diff(line) == 0].max() < 1.5 * scan.pitch / np.cos(45.0 * DEG)
+    count = write_scan_path(tmp_path / "scan.csv", face, scan, pose, criterion.reach)
+    comment, head, *rows = (tmp_path / "scan.csv").read_text(encoding="utf-8").splitlines()
+    assert count == len(rows) == len(points)
+    assert "contact points and normals in the artefact frame" in comment
+    names, first = head.split(","), [float(cell) for cell in rows[0].split(",")]
+    assert names[:4] == ["line", "x_mm", "y_mm", "z_mm"]
+    assert first[1:4] == pytest.approx(points.point[0].tolist(), abs=1e-6)
+    q = criterion.reach.readings(points[:1])[0]
+    assert first[names.index("X_mm")] == pytest.approx(q[criterion.reach.chain.axis_index("X")])
+
+
+def test_a_gap_in_a_line_begins_a_new_one(criterion):
+    """Slopes that the probe cannot touch are left out, and no number spans them."""
+    steep = replace(criterion.reach, steepest=30.0 * DEG)
+    points, line = scan_path(
+        wavy_face("FF1", BLANK, WAVE), Scan(between=10.0), np.array([[0.0]]), steep
+    )
+    whole = scan_path(
+        wavy_face("FF1", BLANK, WAVE), Scan(between=10.0), np.array([[0.0]]), criterion.reach
+    )
+    assert len(points) < 0.8 * len(whole[0])
+    assert line.max() > 2 * whole[1].max()
+    steps = np.linalg.norm(np.diff(points.point, axis=0), axis=1)
+    assert steps[np.diff(line) == 0].max() < 1.5 * 2.5 / np.cos(45.0 * DEG)
