@@ -82,7 +82,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
-    """What follows from the verdict: measure, name the effect, or compensate."""
+    """What follows from the verdict: learn a law, measure, name the effect, or compensate."""
     from pathlib import Path
 
     import numpy as np
@@ -96,7 +96,10 @@ def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
         more = [word for name in named for word in ("--add", name)]
         why = "with the effect in model.toml; then matstd compensate"
         return called("diagnose", *args.run_files, *more, "-o", again), why
-    if found.verdict in (Verdict.UNEXPLAINED, Verdict.UNDECIDED) and found.plans:
+    if found.verdict is Verdict.UNEXPLAINED:
+        words = called("learn", *args.run_files, "-o", f"{args.output}-law")
+        return words, "a law of what remains, from the run itself"
+    if found.verdict is Verdict.UNDECIDED and found.plans:
         plan = Path(args.output) / "next_measurement_1.csv"
         words = called("diagnose", *args.run_files, "new.csv", "-o", again)
         return words, f"after measuring {plan} into new.csv"

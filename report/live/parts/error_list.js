@@ -75,7 +75,8 @@ export class ErrorList {
   contributions(sizes) {
     const most = Math.max(...sizes, 1e-9);
     this.rows.forEach((r, k) => {
-      r.told.textContent = `${digits(sizes[k])} µm`;
+      // what rounding leaves of nothing is nothing: a picometre
+      r.told.textContent = `${digits(sizes[k] < 1e-6 ? 0 : sizes[k])} µm`;
       r.bar.style.width = `${100 * sizes[k] / most}%`;
     });
   }
