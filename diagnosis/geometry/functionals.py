@@ -248,7 +248,7 @@ def _rotary(fit: Fit, theta: Array, axis: str) -> Iterator[Functional]:
             weights=weights,
             lever=reach if component >= 3 else 1.0,
         )
-    if not link.is_joint:
+    if not is_unseen:
         yield from _zero(fit, link, reach)
     for component, curve in sorted(_curves(fit, _along_axis(fit, axis), link).items()):
         is_angle = component >= 3

@@ -20,6 +20,9 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Axis, Chain, inverse_linear, linear_directions, make_chain, tip
 from matstd.twin.record import Instrument, Run, Setup, at_poses
 
+MIN_TRAVEL = 20.0
+"""Travel (mm) of an axis along which the points lie in one place: no machine has a shorter one."""
+
 
 @dataclass(frozen=True, eq=False)
 class PointsImport:
@@ -74,7 +77,7 @@ def import_points(
 def linear_machine(points: PointList, frames: Sequence[OtherFrame] = ()) -> Chain:
     """A machine of the linear axes along which the points extend, for a list without a machine.
 
-    An axis along which points were measured but do not extend gets a travel of 2 mm.
+    An axis along which points hardly extend travels `MIN_TRAVEL` about their middle.
 
     Args:
         frames: In which the machine measured them where it is not the nominal frame.
@@ -82,10 +85,9 @@ def linear_machine(points: PointList, frames: Sequence[OtherFrame] = ()) -> Chai
     at = places(points, frames)
     low, high = at.min(axis=0), at.max(axis=0)
     moves = (high > low) | ((high == low) & np.isfinite(points.deviation).any(axis=0))
+    middle, half = 0.5 * (low + high), 0.5 * np.maximum(high - low, MIN_TRAVEL)
     travels = {
-        letter: Axis(range=(float(low[i]), float(high[i])))
-        if high[i] > low[i]
-        else Axis(range=(float(low[i]) - 1.0, float(low[i]) + 1.0))
+        letter: Axis(range=(float(middle[i] - half[i]), float(middle[i] + half[i])))
         for i, letter in enumerate("XYZ")
         if moves[i]
     }

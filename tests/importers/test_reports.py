@@ -128,3 +128,15 @@ def test_tables_are_listed_and_one_can_be_chosen(tmp_path, capsys):
     assert main([*words, "--table", "9", *out]) == BAD
     with pytest.raises(BadFile, match=r"found 9, expected 1 to 4: 1 \(line 3"):
         read_sheet(path, table=9)
+
+
+def test_a_plate_measured_in_three_directions_has_a_machine_that_is_read(tmp_path):
+    """All points at one height: Z gets a travel that the reader of machine files takes for one."""
+    rows = "\n".join(f"{100 * (k % 3)},{80 * (k // 3)},5,0.5,-0.3,0.2" for k in range(9))
+    (tmp_path / "plate.csv").write_text(f"x,y,z,dx [um],dy [um],dz [um]\n{rows}\n")
+    out = tmp_path / "run.csv"
+    words = ["import", str(tmp_path / "plate.csv"), "--standard", "--u-um", "1", "-o", str(out)]
+    assert main(words) == 0
+    run = read_run(out)
+    assert run.touches.chain.link("Z").range == (-5.0, 15.0)
+    assert len(run) == 27
