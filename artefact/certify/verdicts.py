@@ -19,6 +19,10 @@ from matstd.artefact.certify.calibration_fit import CalibrationFit
 from matstd.twin.frames import Array, skew
 
 _COMMON_TOLERANCE = 0.1  # of a common offset: largest difference of radii or faces from it
+_SCALE_GUARD = 3.0 / 1.65
+"""Widens the guard band of the scale to three standard uncertainties: its tolerance is far smaller
+than the scatter of balls that conform, of which 1.65 would refuse one piece in twenty."""
+
 _CORNERS = np.array([[x, y] for x in (-1.0, 1.0) for y in (-1.0, 1.0)])
 _K, _ONE_SIDED = (
     2.0,
@@ -131,7 +135,7 @@ class _Frame:
             characteristic="scale",
             deviation=self.ppm * length,
             tolerance=_K * float(np.hypot(common, np.sqrt(2.0) * allowed.u_feature)),
-            u=self.u_ppm * length,
+            u=_SCALE_GUARD * self.u_ppm * length,
         )
 
     def cause(self, expansion: float) -> CommonCause:
