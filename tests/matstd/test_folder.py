@@ -226,9 +226,9 @@ def test_an_output_that_another_command_writes_meanwhile_is_not_lost(
 
     template = new.template
 
-    def slow(kind: str) -> str:
+    def slow(kind: str, like: str | None = None) -> str:
         (tmp_path / "run.csv").write_text("of another")
-        return template(kind)
+        return template(kind, like)
 
     monkeypatch.setattr(new, "template", slow)
     assert main(["new", "run", "-o", str(tmp_path / "run.csv")]) == 2
