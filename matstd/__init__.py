@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     )
     from matstd.api.probing import Simulation, simulate, virtual_machine
     from matstd.api.replanning import Replanned, replan
-    from matstd.api.runs import read_run, register_effects
+    from matstd.api.runs import read_run
     from matstd.api.showing import MachinePage, show
     from matstd.api.standards import (
         Calibration,
@@ -46,6 +46,7 @@ if TYPE_CHECKING:
     from matstd.diagnosis.answer import Verdict
     from matstd.diagnosis.files import SavedModel, read_model
     from matstd.diagnosis.fit import Fit
+    from matstd.effect_kinds import register_effects
     from matstd.report.pages import Design
     from matstd.twin.errors import BadArgument, BadFile, DesignError, NotEnoughData
     from matstd.twin.files import write_run
@@ -71,7 +72,8 @@ _PLACES = {
     "api.evaluating": ("Evaluation", "evaluate"),
     "api.probing": ("Simulation", "simulate", "virtual_machine"),
     "api.replanning": ("Replanned", "replan"),
-    "api.runs": ("read_run", "register_effects"),
+    "api.runs": ("read_run",),
+    "effect_kinds": ("register_effects",),
     "api.showing": ("MachinePage", "show"),
     "api.standards": (
         "Calibration",

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from matstd.api.diagnosing import Diagnosis
 from matstd.api.known_errors import drives_stated, machine_errors, with_added, with_unknowns
-from matstd.api.runs import register_effects
 from matstd.compensation import field
 from matstd.compensation.field import Datum, MachineErrors, Share, State, datum_of, sample_workspace
 from matstd.compensation.part_programs import Frame, Program, read_loads, read_part_program
@@ -37,6 +36,7 @@ from matstd.diagnosis.drift import DriftLaw
 from matstd.diagnosis.files import SavedModel
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.remarks import Remark, ShortBeam
+from matstd.effect_kinds import register_effects
 from matstd.report.compensation import draw_program, draw_shares_along, write_compensation_page
 from matstd.report.style import save
 from matstd.twin.compute import Progress, silent

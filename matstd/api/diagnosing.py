@@ -71,7 +71,10 @@ class Diagnosis(Saveable, answer.Diagnosis):
         is_all = self.learnt is self.fit and self.choice is not None
         promised = self.choice.best.error if is_all and self.choice else None
         reported = {s.effect.name: s.reported for s in self.steps if s.effect is not None}
-        return model_text(self.learnt, self.title, self.before, made_with, promised, reported)
+        known = determined_comment(self.geometry)
+        return known + model_text(
+            self.learnt, self.title, self.before, made_with, promised, reported
+        )
 
     @property
     def model(self) -> SavedModel:
@@ -93,7 +96,7 @@ class Diagnosis(Saveable, answer.Diagnosis):
         with deviations_in(self.run.touches.deviation_unit):
             sentences = [remark_sentence(r) for r in self.remarks]
             write_diagnosis(folder / "diagnosis.json", self, sentences)
-            write_whole(folder / "model.toml", determined_comment(self.geometry) + self.model_text)
+            write_whole(folder / "model.toml", self.model_text)
             for i, plan in enumerate(self.plans, start=1):
                 write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
             return write_found_arm(folder, self.fit, self.title)

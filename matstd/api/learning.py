@@ -9,7 +9,9 @@ from matstd.api.runs import GEOMETRY, Runs, StartingModel, read_run, starting_ru
 from matstd.api.saved import REPORT_FILES, Saveable
 from matstd.diagnosis import laws
 from matstd.diagnosis.files import SavedModel, model_text, parsed_model, write_laws
+from matstd.diagnosis.fit import prior_for
 from matstd.diagnosis.laws import SecondRun, learn_laws, second_run
+from matstd.diagnosis.search import DiagnosisTask, refined_named
 from matstd.report.laws import effect_names, effect_text, write_law_page
 from matstd.report.pages import Printer, write_pdf
 from matstd.twin.files import write_whole
@@ -105,6 +107,9 @@ def learn(
     run, start, _, title = starting_run(runs, model, same, pitch=pitch)
     other = read_run(second) if isinstance(second, str | Path) else second
     added = named_effects(add, start.effects, run)
+    if added:  # a time constant at a point of its grid leaves a law that is none
+        task = DiagnosisTask(run, start, prior_for(run, start))
+        added = [sized.effect for sized in refined_named(task, added)]
     found = learn_laws(run, Model(start.chain, (*start.effects, *added)))
     known = {f.name: getattr(found, f.name) for f in fields(found)}
     said = None if other is None or not found.laws else second_run(found, other)

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from matstd.api.machines import chain_of
-from matstd.api.runs import register_effects
 from matstd.api.standards import standard_of
 from matstd.artefact.body import Standard
 from matstd.diagnosis.remarks import body_sizes
+from matstd.effect_kinds import register_effects
 from matstd.probe_paths.campaign import (
     FIRST_MORNING,
     SMALLEST_U,

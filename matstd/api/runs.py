@@ -9,21 +9,18 @@ import numpy as np
 from matstd.diagnosis.faults import faults_of_refused
 from matstd.diagnosis.files import SavedModel, check_machine, read_model
 from matstd.diagnosis.fit import MIN_TOUCHES
-from matstd.drift_law import DRIFT_LAW
+from matstd.effect_kinds import register_effects
 from matstd.report.geometry import copy_lines, fault_sentences
 from matstd.report.words import remark_sentence
 from matstd.twin import files
 from matstd.twin.errors import BadArgument, BadFile, DesignError, NotEnoughData
 from matstd.twin.library import (
     kinds,
-    load_installed_effects,
-    load_user_effects,
     ordinary_model,
-    register,
     try_kind,
     users_files,
 )
-from matstd.twin.model import Kind, Model
+from matstd.twin.model import Model
 from matstd.twin.record import Run, joined
 
 SETUP, GEOMETRY = "setup", "geometry"
@@ -34,30 +31,6 @@ Runs = Run | str | Path | Sequence[Run | str | Path]
 
 StartingModel = str | Path | Model | SavedModel
 """`"geometry"`, `"setup"`, the path of a model file, or a model."""
-
-
-def register_effects(*files: str | Path) -> tuple[Kind, ...]:
-    """Make effects known: saved laws of a drift, those of installed packages, and your own files.
-
-    From then on they can be named, are proposed and diagnosed like those of the library. Every
-    function that reads names of effects calls this without files.
-
-    Args:
-        files: Python files with kinds of effects, as docs/own_effects.md describes them.
-
-    Returns:
-        The kinds of these files.
-
-    Raises:
-        BadFile: A file that cannot be loaded, or whose kind has a word that is taken.
-
-    Example:
-        >>> [kind.word for kind in register_effects("my_effects.py")]
-        ['hose']
-    """
-    register(DRIFT_LAW)
-    load_installed_effects()
-    return tuple(kind for path in files for kind in load_user_effects(Path(path)))
 
 
 def read_run(path: str | Path) -> Run:

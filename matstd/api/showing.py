@@ -11,7 +11,6 @@ import numpy as np
 from matstd.api.compensating import ProgramOptions, within_travel
 from matstd.api.known_errors import drives_stated, machine_errors, with_added, with_unknowns
 from matstd.api.machines import chain_of
-from matstd.api.runs import register_effects
 from matstd.api.standards import standard_of
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import Workshop
@@ -19,6 +18,7 @@ from matstd.compensation.field import Datum, MachineErrors, State, datum_of
 from matstd.compensation.part_programs import Frame
 from matstd.diagnosis.files import SavedModel, read_model
 from matstd.diagnosis.fit import Fit
+from matstd.effect_kinds import register_effects
 from matstd.probe_paths.control import ReadProgram, read_program
 from matstd.probe_paths.language import read_dialect
 from matstd.report.machine import (

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-from matstd.api.runs import Runs, is_learnt_from, listed, read_run, register_effects
+from matstd.api.runs import Runs, is_learnt_from, listed, read_run
 from matstd.artefact import body
 from matstd.artefact.body import Standard, write_standard
 from matstd.artefact.brief import Task, read_task
@@ -21,6 +21,7 @@ from matstd.artefact.worth import Calibration as KnownPlaces
 from matstd.diagnosis.files import SavedModel, check_machine, read_model, write_uncertainty
 from matstd.diagnosis.fit import Prior
 from matstd.diagnosis.task import TaskUncertainty, Visits
+from matstd.effect_kinds import register_effects
 from matstd.report.pages import write_uncertainty_page
 from matstd.report.task import measured_sentence, refusal_sentence, task_lines
 from matstd.report.words import remark_sentence

@@ -16,8 +16,8 @@ def diagnosis_step(result: Diagnosis, title: str) -> str:
         return f"Next: repeat {what}; their scatter decides whether the residual is noise."
     if result.verdict is Verdict.UNEXPLAINED:
         return (
-            f"Next: `matstd learn {title}` looks for a law of what remains. Where none holds, record "
-            "what could cause it (a temperature, a load), and diagnose again."
+            f"Next: `matstd learn {title}` looks for a law of what remains. Where none holds, "
+            "record what could cause it (a temperature, a load), and diagnose again."
         )
     if result.verdict is Verdict.NONE:
         return "Next: add no effect; `matstd compensate` returns the model to the machine."

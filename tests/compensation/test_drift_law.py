@@ -18,7 +18,7 @@ from matstd.diagnosis.drift.judged import Judged
 from matstd.diagnosis.drift.lags import Lagged
 from matstd.diagnosis.drift.linear import LinearLaw
 from matstd.diagnosis.drift.record import DriftRecord
-from matstd.drift_law import DRIFT_LAW
+from matstd.effect_kinds import DRIFT_LAW
 from matstd.twin.errors import BadFile, DesignError, UnknownEffect, UnknownSymbol
 from matstd.twin.library import parse_effect, register
 from matstd.twin.record import at_poses

@@ -10,7 +10,7 @@ from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.evaluation import evaluate
 from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control.log import UNDATED, read_log
-from matstd.twin.errors import BadFile
+from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import pose
 from matstd.twin.units import NM, UM
 
@@ -321,7 +321,7 @@ def test_another_serial_number_is_refused(lines, small, chain):
     parts = read_log("L", chain.rotary_axes, "\n".join(numbered) + "\n")
     assert parts[0].heading.serial == "007"
     assert len(evaluate(parts, replace(small, serial="007"), chain, U)) == 24
-    with pytest.raises(BadFile, match="SERIAL: found 007, expected 008"):
+    with pytest.raises(DesignError, match=r"written for SMALL-1 007 .*you gave SMALL-1 008"):
         evaluate(parts, replace(small, serial="008"), chain, U)
 
 

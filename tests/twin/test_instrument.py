@@ -54,5 +54,5 @@ def test_the_instrument_stands_in_the_head_of_a_run(run, tmp_path):
     path.write_text(
         path.read_text(encoding="utf-8").replace('"laser"', '"lidar"'), encoding="utf-8"
     )
-    with pytest.raises(BadFile, match=r"instrument: found 'lidar', expected .*'tracker'"):
+    with pytest.raises(BadFile, match=r"instrument: found 'lidar', expected .*.tracker."):
         read_run(path, chain)

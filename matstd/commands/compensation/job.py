@@ -4,9 +4,9 @@ import argparse
 from collections.abc import Sequence
 
 from matstd.api.compensating import Compensation, ProgramOptions, compensate
-from matstd.api.runs import register_effects
 from matstd.compensation.field import State
 from matstd.console import say_each
+from matstd.effect_kinds import register_effects
 from matstd.options import named_numbers
 from matstd.report.words import remark_sentence
 from matstd.twin.errors import DesignError

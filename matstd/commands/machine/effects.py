@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Print the table, the kinds that words may mean, or the whole story of one kind."""
     from matstd import console as words
-    from matstd.api.runs import register_effects
+    from matstd.effect_kinds import register_effects
     from matstd.twin.errors import UnknownEffect
     from matstd.twin.library import find_kinds, kinds
 

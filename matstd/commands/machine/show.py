@@ -61,10 +61,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the page."""
-    from matstd.api.runs import register_effects
     from matstd.api.showing import show
     from matstd.commands.compensation.job import machine_state, named_readings, program_options
     from matstd.console import say, say_assumed
+    from matstd.effect_kinds import register_effects
     from matstd.progress import stages
     from matstd.report.machine import shown_lines
     from matstd.twin.files import refuse_to_overwrite

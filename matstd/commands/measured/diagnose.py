@@ -52,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Diagnose; the folder appears whole or not at all."""
     from matstd.api.diagnosing import Diagnosis, diagnose
-    from matstd.api.runs import register_effects
+    from matstd.effect_kinds import register_effects
     from matstd.progress import stages, turns
     from matstd.twin.files import results_folder
     from matstd.twin.words import deviations_in

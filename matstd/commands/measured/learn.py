@@ -38,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Learn; the folder appears whole or not at all."""
     from matstd.api.learning import LearntLaws, learn
-    from matstd.api.runs import register_effects
+    from matstd.effect_kinds import register_effects
     from matstd.progress import stages
     from matstd.twin.files import results_folder
     from matstd.twin.words import deviations_in

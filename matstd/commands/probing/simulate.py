@@ -173,7 +173,7 @@ def planted_machine(
 ) -> VirtualMachine:
     """The machine as it really is, with what the options of `add_planted` plant in it."""
     from matstd.api.probing import virtual_machine
-    from matstd.api.runs import register_effects
+    from matstd.effect_kinds import register_effects
     from matstd.twin.units import UM
 
     register_effects(*args.effects)

@@ -38,9 +38,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Evaluate; the result is written whole or not at all."""
-    from matstd.api.runs import register_effects
     from matstd.api.standards import uncertainty
     from matstd.console import say, say_each
+    from matstd.effect_kinds import register_effects
     from matstd.twin.files import refuse_to_overwrite
 
     refuse_to_overwrite(args.output, args.force)
