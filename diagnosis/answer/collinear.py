@@ -104,7 +104,7 @@ def _is_possible(step: Step) -> bool:
     """Whether no coefficient of expansion is beyond what materials have."""
     for n in step.reported:
         if n.unit == EXPANSION:
-            margin = POLICY.significant_ratio * (n.u or 0.0)
+            margin = POLICY.impossible_ratio * (n.u or 0.0)
             low, high = POLICY.expansion_least / n.factor, POLICY.expansion_most / n.factor
             if not low - margin < n.value < high + margin:
                 return False

@@ -22,6 +22,8 @@ class Policy:
             that corrects for steel where nothing expands shows -12.
         expansion_most: The largest one: aluminium has 23e-6, and a screw may be warmer by half than
             the sensor beside it.
+        impossible_ratio: Uncertainties by which a coefficient must lie beyond them to be refused:
+            more happens to one true expansion at the limit in a thousand.
         material_share: Share of the squared residual that a pattern must hold. In ten thousand rows
             less is beyond chance too, but would improve a prediction by half a per cent at most.
         error_share: Error of held-out blocks with the richer of two explanations over that with the
@@ -67,6 +69,7 @@ class Policy:
     touches_explained: float = 1.5
     expansion_least: float = -15e-6
     expansion_most: float = 40e-6
+    impossible_ratio: float = 3.0
     material_share: float = 0.01
     error_share: float = 0.97
     error_share_beside_memory: float = 0.85

@@ -287,14 +287,14 @@ class Search:
         return replace(found, domain_density=domain_gain(others.effects, whole.effects))
 
     def _is_possible(self, whole: EffectSubset, member: Member) -> bool:
-        """Whether materials may expand as a member says, within twice its uncertainty."""
+        """Whether materials may expand as a member says, within its uncertainty."""
         at = 0 if self.fixed is None else self.fixed.shape[1]
         at += sum(len(m.effect.parameters) for m in whole.members[: whole.members.index(member)])
         effects = whole.effects
         for k, parameter in enumerate(member.effect.parameters, start=at):
             if parameter.unit == "1/K":
                 unit = parameter.sd * member.scale
-                margin = POLICY.significant_ratio * unit * effects.spread(k)
+                margin = POLICY.impossible_ratio * unit * effects.spread(k)
                 alpha = unit * float(effects.phi[k])
                 if not -margin < alpha - POLICY.expansion_least:
                     return False
