@@ -11,7 +11,6 @@ from matstd.artefact.worth import Criterion
 from matstd.information.criteria import Posterior
 from matstd.report.machine import standard_bodies
 from matstd.twin.frames import Array
-from matstd.twin.numbers import rms
 
 
 class Feature(NamedTuple):
@@ -52,9 +51,12 @@ def feature_shares(
         By feature, over the user's workspace; with all touches under the empty name.
     """
     on_body = criterion.on(standard)
+    tip = on_body.tip_user
+    # the mean over the poses of trace(G Sigma G^T) is that of Sigma times one moment of G
+    moment = np.einsum("mip,miq->pq", tip, tip, optimize=True) / len(tip)
     out = {}
     for name in ["", *np.unique(touches.feature).tolist()]:
         left = touches[np.flatnonzero(touches.feature != name)]
         known = Posterior(on_body.known_rows(left), on_body.prior_sd, on_body.model.names)
-        out[name] = rms(known.predicted_sd(on_body.tip_user))
+        out[name] = float(np.sqrt(np.sum(known.covariance * moment)))
     return out
