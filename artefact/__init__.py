@@ -16,7 +16,7 @@ Candidate balls and random smooth faces are spread over the blank (`layout`). Ev
 machine can make on them (`reach`) is a row of information (`worth`). Balls, faces, table poses and
 touches are chosen from these rows (`place`) and compared with other artefacts (`compare`). A new
 kind of face, body or limit goes into `body`, a new key of the project into `brief`, a rival
-artefact into `layout`, a kind of effect that nobody named into `hidden`, a new obstacle to the
+artefact into `layout`, a kind of unmodelled effect into `hidden`, a new obstacle to the
 probe into `reach`, a new check of the position on the table into `seat`, a criterion into `worth`.
 """
 

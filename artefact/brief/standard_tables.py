@@ -77,8 +77,8 @@ class StandardTable(Table):
     standard depends on it"""
     family: Literal["auto", "faces", "flat", "wavy"] = "faces"
     """features beside the balls: `faces` (small freeform faces), `flat` (flat pads in their
-    places), `wavy` (one large wavy face) or `auto`: the one that shows effects best that nobody
-    named, see [design](../design.md#which-features)"""
+    places), `wavy` (one large wavy face) or `auto`: the one that shows unmodelled effects
+    best, see [design](../design.md#which-features)"""
     goal: Literal["prove", "identify"] = "prove"
     """goal of `auto`: `prove`, or `identify` for the family that leaves least unknown"""
 

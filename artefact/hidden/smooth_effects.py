@@ -1,4 +1,4 @@
-"""How surely measurements on a standard show a smooth effect of the machine that nobody named.
+"""How surely measurements on a standard show a smooth, unmodelled effect of the machine.
 
 Such an effect displaces the tool along one linear axis. It is a short error of one axis, a bump
 over its reading, or a field over the readings of all linear axes, as if such bumps were everywhere:

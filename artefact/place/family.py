@@ -1,7 +1,7 @@
 """Which family of features a standard gets: balls alone, small faces, flat pads, one wavy face.
 
 Every family that fits is designed and judged by the same two figures: what its touches leave
-unknown of the tool point in the workspace, and the signal of the effect that nobody named and that
+unknown of the tool point in the workspace, and the signal of the unmodelled effect that
 it shows least, after equally many touches. The rule:
 
     identify    the family that leaves least unknown
@@ -39,7 +39,7 @@ class FamilyFigures:
 
     Attributes:
         rms_user: Error of the tool point over the workspace that its touches leave unknown, mm.
-        signal: Of the effect that nobody named and that it shows least.
+        signal: Of the unmodelled effect that it shows least.
         power: Probability that this effect is detected.
         least: That effect in words of its record: field or bump, width, direction.
         touches: Number of them, those of the proof included.

@@ -1,7 +1,7 @@
 """One large wavy face with balls round it: its size and its waves, by what they show.
 
-Every wave that cutter, probe and blank allow is judged by the signal of the effect that nobody
-named and that it shows least (`matstd.artefact.hidden`). The largest face comes first that leaves
+Every wave that cutter, probe and blank allow is judged by the signal of the unmodelled effect
+that it shows least (`matstd.artefact.hidden`). The largest face comes first that leaves
 the balls enough: they identify, and may cost no more than 2 % against balls alone.
 """
 

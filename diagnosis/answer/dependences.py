@@ -51,7 +51,7 @@ def odds_against_drift(state: SearchState) -> dict[str, float]:
     """Log odds for every effect that follows a sensor against a drift in time, by its name.
 
     All temperatures of a workshop rise in the morning: a law of one of them may describe what
-    another one did that nobody recorded.
+    another, unrecorded one did.
     """
     touches = state.pool.complement.touches
     members, whole = state.chosen.members, state.chosen.effects

@@ -47,7 +47,7 @@ class NamedEffect:
             and where no other effect of the library acts on these touches.
         is_headline: Whether it is certain, larger than its uncertainty, and large enough to name.
         against_drift: Log odds of an effect that follows a sensor against a smooth drift in time
-            whose cause nobody recorded; None for others.
+            whose cause is not recorded; None for others.
     """
 
     effect: Effect

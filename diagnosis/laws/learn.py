@@ -23,7 +23,7 @@ from matstd.twin.record import Run, with_commanded, without_copies
 IntArray = NDArray[np.int64]
 
 MIN_TOUCHES = 30
-"""Fewer touches than this leave no law that could be told from another."""
+"""Fewer touches than this leave no law that could be distinguished from another."""
 
 TIME_BLOCKS, PLACE_BLOCKS = 10, 5
 """Blocks of time, and of the range of a variable, that are left out one after the other."""
@@ -67,7 +67,7 @@ class LearntLaw:
         return self.library is not None and self.library.score > self.score
 
     def members(self, policy: LawPolicy) -> list[tuple[Law, float]]:
-        """Laws that cannot be told apart, with their shares of a prediction."""
+        """Laws that cannot be distinguished, with their shares of a prediction."""
         near, seen = [], {_what(self.law)}
         for rival in self.rivals:
             if rival.log_odds < policy.class_odds and _what(rival.law) not in seen:

@@ -20,7 +20,7 @@ class LawPolicy:
         least_gain: Share by which held-out errors must fall with a law.
         curve_margin: Log evidence by which a curve must beat every formula to be kept instead.
         shorter: Log evidence below which the shorter of two formulas is taken.
-        class_odds: Log odds within which laws cannot be told apart; predictions average over them.
+        class_odds: Log odds below which laws form a class; predictions average over its members.
         most_laws: Laws learnt one after the other.
         most_members: Most laws over which a prediction averages.
         most_rivals: Rivals that are reported.

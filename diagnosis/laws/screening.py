@@ -32,7 +32,7 @@ MARGIN = 0.1
 """Share of the range by which the domain of a curve exceeds the values on either side."""
 
 ALIKE = 0.99999
-"""Cosine of carriers that no touch of this run can tell apart."""
+"""Cosine of carriers that no touch of this run distinguishes."""
 
 FAST_WAVES = 1200
 """Frequencies up to which sines of a reading are scanned, per range and half."""

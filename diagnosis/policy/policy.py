@@ -37,7 +37,7 @@ class Policy:
             one could mend.
         significant_ratio: Standard uncertainties from which a size is significant (GUM, k = 2).
         headline_noise_share: Size of an effect over the stated noise below which no headline names
-            it: nobody compensates a tenth of the noise.
+            it: a tenth of the noise is not worth a compensation.
         chance_of_member: Probability by chance from which a member of a set that was chosen by
             prediction falls, if its size does not speak for it: its company was judged as a whole.
         certain_p: Probability by chance below which an effect stands although none of its numbers

@@ -1,4 +1,4 @@
-"""Power of measurements to show something that nobody named: a smooth field of deviations.
+"""Power of measurements to show an unmodelled, smooth field of deviations.
 
 In: columns of what is explained already, and the field's covariance as a factor, at every
 measurement. Out: a `FieldTest` with its threshold, and how probably it finds a given deviation, or

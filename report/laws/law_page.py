@@ -35,7 +35,7 @@ _WHAT = (
     "out better than the model alone."
 )
 _ALIKE = (
-    "Laws that the run cannot tell apart form a class; predictions average over it with these "
+    "Laws that the run cannot distinguish form a class; predictions average over it with these "
     "shares. A run in which they differ decides: other axis positions for other carriers, another "
     "course of time for a temperature."
 )

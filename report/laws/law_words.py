@@ -153,7 +153,9 @@ def law_sentence(learning: Learning, one: LearntLaw) -> str:
     size = _size(learning, law)
     where = [place_words(p) for p in places(learning, law) if p.u is not None]
     alike = [c.name for c in one.alike]
-    borne = f", or {listed(alike, 'or')}, which this run cannot tell from it" if alike else ""
+    borne = (
+        f", or {listed(alike, 'or')}, which this run cannot distinguish from it" if alike else ""
+    )
     details = f" ({', '.join(where)})" if where else ""
     return (
         f"{carrier_words(law.carrier)}{borne}: {size}, {shapes}{details}".replace("  ", " ") + "."

@@ -2,7 +2,7 @@
 
 A module loaded from a disk may import no other file. So the modules of a page stand in one script,
 each a function with names of its own, in an order in which every one finds those that it imports;
-their text stays as it is written, for whoever looks at the source of a page.
+their text stays as it is written, for readers of the page's source.
 """
 
 import base64

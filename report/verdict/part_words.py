@@ -81,7 +81,7 @@ def _chance(p: float) -> str:
 
 
 def _rival(one: NamedEffect) -> str:
-    """The closest rival, and a cause that nobody recorded, each with its odds."""
+    """The closest rival, and an unrecorded cause, each with its odds."""
     rivals = []
     if one.runner_up is not None:
         rivals.append((f"closest rival {one.runner_up.effect.name}", one.runner_up.log_odds))

@@ -154,7 +154,7 @@ def test_odds_in_words():
     ]
 
 
-def test_a_law_of_a_sensor_is_weighed_against_a_drift_that_nobody_recorded(hidden):
+def test_a_law_of_a_sensor_is_weighed_against_an_unrecorded_drift(hidden):
     """A backlash follows no sensor; a growth with a temperature does."""
     run = hidden
     t = run.touches

@@ -1,6 +1,6 @@
 """Where the parameters of every shape are scanned, from the values that a variable took.
 
-Places lie between the values that were measured, so that every one can be told from its neighbour;
+Places lie between measured values, so that each can be distinguished from its neighbour;
 widths go from two distances of neighbours to the whole range; periods from the sampling limit on.
 """
 
@@ -153,7 +153,7 @@ def _edges(x: Array) -> Array:
 def _periods(driver: Driver, x: Array) -> Array:
     """Periods from twice the range down to the sampling limit, evenly in frequency.
 
-    Readings of a run are uneven, so that waves up to one in two touches can be told apart; of a
+    Readings of a run are uneven, so that waves up to one in two touches can be distinguished; of a
     rotary axis whole waves of a turn are `harmonic`.
     """
     span = float(np.ptp(x))

@@ -214,7 +214,7 @@ view.look(nominal);
 const asked = Number(new URLSearchParams(location.search).get("t") || location.hash.slice(1));
 if (player && asked) panel.go(asked);
 
-// for tests, and for whoever looks under the bonnet
+// for tests, and for readers of the page's source
 window.machinePage = { data, machine, state, sum, view, show, changed, panel,
   toolPoint: (q, length, found = null) => toolPoint(machine, q, length, found), errorsAt,
   bodyPoses: (q, found = null) => bodyPoses(machine, q, found) };

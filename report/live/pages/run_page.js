@@ -52,7 +52,7 @@ function laidOut() {
   return { theme, figures, ladder: place.querySelector(".ladder") };
 }
 
-/** Fits the set that is on, and shows it; switches that wait tell what they would bring later. */
+/** Fits the set that is on, and shows it; switches that are off show their effect later. */
 function changed() {
   const begun = performance.now();
   shown.now = board.errors();

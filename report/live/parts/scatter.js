@@ -3,7 +3,7 @@
 import { colour } from "./theme.js";
 import { Frame } from "./frame.js";
 
-const BINS = 32;  // colours that are told apart: a change of style for each dot takes 5 times longer
+const BINS = 32;  // colours that are distinguished: a change of style for each dot takes 5 times longer
 
 export class Scatter {
   /** over(index or -1): the dot under the pointer; brushed(indices or null): the rectangle. */
