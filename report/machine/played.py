@@ -117,6 +117,7 @@ def played_probing(
     rows: list[tuple[float, Array, int, int, int]] = []
     lengths: list[float] = []
     begin, rotary = 0.0, [chain.axis_index(a) for a in chain.rotary_axes]
+    first = _first_readings(programs)
     for k, program in enumerate(programs):
         to_surface = [t.back if standoff is None else standoff for t in program.touches]
         travel = np.array(
@@ -128,10 +129,12 @@ def played_probing(
         times = begin + step_times(chain, program.steps, Clock(), travel)
         for step, time in zip(program.steps, times, strict=True):
             if isinstance(step, Move):
-                row = (float(time), np.nan_to_num(step.q), step.line, 0, k)
+                at = np.where(np.isfinite(step.q), step.q, first)
+                row = (float(time), at, step.line, 0, k)
             elif isinstance(step, ProbeStep):
-                end = np.nan_to_num(step.q) + travel[step.index] * step.direction
-                row = (float(time), end, step.line, step.number, k)
+                at = np.where(np.isfinite(step.q), step.q, first)
+                at = at + travel[step.index] * step.direction
+                row = (float(time), at, step.line, step.number, k)
             else:
                 continue
             rows += _between(rows[-1], row, rotary) if rows else []
@@ -154,6 +157,17 @@ def played_probing(
         ],
         normal=_against_motion(chain, programs, q, touch, which),
     )
+
+
+def _first_readings(programs: Sequence[ReadProgram]) -> Array:
+    """The first reading that programs state of every axis, (A,); zero where they state none.
+
+    An axis stands there until a program moves it: where it stood before, no program says.
+    """
+    moves = [s for p in programs for s in p.steps if isinstance(s, Move | ProbeStep)]
+    q = np.array([step.q for step in moves])
+    stated = np.isfinite(q)
+    return np.nan_to_num(np.take_along_axis(q, stated.argmax(axis=0)[None], axis=0)[0])
 
 
 def last_moves(q: Array) -> IntArray:

@@ -94,6 +94,20 @@ def test_the_line_that_runs_is_the_one_of_the_program(golden, read, plan):
         assert "TCH PROBE 4.3" in line
 
 
+def test_an_axis_stands_at_its_first_reading_until_a_program_moves_it(golden, read, plan):
+    """The program begins with a retract in machine coordinates: `L Z... R0 FMAX M91`."""
+    text = golden.programs().programs[0].text
+    line = next(line for line in text.splitlines() if line.endswith("M91"))
+    retract = float(line.split(" L Z")[1].split()[0])
+    played = played_probing(plan.chain, read[:1], [text])
+    assert played.q[0, plan.chain.axis_index("Z")] == pytest.approx(retract)
+    for axis in plan.chain.programmed_axes:
+        low, high = plan.chain.link(axis).range
+        reading = played.q[:, plan.chain.axis_index(axis)]
+        assert low - 1e-9 <= reading.min()
+        assert reading.max() <= high + 1e-9
+
+
 def test_sides_hold_until_an_axis_turns_back():
     q = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, -2.0], [0.5, -2.0], [0.5, -1.0]])
     assert last_moves(q).T.tolist() == [[0, 1, 1, -1, -1], [0, 0, -1, -1, 1]]

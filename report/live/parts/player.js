@@ -22,7 +22,7 @@ export class Player {
   at(time) {
     const { program, axes } = this, i = this.before(time);
     const j = Math.min(i + 1, this.times.length - 1), span = this.times[j] - this.times[i];
-    const share = span > 0 ? Math.min(1, (time - this.times[i]) / span) : 0;
+    const share = span > 0 ? Math.max(0, Math.min(1, (time - this.times[i]) / span)) : 0;
     const row = share > 0 ? j : i, q = new Float64Array(axes), sides = new Int8Array(axes);
     for (let a = 0; a < axes; a++) {
       const from = program.q.values[i * axes + a], to = program.q.values[j * axes + a];
