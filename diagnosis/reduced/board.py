@@ -18,7 +18,7 @@ from matstd.diagnosis.evidence import (
 )
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.reduced.base import Base
-from matstd.diagnosis.reduced.levels import Errors, Reduced, reduced
+from matstd.diagnosis.reduced.matrices import Errors, Reduced, reduced
 from matstd.diagnosis.reduced.switches import Switch, switch
 from matstd.diagnosis.search import FREEDOM
 from matstd.twin.compute import one_blas_thread
@@ -44,7 +44,7 @@ and without the many periods that waves may have; their inner parameters then st
 FEW = 3
 """Points of a grid, of a long run."""
 
-MOST_COLUMNS = 20
+MOST_COLUMNS = 15
 """Stored columns above which no further inner parameter is moved: their number counts squared."""
 
 

@@ -27,8 +27,8 @@ from matstd.twin.units import UM
 
 pytestmark = pytest.mark.browser
 
-SAME = 1e-6
-"""Relative: figures of files have six digits."""
+SAME = 1e-7
+"""Relative: figures of files have six digits, of which the last shall be the same."""
 
 FIGURES = """const { fitted, heldOut } = livePage.shown.now;
     return [fitted, heldOut, document.getElementById("fitted").textContent,
