@@ -44,7 +44,7 @@ and without the many periods that waves may have; their inner parameters then st
 FEW = 3
 """Points of a grid, of a long run."""
 
-MOST_COLUMNS = 15
+MOST_COLUMNS = 20
 """Stored columns above which no further inner parameter is moved: their number counts squared."""
 
 

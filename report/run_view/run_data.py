@@ -30,7 +30,7 @@ MOST_COLUMNS, FEWER_COLUMNS = 40, 10
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class Findings:
     """What the report says of a run, for its live view.
 
     Attributes:
@@ -46,18 +46,18 @@ class Told:
     remains: str = ""
 
 
-def run_data(board: Board, told: Told) -> TREE:
+def run_data(board: Board, findings: Findings) -> TREE:
     """Data of `run_page.js`.
 
     Args:
         board: The run with its effects.
-        told: What the report says of it.
+        findings: What the report says of it.
     """
     fit = board.fit
-    alone = None if told.set_up_alone is None else told.set_up_alone / UM
+    alone = None if findings.set_up_alone is None else findings.set_up_alone / UM
     return {
-        "title": told.title,
-        "remains": in_own_unit(told.remains),
+        "title": findings.title,
+        "remains": in_own_unit(findings.remains),
         "unit": in_own_unit("µm"),
         "noise": float(np.median(fit.run.u)) / UM,
         "foundNoise": float(np.median(fit.u)) / UM,
@@ -65,7 +65,7 @@ def run_data(board: Board, told: Told) -> TREE:
         "touches": _touches(fit),
         "columns": _columns(fit.run.touches),
         "body": _bodies(fit.run.touches),
-        "switches": [_switch(s, told.sizes.get(s.effect.name, "")) for s in board.switches],
+        "switches": [_switch(s, findings.sizes.get(s.effect.name, "")) for s in board.switches],
         "estimate": packed(board.estimate, "f8"),
         "known": [
             {"on": sorted(on), "fitted": known[0] / UM, "heldOut": known[1] / UM}

@@ -75,12 +75,12 @@ export class Solver {
     Object.assign(this, reduced);
     this.triangle = this.size * (this.size + 1) / 2;
     const [low, high] = this.span.map(Math.log);
-    this.place = s => Math.max(-1, Math.min(1, (2 * Math.log(s) - low - high) / (high - low)));
+    this.within = s => Math.max(-1, Math.min(1, (2 * Math.log(s) - low - high) / (high - low)));
   }
 
   /** Weights of the terms at a size of the noise: Chebyshev's polynomials of its logarithm. */
   shares(s) {
-    const angle = Math.acos(this.place(s));
+    const angle = Math.acos(this.within(s));
     return this.terms.map((_, k) => Math.cos(k * angle));
   }
 
