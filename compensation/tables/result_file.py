@@ -43,6 +43,7 @@ def _table(verified: VerifiedTables, chain: Chain) -> dict[str, Any]:
         **figures(result),
         "interpolation_um": in_um(verified.interpolation),
         "interpolation_holds": "over the workspace" if verified.by_name else "along the axes",
+        "left_out": list(verified.left_out),
         "not_held": [
             {
                 "error": x.name,
