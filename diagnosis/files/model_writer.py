@@ -23,7 +23,7 @@ from matstd.twin.library import owner_of
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, columns, inner_values
 from matstd.twin.numbers import rms
-from matstd.twin.units import DEG, UM
+from matstd.twin.units import UM
 
 
 def write_model(
@@ -193,9 +193,8 @@ def _machine(chain: Chain) -> dict[str, Any]:
     for link in chain.links:
         if link.kind == "fixed":
             continue
-        factor = DEG if link.kind == "rotary" else 1.0
         axes[link.name] = {
-            "range": [float(v) / factor for v in link.range],
+            "range": [float(v) / link.unit for v in link.range],
             "point": [float(v) for v in link.point],
             "direction": [float(v) for v in link.direction],
         }

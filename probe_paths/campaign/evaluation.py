@@ -61,7 +61,7 @@ def evaluate(
     ``dev = n . (ball centre - p) - radius`` with the believed ball centre.
 
     Args:
-        parts: Of one or several logs; those that measure nothing (`LogPart.is_measuring`) are left
+        parts: Parts of logs; those that measure nothing (`LogPart.is_measuring`) are left
             aside.
         u: Standard uncertainty of one touch, mm; that of the calibrated surface comes to it.
 

@@ -72,7 +72,7 @@ class Run(Displayed):
 
     @property
     def fingerprints(self) -> tuple[str, ...]:
-        """Of every run that was joined, in their order, and last of all together."""
+        """One value for every run that was joined, in their order, and last for all together."""
         of = self.touches.run
         each = [self[of == i].fingerprint for i in np.unique(of)]
         return (*each, self.fingerprint) if len(each) > 1 else (self.fingerprint,)
