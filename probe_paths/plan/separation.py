@@ -18,10 +18,10 @@ from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
 CORNERS = 8
-"""Of a body at most."""
+"""Most corners of a body."""
 
 EXACT = 0.01
-"""To which a gap that matters is found, mm."""
+"""Accuracy of a gap that matters, mm."""
 
 _ROUNDS = 60  # of the search; cylinders beside cylinders took up to 35
 _INSIDE = 1e-7  # mm: nearer than this the bodies are in each other
@@ -73,7 +73,7 @@ class Sweeps:
         way: Straight way that is made, (M, 3), mm.
         low: Where the cylinder begins on the axis, (M,), mm.
         high: Where it ends, (M,), mm.
-        radius: Of the cylinder, (M,), mm.
+        radius: Radius of the cylinder, (M,), mm.
         ball: By which it is swollen, (M,), mm.
     """
 

@@ -21,6 +21,7 @@ from matstd.compensation.tables.formats import (
     write_tables,
 )
 from matstd.compensation.tables.header import Header, header_of
+from matstd.report.compensation import table_lines
 from matstd.twin.errors import BadFile
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.library.catalogue import parse_effect
@@ -292,6 +293,12 @@ def test_a_fork_head_is_never_made_worse(tmp_path, capsys):
     write_tables(FORMATS["linuxcnc"], tmp_path / "comp", errors, datum, head, q)
     found = verify_tables(FORMATS["linuxcnc"], tmp_path / "comp", errors, datum, head, q)
     assert rms(found.result.after) < rms(found.result.before) - 5 * UM  # X is still corrected
+    assert set(found.left_out) == {"A", "C"}
+    # a table left out is no fault of interpolation, and its axis's errors are not represented
+    assert found.interpolation < UM
+    lines = [line for line, _ in table_lines(found)]
+    assert any("tables are left out for" in line for line in lines)
+    assert any("cannot represent" in line and "ECC" in line for line in lines)
     refuse_harmful(found)
     harmful = replace(found, result=replace(found.result, after=with_plain))
     with pytest.raises(Harmful, match=r"linuxcnc: the tables would leave .* µm rms .*--within"):
