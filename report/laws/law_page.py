@@ -12,6 +12,7 @@ from matstd.report.laws.law_words import (
     carrier_words,
     formula_words,
     held_out_sentence,
+    instead_sentence,
     law_sentence,
     library_sentence,
     looks_like,
@@ -49,20 +50,26 @@ def write_law_page(
     learning: Learning, folder: str | Path, title: str, second: SecondRun | None
 ) -> None:
     """Write `report.html` and its pictures into a folder."""
-    sections: list[Section] = []
-    for i, one in enumerate(learning.laws, start=1):
-        sections += _law_sections(learning, one, i)
-    if learning.laws:
-        sections += [_held_out(learning, second)]
     page = Page(
         title=f"Laws learnt from {title}",
         heading=f"What the model leaves of {title}",
         lead=_lead(learning),
         key=_key(learning, second),
-        sections=[Section(sentences=[_WHAT] if learning.laws else []), *sections],
+        sections=law_sections(learning, second),
         foot=[_FOOT],
     )
     write_page(Path(folder) / PAGE, page)
+
+
+def law_sections(learning: Learning, second: SecondRun | None = None) -> list[Section]:
+    """What was learnt: every law with its picture and its rivals, and the error elsewhere."""
+    if not learning.laws:
+        return [Section(sentences=[no_law_sentence(learning)])]
+    instead = instead_sentence(learning)
+    out = [Section(sentences=[f"**{instead}**", _WHAT] if instead else [_WHAT])]
+    for i, one in enumerate(learning.laws, start=1):
+        out += _law_sections(learning, one, i)
+    return [*out, _held_out(learning, second)]
 
 
 def _lead(learning: Learning) -> str:

@@ -14,6 +14,13 @@ def diagnosis_step(result: Diagnosis, title: str) -> str:
     if result.verdict is Verdict.UNDECIDED:
         what = plural(len(result.repeat), "touch") if len(result.repeat) else "some touches"
         return f"Next: repeat {what}; their scatter decides whether the residual is noise."
+    if result.verdict is Verdict.UNEXPLAINED and result.laws is not None and result.laws.laws:
+        return (
+            "Next: look for the cause of the learnt law, rename it in effect.py, and diagnose "
+            "again with `--effects effect.py`. model.toml predicts with it until then."
+        )
+    if result.verdict is Verdict.UNEXPLAINED and result.laws is not None:
+        return "Next: record what could cause it (a temperature, a load), and diagnose again."
     if result.verdict is Verdict.UNEXPLAINED:
         return (
             f"Next: `matstd learn {title}` looks for a law of what remains. Where none holds, "
