@@ -22,7 +22,7 @@ from matstd.report.laws.law_words import (
     second_run_sentence,
     variable_words,
 )
-from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
+from matstd.report.layout import KeyFigure, LiveView, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, microns, sentence
 from matstd.twin.units import UM
 
@@ -46,9 +46,17 @@ _FOOT = (
 
 
 def write_law_page(
-    learning: Learning, folder: str | Path, title: str, second: SecondRun | None
+    learning: Learning,
+    folder: str | Path,
+    title: str,
+    second: SecondRun | None,
+    live: LiveView | None = None,
 ) -> None:
-    """Write `report.html` and its pictures into a folder."""
+    """Write `report.html` and its pictures into a folder.
+
+    Args:
+        live: View in which the laws are switched; None for a page of pictures.
+    """
     sections: list[Section] = []
     for i, one in enumerate(learning.laws, start=1):
         sections += _law_sections(learning, one, i)
@@ -61,6 +69,7 @@ def write_law_page(
         key=_key(learning, second),
         sections=[Section(sentences=[_WHAT] if learning.laws else []), *sections],
         foot=[_FOOT],
+        live=live,
     )
     write_page(Path(folder) / PAGE, page)
 
