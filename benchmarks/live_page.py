@@ -20,9 +20,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles"), str(ROOT / "tests" / "fixtures")]
+from harness import parser_of  # puts simulator and browser on the path
 
 HIDDEN = "thermal-lag(EZZ)"
 LONG = 4000
@@ -170,7 +168,7 @@ def one(touches: int, sets: int) -> None:
 
 def main() -> None:
     """Each size in a process of its own."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = parser_of(__doc__)
     parser.add_argument("--touches", type=int, nargs="+", default=[780, 20000])
     parser.add_argument("--sets", type=int, default=30)
     parser.add_argument("--alone", action="store_true", help=argparse.SUPPRESS)

@@ -59,9 +59,9 @@ class MachineErrors:
     Attributes:
         effects: The physics that moves the tool point through an axis.
         theta: Parameters of each effect, base units.
-        root: Of the covariance of all parameters, effect after effect, (P, K), of a machine whose
+        root: Root of the covariance of all parameters, effect by effect, (P, K), of a machine whose
             tools are set against the probe that measured it.
-        tool_root: What the covariance has beside that, (P, T), where it is unknown how a tool
+        tool_root: What the covariance has in addition, (P, T), where it is unknown how a tool
             stands in the spindle against that probe: a run cannot distinguish that from the lines
             of rotary axes.
         left_out: Names of effects of the model that are not the machine's.
@@ -121,10 +121,10 @@ class MachineErrors:
     def with_known(
         self, errors: Sequence[tuple[Effect, Array]], root: Array | None = None
     ) -> "MachineErrors":
-        """The same with further errors that are known by themselves.
+        """These errors and further ones, known independently.
 
         Args:
-            root: Of the covariance of those, (P', K'); None without uncertainty.
+            root: Root of their covariance, (P', K'); None without uncertainty.
         """
         count = sum(len(e.parameters) for e, _ in errors)
         own = np.zeros((count, 0)) if root is None else root
@@ -137,11 +137,11 @@ class MachineErrors:
         )
 
     def widened(self, number: int, effect: Effect, theta: Array, root: Array) -> "MachineErrors":
-        """The same where one effect has further parameters behind those it has.
+        """These errors with further parameters appended to those of one effect.
 
         Args:
-            theta: Their values, (p,).
-            root: Of their covariance, (p, K'), independent of all others.
+            theta: Values of the further parameters, (p,).
+            root: Root of their covariance, (p, K'), independent of all others.
         """
         end = sum(len(t) for t in self.theta[: number + 1])
         before, behind = self.root[:end], self.root[end:]
@@ -223,7 +223,7 @@ class MachineErrors:
         return np.concatenate([np.arange(starts[i], starts[i + 1]) for i in self.groups[group]])
 
     def words(self, group: str) -> set[str]:
-        """Every word under which the errors of a group are switched (`switched`)."""
+        """All words that switch the errors of a group (`switched`)."""
         return {w for i in self.groups[group] for w in words_of(self.chain, self.effects[i])}
 
     def only(self, group: str) -> "MachineErrors":
@@ -238,7 +238,7 @@ class MachineErrors:
         )
 
     def switched(self, factors: Mapping[str, float]) -> "MachineErrors":
-        """The errors scaled: 0 switches off, 1 leaves, 2 doubles; later words go before earlier.
+        """The errors scaled: 0 is off, 1 leaves them, 2 doubles; later words override earlier ones.
 
         Args:
             factors: By symbol (`EXX`), effect (`backlash(X)`), kind (`backlash`), class
@@ -281,7 +281,7 @@ _PLAIN = ("geometric", "location")
 
 
 def words_of(chain: Chain, effect: Effect) -> set[str]:
-    """Every word under which an effect is switched."""
+    """All words that switch an effect."""
     words = {"all", effect.kind, effect.name, group_of(effect)}
     symbol = traits(effect).symbol or parse_symbol(group_of(effect))
     if symbol is not None:

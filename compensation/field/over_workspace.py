@@ -42,13 +42,13 @@ def sample_workspace(
 
 @dataclass(frozen=True, slots=True)
 class UncorrectedError:
-    """One error that a compensation does not hold.
+    """One error that a compensation does not remove completely.
 
     Attributes:
         name: Symbol of ISO 230-1, or effect.
-        before: Of the tool point by this error alone, rms over the workspace, mm.
-        rms: What is left of it, mm.
-        u: Standard uncertainty of that, mm.
+        before: Deviation of the tool point by this error alone, rms over the workspace, mm.
+        rms: Remainder after compensation, mm.
+        u: Standard uncertainty of the remainder, mm.
     """
 
     name: str
@@ -67,8 +67,8 @@ class Result:
         after: The same with it, by the exact twin with the estimates as the truth, (N, 3).
         u: Standard uncertainty of both from that of the model, (N,), of the length of the error
             vector's three components together.
-        u_tool: What comes to the rms where tools are not set against the probe that measured.
-        left: What it does not hold, the largest first.
+        u_tool: Added to the rms where tools are not set against the probe that measured, mm.
+        left: Errors with a remainder, the largest first.
     """
 
     q: Array

@@ -27,7 +27,7 @@ class Campaign:
     """All programs of one set-up or several, run one after the other.
 
     Attributes:
-        parts: Of their logs, as read back.
+        parts: Parts of their logs, as read back.
         begin: What the clock said at the run's time zero.
     """
 
