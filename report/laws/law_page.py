@@ -23,7 +23,7 @@ from matstd.report.laws.law_words import (
     second_run_sentence,
     variable_words,
 )
-from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
+from matstd.report.layout import KeyFigure, LiveView, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, microns, sentence
 from matstd.twin.units import UM
 
@@ -47,9 +47,17 @@ _FOOT = (
 
 
 def write_law_page(
-    learning: Learning, folder: str | Path, title: str, second: SecondRun | None
+    learning: Learning,
+    folder: str | Path,
+    title: str,
+    second: SecondRun | None,
+    live: LiveView | None = None,
 ) -> None:
-    """Write `report.html` and its pictures into a folder."""
+    """Write `report.html` and its pictures into a folder.
+
+    Args:
+        live: View in which the laws are switched; None for a page of pictures.
+    """
     page = Page(
         title=f"Laws learnt from {title}",
         heading=f"What the model leaves of {title}",
@@ -57,6 +65,7 @@ def write_law_page(
         key=_key(learning, second),
         sections=law_sections(learning, second),
         foot=[_FOOT],
+        live=live,
     )
     write_page(Path(folder) / PAGE, page)
 
