@@ -40,6 +40,11 @@ _ALIKE = (
     "shares. A run in which they differ decides: other axis positions for other carriers, another "
     "course of time for a temperature."
 )
+_NEXT = (
+    "Try it on another run: `matstd compare RUN.csv --model model.toml --effects effect.py`; only "
+    "then compensate with it."
+)
+_WITHOUT = "Record what could cause it (a temperature, a load, a speed) and probe again."
 _FOOT = (
     "Uncertainties are standard uncertainties (k = 1) of the fit with all parameters of the law; "
     "of an edge that of the gap between touches. That another law might be true is not in them."
@@ -62,6 +67,8 @@ def write_law_page(
         title=f"Laws learnt from {title}",
         heading=f"What the model leaves of {title}",
         lead=_lead(learning),
+        means=_meaning(learning),
+        next=_NEXT if learning.laws else _WITHOUT,
         key=_key(learning, second),
         sections=law_sections(learning, second),
         foot=[_FOOT],
@@ -79,6 +86,18 @@ def law_sections(learning: Learning, second: SecondRun | None = None) -> list[Se
     for i, one in enumerate(learning.laws, start=1):
         out += _law_sections(learning, one, i)
     return [*out, _held_out(learning, second)]
+
+
+def _meaning(learning: Learning) -> str:
+    if not learning.laws:
+        return (
+            "What remains follows from nothing that the run recorded in any form that was tried. "
+            "The model of the starting effects stays as it is."
+        )
+    return (
+        "The law predicts touches that were not fitted. It is no cause: it holds where it was "
+        "learnt, and a named effect with the same form may replace it."
+    )
 
 
 def _lead(learning: Learning) -> str:

@@ -32,7 +32,7 @@ from matstd.report.pages.trend_section import trend_sections
 from matstd.report.plots import draw_effect, draw_fall, draw_form, is_form
 from matstd.report.run_view import diagnosis_step, diagnosis_view
 from matstd.report.style import series
-from matstd.report.verdict import part_lines
+from matstd.report.verdict import diagnosis_meaning, part_lines
 from matstd.report.words import (
     figures,
     remark_sentence,
@@ -98,6 +98,7 @@ def write_diagnosis_page(
             outlier_section(result.fit),
         ],
         foot=run_foot(result.run, title),
+        means=diagnosis_meaning(result),
         next=diagnosis_step(result, title),
         live=diagnosis_view(result, title),
     )
