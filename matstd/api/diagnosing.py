@@ -134,7 +134,9 @@ class Diagnosis(Saveable, answer.Diagnosis):
     def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
         """Write the page into an existing folder."""
         with deviations_in(self.run.touches.deviation_unit):
-            write_diagnosis_page(self, folder, self.title, np.random.default_rng(0))
+            write_diagnosis_page(
+                self, folder, self.title, np.random.default_rng(0), is_saved=self.auto
+            )
             if printed_by is not None:
                 write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 

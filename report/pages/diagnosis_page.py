@@ -63,7 +63,11 @@ _HELD_OUT = (
 
 
 def write_diagnosis_page(
-    result: Diagnosis, folder: str | Path, title: str, rng: np.random.Generator
+    result: Diagnosis,
+    folder: str | Path,
+    title: str,
+    rng: np.random.Generator,
+    is_saved: bool = False,
 ) -> Path:
     """Write `report.html` and its pictures into a folder.
 
@@ -72,6 +76,7 @@ def write_diagnosis_page(
         folder: For the page.
         title: Name of the run file.
         rng: Shuffles residuals, to show what chance produces.
+        is_saved: Whether the model file has what was found.
     """
     fits = [("starting model", result.start)]
     fits += [("final model", result.fit)] if len(result.steps) > 1 else []
@@ -99,7 +104,7 @@ def write_diagnosis_page(
         ],
         foot=run_foot(result.run, title),
         means=diagnosis_meaning(result),
-        next=diagnosis_step(result, title),
+        next=diagnosis_step(result, title, is_saved),
         live=diagnosis_view(result, title),
     )
     path = Path(folder) / PAGE

@@ -4,12 +4,13 @@ from matstd.diagnosis.answer import Comparison, Diagnosis, Verdict
 from matstd.report.numbers import plural
 
 
-def diagnosis_step(result: Diagnosis, title: str) -> str:
+def diagnosis_step(result: Diagnosis, title: str, is_saved: bool = False) -> str:
     """After a diagnosis.
 
     Args:
         result: The diagnosis.
         title: Name of the run file.
+        is_saved: Whether the model file has what was found.
     """
     if result.verdict is Verdict.UNDECIDED:
         what = plural(len(result.repeat), "touch") if len(result.repeat) else "some touches"
@@ -30,6 +31,8 @@ def diagnosis_step(result: Diagnosis, title: str) -> str:
         return "Add no effect; `matstd compensate` returns the model to the machine."
     them = "it" if len(result.steps) == 2 else "them"
     probe = "; probe `next_measurement_1.csv` to learn which cause it is" if result.plans else ""
+    if is_saved:
+        return f"`matstd compensate` returns model.toml to the machine{probe}."
     return (
         f"`matstd diagnose {title} --auto` puts {them} into model.toml, and "
         f"`matstd compensate` returns the model to the machine{probe}."
