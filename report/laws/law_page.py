@@ -12,6 +12,7 @@ from matstd.report.laws.law_words import (
     carrier_words,
     formula_words,
     held_out_sentence,
+    instead_sentence,
     law_sentence,
     library_sentence,
     looks_like,
@@ -22,7 +23,7 @@ from matstd.report.laws.law_words import (
     second_run_sentence,
     variable_words,
 )
-from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
+from matstd.report.layout import KeyFigure, LiveView, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, microns, sentence
 from matstd.twin.units import UM
 
@@ -51,14 +52,17 @@ _FOOT = (
 
 
 def write_law_page(
-    learning: Learning, folder: str | Path, title: str, second: SecondRun | None
+    learning: Learning,
+    folder: str | Path,
+    title: str,
+    second: SecondRun | None,
+    live: LiveView | None = None,
 ) -> None:
-    """Write `report.html` and its pictures into a folder."""
-    sections: list[Section] = []
-    for i, one in enumerate(learning.laws, start=1):
-        sections += _law_sections(learning, one, i)
-    if learning.laws:
-        sections += [_held_out(learning, second)]
+    """Write `report.html` and its pictures into a folder.
+
+    Args:
+        live: View in which the laws are switched; None for a page of pictures.
+    """
     page = Page(
         title=f"Laws learnt from {title}",
         heading=f"What the model leaves of {title}",
@@ -66,10 +70,22 @@ def write_law_page(
         means=_meaning(learning),
         next=_NEXT if learning.laws else _WITHOUT,
         key=_key(learning, second),
-        sections=[Section(sentences=[_WHAT] if learning.laws else []), *sections],
+        sections=law_sections(learning, second),
         foot=[_FOOT],
+        live=live,
     )
     write_page(Path(folder) / PAGE, page)
+
+
+def law_sections(learning: Learning, second: SecondRun | None = None) -> list[Section]:
+    """What was learnt: every law with its picture and its rivals, and the error elsewhere."""
+    if not learning.laws:
+        return [Section(sentences=[no_law_sentence(learning)])]
+    instead = instead_sentence(learning)
+    out = [Section(sentences=[f"**{instead}**", _WHAT] if instead else [_WHAT])]
+    for i, one in enumerate(learning.laws, start=1):
+        out += _law_sections(learning, one, i)
+    return [*out, _held_out(learning, second)]
 
 
 def _meaning(learning: Learning) -> str:

@@ -4,16 +4,24 @@ from matstd.diagnosis.answer import Comparison, Diagnosis, Verdict
 from matstd.report.numbers import plural
 
 
-def diagnosis_step(result: Diagnosis, title: str) -> str:
+def diagnosis_step(result: Diagnosis, title: str, is_saved: bool = False) -> str:
     """After a diagnosis.
 
     Args:
         result: The diagnosis.
         title: Name of the run file.
+        is_saved: Whether the model file has what was found.
     """
     if result.verdict is Verdict.UNDECIDED:
         what = plural(len(result.repeat), "touch") if len(result.repeat) else "some touches"
         return f"Repeat {what}; their scatter decides whether the residual is noise."
+    if result.verdict is Verdict.UNEXPLAINED and result.laws is not None and result.laws.laws:
+        return (
+            "Look for the cause of the learnt law, rename it in effect.py, and diagnose "
+            "again with `--effects effect.py`. model.toml predicts with it until then."
+        )
+    if result.verdict is Verdict.UNEXPLAINED and result.laws is not None:
+        return "Record what could cause it (a temperature, a load), and diagnose again."
     if result.verdict is Verdict.UNEXPLAINED:
         return (
             f"`matstd learn {title}` looks for a law of what remains. Where none holds, "
@@ -23,6 +31,8 @@ def diagnosis_step(result: Diagnosis, title: str) -> str:
         return "Add no effect; `matstd compensate` returns the model to the machine."
     them = "it" if len(result.steps) == 2 else "them"
     probe = "; probe `next_measurement_1.csv` to learn which cause it is" if result.plans else ""
+    if is_saved:
+        return f"`matstd compensate` returns model.toml to the machine{probe}."
     return (
         f"`matstd diagnose {title} --auto` puts {them} into model.toml, and "
         f"`matstd compensate` returns the model to the machine{probe}."
