@@ -6,14 +6,13 @@ from pathlib import Path
 
 from matstd.api.diagnosing import named_effects
 from matstd.api.runs import GEOMETRY, Runs, StartingModel, read_run, starting_run
-from matstd.api.saved import REPORT_FILES, Saveable
+from matstd.api.saved import EFFECT, REPORT_FILES, Saveable, write_learnt
 from matstd.diagnosis import laws
-from matstd.diagnosis.files import SavedModel, model_text, parsed_model, write_laws
+from matstd.diagnosis.files import SavedModel, model_text, parsed_model
 from matstd.diagnosis.fit import prior_for
 from matstd.diagnosis.laws import SecondRun, learn_laws, second_run
 from matstd.diagnosis.search import DiagnosisTask, refined_named
 from matstd.report.laws import (
-    effect_names,
     effect_text,
     law_sentence,
     no_law_sentence,
@@ -26,8 +25,6 @@ from matstd.twin.model import Model
 from matstd.twin.record import Run
 from matstd.twin.versions import versions
 from matstd.twin.words import deviations_in
-
-EFFECT, LAW = "effect.py", "law.json"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -68,10 +65,8 @@ class LearntLaws(Saveable, laws.Learning):
     def write(self, folder: Path) -> str:
         """Write law.json, model.toml and, with a law, effect.py; as of `Saveable`."""
         with deviations_in(self.after.run.touches.deviation_unit):
-            write_laws(folder / LAW, self, self.title, effect_names(self), self.second)
+            write_learnt(folder, self, self.title, self.second)
             write_whole(folder / "model.toml", self.model_text)
-            if self.laws:
-                write_whole(folder / EFFECT, self.effect_text)
         return ""
 
     def live(self) -> Framed:
