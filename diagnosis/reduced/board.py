@@ -122,16 +122,22 @@ def diagnosed_board(result: Diagnosis) -> Board:
 
 
 @one_blas_thread()
-def learnt_board(learning: Learning) -> Board:
-    """The board of laws that were learnt: they are on; others are effects with a cause."""
-    fit, laws = learning.after, [one.law for one in learning.laws]
+def learnt_board(learning: Learning, found: Sequence[Effect] = ()) -> Board:
+    """The board of laws that were learnt: they are on; others are effects with a cause.
+
+    Args:
+        found: Effects that a diagnosis found before; those in the model are switches, too.
+    """
+    fit, names = learning.after, {e.name for e in learning.after.model.effects}
+    named = [e for e in fit.model.effects if e.name in {one.name for one in found}]
+    laws: list[Effect] = [one.law for one in learning.laws]
+    before = frozenset(e.name for e in named)
     known = {
-        frozenset[str](): (learning.before.rms, learning.before.test_rms),
-        frozenset(law.name for law in laws): (fit.rms, fit.test_rms),
+        before: (learning.before.rms, learning.before.test_rms),
+        before | {law.name for law in laws}: (fit.rms, fit.test_rms),
     }
-    names = {e.name for e in fit.model.effects}
     library = [e for e in candidate_effects(fit.run.touches) if e.name not in names]
-    return _board(fit, laws, {}, library, learning.before, known)
+    return _board(fit, [*named, *laws], {}, library, learning.before, known)
 
 
 @one_blas_thread()
