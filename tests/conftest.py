@@ -86,11 +86,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     items.sort(key=lambda item: rank.get(item.path, len(rank)))
 
 
-def pytest_collection_finish() -> None:
-    """What is collected stays to the end: no search for garbage looks at it again."""
-    gc.freeze()
-
-
 @pytest.fixture(scope="session", autouse=True)
 def _no_lines_of_progress():
     """A slow machine is told every ten seconds how far it is: nothing a test can count on."""
