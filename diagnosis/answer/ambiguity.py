@@ -17,10 +17,11 @@ from matstd.diagnosis.evidence import (
     signatures,
 )
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.search import refined
+from matstd.diagnosis.search import follows_driver, refined
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 from matstd.twin.record import Touches
+from matstd.twin.thermal import drives
 
 LISTED_FAR = 2
 """Candidates that are refined where all rivals are far behind: the effect itself and one that says
@@ -108,12 +109,15 @@ def plausibility(effects: Sequence[Effect], touches: Touches) -> dict[str, float
 
     Every family - a kind, and apart from it the same kind after a sensor - is as likely as every
     other, and shares its weight among its members; a sensor is likely to explain the axis whose
-    letter it bears.
+    letter it bears, and what follows no sensor supposes less.
     """
+    chosen = POLICY.log_odds_unrecorded + float(np.log(max(len(drives(touches)), 1)))
     family = {e.name: _family(e, touches) for e in effects}
     labels = list(family.values())
     return {
-        e.name: _own_sensor(e, touches) - float(np.log(labels.count(family[e.name])))
+        e.name: _own_sensor(e, touches)
+        - chosen * follows_driver(e)
+        - float(np.log(labels.count(family[e.name])))
         for e in effects
     }
 
