@@ -24,8 +24,8 @@ from matstd.twin.record import Touches
 from matstd.twin.thermal import drives
 
 LISTED_FAR = 2
-"""Candidates that are refined where all rivals are far behind: the effect itself and one that says
-how far."""
+"""Candidates far behind that are refined too: one that says how far the next explanation outside
+the class is, and a second, since the first may be the effect itself."""
 
 MAX_RIVALS = 40
 """Most rivals that are refined, the most likely first; a larger class would not help a reader."""
@@ -78,8 +78,8 @@ class ConfusionClass:
 
     @property
     def runner_up(self) -> Rival | None:
-        """The next best explanation, however far behind."""
-        return next(iter((*self.rivals, *self.distinguished)), None)
+        """The next best explanation outside the class, however far behind."""
+        return next(iter(self.distinguished), None)
 
     def headed(self, sized: ScaledEffect) -> "ConfusionClass":
         """The class with another of its members named: the one that was weighed."""
@@ -182,8 +182,9 @@ def _ranked(pool: Signatures, evidence: Array, least: float) -> list[int]:
     order = np.argsort(-evidence, kind="stable")
     _, first = np.unique(pool.owner[order], return_index=True)
     ranked = order[np.sort(first)]
-    close = [int(v) for v in ranked if evidence[v] > least][:MAX_RIVALS]
-    return close if len(close) > 1 else [int(v) for v in ranked[:LISTED_FAR]]
+    close = int(np.count_nonzero(evidence[ranked] > least))
+    near = ranked[: min(close, MAX_RIVALS)]
+    return [int(v) for v in (*near, *ranked[close : close + LISTED_FAR])]
 
 
 def _explained(without: EffectSet, sized: ScaledEffect) -> Array:
