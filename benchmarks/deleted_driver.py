@@ -25,12 +25,14 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path[:0] = [str(ROOT / "benchmarks"), str(ROOT / "tests" / "oracles")]
 
 import simulator_effects as fx  # noqa: E402  (found through the path above)
+from harness import named_steps  # noqa: E402
 from other_cases import predicted  # noqa: E402
 from simulator import probe, run_text  # noqa: E402
 from simulator_case import Ordinary, read_back, visible_size  # noqa: E402
 from simulator_experiment import MACHINES, STATED_NOISE, random_experiment  # noqa: E402
 
 from matstd.diagnosis.answer import Diagnosis, diagnose  # noqa: E402
+from matstd.diagnosis.search import follows_driver  # noqa: E402
 from matstd.twin.files import read_run  # noqa: E402
 from matstd.twin.units import UM  # noqa: E402
 
@@ -65,14 +67,12 @@ class Outcome:
 
     @property
     def names(self) -> list[str]:
-        return [s.effect.name for s in self.result.steps if s.effect is not None]
+        return [s.effect.name for s in named_steps(self.result) if s.effect is not None]
 
     @property
     def sensors(self) -> list[str]:
-        """Names that follow a recorded sensor."""
-        known = {*self.result.run.touches.temperature, "spindle_rpm"}
-        parts = {n: n.partition("(")[2].rstrip(")").split("#")[0].split(",") for n in self.names}
-        return [n for n, words in parts.items() if known & {w.rstrip(")") for w in words[-1:]}]
+        """Names that follow a recorded driver."""
+        return [e.name for e in self.result.found if follows_driver(e)]
 
     @property
     def is_worse(self) -> bool:
@@ -142,10 +142,9 @@ def stored(folder: Path) -> Case | None:
     if not drivers:
         return None
     text = (folder / "run.csv").read_text()
-    names = [n.partition("(")[2].rstrip(")") for n in (h["name"] for h in hidden)]
     return Case(
         folder.name,
-        names[0] and hidden[0]["name"],
+        ", ".join(h["name"] for h in hidden),
         drivers.pop(),
         (folder / "machine.toml").read_text(),
         text,

@@ -51,8 +51,8 @@ class Verified:
         touches: Effective number it explains, ``(sum d^2)^2 / sum d^4`` of what it changes.
         domain_density: Least gain of the log predictive density over domains of which blocks are
             left out (parts of the time, set-ups); 0 where an earlier test fails already.
-        is_possible: Whether no coefficient of expansion is beyond what materials have, and no
-            driver that was not recorded is more likely.
+        is_possible: Whether no coefficient of expansion is of a body that shrinks when it warms,
+            and no driver that was not recorded is more likely.
     """
 
     member: Member

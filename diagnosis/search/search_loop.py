@@ -138,7 +138,8 @@ def search_until_stable(
 
     A table is followed only where it predicts plainly better than what the laws came to: it can
     imitate any of them. Where a remainder depends on an axis, the tables of its components are
-    offered too, and followed only if nothing remains beside them.
+    offered too, and one of them is followed only if nothing remains beside it: several together
+    imitate any function of several axes.
 
     Args:
         start: A set to begin with, inner parameters refined, as a choice of the rows gave it: what
@@ -158,7 +159,8 @@ def search_until_stable(
     if not tables:
         return state
     other = _with_further_periods(task, added, [*laws, *tables], progress, ())
-    is_whole = not other.left and not other.nameless
+    followed = sum(traits(s.effect).is_table for s in other.effects)
+    is_whole = followed == 1 and not other.left and not other.nameless
     return other if is_whole and _held_out(other) < POLICY.error_share * _held_out(state) else state
 
 
