@@ -60,7 +60,7 @@ def write_laws(
     """Write `law.json`, whole or not at all.
 
     Args:
-        effect_names: Of the laws in `effect.py`, in their order.
+        effect_names: Names of the laws in `effect.py`, in their order.
     """
     write_whole(path, json_text(law_table(learning, run_name, effect_names, second)))
 

@@ -60,7 +60,7 @@ class Estimable:
     Attributes:
         rows: Columns of the touches in use over their noise, times the prior's standard deviations.
         effective: Number of parameters that the data rather than the prior decide.
-        combinations: Of the machine's parameters, best determined first.
+        combinations: Combinations of the machine's parameters, best determined first.
         determined: Parameters that are determined by themselves, best first.
     """
 

@@ -162,6 +162,21 @@ class Chain(Displayed):
         return tuple(ln.name for ln in self.links if ln.kind == "rotary" and ln.programmed)
 
     @cached_property
+    def linear_columns(self) -> list[int]:
+        """Columns of the programmed linear axes in an array of readings (N, A), in chain order."""
+        return [self.axis_index(name) for name in self.linear_axes]
+
+    @cached_property
+    def rotary_columns(self) -> list[int]:
+        """Columns of the programmed rotary axes in an array of readings (N, A), in chain order."""
+        return [self.axis_index(name) for name in self.rotary_axes]
+
+    @property
+    def travels(self) -> Array:
+        """Smallest and largest reading of every axis, (A, 2), mm and rad."""
+        return np.array([self.link(name).range for name in self.axes])
+
+    @cached_property
     def tool_rotary_axes(self) -> tuple[str, ...]:
         """Programmed rotary axes that carry the tool, from the foundation outwards."""
         return tuple(n for n in self.rotary_axes if not self.link(n).carries_workpiece)

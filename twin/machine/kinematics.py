@@ -250,7 +250,7 @@ def inverse_linear(chain: Chain, target: Array, q: Array, length: Array | float)
         NotReachable: The machine has not three independent linear axes in some pose.
     """
     q = checked_readings(chain, q).copy()
-    columns = [chain.axis_index(name) for name in chain.linear_axes]
+    columns = chain.linear_columns
     if len(columns) != 3:
         raise NotReachable(
             f"machine {chain.name} has {len(columns)} linear axes, "
