@@ -28,6 +28,7 @@ number in a result.
     compensation
             what compensation corrects and what remains, with its page
     drift   laws of a thermal drift, with their page
+    charts  control charts of a machine over several runs, with their page
     laws    laws that were learnt, with their page and their Python file
 
 A new picture is a function from a result to a figure (`maps`, `plots`); a section of a page lists
@@ -54,6 +55,7 @@ PARTS = (
     "pages",
     "compensation",
     "drift",
+    "charts",
     "laws",
 )
 """From bottom to top: each imports only from those before it."""

@@ -6,13 +6,13 @@ them; geometry and set-ups are refitted each time. Live pages evaluate them in t
 """
 
 from matstd.diagnosis.reduced.board import Board, compared_board, diagnosed_board
-from matstd.diagnosis.reduced.levels import Errors, Level, Reduced
+from matstd.diagnosis.reduced.matrices import Errors, Matrices, Reduced
 from matstd.diagnosis.reduced.switches import Switch
 
 __all__ = [
     "Board",
     "Errors",
-    "Level",
+    "Matrices",
     "Reduced",
     "Switch",
     "compared_board",

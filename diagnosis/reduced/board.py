@@ -18,7 +18,7 @@ from matstd.diagnosis.evidence import (
 )
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.reduced.base import Base
-from matstd.diagnosis.reduced.levels import Errors, Reduced, reduced
+from matstd.diagnosis.reduced.matrices import Errors, Reduced, reduced
 from matstd.diagnosis.reduced.switches import Switch, switch
 from matstd.diagnosis.search import FREEDOM
 from matstd.twin.compute import one_blas_thread

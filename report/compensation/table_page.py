@@ -27,9 +27,9 @@ FEEBLE = 1e-2 * UM
 _FIGURES = (
     "All figures are deviations of the tool point in the table frame with the workpiece aligned: "
     "the best-fit rigid motion is removed, since presets and alignment are determined on the "
-    "machine itself (determine them with the tables active). Each file was read back by an "
-    "independent reader and applied on the exact twin, with the estimates of the model as the "
-    "truth; the uncertainty of the model comes in addition."
+    "machine itself (determine them with the tables active). Each file was read back from its "
+    "text by a separate reader and applied on the exact twin, with the estimates of the model as "
+    "the truth; the uncertainty of the model comes in addition."
 )
 _TOOLS = (
     "This holds for tools whose length and offset are set relative to the probe of the "

@@ -140,7 +140,8 @@ class Page:
         key: Its figures.
         sections: Those before the first title stand above the table of contents.
         foot: What the figures rest upon.
-        next: What to do now, in a sentence behind the lead; empty for nothing.
+        means: What the result means for the user, in a box below the lead; empty for nothing.
+        next: What to do now, in the same box; empty for nothing.
         live: What moves, above the sections, which are then folded; None for a page of pictures.
     """
 
@@ -150,5 +151,6 @@ class Page:
     key: Sequence[KeyFigure]
     sections: Sequence[Section]
     foot: Sequence[str] = ()
+    means: str = ""
     next: str = ""
     live: LiveView | None = None

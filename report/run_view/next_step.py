@@ -22,10 +22,10 @@ def diagnosis_step(result: Diagnosis, title: str) -> str:
     if result.verdict is Verdict.NONE:
         return "Next: add no effect; `matstd compensate` returns the model to the machine."
     them = "it" if len(result.steps) == 2 else "them"
-    told = "; probe `next_measurement_1.csv` to learn which cause it is" if result.plans else ""
+    probe = "; probe `next_measurement_1.csv` to learn which cause it is" if result.plans else ""
     return (
         f"Next: `matstd diagnose {title} --auto` puts {them} into model.toml, and "
-        f"`matstd compensate` returns the model to the machine{told}."
+        f"`matstd compensate` returns the model to the machine{probe}."
     )
 
 

@@ -1,5 +1,6 @@
 """Machines in ISO chain notation, `[w C' B' X' f Y Z (C1) t]`, as an ordered tuple of links."""
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -273,6 +274,16 @@ class Chain(Displayed):
                     factor = a.unit if key == "range" else 1.0
                     return f"axis.{a.name}.{key}", _listed(left / factor), _listed(right / factor)
         return None
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """Short digest of what `difference` compares; saved models state that of their machine."""
+        numbers = [np.array(self.table_origin)]
+        for link in self.links:
+            numbers += [np.array(getattr(link, key)) for key in ("range", "point", "direction")]
+        text = " ".join(f"{v + 0.0:.6f}" for part in numbers for v in np.round(part, 6).ravel())
+        words = f"{self.name} {' '.join(self.notation.split())} {text}"
+        return hashlib.sha256(words.encode()).hexdigest()[:12]
 
 
 def _location(link: Link) -> list[int]:

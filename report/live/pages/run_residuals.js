@@ -9,7 +9,7 @@ const MOST_ROWS = 200;  // of the table that are shown; all are copied
 
 export class Residuals {
   constructor(page, data, { mark, choose }) {
-    Object.assign(this, { data, choose, tellMark: mark, chosenPlace: page.querySelector("#chosen") });
+    Object.assign(this, { data, choose, onMark: mark, chosenPlace: page.querySelector("#chosen") });
     this.overPlace(page.querySelector(".residuals"));
     this.plot = new Scatter(this.canvas, { over: mark, brushed: choose });
     this.plot.frame.yLabel = `residual in ${data.unit}`;
@@ -29,7 +29,7 @@ export class Residuals {
     place.append(element("div", { class: "below" },
       element("label", {}, "Residual over ", this.select),
       element("span", { class: "hint", text: "drag to choose touches, click to choose none; "
-        + "shaded: noise, ±2 u" })), this.canvas);
+        + "shaded: ± 2 u of the stated noise; gross errors stand at the edge" })), this.canvas);
   }
 
   pick(k) {
@@ -65,11 +65,12 @@ export class Residuals {
     let values = now.groups;
     if (!values.length) values = this.ofTestRows(names.length, group.values, residual, state.values);
     this.title.textContent = names.length && /^lines/.test(names[0])
-      ? "Held-out error by stretch of the run" : "Held-out error by table pose";
+      ? "Held-out error by stretch of the run"
+      : `Held-out error by ${this.data.touches.setups.length > 1 ? "set-up and " : ""}table pose`;
     if (!this.before) {
       this.before = values;
       this.barTop = Math.max(...values.filter(Number.isFinite), this.data.noise);
-      this.bars.frame.yLabel = this.data.unit;
+      this.bars.frame.yLabel = `held out, ${this.data.unit}`;
     }
     this.barTop = Math.max(this.barTop, ...values.filter(Number.isFinite));
     this.bars.show({ values, names, line: this.data.noise, top: this.barTop });

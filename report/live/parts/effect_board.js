@@ -97,6 +97,12 @@ export class EffectBoard {
     return { ...found, columns, own, isAsFound };
   }
 
+  /** Errors with what was found, as the command left it. */
+  asFound() {
+    return this.known.get(this.switches.filter(one => one.isFound).map(one => one.name).sort()
+      .join("\n"));
+  }
+
   /** Fixes the amounts of an effect at a multiple of what is fitted now; null: fitted again. */
   pull(one, gain) {
     if (gain !== null && one.gain === null) {
