@@ -11,8 +11,9 @@ import numpy as np
 
 from matstd.twin.errors import NotReachable, ShapeMismatch
 from matstd.twin.frames import Array, apply, inverse, pose, rotation, turned_about
-from matstd.twin.machine.chain import Chain, Link
+from matstd.twin.machine.chain import Chain
 from matstd.twin.machine.contribution import Contribution, Where
+from matstd.twin.machine.link import Link
 from matstd.twin.machine.moved_point import moved_tip, tip_in_tool
 
 
