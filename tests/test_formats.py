@@ -224,6 +224,7 @@ RESULTS = {
         "diagnosis/files/fault_table.py",
         "diagnosis/files/parts_table.py",
         "diagnosis/files/trend_table.py",
+        "diagnosis/files/law_file.py",
     ],
     "comparison.json": [
         "diagnosis/files/diagnosis_file.py",

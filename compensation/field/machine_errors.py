@@ -1,7 +1,7 @@
 """The errors of a machine as a model knows them, without what only the measurement had."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal, Protocol
 
@@ -11,6 +11,7 @@ from scipy.linalg import block_diag
 from matstd.compensation.field.state import SWITCHED_ON, State
 from matstd.diagnosis.files import SavedModel, model_of
 from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.geometry import Estimate
 from matstd.twin.errors import BadValue
 from matstd.twin.frames import Array
 from matstd.twin.machine import (
@@ -65,6 +66,8 @@ class MachineErrors:
             stands in the spindle against that probe: a run cannot distinguish that from the lines
             of rotary axes.
         left_out: Names of effects of the model that are not the machine's.
+        determined: Location errors as the run of the model determines them, by symbol. A parameter
+            shares with others what the run cannot separate; this is what was reported.
     """
 
     chain: Chain
@@ -74,6 +77,7 @@ class MachineErrors:
     tool_root: Array
     state: State = SWITCHED_ON
     left_out: tuple[str, ...] = ()
+    determined: Mapping[str, Estimate] = field(default_factory=dict)
 
     @classmethod
     def of_model(cls, model: SavedModel | Fit, state: State = SWITCHED_ON) -> "MachineErrors":
@@ -84,7 +88,11 @@ class MachineErrors:
         known = list(zip(effects, theta, strict=True))
         out = cls._of_machine(saved.model.chain, known, saved.estimates.root, state)
         others = (one.effect.name for one in saved.left_out)
-        return replace(out, left_out=(*out.left_out, *others))
+        return replace(
+            out,
+            left_out=(*out.left_out, *others),
+            determined={one.symbol: one.estimate for one in saved.determined},
+        )
 
     @classmethod
     def of_errors(
@@ -267,6 +275,7 @@ class MachineErrors:
             theta=tuple(theta),
             root=scale * self.root,
             tool_root=scale * self.tool_root,
+            determined={},
         )
 
 

@@ -24,6 +24,15 @@ PAGE, PICTURES = "report.html", "pictures"
 FEEBLE = 1e-2 * UM
 """Errors below this size are not listed: 10 nm are below the resolution of the tables."""
 
+_MEANS = (
+    "The figures are what the tables do on the exact twin with the estimates as the truth, and "
+    "what the model does not know. They hold in the state, with the datum and for the machine that "
+    "are named above."
+)
+_NEXT = (
+    "Enter one table, run its one-point test with the machine empty, then probe the standard again "
+    "and compare (`matstd compare RUN.csv --model`)."
+)
 _FIGURES = (
     "All figures are deviations of the tool point in the table frame with the workpiece aligned: "
     "the best-fit rigid motion is removed, since presets and alignment are determined on the "
@@ -64,6 +73,8 @@ def write_compensation_page(
         title=f"Compensation with {title}",
         heading=f"Compensation with {title}",
         lead=f"{head.machine}; datum {head.datum}; state {head.state}; model {head.model}.",
+        means=_MEANS,
+        next=_NEXT,
         key=_key(first, done),
         sections=[
             Section(

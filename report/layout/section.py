@@ -44,12 +44,14 @@ class Table:
         rows: Cells; a line break in a cell is one on the page.
         caption: Above the table.
         best: Indices of rows in bold.
+        is_file: Whether the page has a link to its file in the place of its rows.
     """
 
     columns: Sequence[Heading]
     rows: Sequence[Sequence[str]]
     caption: str = ""
     best: Collection[int] = ()
+    is_file: bool = False
 
     @classmethod
     def of(
@@ -83,6 +85,7 @@ class Section:
         warnings: Like notes, for what can cause damage or a wrong result.
         is_part: Whether the title is one of a subsection.
         is_unfolded: Whether a fold is open at first.
+        is_for_screen: Whether a fold is left out of print.
     """
 
     title: str = ""
@@ -97,6 +100,7 @@ class Section:
     warnings: Sequence[str] = ()
     is_part: bool = False
     is_unfolded: bool = False
+    is_for_screen: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +110,7 @@ class KeyFigure:
     Attributes:
         value: With its unit.
         words: What it is.
-        look: `good`, `found` or `bad`; empty for neither.
+        look: `good`, `fair`, `found` or `bad`; empty for neither.
     """
 
     value: str

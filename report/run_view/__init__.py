@@ -8,7 +8,7 @@ browser.
 from matstd.report.run_view.frame import Framed
 from matstd.report.run_view.next_step import comparison_step, diagnosis_step
 from matstd.report.run_view.run_data import Findings
-from matstd.report.run_view.view import comparison_view, diagnosis_view, run_view
+from matstd.report.run_view.view import comparison_view, diagnosis_view, learnt_view, run_view
 
 __all__ = [
     "Findings",
@@ -17,5 +17,6 @@ __all__ = [
     "comparison_view",
     "diagnosis_step",
     "diagnosis_view",
+    "learnt_view",
     "run_view",
 ]

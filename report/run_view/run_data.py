@@ -1,6 +1,6 @@
 """The data of the live view of a run, packed for the page."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,6 +9,7 @@ from matstd.diagnosis.fit import Fit, file_unit, inner_unit
 from matstd.diagnosis.reduced import Board, Matrices, Switch
 from matstd.diagnosis.residual import variables
 from matstd.report.effects import effect_title
+from matstd.report.laws import LawCurve
 from matstd.report.live import TREE, packed
 from matstd.report.numbers import capital, unit_words
 from matstd.report.run_view.touched_bodies import touched_bodies
@@ -46,12 +47,15 @@ class Findings:
     remains: str = ""
 
 
-def run_data(board: Board, findings: Findings) -> TREE:
+def run_data(
+    board: Board, findings: Findings, curves: Mapping[str, Sequence[LawCurve]] | None = None
+) -> TREE:
     """Data of `run_page.js`.
 
     Args:
         board: The run with its effects.
         findings: What the report says of it.
+        curves: Of laws among the switches, by their names, one for every variable.
     """
     fit = board.fit
     alone = None if findings.set_up_alone is None else findings.set_up_alone / UM
@@ -64,6 +68,7 @@ def run_data(board: Board, findings: Findings) -> TREE:
         "setUpAlone": alone,
         "touches": _touches(fit),
         "columns": _columns(fit.run.touches),
+        "curves": [_curve(law, c) for law, own in (curves or {}).items() for c in own],
         "body": _bodies(fit.run.touches),
         "switches": [_switch(s, findings.sizes.get(s.effect.name, "")) for s in board.switches],
         "estimate": packed(board.estimate, "f8"),
@@ -146,6 +151,22 @@ def _columns(touches: Touches) -> list[TREE]:
         order = packed(np.arange(1, len(touches) + 1), "f4", name="Number of the touch")
         out.insert(0, order)
     return out
+
+
+def _curve(law: str, curve: LawCurve) -> TREE:
+    """A law over a variable; levers in the unit of the residual over that of the carrier."""
+    return {
+        "law": law,
+        "title": f"{curve.title} over {curve.label.partition(' in ')[0]}",
+        "carrier": f"{curve.title} in {in_own_unit(curve.unit)}",
+        "label": capital(curve.label),
+        "x": packed(curve.x, "f4"),
+        "value": packed(curve.value, "f4"),
+        "u": packed(curve.u, "f4"),
+        "touchX": packed(curve.touch_x, "f4"),
+        "touchValue": packed(curve.touch_value, "f4"),
+        "lever": packed(curve.lever * curve.scale / UM, "f4"),
+    }
 
 
 def _bodies(touches: Touches) -> TREE | None:

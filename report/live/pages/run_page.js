@@ -117,7 +117,7 @@ const parts = laidOut();
 let waiting = 0;
 const effects = new EffectList(place.querySelector("#effect-list"), board, data, changed);
 const touched = new Touched(place.querySelector(".touched"), data, { mark, choose });
-const residuals = new Residuals(place, data, { mark, choose });
+const residuals = new Residuals(place, board, { mark, choose });
 effects.refresh();
 changed();
 themeButton(parts.theme, () => { touched.recolour(); painted(); });
