@@ -205,7 +205,6 @@ def promise_sentence(
     """The error of a prediction beside the one that its model promised.
 
     Args:
-        found: The prediction.
         promised: Error of held-out rows when the model was made, mm.
         others: Effects of another run in the model, which the promise excludes.
     """
@@ -240,7 +239,7 @@ def learnt_lines(fit: Fit, numbers: Mapping[str, Sequence[Reported]]) -> list[st
 
     Args:
         fit: Repeated from the model.
-        numbers: Of the effects, by name, as the model file keeps them.
+        numbers: Numbers of the effects, by name, as the model file keeps them.
     """
     rms, held_out, chi2 = figures(fit)
     first = (
