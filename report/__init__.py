@@ -12,6 +12,7 @@ number in a result.
     words   sentences, for pages and for the console
     geometry
             geometry of the machine, mistakes in its description
+    laws    laws that were learnt, with their page and their Python file
     identifiability
             what touches can determine, in words and in result files
     task    calibration of a standard, uncertainty of a measuring task
@@ -28,7 +29,7 @@ number in a result.
     compensation
             what compensation corrects and what remains, with its page
     drift   laws of a thermal drift, with their page
-    laws    laws that were learnt, with their page and their Python file
+    charts  control charts of a machine over several runs, with their page
 
 A new picture is a function from a result to a figure (`maps`, `plots`); a section of a page lists
 it with its caption. A new sentence is a function in `words`.
@@ -41,6 +42,7 @@ PARTS = (
     "effects",
     "words",
     "geometry",
+    "laws",
     "verdict",
     "identifiability",
     "task",
@@ -54,6 +56,6 @@ PARTS = (
     "pages",
     "compensation",
     "drift",
-    "laws",
+    "charts",
 )
 """From bottom to top: each imports only from those before it."""

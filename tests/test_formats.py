@@ -224,6 +224,7 @@ RESULTS = {
         "diagnosis/files/fault_table.py",
         "diagnosis/files/parts_table.py",
         "diagnosis/files/trend_table.py",
+        "diagnosis/files/law_file.py",
     ],
     "comparison.json": [
         "diagnosis/files/diagnosis_file.py",
@@ -232,6 +233,7 @@ RESULTS = {
         "diagnosis/files/parts_table.py",
     ],
     "law.json": ["diagnosis/files/law_file.py", "diagnosis/laws/policy.py"],
+    "trend.json": ["diagnosis/charts/history_file.py"],
     "uncertainty.json": ["diagnosis/files/uncertainty_file.py"],
     "identification.json": ["report/identifiability/identification_file.py"],
     "identifiability.json": [

@@ -16,6 +16,7 @@ from matstd.diagnosis.choice import Choice
 from matstd.diagnosis.faults import DescriptionFault
 from matstd.diagnosis.fit import Fit, Reported
 from matstd.diagnosis.geometry import LearntGeometry
+from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.remarks import Remark
 from matstd.diagnosis.residual import Region, Structure
 from matstd.twin.display import Tabular
@@ -112,6 +113,7 @@ class Diagnosis(Tabular):
         choice: How the set was chosen by prediction; None where the search left nothing to choose.
         trend: What changed between several runs; None for a single one.
         repeat: Rows of the touches whose repetition would decide, where the verdict is undecided.
+        laws: Laws learnt from what remains; None where nothing remains, or none were looked for.
     """
 
     run: Run
@@ -134,6 +136,7 @@ class Diagnosis(Tabular):
     trend: Trend | None = None
     nearest: tuple[Offer, ...] = ()
     repeat: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    laws: Learning | None = None
 
     def columns(self) -> dict[str, list[Any]]:
         """Every step in which the error falls; the first is the starting model."""

@@ -11,6 +11,7 @@ from matstd.diagnosis.answer import Comparison, Detectable, Diagnosis, GroupResi
 from matstd.diagnosis.choice import Choice
 from matstd.diagnosis.files.fault_table import fault_table
 from matstd.diagnosis.files.geometry_table import geometry_table
+from matstd.diagnosis.files.law_file import learnt_table
 from matstd.diagnosis.files.parts_table import parts_table, promise_table, repeatability_table
 from matstd.diagnosis.files.trend_table import trend_table
 from matstd.diagnosis.fit import Fit, file_unit
@@ -30,6 +31,7 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
     """Everything of `diagnosis.json`, in the units that stand in its names."""
     choice = {} if result.choice is None else {"choice": choice_table(result.choice)}
     trend = {} if result.trend is None else {"trend": trend_table(result.trend)}
+    laws = {} if result.laws is None else {"learnt": learnt_table(result.laws)}
     return {
         "format": FORMAT,
         "touches": len(result.run),
@@ -65,6 +67,7 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
         "remarks": list(remarks),
         **choice,
         **trend,
+        **laws,
     }
 
 

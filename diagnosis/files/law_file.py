@@ -18,9 +18,7 @@ _PLACES = {"mm": ("mm", 1.0), "rad": ("deg", DEG), "s": ("s", 1.0)}
 """Unit of a parameter of a shape in files, and one of it in the base unit."""
 
 
-def law_table(
-    learning: Learning, run_name: str, effect_names: list[str], second: SecondRun | None
-) -> dict[str, Any]:
+def law_table(learning: Learning, run_name: str, second: SecondRun | None = None) -> dict[str, Any]:
     """Everything of `law.json`, in the units that stand in its names."""
     fit, policy = learning.after, learning.policy
     table: dict[str, Any] = {
@@ -30,7 +28,8 @@ def law_table(
         "noise_um": float(np.median(fit.u)) / UM,
         "stated_noise_um": float(np.median(fit.run.u)) / UM,
         "laws": [
-            _law(learning, one, name) for one, name in zip(learning.laws, effect_names, strict=True)
+            _law(learning, one, name)
+            for one, name in zip(learning.laws, learning.effect_names, strict=True)
         ],
         "held_out": [
             {"blocks": h.what, "without_um": h.before / UM, "with_um": h.after / UM}
@@ -41,6 +40,8 @@ def law_table(
     if learning.refused is not None:
         refused = learning.refused
         table["refused"] = {"law": refused.law.name, "log_evidence": refused.score}
+    if learning.instead_of:
+        table["instead_of"] = _instead(learning)
     if second is not None:
         table["second_run"] = {
             "touches": second.touches,
@@ -50,19 +51,41 @@ def law_table(
     return table
 
 
-def write_laws(
-    path: str | Path,
-    learning: Learning,
-    run_name: str,
-    effect_names: list[str],
-    second: SecondRun | None = None,
-) -> None:
-    """Write `law.json`, whole or not at all.
+def learnt_table(learning: Learning) -> dict[str, Any]:
+    """The laws of a diagnosis, the leading numbers; `law.json` has all."""
+    held_out = learning.held_out[0]
+    instead = {"instead_of": _instead(learning)} if learning.instead_of else {}
+    errors = {"without_um": held_out.before / UM, "with_um": held_out.after / UM}
+    laws = zip(learning.laws, learning.effect_names, strict=True)
+    return {"laws": [_brief(learning, one, name) for one, name in laws], **errors, **instead}
 
-    Args:
-        effect_names: Of the laws in `effect.py`, in their order.
-    """
-    write_whole(path, json_text(law_table(learning, run_name, effect_names, second)))
+
+def _brief(learning: Learning, one: LearntLaw, effect: str) -> dict[str, Any]:
+    """One law with its numbers and its nearest rival."""
+    rival = one.second_choice
+    whole = _law(learning, one, effect)
+    keys = ("law", "effect", "formula", "carriers_alike", "amplitudes", "parameters")
+    return {
+        **{key: whole[key] for key in keys},
+        "log_evidence": one.score,
+        "second_choice": None if rival is None else rival.law.name,
+        "second_choice_log_odds_against": None if rival is None else rival.log_odds,
+    }
+
+
+def _instead(learning: Learning) -> dict[str, Any]:
+    """Effects of the library in whose place the laws stand."""
+    return {
+        "effects": [effect.name for effect in learning.instead_of],
+        "log_odds_against": learning.instead_odds,
+    }
+
+
+def write_laws(
+    path: str | Path, learning: Learning, run_name: str, second: SecondRun | None = None
+) -> None:
+    """Write `law.json`, whole or not at all."""
+    write_whole(path, json_text(law_table(learning, run_name, second)))
 
 
 def _law(learning: Learning, one: LearntLaw, effect: str) -> dict[str, Any]:

@@ -15,8 +15,15 @@ from matstd.diagnosis.laws.estimates import (
     places,
     second_run,
 )
-from matstd.diagnosis.laws.learn import HeldOut, Learning, LearntLaw, Rival, fitted, learn_laws
+from matstd.diagnosis.laws.learn import (
+    HeldOut,
+    Learning,
+    LearntLaw,
+    Rival,
+    learn_laws,
+)
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
+from matstd.diagnosis.laws.remainder import learn_remainder
 
 __all__ = [
     "POLICY",
@@ -29,8 +36,8 @@ __all__ = [
     "SecondRun",
     "amplitudes",
     "curve_of",
-    "fitted",
     "learn_laws",
+    "learn_remainder",
     "partial_residual",
     "places",
     "second_run",

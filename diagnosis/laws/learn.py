@@ -7,18 +7,19 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from matstd.diagnosis.fit import Fit, fit_run
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.laws.beginning import Beginning, log_odds
 from matstd.diagnosis.laws.library import LibraryEffect, nearest_of_library
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
 from matstd.diagnosis.laws.search import Searched, search_law
 from matstd.diagnosis.laws.space import Space
-from matstd.diagnosis.regression import left_out
+from matstd.diagnosis.policy import POLICY as DIAGNOSIS
+from matstd.diagnosis.regression import Memory, left_out, likely_memory
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.frames import Array
 from matstd.twin.laws import Carrier, Law
-from matstd.twin.library import ordinary_model
 from matstd.twin.model import Effect, Model, columns
-from matstd.twin.record import Run, with_commanded, without_copies
+from matstd.twin.record import Run
 
 IntArray = NDArray[np.int64]
 
@@ -66,6 +67,12 @@ class LearntLaw:
         """Whether an effect with a cause explains as much."""
         return self.library is not None and self.library.score > self.score
 
+    @property
+    def second_choice(self) -> Rival | None:
+        """The nearest law of another carrier or other variables."""
+        own = _what(self.law)
+        return next((rival for rival in self.rivals if _what(rival.law) != own), None)
+
     def members(self, policy: LawPolicy) -> list[tuple[Law, float]]:
         """Laws that cannot be distinguished, with their shares of a prediction."""
         near, seen = [], {_what(self.law)}
@@ -104,21 +111,37 @@ class Learning:
     """What a model lacked, as laws.
 
     Attributes:
-        before: The fit without laws.
+        beginning: The model without laws.
         after: With them; the same where there are none.
         tangent: With the displacements of their parameters besides, which gives uncertainties.
         laws: Those that were learnt, in their order.
         refused: The best law where none was accepted; None where nothing at all was found.
         held_out: Errors of touches left out.
+        instead_of: Effects of the library in whose place the laws stand, since they explain the run
+            better; empty where the laws stand beside every effect of the model.
+        instead_odds: Log odds for the laws in their place.
     """
 
-    before: Fit
+    beginning: Beginning
     after: Fit
     tangent: Fit
     laws: tuple[LearntLaw, ...]
     refused: LearntLaw | None
     held_out: tuple[HeldOut, ...]
     policy: LawPolicy
+    instead_of: tuple[Effect, ...] = ()
+    instead_odds: float = 0.0
+
+    @property
+    def before(self) -> Fit:
+        """The fit without laws."""
+        return self.beginning.fit
+
+    @property
+    def effect_names(self) -> list[str]:
+        """First words of the laws as effects of the user's own, until they get better ones."""
+        count = len(self.laws)
+        return ["learnt-law" if count == 1 else f"learnt-law-{i}" for i in range(1, count + 1)]
 
     @cached_property
     def members(self) -> tuple[tuple[Effect, Array, float], ...]:
@@ -127,11 +150,11 @@ class Learning:
         Amplitudes of a member are those that it has in the place of the law that was chosen.
         """
         out: list[tuple[Effect, Array, float]] = []
-        run, chosen = self.before.run, [one.law for one in self.laws]
+        chosen = [one.law for one in self.laws]
         for i, one in enumerate(self.laws):
             for law, share in one.members(self.policy):
                 effects = [*chosen[:i], law, *chosen[i + 1 :]]
-                fit = self.after if law is one.law else fitted(run, self.before, effects)
+                fit = self.after if law is one.law else self.beginning.fitted(effects)
                 out.append((law, fit.theta[fit.of_effect(law.name)], share))
         return tuple(out)
 
@@ -148,56 +171,75 @@ class Learning:
         return np.sqrt(np.diag(self.tangent.covariance))
 
 
-def fitted(run: Run, before: Fit, laws: Sequence[Effect], with_tangents: bool = False) -> Fit:
-    """The model with laws, fitted to a run; gross errors are looked for anew."""
-    model = Model(before.model.chain, (*before.model.effects, *laws))
-    fit = fit_run(run, model)
-    if not with_tangents:
-        return fit
-    theta = fit.theta[: len(model.parameters)]
-    return fit_run(run, model, free_inner=theta, gross=fit.gross)
-
-
-@one_blas_thread()
-def learn_laws(
-    run: Run, model: Model | None = None, policy: LawPolicy = POLICY, start: Fit | None = None
-) -> Learning:
+def learn_laws(run: Run, model: Model | None = None, policy: LawPolicy = POLICY) -> Learning:
     """Laws that explain what a model leaves of a run.
 
     Args:
         model: Machine and effects to begin with; None for the ordinary geometric model.
-        start: A fit of that model to this run, where there is one.
 
     Raises:
         NotEnoughData: So few touches that nothing can be said.
     """
-    if start is None:
-        run = with_commanded(without_copies(run))
-        start = fit_run(run, model or ordinary_model(run.touches.chain))
-    run = start.run
-    current, refused = start, None
+    return learn_beside(Beginning.of_run(run, model), policy)
+
+
+@one_blas_thread()
+def learn_beside(start: Beginning, policy: LawPolicy = POLICY) -> Learning:
+    """Laws that explain what a fitted model leaves."""
+    white = replace(start, memory=None)
+    current, refused = start.fit, None
     laws: list[LearntLaw] = []
-    for _ in range(policy.most_laws if int(start.used.sum()) >= MIN_TOUCHES else 0):
+    for _ in range(policy.most_laws if int(current.used.sum()) >= MIN_TOUCHES else 0):
         searched = search_law(Space.of(current), policy)
         best = _learnt(searched)
         if best is None:
             break
-        fit = fitted(run, start, [*(one.law for one in laws), best.law])
+        fit = white.fitted([*(one.law for one in laws), best.law])
         if best.score < policy.min_score or not predicts_better(current, fit, policy):
+            refused = best
+            break
+        learnt = [one.law for one in laws]
+        if not _stands_beside_memory(start, learnt, best, (current, fit), policy):
             refused = best
             break
         laws.append(replace(best, library=nearest_of_library(searched.space)))
         current = fit
-    tangent = fitted(run, start, [one.law for one in laws], True) if laws else start
+    learnt = [one.law for one in laws]
+    if start.memory is not None and laws:
+        start = replace(start, memory=_memory_left(current, start.memory))
+        current = start.fitted(learnt, gross=current.gross)
     return Learning(
-        before=start,
+        beginning=start,
         after=current,
-        tangent=tangent,
+        tangent=start.fitted(learnt, True) if laws else start.fit,
         laws=tuple(laws),
         refused=refused,
-        held_out=tuple(_held_out(start, current, [one.law for one in laws])),
+        held_out=tuple(_held_out(start.fit, current, learnt)),
         policy=policy,
     )
+
+
+def _stands_beside_memory(
+    start: Beginning,
+    laws: Sequence[Law],
+    best: LearntLaw,
+    white: tuple[Fit, Fit],
+    policy: LawPolicy,
+) -> bool:
+    """Whether a law explains more than noise does that remembers, where there is such noise."""
+    if start.memory is None:
+        return True
+    charged = log_odds(white[1], white[0], 0.0) - best.score
+    after = start.fitted([*laws, best.law])
+    return log_odds(after, start.fitted(laws, gross=after.gross), charged) > policy.min_score
+
+
+def _memory_left(fit: Fit, before: Memory) -> Memory | None:
+    """What the noise still remembers with the laws in the model; most of it was the laws."""
+    memory, gain = likely_memory(fit.run.touches, fit.u, fit.used, fit.X, fit.y)
+    if gain < DIAGNOSIS.memory_gain:
+        return None
+    return replace(memory, is_filtered=before.is_filtered)
 
 
 def _learnt(searched: Searched) -> LearntLaw | None:

@@ -9,6 +9,7 @@ from matstd.diagnosis.laws.space import MIN_OWN, Space
 from matstd.twin.frames import Array
 from matstd.twin.library import proposals
 from matstd.twin.model import Effect, columns, inner_values, traits
+from matstd.twin.record import Touches
 
 MOST_VARIANTS = 40
 """Points of the grid of one effect: a law that lies between them loses little."""
@@ -37,11 +38,17 @@ def nearest_of_library(space: Space) -> LibraryEffect | None:
         variants = tuned_variants(effect, space.touches)
         variants = variants[:: max(1, -(-len(variants) // MOST_VARIANTS))]
         explained, which = _best(space, variants)
-        count = len(effect.parameters) + len(inner_values(variants[0], space.touches))
-        score = float(space.gained(np.array(explained))) - space.charge(count) - CHARGE
+        charge = charge_of(variants[0], space.touches, space.freedom)
+        score = float(space.gained(np.array(explained))) - charge
         if best is None or score > best.score:
             best = LibraryEffect(variants[which], score)
     return best
+
+
+def charge_of(effect: Effect, touches: Touches, freedom: float) -> float:
+    """Log evidence that an effect costs: its parameters by Schwarz's criterion, and its choice."""
+    count = len(effect.parameters) + len(inner_values(effect, touches))
+    return 0.5 * count * float(np.log(max(freedom, 2.0))) + CHARGE
 
 
 def _best(space: Space, variants: list[Effect]) -> tuple[float, int]:

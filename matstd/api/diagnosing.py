@@ -1,14 +1,22 @@
-"""What a model lacks: the result with its files, its page, and the compensation of the machine."""
+"""What a model leaves of a run and what it lacks: results with files, page and compensation."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from matstd.api.runs import GEOMETRY, Runs, StartingModel, is_learnt_from, starting_run
-from matstd.api.saved import FOUND, REPORT_FILES, Saveable, write_found_arm
+from matstd.api.saved import (
+    EFFECT,
+    FOUND,
+    LAW,
+    REPORT_FILES,
+    Saveable,
+    write_found_arm,
+    write_learnt,
+)
 from matstd.diagnosis import answer
 from matstd.diagnosis.choice import candidate_effects
 from matstd.diagnosis.evidence import Progress, quiet
@@ -17,18 +25,25 @@ from matstd.diagnosis.files import (
     model_text,
     parsed_model,
     plan_text,
+    write_comparison,
     write_diagnosis,
+    write_residuals,
 )
 from matstd.diagnosis.fit import Fit
-from matstd.report.geometry import determined_comment
-from matstd.report.pages import Printer, write_diagnosis_page, write_pdf
-from matstd.report.run_view import Framed, diagnosis_view
-from matstd.report.words import remark_sentence, verdict_sentence
+from matstd.diagnosis.laws import learn_remainder
+from matstd.report.pages import Printer, write_compare_page, write_diagnosis_page, write_pdf
+from matstd.report.run_view import Framed, comparison_view, diagnosis_view
+from matstd.report.words import (
+    comparison_sentence,
+    remark_sentence,
+    structure_words,
+    verdict_sentence,
+)
 from matstd.twin.errors import BadArgument
 from matstd.twin.files import write_whole
 from matstd.twin.library import is_visible, kinds, parse_effect, try_effect, users_files
 from matstd.twin.model import Effect
-from matstd.twin.record import Run
+from matstd.twin.record import Run, without_copies
 from matstd.twin.versions import versions
 from matstd.twin.words import deviations_in
 
@@ -45,7 +60,7 @@ class Diagnosis(Saveable, answer.Diagnosis):
         title: Names of the runs.
         named: Number of effects that the user named.
         auto: Whether the model that is learnt has what the diagnosis found; else only effects that
-            the user named.
+            the user named. Of an unexplained run it has what was found and the law in any case.
 
     Example:
         >>> found = diagnose("run.csv", only=["thermal-lag"])
@@ -53,7 +68,9 @@ class Diagnosis(Saveable, answer.Diagnosis):
         ('missing effect', ['thermal-lag'])
     """
 
-    sometimes = ("next_measurement_*.csv", FOUND, "pictures/*.png", *REPORT_FILES)
+    sometimes = (
+        "next_measurement_*.csv", FOUND, EFFECT, LAW, "pictures/*.png", *REPORT_FILES
+    )  # fmt: skip
     before: SavedModel | None = None
     title: str = ""
     named: int = 0
@@ -62,6 +79,9 @@ class Diagnosis(Saveable, answer.Diagnosis):
     @property
     def learnt(self) -> Fit:
         """The fit of the model that is saved and that compensates."""
+        is_whole = self.auto or self.verdict is answer.Verdict.UNEXPLAINED
+        if self.laws is not None and self.laws.laws and is_whole:
+            return self.laws.after
         return self.fit if self.auto else self.steps[self.named].fit
 
     @property
@@ -70,10 +90,12 @@ class Diagnosis(Saveable, answer.Diagnosis):
         made_with = f"material-standard {versions()['material-standard']}"
         is_all = self.learnt is self.fit and self.choice is not None
         promised = self.choice.best.error if is_all and self.choice else None
+        if self.laws is not None and self.learnt is self.laws.after and self.laws.laws:
+            promised = self.laws.held_out[0].after
         reported = {s.effect.name: s.reported for s in self.steps if s.effect is not None}
-        known = determined_comment(self.geometry)
-        return known + model_text(
-            self.learnt, self.title, self.before, made_with, promised, reported
+        known = [row for row in self.geometry.rows if row.is_determined]
+        return model_text(
+            self.learnt, self.title, self.before, made_with, promised, reported, known
         )
 
     @property
@@ -99,6 +121,8 @@ class Diagnosis(Saveable, answer.Diagnosis):
             write_whole(folder / "model.toml", self.model_text)
             for i, plan in enumerate(self.plans, start=1):
                 write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
+            if self.laws is not None and self.laws.laws:
+                write_learnt(folder, self.laws, self.title)
             return write_found_arm(folder, self.fit, self.title)
 
     def live(self) -> Framed:
@@ -110,7 +134,9 @@ class Diagnosis(Saveable, answer.Diagnosis):
     def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
         """Write the page into an existing folder."""
         with deviations_in(self.run.touches.deviation_unit):
-            write_diagnosis_page(self, folder, self.title, np.random.default_rng(0))
+            write_diagnosis_page(
+                self, folder, self.title, np.random.default_rng(0), is_saved=self.auto
+            )
             if printed_by is not None:
                 write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 
@@ -125,6 +151,7 @@ def diagnose(
     without: Sequence[str] = (),
     hold_out: Sequence[str] = (),
     pitch: Mapping[str, float] | None = None,
+    learn: bool = True,
     progress: Progress = quiet,
 ) -> Diagnosis:
     """Find which effects a model lacks, and how far the error falls with each.
@@ -139,6 +166,7 @@ def diagnose(
         hold_out: Names of runs that are excluded from the fit, only their set-ups are fitted; the
             result says how well the others predict them.
         pitch: Pitches of screws or scales by axis, mm.
+        learn: Learn a law of what remains, as `matstd.learn` does, where something remains.
         progress: Called with the share done and what is being done.
 
     Raises:
@@ -165,6 +193,11 @@ def diagnose(
         progress,
         np.random.default_rng(0),
     )
+    if learn and found.parts.remains.is_real:
+        progress(0.9, "a law of what remains")
+        estimates = before.estimates if before else None
+        laws = learn_remainder(found.steps[len(added)].fit, found.fit, estimates)
+        found = replace(found, laws=laws)
     known = {f.name: getattr(found, f.name) for f in fields(found)}
     return Diagnosis(**known, before=before, title=title, named=len(added), auto=auto)
 
@@ -236,3 +269,88 @@ def _plain(name: str) -> str:
 
 def _is_among(effect: Effect, words: Iterable[str]) -> bool:
     return any(w == effect.kind or _plain(w) == _plain(effect.name) for w in words)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Saveable, answer.Comparison):
+    """A run against a model, with what it was made from; `compare` returns it.
+
+    Attributes:
+        saved: The model file, where the model is of one.
+        title: Names of the runs.
+
+    Example:
+        >>> found = compare("run.csv")
+        >>> found.structure[0].variables
+        ('T_spindle_degC',)
+    """
+
+    sometimes = (FOUND, "pictures/*.png", *REPORT_FILES)
+    saved: SavedModel | None = None
+    title: str = ""
+
+    def write(self, folder: Path) -> str:
+        """Write comparison.json and residuals.csv into an existing folder; as of `Saveable`."""
+        with deviations_in(self.run.touches.deviation_unit):
+            write_comparison(
+                folder / "comparison.json",
+                self,
+                [structure_words(s) for s in self.structure],
+                [remark_sentence(r) for r in self.remarks],
+            )
+            write_residuals(folder / "residuals.csv", self)
+            return "" if self.saved else write_found_arm(folder, self.fit, self.title)
+
+    def live(self) -> Framed:
+        """The live view: in a notebook effects are switched where it is shown."""
+        with deviations_in(self.run.touches.deviation_unit):
+            view = comparison_view(self, self.title)
+            return Framed(f"{self.title} against the model", comparison_sentence(self), view)
+
+    def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
+        """Write the page into an existing folder."""
+        reported = self.saved.reported if self.saved else None
+        with deviations_in(self.run.touches.deviation_unit):
+            write_compare_page(self, folder, self.title, np.random.default_rng(0), reported)
+            if printed_by is not None:
+                write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
+
+
+def compare(
+    runs: Runs,
+    model: StartingModel = GEOMETRY,
+    *,
+    pitch: Mapping[str, float] | None = None,
+    progress: Progress = quiet,
+) -> Comparison:
+    """Measured against predicted deviations, and where the model fails.
+
+    Args:
+        runs: A run, the path of a run file, or several of one machine.
+        model: `"geometry"`: the ordinary geometric model, fitted to the run; `"setup"`: where the
+            standard stands, no more; a model, or the path of a model file: with what it learnt from
+            another run it predicts this one.
+        pitch: Pitches of screws or scales by axis, mm.
+        progress: Called with the share done and what is being done.
+
+    Raises:
+        BadFile: A file that cannot be read, or a model of another machine.
+        NotEnoughData: So few touches that nothing can be said.
+
+    Example:
+        >>> found = compare("run.csv")
+        >>> f"{1e3 * found.rms_measured:.1f} µm measured, {1e3 * found.rms:.1f} µm remain"
+        '19.1 µm measured, 0.8 µm remain'
+    """
+    run, start, saved, title = starting_run(
+        runs, model, "so the agreement is optimistic", pitch=pitch
+    )
+    found = answer.compare(
+        run,
+        start,
+        saved.estimates if saved else None,
+        progress,
+        saved.learnt(without_copies(run)) if saved else None,
+    )
+    known = {f.name: getattr(found, f.name) for f in fields(found)}
+    return Comparison(**known, saved=saved, title=title)

@@ -4,15 +4,21 @@ from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import ClassVar
 
+from matstd.diagnosis.files import write_laws
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry import found_arm
+from matstd.diagnosis.laws import Learning, SecondRun
 from matstd.importers import machine_text
+from matstd.report.laws import effect_text
 from matstd.report.numbers import microns
 from matstd.report.pages import Printer, printer
 from matstd.twin.files import results_folder, write_whole
 
 REPORT_FILES = ("report.html", "report.pdf", "tables.xlsx", "tables/*.csv")
 """Files of a page that not every run of a command leaves."""
+
+EFFECT, LAW = "effect.py", "law.json"
+"""Files of a law that was learnt: as an effect of the user's own, and for other programs."""
 
 FOUND = "machine_found.toml"
 """Machine file of a serial arm with the lines of all joints as found."""
@@ -76,3 +82,15 @@ def write_found_arm(folder: Path, fit: Fit, title: str) -> str:
         f"nothing but the set-up {microns(arm.after)} are left then, {microns(arm.before)} now; "
         "take all of them or none, and import again, which finds the reflector anew"
     )
+
+
+def write_learnt(folder: Path, laws: Learning, title: str, second: SecondRun | None = None) -> None:
+    """Write law.json and, with a law, effect.py.
+
+    Args:
+        title: Names of the runs.
+        second: What a second run says of the laws.
+    """
+    write_laws(folder / LAW, laws, title, second)
+    if laws.laws:
+        write_whole(folder / EFFECT, effect_text(laws, title))

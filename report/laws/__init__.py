@@ -1,26 +1,31 @@
 """Laws that were learnt, in words, pictures, on a page, and as a Python file of the user's own."""
 
-from matstd.report.laws.effect_file import effect_names, effect_text
-from matstd.report.laws.law_page import write_law_page
+from matstd.report.laws.curves import LawCurve, law_curve
+from matstd.report.laws.effect_file import effect_text
+from matstd.report.laws.law_page import law_sections, write_law_page
 from matstd.report.laws.law_words import (
-    held_out_sentence,
+    instead_sentence,
+    law_notes,
     law_sentence,
-    library_sentence,
-    looks_like,
+    learnt_words,
     no_law_sentence,
     rival_sentence,
     second_run_sentence,
+    size_words,
 )
 
 __all__ = [
-    "effect_names",
+    "LawCurve",
     "effect_text",
-    "held_out_sentence",
+    "instead_sentence",
+    "law_curve",
+    "law_notes",
+    "law_sections",
     "law_sentence",
-    "library_sentence",
-    "looks_like",
+    "learnt_words",
     "no_law_sentence",
     "rival_sentence",
     "second_run_sentence",
+    "size_words",
     "write_law_page",
 ]

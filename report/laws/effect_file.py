@@ -49,19 +49,13 @@ CURVE_KNOTS = 25
 """Knots of a table that stands for a curve without a formula."""
 
 
-def effect_names(learning: Learning) -> list[str]:
-    """First words of the effects of a file, one for every law."""
-    count = len(learning.laws)
-    return ["learnt-law" if count == 1 else f"learnt-law-{i}" for i in range(1, count + 1)]
-
-
 def effect_text(learning: Learning, run: str) -> str:
     """Text of `effect.py`.
 
     Args:
         run: Name of the run file.
     """
-    names = effect_names(learning)
+    names = learning.effect_names
     blocks = [
         _class(learning, one.law, name, run) for one, name in zip(learning.laws, names, strict=True)
     ]

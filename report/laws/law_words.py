@@ -162,6 +162,12 @@ def law_sentence(learning: Learning, one: LearntLaw) -> str:
     )
 
 
+def size_words(learning: Learning, law: Law) -> str:
+    """Size of a law with the parameters of its shapes, each with its uncertainty."""
+    where = [place_words(p) for p in places(learning, law) if p.u is not None]
+    return ", ".join([_size(learning, law), *where])
+
+
 def _size(learning: Learning, law: Law) -> str:
     found = amplitudes(learning, law)
     if law.is_curve_alone:
@@ -188,13 +194,11 @@ def looks_like(law: Law) -> str:
 
 
 def rival_sentence(one: LearntLaw) -> str:
-    """The nearest law of another carrier or variable, with its odds."""
-    own = {f.driver.name for f in one.law.factors}
-    for rival in one.rivals:
-        others = {f.driver.name for f in rival.law.factors}
-        if rival.law.carrier.name != one.law.carrier.name or others != own:
-            return f"Second choice: {formula_words(rival.law)} (odds {odds_words(rival.log_odds)})."
-    return ""
+    """The nearest law of another carrier or other variables, with its odds; empty for none."""
+    rival = one.second_choice
+    if rival is None:
+        return ""
+    return f"Second choice: {formula_words(rival.law)} (odds {odds_words(rival.log_odds)})."
 
 
 def library_sentence(one: LearntLaw) -> str:
@@ -208,6 +212,43 @@ def library_sentence(one: LearntLaw) -> str:
             f'matstd diagnose --add "{name}".'
         )
     return f"The nearest effect of the library is {name} (odds {odds_words(odds)} for the law)."
+
+
+def instead_sentence(learning: Learning) -> str:
+    """That laws explain the run better than effects that were named; empty where they do not."""
+    if not learning.instead_of:
+        return ""
+    names = listed([effect.name for effect in learning.instead_of])
+    many = len(learning.laws) > 1
+    what = f"{len(learning.laws)} laws explain" if many else "One law explains"
+    return (
+        f"{what} the run better than {names}, also with a law beside "
+        f"{'them' if len(learning.instead_of) > 1 else 'it'}: odds "
+        f"{odds_words(learning.instead_odds)}. Those names are imitations."
+    )
+
+
+def law_notes(learning: Learning) -> list[str]:
+    """What is to be known of the laws: the library, what they look like, the error elsewhere."""
+    out = []
+    for one in learning.laws:
+        out += [library_sentence(one), looks_like(one.law)]
+    if learning.laws:
+        out.append(held_out_sentence(learning))
+    return [line for line in out if line]
+
+
+def learnt_words(learning: Learning) -> str:
+    """What was learnt of a remainder, as a clause."""
+    if not learning.laws:
+        return "no law of any carrier and variable explains it"
+    word = "learnt law" if len(learning.laws) == 1 else "learnt laws"
+    each = []
+    for one in learning.laws:
+        said = law_sentence(learning, one).removesuffix(".")
+        second = rival_sentence(one).removesuffix(".")
+        each.append(f"{said}; {second[0].lower()}{second[1:]}" if second else said)
+    return f"{word}: {'; '.join(each)}"
 
 
 def odds_words(log_odds: float) -> str:

@@ -8,6 +8,7 @@ import numpy as np
 from matstd.diagnosis.answer import Diagnosis, Step, Verdict
 from matstd.report.effects import class_words, effect_cell
 from matstd.report.geometry import fault_sentences, geometry_sections
+from matstd.report.laws import instead_sentence, law_sections
 from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import capital, digits, microns, p_value, sentence
 from matstd.report.pages.rival_sections import (
@@ -31,7 +32,7 @@ from matstd.report.pages.trend_section import trend_sections
 from matstd.report.plots import draw_effect, draw_fall, draw_form, is_form
 from matstd.report.run_view import diagnosis_step, diagnosis_view
 from matstd.report.style import series
-from matstd.report.verdict import part_lines
+from matstd.report.verdict import diagnosis_meaning, part_lines
 from matstd.report.words import (
     figures,
     remark_sentence,
@@ -62,7 +63,11 @@ _HELD_OUT = (
 
 
 def write_diagnosis_page(
-    result: Diagnosis, folder: str | Path, title: str, rng: np.random.Generator
+    result: Diagnosis,
+    folder: str | Path,
+    title: str,
+    rng: np.random.Generator,
+    is_saved: bool = False,
 ) -> Path:
     """Write `report.html` and its pictures into a folder.
 
@@ -71,13 +76,14 @@ def write_diagnosis_page(
         folder: For the page.
         title: Name of the run file.
         rng: Shuffles residuals, to show what chance produces.
+        is_saved: Whether the model file has what was found.
     """
     fits = [("starting model", result.start)]
     fits += [("final model", result.fit)] if len(result.steps) > 1 else []
     page = Page(
         title=f"Diagnosis of {title}",
         heading=f"Diagnosis of {title}",
-        lead=verdict_sentence(result),
+        lead=_lead(result),
         key=_key(result),
         sections=[
             _parts(result),
@@ -85,6 +91,7 @@ def write_diagnosis_page(
             *trend_sections(result.trend),
             _steps(result),
             *(_effect(result, i) for i in range(1, len(result.steps))),
+            *_learnt(result),
             Section(pictures=on_standard(result.run.touches, *fits)),
             *geometry_sections(result.run.touches, result.geometry),
             *(_unexplained(result, rng) if is_open(result) else ()),
@@ -96,12 +103,18 @@ def write_diagnosis_page(
             outlier_section(result.fit),
         ],
         foot=run_foot(result.run, title),
-        next=diagnosis_step(result, title),
+        means=diagnosis_meaning(result),
+        next=diagnosis_step(result, title, is_saved),
         live=diagnosis_view(result, title),
     )
     path = Path(folder) / PAGE
     write_page(path, page)
     return path
+
+
+def _lead(result: Diagnosis) -> str:
+    instead = instead_sentence(result.laws) if result.laws else ""
+    return " ".join(filter(None, (verdict_sentence(result), instead)))
 
 
 def is_open(result: Diagnosis) -> bool:
@@ -199,6 +212,14 @@ def _effect(result: Diagnosis, i: int) -> Section:
         sentences=[s for s in sentences if s],
         pictures=[Picture(f"{PICTURES}/effect_{i}.png", _FORM if form else _COURSE, drawn)],
     )
+
+
+def _learnt(result: Diagnosis) -> list[Section]:
+    """The laws of what remains, where they were looked for."""
+    if result.laws is None:
+        return []
+    heading = "Learnt from what remains"
+    return [Section(heading), *law_sections(result.laws)]
 
 
 def _unexplained(result: Diagnosis, rng: np.random.Generator) -> list[Section]:

@@ -15,6 +15,7 @@ from matstd.diagnosis.geometry import GeometryRow
 from matstd.diagnosis.policy import POLICY
 from matstd.report.effects import effect_words
 from matstd.report.geometry import estimate_words, fault_sentences, quantity_name
+from matstd.report.laws import learnt_words
 from matstd.report.numbers import digits, microns, noun, p_value, percent
 from matstd.report.words import sizes, structure_words
 from matstd.twin.words import listed
@@ -35,10 +36,11 @@ def part_lines(result: Diagnosis) -> list[tuple[str, str]]:
     steps = {s.effect.name: s for s in result.steps if s.effect is not None}
     before = result.promise_before if steps else None
     named = [_named(one, steps[one.effect.name]) for one in parts.named]
+    learnt = "" if result.laws is None else f"; {learnt_words(result.laws)}"
     return [
         ("geometry", _geometry(parts.geometry)),
         ("named effects", "; ".join(named) or _nothing_named(result)),
-        ("what remains", _remains(parts.remains, parts.repeatability)),
+        ("what remains", f"{_remains(parts.remains, parts.repeatability)}{learnt}"),
         ("repeatability", repeatability_words(parts.repeatability, parts.remains.scatter)),
         ("error to expect", promise_words(result.promise, before)),
     ]

@@ -10,10 +10,22 @@ from simulator_case import read_back
 from simulator_experiment import MACHINES
 from simulator_laws import law_case
 
+from matstd.api.comparing import compare
+from matstd.api.diagnosing import diagnose
 from matstd.cli import main
+from matstd.diagnosis.answer import Verdict
 from matstd.diagnosis.fit import fit_run
-from matstd.diagnosis.laws import amplitudes, learn_laws, places, second_run
+from matstd.diagnosis.laws import (
+    POLICY,
+    amplitudes,
+    learn_laws,
+    learn_remainder,
+    places,
+    second_run,
+)
+from matstd.report.verdict import part_lines
 from matstd.twin.library import ordinary_model, parse_effect
+from matstd.twin.model import Model
 from matstd.twin.units import UM
 
 
@@ -86,6 +98,37 @@ def test_the_command_writes_an_effect_that_the_other_commands_take(
     own = ["--effects", str(effect), "--no-report", "-o", str(tmp_path / "own")]
     assert main(["compare", str(tmp_path / "two.csv"), *own]) == 0
     assert parse_effect("learnt-law", stylus[1][0].touches.chain).name == "learnt-law"
+
+
+def test_a_diagnosis_learns_the_law_of_what_remains(stylus, tmp_path) -> None:
+    _, (run, second, _), learnt = stylus
+    found = diagnose(run, only=["backlash"])
+    assert found.verdict is Verdict.UNEXPLAINED
+    (one,) = found.laws.laws
+    assert one.law.name == learnt.laws[0].law.name
+    assert "; learnt law: the reading of the probe" in dict(part_lines(found))["what remains"]
+    found.write(tmp_path)
+    table = json.loads((tmp_path / "diagnosis.json").read_text(encoding="utf-8"))
+    assert table["learnt"]["laws"][0]["law"] == one.law.name
+    assert table["learnt"]["with_um"] < table["learnt"]["without_um"]
+    assert {"effect.py", "law.json", "model.toml"} <= {p.name for p in tmp_path.iterdir()}
+    # the model that is saved predicts with the law, whatever the geometry is
+    bare = diagnose(run, only=["backlash"], learn=False)
+    assert bare.laws is None
+    assert compare(second, found.model).rms < 0.9 * compare(second, bare.model).rms
+
+
+@pytest.mark.slow
+def test_effects_that_explain_nothing_give_way_to_the_law(stylus) -> None:
+    run = stylus[1][0]
+    start = fit_run(run, ordinary_model(run.touches.chain))
+    model = start.model
+    wrong = [parse_effect(f"backlash({axis})", model.chain) for axis in "XYZ"]
+    end = fit_run(start.run, Model(model.chain, (*model.effects, *wrong)))
+    found = learn_remainder(start, end)
+    assert list(found.instead_of) == wrong
+    assert found.instead_odds > POLICY.class_odds
+    assert len(found.after.model.effects) == len(model.effects) + 1
 
 
 @pytest.mark.slow

@@ -46,6 +46,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="add every effect that the diagnosis finds, step by step",
     )
+    parser.add_argument(
+        "--no-learn",
+        action="store_true",
+        help="learn no law of what remains (matstd learn does the same by itself)",
+    )
     add_measured(parser, "starting model of the diagnosis (default: the ordinary geometric model)")
 
 
@@ -69,6 +74,7 @@ def run(args: argparse.Namespace) -> int:
             without=args.without,
             hold_out=args.hold_out,
             pitch=pitch,
+            learn=not args.no_learn,
             progress=turns(show),
         )
         arm = found.write(folder)
@@ -91,14 +97,15 @@ def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
     from matstd.next_steps import called
 
     model, again = Path(args.output) / "model.toml", f"{args.output}-2"
+    if found.laws and found.laws.instead_of:
+        return _unexplained(args, found)
     if found.verdict is Verdict.MISSING and not args.auto:
         named = [step.effect.name for step in found.steps if step.effect is not None]
         more = [word for name in named for word in ("--add", name)]
         why = "with the effect in model.toml; then matstd compensate"
         return called("diagnose", *args.run_files, *more, "-o", again), why
     if found.verdict is Verdict.UNEXPLAINED:
-        words = called("learn", *args.run_files, "-o", f"{args.output}-law")
-        return words, "a law of what remains, from the run itself"
+        return _unexplained(args, found)
     if found.verdict is Verdict.UNDECIDED and found.plans:
         plan = Path(args.output) / "next_measurement_1.csv"
         words = called("diagnose", *args.run_files, "new.csv", "-o", again)
@@ -111,6 +118,25 @@ def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
     return words, "tables for the control"
 
 
+def _unexplained(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
+    """A law gets a name; where none was looked for it is learnt, where there is none, measure."""
+    from pathlib import Path
+
+    from matstd.next_steps import called
+
+    again = f"{args.output}-2"
+    if found.laws is None:
+        words = called("learn", *args.run_files, "-o", f"{args.output}-law")
+        return words, "a law of what remains, from the run itself"
+    if not found.laws.laws:
+        words = called("diagnose", *args.run_files, "again.csv", "-o", again)
+        return words, "after another run that records what could be the cause"
+    effect = Path(args.output) / "effect.py"
+    named = [word for name in found.laws.effect_names for word in ("--add", name)]
+    words = called("diagnose", *args.run_files, "--effects", effect, *named, "-o", again)
+    return words, "the law by the name that you give it in effect.py"
+
+
 def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     """The verdict, the error falling, what was found to copy, and what else should be known."""
     from rich.table import Column, Table
@@ -118,13 +144,17 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     from matstd.console import console, say
     from matstd.report.effects import plan_words, rival_words
     from matstd.report.geometry import console_lines
+    from matstd.report.laws import instead_sentence, law_notes
     from matstd.report.verdict import part_lines
     from matstd.report.words import remark_sentence, scanned_sentence, verdict_sentence
     from matstd.twin.words import in_own_unit
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
-    for name, line in part_lines(result):
-        say(f"- {name}: {line}")
+    if result.laws and (instead := instead_sentence(result.laws)):
+        say(instead, style="bold")
+    notes = law_notes(result.laws) if result.laws else []
+    for line in (*(f"{name}: {words}" for name, words in part_lines(result)), *notes):
+        say(f"- {line}")
     right = ("p", "fitted µm", "held out µm", "chi²/dof")
     numbers = [Column(in_own_unit(word), justify="right", no_wrap=True) for word in right]
     words = [Column(word, overflow="fold", max_width=CELL_WIDTH) for word in ("effect", "size")]
@@ -153,7 +183,8 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     for i, plan in enumerate(result.plans, start=1):
         say(f"- next_measurement_{i}.csv would distinguish {plan_words(plan)}")
     first = "" if args.no_report else "report.html, "
-    say(f"{args.output}: look at {first}diagnosis.json, model.toml")
+    law = "effect.py (--effects), law.json, " if result.laws and result.laws.laws else ""
+    say(f"{args.output}: look at {first}{law}diagnosis.json, model.toml")
 
 
 def _row(step: Step) -> tuple[str, ...]:

@@ -61,10 +61,8 @@ def _report(args: argparse.Namespace, found: LearntLaws) -> None:
     """The law, its rival, its errors elsewhere, and the files."""
     from matstd.console import say
     from matstd.report.laws import (
-        held_out_sentence,
+        law_notes,
         law_sentence,
-        library_sentence,
-        looks_like,
         no_law_sentence,
         rival_sentence,
         second_run_sentence,
@@ -75,11 +73,10 @@ def _report(args: argparse.Namespace, found: LearntLaws) -> None:
         say(no_law_sentence(found), style="bold")
     for one in found.laws:
         say(sentence(law_sentence(found, one)), style="bold")
-        said = [rival_sentence(one), library_sentence(one), looks_like(one.law)]
-        for line in filter(None, said):
-            say(f"- {line}")
-    if found.laws:
-        say(f"- {held_out_sentence(found)}")
+        if second := rival_sentence(one):
+            say(f"- {second}")
+    for line in law_notes(found):
+        say(f"- {line}")
     if found.second is not None:
         say(f"- {second_run_sentence(found.second)}")
     for line in found.after.run.remarks:

@@ -1,0 +1,68 @@
+"""What a diagnosis leaves, learnt beside the effects that it named, or in their place."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from matstd.diagnosis.fit import Fit, Prior
+from matstd.diagnosis.laws.beginning import Beginning, log_odds
+from matstd.diagnosis.laws.learn import Learning, learn_beside
+from matstd.diagnosis.laws.library import charge_of
+from matstd.diagnosis.laws.policy import POLICY, LawPolicy
+from matstd.diagnosis.regression import GrossErrors
+from matstd.twin.compute import one_blas_thread
+from matstd.twin.model import Effect
+
+
+@one_blas_thread()
+def learn_remainder(
+    start: Fit, end: Fit, known: Prior | None = None, policy: LawPolicy = POLICY
+) -> Learning:
+    """Laws for what remains at the end of a diagnosis.
+
+    Effects that a search named may imitate a law that the library lacks. Laws are therefore learnt
+    twice: beside these effects, and in their place. Those in their place are returned where their
+    odds against effects and laws together exceed those within which laws form a class.
+
+    Args:
+        start: Of the model without the effects that were found.
+        end: With them.
+        known: What was known of the starting model from another run.
+    """
+    base = start.model
+    beside = learn_beside(Beginning.of_fit(end, base, known), policy)
+    names = {e.name for e in base.effects}
+    found = tuple(e for e in end.model.effects if e.name not in names)
+    if not found:
+        return beside
+    alone = learn_beside(Beginning.of_fit(start, base, known), policy)
+    odds = _odds(alone, beside, found) if alone.laws else -np.inf
+    if odds < policy.class_odds:
+        return beside
+    return replace(alone, instead_of=found, instead_odds=odds)
+
+
+def _odds(alone: Learning, beside: Learning, found: Sequence[Effect]) -> float:
+    """Log odds of laws alone against effects with what was learnt beside them, on the same rows."""
+    rows = alone.after.gross.rows | beside.after.gross.rows
+    gross = replace(alone.after.gross, rows=rows)
+    fits = [_white(one, len(one.laws), gross) for one in (alone, beside)]
+    charges = [_charges(one, gross) for one in (alone, beside)]
+    touches, freedom = alone.before.run.touches, max(fits[1].solution.dof, 1.0)
+    named = sum(charge_of(effect, touches, freedom) for effect in found)
+    return log_odds(fits[0], fits[1], charges[0] - charges[1] - named)
+
+
+def _white(learning: Learning, count: int, gross: GrossErrors) -> Fit:
+    """The model with the first laws, in white noise, on given rows."""
+    laws = [one.law for one in learning.laws[:count]]
+    return replace(learning.beginning, memory=None).fitted(laws, gross=gross)
+
+
+def _charges(learning: Learning, gross: GrossErrors) -> float:
+    """What all laws were charged: what each gains less its score."""
+    fits = [_white(learning, k, gross) for k in range(len(learning.laws) + 1)]
+    gains = [log_odds(after, before, 0.0) for before, after in pairwise(fits)]
+    return sum(gains) - sum(one.score for one in learning.laws)
