@@ -27,6 +27,7 @@ from matstd.artefact.hidden import (
     measured_together,
     possible_places,
     scanned,
+    showing_touches,
     touched,
 )
 from matstd.artefact.layout import (
@@ -38,7 +39,7 @@ from matstd.artefact.layout import (
     wavy_face,
     with_spheres,
 )
-from matstd.artefact.reach import Requests, joined, spread_poses
+from matstd.artefact.reach import joined, spread_poses
 from matstd.artefact.worth import (
     BallPlaces,
     Criterion,
@@ -58,8 +59,10 @@ HEAD = "field 40 mm: X Y Z         25 mm: X Y Z         bumps 40 mm: X Y Z     2
 class Bench:
     """One machine, and layouts measured on it with equally many touches."""
 
-    def __init__(self, brief: Brief, poses: int, touches: int, form: float) -> None:
-        rng = np.random.default_rng(brief.seed)
+    def __init__(
+        self, brief: Brief, poses: int, touches: int, form: float, chosen: bool = True
+    ) -> None:
+        rng, self.chosen = np.random.default_rng(brief.seed), chosen
         self.brief, self.touches, self.rng = brief, touches, rng
         plain = replace(brief.options.criterion, potential=0.0)
         plain = replace(plain, calibration=replace(plain.calibration, form=form))
@@ -81,22 +84,30 @@ class Bench:
             brief.reach, self.criterion.volume, self.poses, np.random.default_rng(1)
         )
 
-    def some(self, on: list[Requests], count: int) -> Measurement:
-        """Touches that can be made, spread over their surfaces."""
-        tried = joined(on)
-        tried = tried[self.brief.reach.is_reachable(tried)]
-        order = np.random.default_rng(2).permutation(len(tried))[:count]
-        return touched(tried[order], self.brief.noise)
-
-    def on_balls(self, body: Standard, count: int) -> Measurement:
-        """Touches on its balls."""
-        grid = sphere_grid(60)
-        return self.some([each_at(s, grid, self.poses) for s in body.spheres], count)
-
-    def on_faces(self, body: Standard, count: int) -> Measurement:
-        """Touches on its faces."""
-        side = int(np.ceil(np.sqrt(2.0 * count / len(body.patches))))
-        return self.some([each_at(f, middles(f, side), self.poses) for f in body.patches], count)
+    def some(self, body: Standard, count: int) -> Measurement:
+        """The touches on a body that show most, spread over balls and squares of 40 mm."""
+        grid, noise = sphere_grid(60), self.brief.noise
+        lots = [(s.name, each_at(s, grid, self.poses)) for s in body.spheres]
+        for face in body.patches:
+            for part, uv in squares(face):
+                lots.append((f"{face.name}.{part}", each_at(face, uv, self.poses)))
+        tried = joined([lot for _, lot in lots])
+        area = np.repeat(np.arange(len(lots)), [len(lot) for _, lot in lots])
+        kept = self.brief.reach.is_reachable(tried)
+        tried, area = tried[kept], area[kept]
+        if not self.chosen:
+            order = np.random.default_rng(2).permutation(len(tried))[:count]
+            return touched(tried[order], noise)
+        first, at = np.unique(tried.point, axis=0, return_index=True, return_inverse=True)[1:]
+        form = self.criterion.calibration.form * np.isin(
+            tried.feature, [face.name for face in body.patches]
+        )
+        may = replace(touched(tried, noise), u=np.hypot(noise, form))
+        rows = showing_touches(
+            self.criterion.on(body), touched(tried[:0], noise), may, self.places, count,
+            at.reshape(-1), np.unique(area[first], return_inverse=True)[1],
+        )  # fmt: skip
+        return touched(tried[rows], noise)
 
     def show(self, name: str, body: Standard, measured: Measurement) -> HiddenPower:
         """Print the figures of a layout."""
@@ -111,10 +122,15 @@ class Bench:
         return found
 
 
-def middles(face: FreeformPatch, side: int) -> Array:
-    """Middles of side x side cells of a face, (side^2, 2)."""
-    axes = [np.linspace(-1.0, 1.0, side) * half * (1.0 - 1.0 / side) for half in face.half_size]
-    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+def squares(face: FreeformPatch) -> list[tuple[int, Array]]:
+    """Places every 6 mm on a face, by squares of about 40 mm."""
+    axes = [np.linspace(-1.0, 1.0, int(h // 3.0)) * (h - 3.0) for h in face.half_size]
+    uv = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    k = [np.maximum(1, np.round(h / 20.0)).astype(int) for h in face.half_size]
+    cell = [np.minimum((x / h + 1.0) * 0.5 * n, n - 1).astype(int)
+            for x, h, n in zip(uv.T, face.half_size, k, strict=True)]  # fmt: skip
+    part = cell[0] * k[1] + cell[1]
+    return [(int(p), uv[part == p]) for p in np.unique(part)]
 
 
 def small_faces(bench: Bench, body: Standard) -> tuple[FreeformPatch, ...]:
@@ -143,12 +159,13 @@ def main() -> None:
     parser.add_argument("--poses", type=int, default=1)
     parser.add_argument("--touches", type=int, default=300)
     parser.add_argument("--size", type=float, default=240.0, help="side of plane and wavy face, mm")
-    parser.add_argument("--slope", type=float, default=45.0, help="of the wavy face, degrees")
+    parser.add_argument("--slope", type=float, default=51.0, help="of the wavy face, degrees")
     parser.add_argument("--wavelength", type=float, default=60.0, help="of the wavy face, mm")
     parser.add_argument("--form-um", type=float, default=0.3, help="of the calibrated faces")
+    parser.add_argument("--at-random", action="store_true", help="touches anywhere, not chosen")
     args = parser.parse_args()
     brief = read_project(EXAMPLES / f"{args.project}.toml")
-    bench = Bench(brief, args.poses, args.touches, args.form_um * UM)
+    bench = Bench(brief, args.poses, args.touches, args.form_um * UM, not args.at_random)
     print(
         f"{brief.chain.name}, {len(bench.poses)} table poses, {args.touches} touches: signal;power"
     )
@@ -162,22 +179,20 @@ def main() -> None:
             places = replace(places, fits=apart > 2.0 * brief.blank.fittings.sphere_radius)
         balls = places.best(count, args.touches)
         bodies[count] = body = with_spheres(brief.blank, [b.centre for b in balls])
-        bench.show(f"{len(balls)} balls", body, bench.on_balls(body, args.touches))
+        bench.show(f"{len(balls)} balls", body, bench.some(body, args.touches))
     body, half = bodies[13], args.touches // 2
     faces = small_faces(bench, body)
     for name, some in (("small faces", faces), ("flat pads there", tuple(map(flat, faces)))):
         both = replace(body, patches=some)
-        lots = [bench.on_balls(both, half), bench.on_faces(both, half)]
-        bench.show(f"13 balls + {len(some)} {name}", both, measured_together(lots))
+        bench.show(f"13 balls + {len(some)} {name}", both, bench.some(both, args.touches))
     limits = replace(brief.blank.limits, max_slope=60.0 * DEG)
     side = (0.5 * args.size, 0.5 * args.size)
     wave = Wave((0.0, 0.0), side, args.wavelength, args.slope * DEG)
     face = wavy_face("FF1", replace(brief.blank, limits=limits), wave)
     for name, one in (("plane", flat(face)), ("wavy face", face)):
         both = replace(body, patches=(one,))
-        on_balls = bench.on_balls(both, half)
-        touches = measured_together([on_balls, bench.on_faces(both, args.touches - half)])
-        bench.show(f"13 balls + {name}, touched", both, touches)
+        bench.show(f"13 balls + {name}, touched", both, bench.some(both, args.touches))
+        on_balls = bench.some(body, half)
         scan = Scan()
         lines = scanned(one, scan, bench.poses, brief.reach)
         words = f"{scan.points(one)} points, {scan.minutes(one):.0f} min"

@@ -20,13 +20,14 @@ from matstd.importers.instruments import (
     read_circle,
     read_positioning,
 )
-from matstd.importers.points import import_points
+from matstd.importers.points import ScanLog, import_points, read_scan_log
 from matstd.importers.sheets import Sheet, read_sheet
 
 PARTS = ("sheets", "instruments", "points", "arms", "files")
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [
+    "ScanLog",
     "Sheet",
     "circle_machine",
     "circle_run",
@@ -38,6 +39,7 @@ __all__ = [
     "positioning_run",
     "read_circle",
     "read_positioning",
+    "read_scan_log",
     "read_sheet",
     "with_travels",
 ]

@@ -153,21 +153,17 @@ def hidden_power(
         with_power: False for the signals alone, in a fifth of the time.
     """
     effects = hidden_effects(criterion.reach)
-    at = _At.of(criterion.reach, measured)
-    test, fields = _field_test(criterion, at, with_power), dict[float, Array]()
-    signals, powers = [], []
-    for effect in effects:
+    test = _field_test(criterion, _At.of(criterion.reach, measured), with_power)
+    F, first = effect_columns(criterion, measured, places)
+    signals = np.sqrt(np.add.reduceat(test.signal(F) ** 2, first))
+    powers = np.full(len(effects), np.nan)
+    for k, effect in enumerate(effects if with_power else ()):
+        mine = F[:, first[k] :][:, : np.diff(first, append=F.shape[1])[k]]
         if effect.is_bump:
-            f = at.decorrelated(at.bumps(effect, places))
-            signals.append(np.sqrt(np.mean(test.signal(f) ** 2)))
-            powers.append(float(test.power(f).mean()) if with_power else np.nan)
-            continue
-        if effect.width not in fields:
-            fields[effect.width] = at.field(effect.width)
-        F = at.decorrelated(at.along(effect) * fields[effect.width])
-        signals.append(np.sqrt(np.sum(test.signal(F) ** 2)))
-        powers.append(test.power_of_field(F) if with_power else np.nan)
-    return HiddenPower(effects, np.array(signals), np.array(powers))
+            powers[k] = test.power(np.sqrt(mine.shape[1]) * mine).mean()
+        else:
+            powers[k] = test.power_of_field(mine)
+    return HiddenPower(effects, signals, powers)
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,14 +232,44 @@ class _At:
         return low_rank(SIZE**2 * np.sum(self.lever**2, axis=1), column, _LEFT_OUT)[0]
 
 
-def _field_test(criterion: Criterion, at: _At, with_power: bool) -> FieldTest:
-    """The test for any effect beside all that the model and the calibration explain."""
-    touches = at.measured.touches
+def explained_columns(criterion: Criterion, measured: Measurement) -> Array:
+    """Columns of model, set-up and calibration, in units of prior and noise, (N, B)."""
+    touches = measured.touches
     explained = [criterion.noise * criterion.whitened(touches)]
     if criterion.body is not None:
         explained.append(criterion.calibration.columns(criterion.body, touches))
-        explained.append(form_columns(criterion.body, touches, criterion.calibration.form))
-    B = at.decorrelated(np.concatenate(explained, axis=1))
+    return decorrelated(np.concatenate(explained, axis=1), measured.u, measured.memory)
+
+
+def effect_columns(
+    criterion: Criterion, measured: Measurement, places: Array
+) -> tuple[Array, IntArray]:
+    """Every effect of `hidden_effects` as columns in units of the noise, (N, M).
+
+    The sum of the squares of the signals of an effect's columns is that of the effect.
+
+    Returns:
+        The columns, and the first one of every effect, (E,).
+    """
+    at, columns, fields = _At.of(criterion.reach, measured), list[Array](), dict[float, Array]()
+    for effect in hidden_effects(criterion.reach):
+        if effect.is_bump:
+            bumps = at.bumps(effect, places)
+            columns.append(bumps / np.sqrt(bumps.shape[1]))
+            continue
+        if effect.width not in fields:
+            fields[effect.width] = at.field(effect.width)
+        columns.append(at.along(effect) * fields[effect.width])
+    first = np.cumsum([0, *(one.shape[1] for one in columns[:-1])])
+    return at.decorrelated(np.concatenate(columns, axis=1)), first
+
+
+def _field_test(criterion: Criterion, at: _At, with_power: bool) -> FieldTest:
+    """The test for any effect beside all that the model and the calibration explain."""
+    B = explained_columns(criterion, at.measured)
+    if criterion.body is not None:
+        form = form_columns(criterion.body, at.measured.touches, criterion.calibration.form)
+        B = np.concatenate([B, at.decorrelated(form)], axis=1)
     F = at.any_field() if with_power else SIZE * at.lever
     return field_test(B, at.decorrelated(F), FALSE_ALARM)
 

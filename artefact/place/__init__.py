@@ -7,7 +7,7 @@ criterion, its rivals, and a certificate.
 from matstd.artefact.place.family import CLEAR_LEAD, Family, FamilyFigures
 from matstd.artefact.place.placement import Placement, design_standard
 from matstd.artefact.place.proving import proving_touches
-from matstd.artefact.place.wavy_choice import scan_poses
+from matstd.artefact.place.wavy_proof import scan_poses
 
 __all__ = [
     "CLEAR_LEAD",

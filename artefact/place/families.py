@@ -20,8 +20,9 @@ from matstd.artefact.place.identifying import (
     with_proof,
 )
 from matstd.artefact.place.proving import informative_touches, proving_touches, touches_on_faces
-from matstd.artefact.place.wavy_choice import measurement_on, wavy_choice
-from matstd.artefact.reach import Requests, joined
+from matstd.artefact.place.wavy_choice import PROOF_POSES, wavy_choice
+from matstd.artefact.place.wavy_proof import PLACES_PER_TOUCH, measurement_on, showing_on_face
+from matstd.artefact.reach import Requests, joined, spread_poses
 from matstd.artefact.worth import BallPlaces, Criterion, touches_to_choose_from
 from matstd.information.criteria import Posterior
 from matstd.twin.errors import NotBuildable, NotReachable
@@ -141,15 +142,29 @@ def _of_balls(site: Site) -> FamilyFigures:
 
 def _built(site: Site, family: Family, like: Built | None = None) -> Built:
     """One family designed; flat pads stand where `like` has faces."""
+    if family is Family.WAVY:
+        return _with_wavy(site)
     count, reach = site.options.choice.proof, site.criterion.reach
     if family is Family.FACES:
         found, on_faces = _with_faces(site)
     else:
-        found = _flat(site, like) if family is Family.FLAT else _wavy(site)
+        found = _flat(site, like)
         on_faces = touches_on_faces(reach, found.standard, found.poses, count)
     here = site.criterion.on(found.standard)
     chosen = found.tried[found.chosen]
     return Built(family, found, proving_touches(here, found.standard, on_faces, chosen, count))
+
+
+def _with_wavy(site: Site) -> Built:
+    """Balls round one wavy face, which is touched where that shows most."""
+    found, criterion, count = _wavy(site), site.criterion, site.options.choice.proof
+    body, poses = found.standard, spread_poses(found.poses, PROOF_POSES)
+    tried = touches_on_faces(criterion.reach, body, poses, count, PLACES_PER_TOUCH)
+    given = measurement_on(criterion, body, found.tried[found.chosen], None)
+    here = criterion.plain.on(body)
+    return Built(
+        Family.WAVY, found, showing_on_face(here, body, tried, given, site.effects_at, count)
+    )
 
 
 def _wavy(site: Site) -> Identifying:

@@ -21,9 +21,15 @@ _EDGE = 3.0  # mm a touch stays away from the trimmed edge, at least
 _POSE_CROWDING = 1.25  # touches of one table pose, relative to equal shares
 
 
-def touches_on_faces(reach: ProbeReach, standard: Standard, poses: Array, count: int) -> Requests:
+def touches_on_faces(
+    reach: ProbeReach,
+    standard: Standard,
+    poses: Array,
+    count: int,
+    per_touch: float = _PLACES_PER_TOUCH,
+) -> Requests:
     """Possible touches all over the faces at every pose, from which `count` are chosen."""
-    pitch = int(np.ceil(np.sqrt(_PLACES_PER_TOUCH * count / len(standard.patches))))
+    pitch = int(np.ceil(np.sqrt(per_touch * count / len(standard.patches))))
     grids = [each_at(face, _middles_of_cells(face, pitch), poses) for face in standard.patches]
     wanted = joined(grids)
     wanted = wanted[reach.is_reachable(wanted)]

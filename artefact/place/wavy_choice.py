@@ -12,12 +12,13 @@ import numpy as np
 
 from matstd.artefact.body import FreeformPatch, Standard
 from matstd.artefact.brief import PlacementOptions
-from matstd.artefact.hidden import Measurement, Scan, hidden_power, measured_together, scanned
+from matstd.artefact.hidden import hidden_power, measured_together
 from matstd.artefact.hidden import touched as single
 from matstd.artefact.layout import Blank, Wave, wavy_face
 from matstd.artefact.place.body_choice import balls_beside
 from matstd.artefact.place.family import MOST_COST
 from matstd.artefact.place.identifying import Base, Identifying
+from matstd.artefact.place.wavy_proof import PLACES_PER_TOUCH, measurement_on, showing_on_face
 from matstd.artefact.reach import Requests, spread_poses
 from matstd.artefact.worth import (
     BallPlaces,
@@ -36,11 +37,16 @@ _RIMS = (42.0, 46.0, 50.0, 55.0, 60.0, 70.0)
 """Mm between the sides of face and base, the largest face first: a post with its fillet and room
 for a cutter needs 42 mm."""
 
+_ASKED_COST = 1.05
+"""Largest error over the workspace of a wavy face that is asked for by name, relative to the best
+balls alone: a larger face shows more of what no model has."""
+
 _LEAST_HALF = 40.0  # mm, of a face that is worth its block
 _WAVELENGTHS, _FLATNESS = (45.0, 60.0, 80.0), (0.0, 0.9)
 _SOME = 3  # every third identifying touch stands for all while waves are compared
-_POSES = 6  # table poses of the touches on the face while waves are compared
-_SCAN_POSES = 3  # table poses at which a face is scanned, where the machine has several
+
+PROOF_POSES = 6
+"""Table poses of the touches on the face."""
 
 
 def wavy_choice(
@@ -58,11 +64,15 @@ def wavy_choice(
         base: The best balls alone.
         effects_at: Where bumps may be, readings of the linear axes, (K, 3), mm.
 
+    Where every size costs more than it may the cheapest is returned; where families are compared
+    it is left aside.
+
     Raises:
-        NotBuildable: No wavy face fits beside as many balls, or all cost too much.
+        NotBuildable: No wavy face fits beside as many balls.
     """
     wave = _best_wave(criterion, places.blank, base, all_poses, options, effects_at)
-    refused = "no balls fit beside it"
+    most = MOST_COST if options.family == "auto" else _ASKED_COST
+    refused, best, least = "no balls fit beside it", None, np.inf
     for size in _sizes(places.blank):
         face = wavy_face("FF1", places.blank, replace(wave, half_size=size))
         ring = ball_places(criterion.plain, places.blank, all_poses, rng, [face])
@@ -76,29 +86,13 @@ def wavy_choice(
             refused = str(error)
             continue
         cost = np.sqrt(found.nearness.value / base.value) if base.value else 1.0
-        if cost <= MOST_COST:
+        if cost <= most:
             return found
-        refused = f"it costs {100.0 * (cost - 1.0):.1f} % of the identification"
-    raise NotBuildable(f"no wavy face beside {len(base.balls)} balls: {refused}")
-
-
-def measurement_on(
-    criterion: Criterion,
-    standard: Standard,
-    touches: Requests,
-    scan: Scan | None,
-) -> Measurement:
-    """Touches, and the scan of the face where the control can."""
-    lots = [single(touches, criterion.noise)]
-    if scan is not None:
-        some = scan_poses(touches)
-        lots += [scanned(face, scan, some, criterion.reach) for face in standard.patches]
-    return measured_together([lot for lot in lots if len(lot)])
-
-
-def scan_poses(touches: Requests) -> Array:
-    """Table poses at which a face is scanned: a few of those of the touches, (K, R), rad."""
-    return spread_poses(np.unique(touches.rotary, axis=0), _SCAN_POSES)
+        if cost < least:
+            best, least = found, cost
+    if best is None:
+        raise NotBuildable(f"no wavy face beside {len(base.balls)} balls: {refused}")
+    return best
 
 
 def _sizes(blank: Blank) -> Iterator[tuple[float, float]]:
@@ -125,7 +119,7 @@ def _best_wave(
             f"{2 * blank.base.half_size[0]:g} x {2 * blank.base.half_size[1]:g} mm beside balls"
         )
     best, most, refused = None, 0.0, ""
-    poses = spread_poses(all_poses, _POSES)
+    poses = spread_poses(all_poses, PROOF_POSES)
     balls = base.touches[::_SOME]
     bare = _bare(blank, base)
     for wave in _waves(size, blank):
@@ -134,14 +128,16 @@ def _best_wave(
         except NotBuildable as error:
             refused = str(error)
             continue
-        touches = _some_touches(criterion, face, poses, options.choice.proof)
-        if touches is None:
-            refused = "the probe touches none of it"
-            continue
         body = replace(bare, patches=(face,))
-        lots = [single(balls, criterion.noise)]
-        lots.append(measurement_on(criterion, body, touches, options.scan))
-        here = criterion.plain.on(body)
+        here, count = criterion.plain.on(body), options.choice.proof
+        tried = _some_touches(criterion, face, poses, count)
+        given = single(balls, criterion.noise)
+        try:
+            touches = showing_on_face(here, body, tried, given, effects_at, count)
+        except NotReachable as error:
+            refused = str(error)
+            continue
+        lots = [given, measurement_on(criterion, body, touches, options.scan)]
         signal = hidden_power(here, measured_together(lots), effects_at, False).least_signal
         if signal > most:
             best, most = wave, signal
@@ -177,16 +173,13 @@ def _bare(blank: Blank, base: Base) -> Standard:
     )
 
 
-def _some_touches(
-    criterion: Criterion, face: FreeformPatch, poses: Array, count: int
-) -> Requests | None:
-    """Touches all over a face, each at one of the poses; None where none is possible."""
-    grid = face_grid(face.half_size, int(np.ceil(np.sqrt(count))))
+def _some_touches(criterion: Criterion, face: FreeformPatch, poses: Array, count: int) -> Requests:
+    """Possible touches all over a face, each at one of the poses."""
+    grid = face_grid(face.half_size, int(np.ceil(np.sqrt(PLACES_PER_TOUCH * count))))
     turns = poses[np.arange(len(grid)) % len(poses)]
     one = each_at(face, grid, poses[:1])
     touches = replace(one, rotary=turns)
-    touches = touches[criterion.reach.is_reachable(touches)]
-    return touches if len(touches) else None
+    return touches[criterion.reach.is_reachable(touches)]
 
 
 def _identifying(

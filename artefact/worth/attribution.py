@@ -55,7 +55,8 @@ def error_shares(
     The signal of an error in a patch is the mean square that it is expected to show in the touches
     there; its share is of the sum over all errors of the machine, set-ups left out. Every
     translation shows everywhere, so those are named whose share stands out most against their
-    share over all patches together, by ``share log(share / overall share)``.
+    share over all patches together, by ``share log(share / overall share)``. For a single patch
+    they are those with the largest share.
 
     Args:
         W: Whitened rows of all touches on patches, (N, P).
@@ -81,6 +82,8 @@ def error_shares(
         mine = by_error[labels == name].mean(axis=0)
         share = mine / mine.sum()
         stands_out = share * np.log(np.maximum(share, 1e-12) / np.maximum(overall, 1e-12))
+        if (labels == name).all():  # one patch alone stands out against nothing
+            stands_out = share
         best = np.argsort(-stands_out, kind="stable")[:ERRORS_PER_PATCH]
         best = best[np.argsort(-share[best], kind="stable")]
         out[name] = tuple(ErrorShare(str(names[i]), round(float(share[i]), 4)) for i in best)

@@ -342,7 +342,7 @@ def _chart(surface: Any, chord: float) -> Chart:
         shape = surface.Torus()
         profile = torus(shape.MajorRadius(), shape.MinorRadius())
     else:
-        return scaled_chart(_in_space(surface), low, high, chord)
+        return scaled_chart(_in_space(surface), low, high)
     return revolved_chart(_frame(shape.Position()), profile, low, high, chord)
 
 

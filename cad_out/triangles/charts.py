@@ -101,11 +101,6 @@ def torus(large: float, small: float) -> Profile:
     )
 
 
-_LARGE, _SAMPLES = 120.0, 121
-"""Mm in a chart from which a free surface is begun with a lattice, and the places each way at which
-its bend is sampled: refinement alone takes a minute for a wavy face of 160 mm."""
-
-
 def arc_step(radius: float, chord: float) -> float:
     """Angle of a step round a circle that keeps a chord, rad."""
     return min(float(2.0 * np.arccos(max(1.0 - _SHARE * chord / radius, 0.0))), _TURN)
@@ -181,30 +176,14 @@ def _unrolled(
     return Chart(place=place, point=point)
 
 
-def scaled_chart(in_space: Map, low: Array, high: Array, chord: float) -> Chart:
+def scaled_chart(in_space: Map, low: Array, high: Array) -> Chart:
     """The parameters of any other surface, each times the length that it runs in its middle.
 
     Args:
         in_space: Parameters to points, (N, 2) to (N, 3), mm.
-        chord: Of the triangles, mm; a large surface is begun with points at a spacing that keeps
-            it where the surface bends most.
     """
     middle, step = 0.5 * (low + high), 1e-3 * (high - low)
     ends = [middle + sign * step * axis for axis in np.eye(2) for sign in (-1.0, 1.0)]
     a, b, c, d = in_space(np.array(ends))
     scale = np.array([np.linalg.norm(b - a), np.linalg.norm(d - c)]) / (2.0 * step)
-    sides = scale * (high - low)
-    spacing = _spacing(in_space, low, high, sides, chord) if sides.max() > _LARGE else 0.0
-    return Chart(
-        place=lambda uv: uv * scale, point=lambda xy: in_space(xy / scale), spacing=spacing
-    )
-
-
-def _spacing(in_space: Map, low: Array, high: Array, sides: Array, chord: float) -> float:
-    """Side of an equilateral triangle in a chart that keeps a chord: ``sag = side^2 bend / 6``."""
-    axes = [np.linspace(a, b, _SAMPLES) for a, b in zip(low, high, strict=True)]
-    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    x = in_space(grid.reshape(-1, 2)).reshape(_SAMPLES, _SAMPLES, 3)
-    step = sides / (_SAMPLES - 1)
-    bends = [np.linalg.norm(np.diff(x, 2, axis=k), axis=-1).max() / step[k] ** 2 for k in (0, 1)]
-    return float(np.sqrt(6.0 * _SHARE * chord / max(bends)))
+    return Chart(place=lambda uv: uv * scale, point=lambda xy: in_space(xy / scale))

@@ -8,14 +8,17 @@ from matstd.importers.points.runs import (
     linear_machine,
     points_run,
 )
+from matstd.importers.points.scan_log import ScanLog, read_scan_log
 
 __all__ = [
     "Meaning",
     "PointList",
     "PointsImport",
+    "ScanLog",
     "import_points",
     "joined_points",
     "linear_machine",
     "points_run",
     "read_points",
+    "read_scan_log",
 ]

@@ -5,11 +5,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
+import numpy as np
+
 from matstd.api.machines import chain_of
 from matstd.api.probing import save_run, stated_body
 from matstd.api.standards import standard_of
 from matstd.artefact.body import Standard
 from matstd.diagnosis.remarks import body_sizes
+from matstd.importers import ScanLog, read_scan_log
 from matstd.probe_paths.campaign import (
     ball_changes,
     check_as_programmed,
@@ -20,12 +23,15 @@ from matstd.probe_paths.campaign import (
 from matstd.probe_paths.campaign import evaluate as evaluate_parts
 from matstd.probe_paths.control import LogPart, read_log, read_program
 from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.scans import STRETCH, ScanNoise, ScanPoints, evaluate_scan
+from matstd.report.numbers import um
 from matstd.report.words import ball_lines, remark_sentence
 from matstd.twin.display import Displayed
-from matstd.twin.errors import BadArgument, DesignError, NotEnoughData
+from matstd.twin.errors import BadArgument, BadFile, DesignError, NotEnoughData
 from matstd.twin.files import read_sensors
-from matstd.twin.machine import Chain
-from matstd.twin.record import Run, with_body
+from matstd.twin.frames import Array, apply
+from matstd.twin.machine import Chain, inverse_linear
+from matstd.twin.record import Run, Setup, with_body
 from matstd.twin.units import UM
 
 
@@ -153,3 +159,84 @@ def _check_programs(
         raise DesignError(f"--programs {place}: found none of {', '.join(sorted(names))}")
     programs = {file.stem: read_program(file, chain) for file in files}
     check_as_programmed(parts, programs, chain)
+
+
+def evaluate_scan_log(
+    log: str | Path,
+    standard: Standard | str | Path,
+    machine: Chain | str | Path,
+    face: str,
+    radius: float,
+    length: float,
+    *,
+    setup: Setup | None = None,
+    frame: str = "machine",
+    u: float = 1.0 * UM,
+    body_temperature: float | None = None,
+    body_u: float | None = None,
+) -> Evaluation:
+    """Measurements from the log of a scan of one freeform face.
+
+    Args:
+        log: See `matstd.importers.points.scan_log`.
+        standard: As calibrated.
+        face: Name of the scanned face.
+        radius: Of the ball, mm.
+        length: From the gauge point to its centre, mm.
+        setup: Where the standard is believed to stand; None for the origin of the table.
+        frame: What the coordinates are: `machine` readings of the axes, `standard` of the ball in
+            the frame of the standard.
+        u: Standard uncertainty of the probe beside the noise that the scan shows, mm.
+        body_temperature: Of the standard while it was scanned, degC.
+        body_u: Its standard uncertainty, K.
+
+    Raises:
+        BadFile: A log that cannot be read, has gaps or points that are not on the face.
+    """
+    if not 0.0 < radius < 50.0:
+        raise BadArgument("radius_mm", f"{radius:g}", "radius of the ball, 0 to 50 mm")
+    chain, piece, stands = chain_of(machine), standard_of(standard), setup or Setup("a")
+    read = read_scan_log(log)
+    points = _points(read, chain, length, stands, frame)
+    run, noise = evaluate_scan(points, piece, face, chain, radius, length, stands, u)
+    run = with_body(run, stated_body(piece, body_temperature, body_u))
+    return Evaluation(run, chain, (), (_worth(noise, len(run)), *run.remarks))
+
+
+def _points(read: ScanLog, chain: Chain, length: float, stands: Setup, frame: str) -> ScanPoints:
+    """The log on a machine."""
+    q: Array = np.zeros((len(read.row), len(chain.axes)))
+    for letter, angle in read.rotary.items():
+        if letter in chain.axes:
+            q[:, chain.axis_index(letter)] = angle
+    if frame == "standard":
+        q = inverse_linear(chain, apply(stands.T_table_artefact, read.position), q, length)
+    else:
+        others = [name for name in chain.linear_axes if name not in "XYZ"]
+        if others:
+            raise BadFile(
+                read.path, "x, y, z", f"no column of {', '.join(others)}",
+                "coordinates of the ball in the frame of the standard (--frame standard)",
+            )  # fmt: skip
+        for i, letter in enumerate("XYZ"):
+            if letter in chain.axes:
+                q[:, chain.axis_index(letter)] = read.position[:, i]
+    return ScanPoints(
+        path=read.path,
+        row=read.row,
+        line=read.line,
+        is_numbered=read.is_numbered,
+        q=q,
+        deflection=read.deflection,
+        time=read.time,
+    )
+
+
+def _worth(noise: ScanNoise, rows: int) -> str:
+    """Points, their noise and its correlation, and the rows that they became."""
+    return (
+        f"{noise.points} points on {noise.lines} lines became {rows} rows, means of "
+        f"{STRETCH:g} mm: a point has a noise of {um(noise.u)}, neighbours {noise.pitch:.2f} mm "
+        f"apart a correlation of {noise.alike:.2f}, a row {um(noise.u_mean)} (waves of the probe "
+        "over longer distances are not in it)"
+    )

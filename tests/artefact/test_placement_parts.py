@@ -283,6 +283,8 @@ def test_shares_name_what_stands_out():
     assert (first.name, first.share) == ("EXX", pytest.approx(25 / 27, abs=1e-4))
     assert (second.name, second.share) == ("EYX", pytest.approx(25 / 28, abs=1e-4))
     assert "EX0w" not in {e.name for e in shares["FF1"]}
+    (alone,) = error_shares(W, ["FF1", "FF1"], symbols).values()
+    assert [e.name for e in alone] == ["EXX", "EYX", "EZX"]  # 27, 26 and 2 of 55
 
 
 def test_a_machine_with_amplitudes_all_zero_is_refused_in_one_line():

@@ -48,10 +48,78 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="temperatures over the clock of the control: columns clock "
         "(2031-05-06T07:08:09) and T_<sensor>_degC; T_body_degC is the standard's",
     )
+    _add_scan(parser)
     add_body(
         parser, "temperature of the standard during probing, °C (default: T_body_degC of --sensors)"
     )
     add_output(parser, "RUN.csv")
+
+
+def _add_scan(parser: argparse.ArgumentParser) -> None:
+    """Options of a scan."""
+    scan = parser.add_argument_group("of a scan, a table with x, y, z in place of a log")
+    scan.add_argument("--scan", metavar="FACE", help="name of the scanned freeform face")
+    scan.add_argument("--radius-mm", type=float, help="radius of the ball")
+    scan.add_argument(
+        "--length-mm", type=float, help="from the gauge point to the centre of the ball"
+    )
+    scan.add_argument(
+        "--frame",
+        choices=("machine", "standard"),
+        default="machine",
+        help="what x, y, z are: readings of the axes, or the centre of the ball in the frame of "
+        "the standard (machine)",
+    )
+    scan.add_argument(
+        "--origin-mm",
+        metavar=("X", "Y", "Z"),
+        nargs=3,
+        type=float,
+        default=(0.0, 0.0, 0.0),
+        help="origin of the standard in the table frame, within 5 mm (0 0 0)",
+    )
+    scan.add_argument(
+        "--rotation-deg",
+        metavar=("A", "B", "C"),
+        nargs=3,
+        type=float,
+        default=(0.0, 0.0, 0.0),
+        help="its rotations about the fixed x, then y, then z of the table frame (0 0 0)",
+    )
+
+
+def _scan_run(args: argparse.Namespace) -> int:
+    """Write the run file of a scan."""
+    import numpy as np
+
+    from matstd.api.evaluating import evaluate_scan_log
+    from matstd.console import say, say_each
+    from matstd.twin.errors import BadArgument
+    from matstd.twin.frames import fixed_xyz, pose
+    from matstd.twin.record import Setup
+    from matstd.twin.units import DEG, UM
+
+    if len(args.logs) != 1 or args.radius_mm is None or args.length_mm is None:
+        given = f"{len(args.logs)} files, radius {args.radius_mm}, length {args.length_mm}"
+        raise BadArgument("scan", given, "one file, --radius-mm and --length-mm")
+    turned = fixed_xyz(np.array(args.rotation_deg) * DEG)
+    found = evaluate_scan_log(
+        args.logs[0],
+        args.standard,
+        args.machine,
+        args.scan,
+        args.radius_mm,
+        args.length_mm,
+        setup=Setup("a", pose(turned, np.array(args.origin_mm))),
+        frame=args.frame,
+        u=args.u_um * UM,
+        body_temperature=args.body_degC,
+        body_u=args.body_u_K,
+    )
+    found.save(args.output, args.machine)
+    say(f"{args.output}: {len(found.run)} rows of a scan of {args.scan}")
+    say_each(list(found.remarks))
+    return 0
 
 
 def run(args: argparse.Namespace) -> int:
@@ -65,6 +133,8 @@ def run(args: argparse.Namespace) -> int:
     from matstd.twin.units import UM
 
     refuse_to_overwrite(args.output, args.force)
+    if args.scan:
+        return _scan_run(args)
     found = evaluate(
         args.logs,
         args.standard,

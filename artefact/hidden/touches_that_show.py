@@ -1,0 +1,122 @@
+"""Touches that show unmodelled effects best, chosen one by one from those that can be made.
+
+A touch with the deviations r of the effects that all others and the model do not explain, and the
+leverage ``h = 1 + b^T (1 + B^T B)^-1 b`` beside them, adds to the square of an effect's signal
+
+    |r|^2 / h,   r = f - F^T B (1 + B^T B)^-1 b
+
+in units of its noise, with B what is explained and F the effects at the touches chosen before. The
+next touch is the one with the least sum of ``1 / signal^2`` over all effects: the effect that shows
+least counts most. Steep flanks that face along an axis win, where several axes have to be shown.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from matstd.artefact.hidden.smooth_effects import (
+    Measurement,
+    effect_columns,
+    explained_columns,
+    measured_together,
+)
+from matstd.artefact.worth import Criterion
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
+
+_NONE = 1e-6  # of a square of a signal, for effects that nothing shows yet
+
+
+def showing_touches(
+    criterion: Criterion,
+    given: Measurement,
+    tried: Measurement,
+    places: Array,
+    count: int,
+    at: IntArray,
+    area: IntArray,
+) -> IntArray:
+    """Rows of the touches that show most beside given ones.
+
+    Args:
+        criterion: On the standard, whose calibration counts.
+        given: Measurements that will be made whatever is chosen.
+        tried: Touches that can be made. Form errors of a face are part of their noise: touches are
+            at different places, so that they hardly share them.
+        places: Where bumps may be, readings of the linear axes, (K, 3), mm.
+        count: At most as many as places.
+        at: Place of every touch that can be made, (N,); each is touched once.
+        area: Of every place, (P,): each area gets its share, so that touches are spread.
+    """
+    choice = _Choice.begun(criterion, given, tried, places)
+    room = np.ceil(count / len(np.unique(area))) * np.ones(area.max() + 1, dtype=int)
+    free, out = np.ones(len(tried), dtype=bool), []
+    for _ in range(count):
+        open_now = free & (room[area[at]] > 0)
+        if not open_now.any():  # areas with too few places: the others take more
+            open_now = free
+        if not open_now.any():
+            break
+        best = int(np.argmin(np.where(open_now, choice.left_after(), np.inf)))
+        choice.take(best)
+        room[area[at[best]]] -= 1
+        free &= at != at[best]
+        out.append(best)
+    return np.array(out, dtype=np.int64)
+
+
+@dataclass(eq=False)
+class _Choice:
+    """What given and chosen touches show, and what every other would add.
+
+    Attributes:
+        first: First column of every effect, (E,).
+        square: Squares of the signals, (E,).
+        left: Deviations at the possible touches that nothing explains, (N, M).
+        explained: Of the possible touches, (N, B).
+        weighed: The same times the covariance of what is explained, (N, B).
+        leverage: ``h``, (N,).
+    """
+
+    first: IntArray
+    square: Array
+    left: Array
+    explained: Array
+    weighed: Array
+    leverage: Array
+
+    @staticmethod
+    def begun(
+        criterion: Criterion, given: Measurement, tried: Measurement, places: Array
+    ) -> "_Choice":
+        """With the given measurements alone."""
+        both, count = measured_together([given, tried]), len(given)
+        F, first = effect_columns(criterion, both, places)
+        B = explained_columns(criterion, both)
+        before, C = B[:count], B[:count].T @ F[:count]
+        M = np.eye(B.shape[1]) + before.T @ before
+        known = np.linalg.solve(M, C)
+        weighed = np.asarray(np.linalg.solve(M, B[count:].T).T, dtype=np.float64)
+        shown = np.sum(F[:count] ** 2, axis=0) - np.sum(C * known, axis=0)
+        return _Choice(
+            first=first,
+            square=np.add.reduceat(shown, first),
+            left=F[count:] - B[count:] @ known,
+            explained=B[count:],
+            weighed=weighed,
+            leverage=1.0 + np.sum(weighed * B[count:], axis=1),
+        )
+
+    def left_after(self) -> Array:
+        """Sum of ``1 / signal^2`` after each of the possible touches, (N,)."""
+        more = np.add.reduceat(self.left**2, self.first, axis=1) / self.leverage[:, None]
+        return np.asarray(np.sum(1.0 / (self.square + more + _NONE), axis=1))
+
+    def take(self, row: int) -> None:
+        """Choose a touch."""
+        r, h, w = self.left[row].copy(), self.leverage[row], self.weighed[row].copy()
+        self.square = self.square + np.add.reduceat(r**2, self.first) / h
+        alike = self.explained @ w / h
+        self.left -= alike[:, None] * r
+        self.weighed -= alike[:, None] * w
+        self.leverage = 1.0 + np.sum(self.weighed * self.explained, axis=1)
