@@ -104,6 +104,17 @@ def follows_driver(effect: Effect) -> bool:
     return bool(own.driver or own.parameter_drives)
 
 
+def is_own_sensor(effect: Effect) -> bool:
+    """Whether a law follows the sensor on what it moves, by name: `scaleY` for EYY, `artefact`."""
+    own = traits(original_of(effect))
+    if own.symbol is None:
+        axis = own.axis
+    else:
+        axis = own.symbol.link if own.symbol.name[1] == own.symbol.link[:1] else ""
+    is_of_standard = bool(own.driver) and effect.kind.startswith(own.driver)
+    return is_of_standard or bool(axis and own.driver.endswith(axis))
+
+
 def moves_alike(law: Effect, drift: Effect) -> bool:
     """Whether a law moves what a driver that was not recorded moves.
 

@@ -28,7 +28,12 @@ from matstd.diagnosis.search.budget import Budget
 from matstd.diagnosis.search.domains import domain_gain
 from matstd.diagnosis.search.instants import p_by_instants
 from matstd.diagnosis.search.members import EffectSubset, Member, Verified, effect_set
-from matstd.diagnosis.search.missing_driver import follows_driver, is_unrecorded, moves_alike
+from matstd.diagnosis.search.missing_driver import (
+    follows_driver,
+    is_own_sensor,
+    is_unrecorded,
+    moves_alike,
+)
 from matstd.diagnosis.search.tables import contains
 from matstd.twin.frames import Array
 from matstd.twin.thermal import drives
@@ -243,13 +248,13 @@ class Search:
         """Log prior of every variant, (V,).
 
         A law of a recorded driver was chosen among many drivers and lags, and one that was not
-        recorded may stand behind it.
+        recorded may stand behind it, unless the sensor is that of the body itself.
         """
         touches, pool = self.complement.touches, self.pool
         _, first = np.unique(pool.owner, return_index=True)
-        several = max(len(drives(touches)), 1)
+        chosen = POLICY.log_odds_unrecorded + np.log(max(len(drives(touches)), 1))
         prior = [
-            -np.log(several * tries) - POLICY.log_odds_unrecorded
+            -np.log(tries) - chosen * (not is_own_sensor(pool.variants[v]))
             if follows_driver(pool.variants[v])
             else 0.0
             for v, tries in zip(first, pool.tries, strict=True)
