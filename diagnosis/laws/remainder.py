@@ -32,12 +32,12 @@ def learn_remainder(
         known: What was known of the starting model from another run.
     """
     base = start.model
-    beside = learn_beside(Beginning.of_fit(end, base, known), policy)
+    beside = learn_beside(Beginning.of_fit(end, base, known), policy, True)
     names = {e.name for e in base.effects}
     found = tuple(e for e in end.model.effects if e.name not in names)
     if not found:
         return beside
-    alone = learn_beside(Beginning.of_fit(start, base, known), policy)
+    alone = learn_beside(Beginning.of_fit(start, base, known), policy, True)
     odds = _odds(alone, beside, found) if alone.laws else -np.inf
     if odds < policy.class_odds:
         return beside

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -17,12 +18,16 @@ from matstd.diagnosis.answer import Verdict
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.laws import (
     POLICY,
+    Refusal,
     amplitudes,
     learn_laws,
     learn_remainder,
     places,
     second_run,
 )
+from matstd.diagnosis.laws.learn import _by_rival as weighed
+from matstd.diagnosis.laws.library import LibraryEffect
+from matstd.report.laws import no_law_sentence
 from matstd.report.verdict import part_lines
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.model import Model
@@ -98,6 +103,22 @@ def test_the_command_writes_an_effect_that_the_other_commands_take(
     own = ["--effects", str(effect), "--no-report", "-o", str(tmp_path / "own")]
     assert main(["compare", str(tmp_path / "two.csv"), *own]) == 0
     assert parse_effect("learnt-law", stylus[1][0].touches.chain).name == "learnt-law"
+
+
+def test_rivals_of_other_kinds_are_weighed_by_the_same_evidence(stylus) -> None:
+    _, (run, *_), found = stylus
+    (one,) = found.laws
+    assert found.refusal is Refusal.CHANCE  # of a second law
+    assert one.memory < one.score  # a step is seen as a memory, too, but less well
+    assert one.drift < one.score
+    effect = parse_effect("backlash(X)", run.touches.chain)
+    better = replace(one, library=LibraryEffect(effect, one.score + 2.0))
+    assert weighed(one, False) is None
+    assert weighed(better, False) is Refusal.LIBRARY
+    assert weighed(better, True) is None  # a diagnosis has looked for it already
+    assert weighed(replace(one, memory=one.score + 1.0), True) is Refusal.MEMORY
+    none = replace(found, laws=(), refused=better, refusal=Refusal.LIBRARY)
+    assert 'matstd diagnose --add "backlash(X)"' in no_law_sentence(none)
 
 
 def test_a_diagnosis_learns_the_law_of_what_remains(stylus, tmp_path) -> None:
