@@ -1,4 +1,4 @@
-"""Model file (TOML, "model/1"): a machine, its effects, and what was learnt of their parameters."""
+"""Model file (TOML, "model/1", with curves "model/2"): a machine, its effects, their estimates."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from matstd.diagnosis.files.curve_table import CurveEntry
 from matstd.diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
 from matstd.diagnosis.regression import Memory
 from matstd.diagnosis.remarks import EffectOfOtherRun
@@ -28,7 +29,8 @@ from matstd.twin.model import Effect, Model, is_tunable
 from matstd.twin.record import Run, Touches, without_copies
 from matstd.twin.units import DEG, UM
 
-FORMAT = "model/1"
+FORMAT, CURVED = "model/1", "model/2"
+"""Without and with `[[curve]]`: whoever knows no curves is not given any."""
 
 LARGEST, SMALLEST = 1e12, 1e-300
 """Variances of a file beyond the first (µm, µrad squared ...) are slips; of none below the second a
@@ -106,6 +108,7 @@ class ModelTable(Table):
     source: SourceEntry
     effect: list[EffectEntry]
     covariance: list[list[float]]
+    curve: list[CurveEntry] = Field(default_factory=list)
     from_inner: list[list[float]] = Field(default_factory=list)
 
 
@@ -218,7 +221,7 @@ def parsed_model(
 ) -> SavedModel:
     """The model of a text; arguments and errors as of `read_model`."""
     data = parse_toml(text, path)
-    check_format(data, FORMAT, path)
+    check_format(data, CURVED if data.get("format") == CURVED else FORMAT, path)
     table = checked(ModelTable, data, path)
     chain = table.machine.made(path, "machine")
     by_name = {e.name: e for e in known}

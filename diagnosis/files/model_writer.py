@@ -1,4 +1,4 @@
-"""Writer of model files ("model/1"): what a fit has learnt, for another day and another run."""
+"""Writer of model files ("model/1", "model/2"): what a fit has learnt, for another run."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from matstd.diagnosis.files.curve_table import curve_entries
 from matstd.diagnosis.files.model_file import (
+    CURVED,
     FORMAT,
     SavedModel,
     parameter_keys,
@@ -82,15 +84,20 @@ def model_text(
         factors += [factor for _, factor in keys]
         entries.append(entry)
     scale = np.array(factors)
-    shown = L @ learnt.covariance @ L.T / np.outer(scale, scale)
+    covariance = L @ learnt.covariance @ L.T
+    shown = covariance / np.outer(scale, scale)
+    curves = curve_entries(standing(fit.model), theta, covariance)
     tables = {
         "machine": _machine(fit.model.chain),
         "source": _source(fit, run_name, before, made_with, held_out),
         "effect": entries,
+        **({"curve": curves} if curves else {}),
     }
     # top-level keys stand before tables in TOML, so the covariance goes before what it is about
     head = (
-        f'format = "{FORMAT}"\n' + _triangle(shown) + _root(L @ learnt.from_inner / scale[:, None])
+        f'format = "{CURVED if curves else FORMAT}"\n'
+        + _triangle(shown)
+        + _root(L @ learnt.from_inner / scale[:, None])
     )
     return head + tomli_w.dumps(tables)
 

@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 POINTS = 400
 """Points of a curve that are drawn."""
 
+BEYOND = 0.3
+"""Share of the range by which a curve is drawn beyond it: there its uncertainty comes back."""
+
 MIN_LEVER = 0.2
 """Share of the largest lever below which a touch shows noise rather than the law."""
 
@@ -49,7 +52,8 @@ def _panel(ax: Any, learning: Learning, law: Law, k: int) -> None:
     fit = learning.after
     x = driver.values(fit.run.touches)[fit.used]
     label, per = axis_label(driver, x)
-    grid = np.linspace(float(x.min()), float(x.max()), POINTS)
+    beyond = BEYOND * float(np.ptp(x)) if law.factors[k].shape.word == "curve" else 0.0
+    grid = np.linspace(float(x.min()) - beyond, float(x.max()) + beyond, POINTS)
     if driver.nature == "sign":
         grid = np.array([-1.0, 1.0])
     value, u = curve_of(learning, law, k, grid)

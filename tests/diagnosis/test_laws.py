@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+import tomllib
 from dataclasses import replace
 
 import numpy as np
@@ -15,6 +16,7 @@ from matstd.api.comparing import compare
 from matstd.api.diagnosing import diagnose
 from matstd.cli import main
 from matstd.diagnosis.answer import Verdict
+from matstd.diagnosis.files import model_of, read_model, write_model
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.laws import (
     POLICY,
@@ -150,6 +152,43 @@ def test_effects_that_explain_nothing_give_way_to_the_law(stylus) -> None:
     assert list(found.instead_of) == wrong
     assert found.instead_odds > POLICY.class_odds
     assert len(found.after.model.effects) == len(model.effects) + 1
+
+
+def test_a_curve_is_saved_and_is_uncertain_where_it_has_not_been(stylus, tmp_path) -> None:
+    run = stylus[1][0]
+    q = run.touches.reading("Y")
+    near = run[q < np.quantile(q, 0.6)]
+    chain = run.touches.chain
+    low, high = (f(near.touches.reading("Y")) for f in (np.min, np.max))
+    size = 20.0 * UM
+    curve = parse_effect("law(EZY,curve Y)", chain).tuned(low, high, 0.2, size)
+    model = ordinary_model(chain)
+    fit = fit_run(near, Model(chain, (*model.effects, curve)))
+    write_model(tmp_path / "model.toml", fit, "near.csv")
+    saved = read_model(tmp_path / "model.toml")
+    text = (tmp_path / "model.toml").read_text(encoding="utf-8")
+    assert text.startswith('format = "model/2"')
+    (table,) = tomllib.loads(text)["curve"]
+    assert (table["carrier"], table["variable"], table["unit"]) == ("EZY", "Y", "um")
+    x, value, u = (np.array(table[key]) for key in ("x", "value", "u"))
+    inside = (x > low) & (x < high)
+    # by hand: Matern 3/2, its variance with the edge's share k^2 and what is new, 1 - k^2
+    z = np.sqrt(3.0) * (x[-1] - high) / (0.2 * (high - low))
+    k = (1.0 + z) * np.exp(-z)
+    edge = np.interp(high, x, u)
+    assert u[-1] == pytest.approx(np.hypot(k * edge, np.sqrt(1.0 - k**2) * size / UM), rel=0.02)
+    assert u[inside].max() < u[-1]
+    assert abs(value[-1]) < abs(np.interp(high, x, value)) + 1e-9
+    # the whole run reaches further: what is predicted there is as uncertain as the curve
+    plain = compare(run, model_of(fit_run(near, model))).u
+    wider = compare(run, saved).u / plain
+    far, known = (q > high + 0.2 * (high - low)), (q > low) & (q < high)
+    assert np.median(wider[far]) > 1.2 * np.median(wider[known])
+    u_again = np.linalg.norm(saved.model.columns(near.touches) @ saved.estimates.root, axis=1)
+    P = len(fit.model.parameters)
+    own = fit.model.columns(near.touches)
+    before = np.sqrt(np.einsum("np,pq,nq->n", own, fit.covariance[:P, :P], own))
+    np.testing.assert_allclose(u_again, before, rtol=1e-3)
 
 
 @pytest.mark.slow
