@@ -8,16 +8,12 @@ The root mean square of every score is to lie between 0.8 and 1.2; without dense
 an assumption of the user, which these pieces exceed.
 """
 
-import argparse
-import sys
 import tempfile
 import tomllib
 from pathlib import Path
 
 import numpy as np
-
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles"), str(ROOT / "tests" / "fixtures")]
+from harness import parser_of  # puts the oracles on the path
 
 
 def main() -> None:
@@ -26,7 +22,7 @@ def main() -> None:
 
     from matstd.api.standards import calibrate, read_standard
 
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = parser_of(__doc__)
     parser.add_argument("standard", help="standard.toml of a design")
     parser.add_argument("-n", type=int, default=20, help="pieces (20)")
     parser.add_argument("--waves-um", type=float, default=0.7, help="rms of the waves, µm (0.7)")

@@ -7,9 +7,7 @@ of the machine file, as a user would make it, and both are read back. Beside the
 without a mistake, half of them of machines three times worse than expected: nothing may be named.
 """
 
-import argparse
 import re
-import sys
 import tempfile
 import time
 from collections.abc import Callable
@@ -17,18 +15,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from harness import parser_of  # puts the simulator on the path
+from simulator_case import simulate_case
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
-
-from simulator_case import simulate_case  # noqa: E402  (found through the path above)
-
-from matstd.diagnosis.faults import Fault, description_faults, faults_of_refused  # noqa: E402
-from matstd.diagnosis.fit import fit_run  # noqa: E402
-from matstd.twin.errors import BadFile  # noqa: E402
-from matstd.twin.files import read_run  # noqa: E402
-from matstd.twin.library import ordinary_model  # noqa: E402
-from matstd.twin.record import Run  # noqa: E402
+from matstd.diagnosis.faults import Fault, description_faults, faults_of_refused
+from matstd.diagnosis.fit import fit_run
+from matstd.twin.errors import BadFile
+from matstd.twin.files import read_run
+from matstd.twin.library import ordinary_model
+from matstd.twin.record import Run
 
 Edit = Callable[[str, str], tuple[str, str]]
 """Texts of run file and machine file -> the same with a mistake."""
@@ -209,7 +204,7 @@ def right_one(k: int, seed: int) -> bool:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = parser_of(__doc__)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--first", type=int, default=0, help="number of the first mistake")
     parser.add_argument("--runs", type=int, default=len(PLANTED))

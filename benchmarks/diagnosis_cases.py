@@ -7,18 +7,17 @@ where nothing detectable is hidden; every detectable effect, or one alike, found
 `unexplained` where the effect is outside the library.
 """
 
-import argparse
 import json
 import os
 import platform
 import resource
 import time
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from harness import alike_names, cases, in_processes, listed, mark, named_steps, names_of, parser_of
 
 import matstd.diagnosis.answer.run_diagnosis as diagnosing
 from matstd.diagnosis.answer import Diagnosis, Step, Verdict
@@ -47,19 +46,14 @@ class Score:
         return self.truth == "-"
 
 
-def names_of(hidden: dict[str, Any]) -> set[str]:
-    return {hidden["effect"], *(alike[1] for alike in hidden["alike"])}
-
-
 def matches(step: Step, hidden: dict[str, Any]) -> bool:
     """Whether a found effect, or its class, is a hidden one or one alike."""
     assert step.effect is not None
-    rivals = {r.effect.name for r in step.confusion.rivals} if step.confusion else set()
-    return step.effect.name in names_of(hidden) or hidden["effect"] in rivals
+    return step.effect.name in alike_names(hidden) or hidden["effect"] in names_of(step)
 
 
 def is_right(result: Diagnosis, hidden: list[dict[str, Any]]) -> bool:
-    found = [s for s in result.steps if s.effect is not None]
+    found = named_steps(result)
     if any(h["effect"].startswith("?") and h["detectable"] for h in hidden):
         return result.verdict is Verdict.UNEXPLAINED and not found
     wanted = [h for h in hidden if h["detectable"]]
@@ -103,17 +97,12 @@ def score(folder: Path) -> Score:
         f"{h['effect']}[{h['signal_to_noise']:.0f}]" + ("" if h["detectable"] else "(below)")
         for h in hidden
     )
-    found = ", ".join(
-        f"{s.effect.name}" + (f"~{len(s.confusion.rivals)}" if s.confusion else "")
-        for s in result.steps
-        if s.effect is not None
-    )
     ratio = result.fit.standardised_test_rms / UM / truth["noise_um"]
     return Score(
         folder.name,
         told or "-",
         result.verdict.value,
-        found or "-",
+        listed(named_steps(result)) or "-",
         is_right(result, hidden),
         seconds,
         ratio,
@@ -121,20 +110,12 @@ def score(folder: Path) -> Score:
     )
 
 
-def cases(folders: list[Path]) -> list[Path]:
-    out = []
-    for folder in folders:
-        own = [folder] if (folder / "truth.json").exists() else sorted(folder.iterdir())
-        out += [d for d in own if (d / "truth.json").exists()]
-    return out
-
-
 def show(scores: list[Score], only_wrong: bool) -> None:
     for s in scores:
         if only_wrong and s.right:
             continue
         print(
-            f"{'ok   ' if s.right else 'WRONG'} {s.name:10} {s.seconds:5.1f} s  "
+            f"{mark(s.right)} {s.name:10} {s.seconds:5.1f} s  "
             f"held-out/noise {s.test_ratio:5.3f}  {s.verdict:17} {s.truth}  ->  {s.found}"
         )
         for name, true, value, u in s.sizes:
@@ -176,7 +157,7 @@ def peak() -> float:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = parser_of(__doc__)
     parser.add_argument("folders", nargs="+", type=Path)
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--wrong", action="store_true", help="print only what is wrong")
@@ -186,11 +167,7 @@ def main() -> None:
         f"{len(found)} cases; Python {platform.python_version()}, numpy {np.__version__}, "
         f"{os.cpu_count()} cores, {platform.machine()}\n"
     )
-    if args.jobs > 1:
-        with ProcessPoolExecutor(args.jobs) as pool:
-            scores = list(pool.map(score, found))
-    else:
-        scores = [score(folder) for folder in found]
+    scores = in_processes(score, found, args.jobs)
     show(scores, args.wrong)
 
 

@@ -16,9 +16,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
+from harness import parser_of
 
 HIDDEN = "thermal-expansion(Y,scaleY)"
 PER_POSE, SETUPS = 26, 3
@@ -61,7 +59,7 @@ def measure(path: Path) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = parser_of(__doc__)
     parser.add_argument("--touches", type=int, nargs="+", default=[800, 20000])
     parser.add_argument("--run", type=Path, help=argparse.SUPPRESS)
     a = parser.parse_args()

@@ -7,11 +7,10 @@ differences of the exact product, and filling an array of that size with a numbe
 """
 
 import platform
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from harness import best_of, matrix_rate
 
 from matstd.sensitivity.first_order import (
     Workspace,
@@ -24,22 +23,6 @@ from matstd.twin.machine import Chain, Contribution, Family, exact_tip
 
 MACHINE = Path(__file__).parent.parent / "examples" / "hsm600u-machine.toml"
 LENGTH = 160.0
-
-
-def best_of(work: Callable[[], object], repeats: int = 5) -> float:
-    """Shortest of some timings, s."""
-    times = []
-    for _ in range(repeats):
-        start = time.perf_counter()
-        work()
-        times.append(time.perf_counter() - start)
-    return min(times)
-
-
-def matrix_rate() -> float:
-    """float64 matrix products, GFLOP/s."""
-    a = np.random.default_rng(0).normal(size=(1500, 1500))
-    return 2 * 1500**3 / best_of(lambda: a @ a) / 1e9
 
 
 def central_differences(chain, q):

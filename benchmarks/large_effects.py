@@ -8,18 +8,20 @@ and a spindle that runs besides. Right is the effect, or one that the same touch
 it, and nothing beside it.
 """
 
-import argparse
-import sys
 import time
-from concurrent.futures import ProcessPoolExecutor
-from pathlib import Path
 
 import numpy as np
+from harness import (
+    MACHINES,
+    alike_names,
+    in_processes,
+    listed,
+    mark,
+    named_steps,
+    names_of,
+    run_options,
+)
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
-
-MACHINES = ("hsm600u", "fork", "hmc1995")
 SEED = 41
 
 
@@ -62,33 +64,28 @@ def one(job: tuple[int, float]):
     start = time.process_time()
     result = diagnose(run)
     seconds = time.process_time() - start
-    steps = [s for s in result.steps if s.effect is not None]
-    names = {hidden["effect"], *(a[1] for a in hidden["alike"])}
+    steps = named_steps(result)
     right = result.verdict is Verdict.MISSING and len(steps) == 1
     if right:
-        rivals = {r.effect.name for r in steps[0].confusion.rivals}
-        right = steps[0].effect.name in names or hidden["effect"] in rivals
+        names = names_of(steps[0])
+        right = steps[0].effect.name in alike_names(hidden) or hidden["effect"] in names
     own = next((s for s in steps if s.effect.name == hidden["effect"]), None)
     size = next((r for r in own.reported if r.quantity == "amplitude"), None) if own else None
-    found = ", ".join(s.effect.name for s in steps) or "-"
+    found = listed(steps) or "-"
     told = None if size is None else (size.value, size.u)
     return job[0], hidden, found, result.verdict.value, right, told, seconds
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--runs", type=int, default=20)
-    parser.add_argument("--first", type=int, default=0, help="number of the first run")
+    parser = run_options(__doc__, runs=20)
     parser.add_argument("--times", type=float, default=10.0, help="size over the usual one")
-    parser.add_argument("--jobs", type=int, default=1)
     args = parser.parse_args()
     jobs = [(args.first + k, args.times) for k in range(args.runs)]
-    with ProcessPoolExecutor(args.jobs) as pool:
-        results = list(pool.map(one, jobs))
+    results = in_processes(one, jobs, args.jobs)
     for number, hidden, found, verdict, right, told, seconds in results:
         size = "" if told is None else f", told {abs(told[0]):.5g} ± {told[1]:.2g}"
         print(
-            f"{'ok   ' if right else 'WRONG'} {number:3} {hidden['effect']} "
+            f"{mark(right)} {number:3} {hidden['effect']} "
             f"{hidden['amplitude']:.4g} ({hidden['signal_to_noise']:.0f} times the noise) -> "
             f"{found} [{verdict}]{size}  {seconds:.1f} s"
         )

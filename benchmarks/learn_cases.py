@@ -10,9 +10,7 @@ leaves of it, against what is left without any law and what the true law leaves 
 the same run without the law; else the stated noise).
 """
 
-import argparse
 import json
-import sys
 import tempfile
 import time
 from dataclasses import dataclass
@@ -20,19 +18,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from harness import cases, parser_of  # puts the simulator on the path
+from simulator_case import Ordinary
+from simulator_experiment import MACHINES
+from simulator_laws import FAMILIES, law_case
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
-
-from simulator_case import Ordinary  # noqa: E402  (found through the path above)
-from simulator_experiment import MACHINES  # noqa: E402
-from simulator_laws import FAMILIES, law_case  # noqa: E402
-
-from matstd.diagnosis.laws import Learning, learn_laws  # noqa: E402
-from matstd.twin.files import read_run  # noqa: E402
-from matstd.twin.laws import Law, carrier_of  # noqa: E402
-from matstd.twin.record import Run, without_copies  # noqa: E402
-from matstd.twin.units import UM  # noqa: E402
+from matstd.diagnosis.laws import Learning, learn_laws
+from matstd.twin.files import read_run
+from matstd.twin.laws import Law, carrier_of
+from matstd.twin.record import Run, without_copies
+from matstd.twin.units import UM
 
 WITHIN, ALIKE = 1.1, 0.999
 """Ratio to the error of the true law that is right; cosine of carriers that are one class."""
@@ -164,7 +159,7 @@ def show(one: Score) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = parser_of(__doc__)
     parser.add_argument("folders", nargs="*", type=Path)
     parser.add_argument("--make", type=int, default=0, help="number of simulated cases")
     parser.add_argument("--two", type=int, default=0, help="number of cases with two laws at once")
@@ -172,10 +167,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     a = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
-        folders = [
-            f for d in a.folders for f in ([d] if (d / "run.csv").exists() else sorted(d.iterdir()))
-        ]
-        folders = [f for f in folders if (f / "run_test.csv").exists()]
+        folders = cases(a.folders, needed="run_test.csv")
         named = [FAMILIES[i % len(FAMILIES)] for i in range(a.make)]
         pairs = [f"{FAMILIES[(5 * i) % 17]}+{FAMILIES[(5 * i + 8) % 17]}" for i in range(a.two)]
         folders += make([*named, *pairs, *[None] * a.empty], a.seed, Path(scratch))

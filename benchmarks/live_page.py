@@ -2,12 +2,12 @@
 
     python benchmarks/live_page.py [--touches 780 20000] [--sets 30]
 
-Runs come from the independent exact simulator with one hidden effect. Told are: what the live view
-adds to the page and to the command, the first paint, the time from a switch until every picture is
-drawn and handed to the browser (median and worst of all switches, twice), the same while a gain is
-pulled, and how far fitted and
-held-out error of random sets of switches are from fits to the touches in Python, with the time of
-such a fit for comparison. No request may leave the page.
+Runs come from the independent exact simulator with one hidden effect. Measured are: what the live
+view adds to the page and to the command, the first paint, the time from a switch until every
+picture is drawn and handed to the browser (median and worst of all switches, twice), the same
+while a gain is pulled, and how far fitted and held-out error of random sets of switches are from
+fits to the touches in Python, with the time of such a fit for comparison. No request may leave the
+page.
 """
 
 import argparse
@@ -20,9 +20,7 @@ import time
 from pathlib import Path
 
 import numpy as np
-
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles"), str(ROOT / "tests" / "fixtures")]
+from harness import parser_of  # puts simulator and browser on the path
 
 HIDDEN = "thermal-lag(EZZ)"
 LONG = 4000
@@ -55,7 +53,7 @@ def made(touches: int, folder: Path):
     from matstd.diagnosis.answer import compare, diagnose
     from matstd.diagnosis.reduced import compared_board, diagnosed_board
     from matstd.report.layout import Page, write_page
-    from matstd.report.run_view import Told, run_view
+    from matstd.report.run_view import Findings, run_view
 
     run = simulated(folder, touches)
     is_long = len(run) > LONG
@@ -63,7 +61,7 @@ def made(touches: int, folder: Path):
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     start = time.process_time()
     board = compared_board(result) if is_long else diagnosed_board(result)
-    view = run_view(board, Told("run.csv"))
+    view = run_view(board, Findings("run.csv"))
     taken = time.process_time() - start
     more = (resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024
     path = folder / "report.html"
@@ -93,8 +91,8 @@ def refitted(board, names):
 
 def processor(driver) -> float:
     """Time that the page's own thread has worked, s: other work on the machine does not count."""
-    told = driver.execute_cdp_cmd("Performance.getMetrics", {})["metrics"]
-    return next(m["value"] for m in told if m["name"] == "TaskDuration")
+    metrics = driver.execute_cdp_cmd("Performance.getMetrics", {})["metrics"]
+    return next(m["value"] for m in metrics if m["name"] == "TaskDuration")
 
 
 def speeds(driver, path: Path, count: int) -> None:
@@ -170,7 +168,7 @@ def one(touches: int, sets: int) -> None:
 
 def main() -> None:
     """Each size in a process of its own."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = parser_of(__doc__)
     parser.add_argument("--touches", type=int, nargs="+", default=[780, 20000])
     parser.add_argument("--sets", type=int, default=30)
     parser.add_argument("--alone", action="store_true", help=argparse.SUPPRESS)

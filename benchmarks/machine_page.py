@@ -6,19 +6,18 @@ Needs chromium, chromium-driver and selenium. One pose with all errors in the pa
 the same pose by itself in Python, in the same run.
 """
 
-import sys
 import tempfile
 import time
 from pathlib import Path
 
 import numpy as np
+from harness import parser_of  # puts the browser on the path
 
 import matstd
 from matstd.compensation.field import MachineErrors, actual_tip
 from matstd.sensitivity.population import Population, drawn_errors
 from matstd.twin.files import errors_toml
 
-sys.path.append(str(Path(__file__).parents[1] / "tests" / "fixtures"))
 POSES = 500
 SCRIPT = """
 const p = machinePage, poses = arguments[0], begin = performance.now();
@@ -31,6 +30,7 @@ return [shown, (performance.now() - then) / poses.length, paint ? paint.startTim
 
 
 def main() -> None:
+    parser_of(__doc__).parse_args()
     from browser import opened, started
 
     machine = matstd.machine_file("hsm600u")

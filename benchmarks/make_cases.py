@@ -6,22 +6,16 @@ Case k of a seed is the same whatever -n is. About a quarter hides nothing, an e
 effect from outside any library, the rest one effect, or up to two (three in harder ones).
 """
 
-import argparse
 import json
-import sys
 import time
-from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 
 import numpy as np
-
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
-
-from simulator_case import simulate_case  # noqa: E402  (found through the path above)
-from simulator_draw import draw, draw_unknown  # noqa: E402
-from simulator_experiment import MACHINES  # noqa: E402
+from harness import in_processes, parser_of  # puts the simulator on the path
+from simulator_case import simulate_case
+from simulator_draw import draw, draw_unknown
+from simulator_experiment import MACHINES
 
 MACHINE_WEIGHTS = (0.6, 0.2, 0.2)
 NOTHING, UNKNOWN = 0.25, 0.125
@@ -59,7 +53,7 @@ def write_case(index: int, seed: int, hard: bool, folder: Path, alone: bool) -> 
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = parser_of(__doc__)
     parser.add_argument("-n", type=int, default=60, help="number of cases")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument(
@@ -73,11 +67,7 @@ def main() -> None:
     start = time.perf_counter()
     one = partial(write_case, seed=a.seed, hard=a.hard, folder=a.output, alone=a.nothing)
     numbers = range(a.first, a.first + a.n)
-    if a.jobs == 1:
-        names = [one(i) for i in numbers]
-    else:
-        with ProcessPoolExecutor(a.jobs) as pool:
-            names = list(pool.map(one, numbers))
+    names = in_processes(one, numbers, a.jobs)
     print(f"{len(names)} cases in {a.output}, {time.perf_counter() - start:.0f} s")
 
 

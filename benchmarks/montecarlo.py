@@ -9,9 +9,11 @@ import platform
 import resource
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
+from harness import best_of, matrix_rate
 
 from matstd.sensitivity.first_order import Workspace, latin_hypercube, rms
 from matstd.sensitivity.montecarlo import BINS, count_lengths, volumetric
@@ -25,17 +27,6 @@ MACHINE = Path(__file__).parent.parent / "examples" / "hsm600u-machine.toml"
 LENGTH = 160.0
 
 
-def matrix_rate() -> float:
-    """float64 matrix products, GFLOP/s."""
-    a = np.random.default_rng(0).normal(size=(1500, 1500))
-    times = []
-    for _ in range(5):
-        start = time.perf_counter()
-        _ = a @ a
-        times.append(time.perf_counter() - start)
-    return 2 * 1500**3 / min(times) / 1e9
-
-
 def one_thread(columns):
     """Rate of one thread over that of a plain product on one thread, by processor time."""
     rng = np.random.default_rng(0)
@@ -44,12 +35,7 @@ def one_thread(columns):
     count_lengths(G[:2], theta, width[:2], threads=1)
 
     def processor_time(work):
-        times = []
-        for _ in range(4):
-            start = time.process_time()
-            work()
-            times.append(time.process_time() - start)
-        return min(times)
+        return best_of(work, 4, time.process_time)
 
     with one_blas_thread():
         plain = 2.0 * 1500**3 / processor_time(lambda: a @ a)
@@ -71,12 +57,8 @@ def engine(population, q, draws):
         ("compiled, with the worst poses of every machine", True, all_poses),
         ("numpy", False, (0, 0)),
     ):
-        times = []
-        for _ in range(3):
-            start = time.perf_counter()
-            count_lengths(G, theta, width, use_compiled=compiled, worst=worst)
-            times.append(time.perf_counter() - start)
-        taken[f"product and counting, {what}"] = min(times)
+        work = partial(count_lengths, G, theta, width, use_compiled=compiled, worst=worst)
+        taken[f"product and counting, {what}"] = best_of(work, 3)
     return taken
 
 

@@ -6,19 +6,12 @@ The runs come from the independent exact simulator; only its white noise is exch
 autoregression of the same size with a correlation of 0.5 to 0.95 between touches that follow.
 """
 
-import argparse
-import sys
 import time
-from concurrent.futures import ProcessPoolExecutor
-from pathlib import Path
 
 import numpy as np
-
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
+from harness import MACHINES, alike_names, in_processes, mark, named_steps, names_of, run_options
 
 EFFECTS = ("backlash(Y)", "thermal-expansion(Y,scaleY)", "thermal-lag(EZZ)", "periodic(EXX)")
-MACHINES = ("hsm600u", "fork", "hmc1995")
 
 
 def autoregressive(rng: np.random.Generator, count: int, correlation: float) -> np.ndarray:
@@ -44,7 +37,7 @@ def simulated(seed: int, hidden: bool):
     names = [EFFECTS[seed % len(EFFECTS)]] if hidden else []
     machine = MACHINES[0 if hidden else seed % 3]
     run, machine_file, truth = simulator_case.simulate_case(rng, machine, names, with_alike=hidden)
-    alike = [{h["effect"], *(a[1] for a in h["alike"])} for h in truth["hidden"]]
+    alike = [alike_names(h) for h in truth["hidden"]]
     return simulator_case.read_back(run, machine_file), correlation, alike
 
 
@@ -56,10 +49,8 @@ def one(job: tuple[int, bool]):
     start = time.perf_counter()
     result = diagnose(run)
     seconds = time.perf_counter() - start
-    steps = [s for s in result.steps if s.effect is not None]
-    names = [
-        {s.effect.name, *(r.effect.name for r in s.confusion.rivals)} for s in steps if s.confusion
-    ]
+    steps = named_steps(result)
+    names = [names_of(s) for s in steps if s.confusion]
     right = len(names) == len(alike) and all(any(a & n for n in names) for a in alike)
     right = right and result.verdict is (Verdict.MISSING if alike else Verdict.NONE)
     memory = result.fit.memory
@@ -69,19 +60,15 @@ def one(job: tuple[int, bool]):
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=40)
-    parser.add_argument("--first", type=int, default=0, help="number of the first run")
+    parser = run_options(__doc__, runs=40)
     parser.add_argument("--hidden", action="store_true", help="with an effect hidden beside it")
-    parser.add_argument("--jobs", type=int, default=1)
     args = parser.parse_args()
     jobs = [(seed, args.hidden) for seed in range(args.first, args.first + args.runs)]
-    with ProcessPoolExecutor(args.jobs) as pool:
-        results = list(pool.map(one, jobs))
+    results = in_processes(one, jobs, args.jobs)
     for seed, true, found, verdict, told, right, seconds in results:
         shown = "none" if found is None else f"{found:.2f}"
         print(
-            f"{'ok   ' if right else 'WRONG'} {seed:3} correlation {true:.2f} found {shown} "
+            f"{mark(right)} {seed:3} correlation {true:.2f} found {shown} "
             f"{verdict:17} {told}  {seconds:.1f} s"
         )
     named = sum(r[4] != "-" for r in results)

@@ -8,7 +8,6 @@ class, and nothing else is; where nothing is hidden, nothing is named and nothin
 promise is right if the error at the second run is 0.8 to 1.25 times the promised one.
 """
 
-import argparse
 import json
 import time
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from harness import cases, listed, mark, named_steps, names_of, parser_of
 
 from matstd.diagnosis.answer import Comparison, Diagnosis, Step, Verdict, compare, diagnose
 from matstd.diagnosis.fit import Fit, Prior
@@ -62,16 +62,12 @@ def words(name: str) -> list[str]:
 
 def matches(step: Step, hidden: dict[str, Any]) -> bool:
     """Whether a named effect, or one of its class, is the hidden one."""
-    wanted = words(hidden["name"])
-    wanted = [w for w in wanted if w]
-    assert step.effect is not None
-    names = [step.effect.name]
-    names += [r.effect.name for r in step.confusion.rivals] if step.confusion else []
-    return any(all(w in " ".join(words(name)) for w in wanted) for name in names)
+    wanted = [w for w in words(hidden["name"]) if w]
+    return any(all(w in " ".join(words(name)) for w in wanted) for name in names_of(step))
 
 
 def is_right(result: Diagnosis, hidden: list[dict[str, Any]]) -> bool:
-    steps = [s for s in result.steps if s.effect is not None]
+    steps = named_steps(result)
     if not hidden:
         return not steps and result.verdict in (Verdict.NONE, Verdict.UNDECIDED)
     left = list(hidden)
@@ -90,16 +86,11 @@ def score(folder: Path) -> Score:
     result = diagnose(read_run(folder / "run.csv"), rng=np.random.default_rng(0))
     seconds = time.process_time() - began
     second = predicted(result.fit, folder / "second" / "run.csv")
-    found = ", ".join(
-        f"{s.effect.name}" + (f"~{len(s.confusion.rivals)}" if s.confusion else "")
-        for s in result.steps
-        if s.effect is not None
-    )
     return Score(
         name=folder.name,
         truth=", ".join(h["name"] for h in hidden) or "-",
         verdict=result.verdict.value,
-        found=found or "-",
+        found=listed(named_steps(result)) or "-",
         noise=truth["sigma_um"],
         promised=result.promise.elsewhere / UM,
         elsewhere=second.rms / UM,
@@ -120,7 +111,7 @@ def predicted(fit: Fit, path: Path) -> Comparison:
 
 def show(s: Score) -> None:
     print(
-        f"{'ok   ' if s.is_right else 'WRONG'} {s.name:8} {s.seconds:5.1f} s  "
+        f"{mark(s.is_right)} {s.name:8} {s.seconds:5.1f} s  "
         f"noise {s.noise:5.2f}  "
         f"promised {s.promised:6.2f}, second run {s.elsewhere:6.2f} ({s.ratio:4.2f}"
         f"{'' if s.is_kept else ' !'})  {s.verdict:17} {s.truth}  ->  {s.found}",
@@ -129,15 +120,11 @@ def show(s: Score) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = parser_of(__doc__)
     parser.add_argument("folders", nargs="+", type=Path)
     args = parser.parse_args()
-    folders = []
-    for folder in args.folders:
-        own = [folder] if (folder / "truth.json").exists() else sorted(folder.iterdir())
-        folders += [d for d in own if (d / "second").exists()]
     scores = []
-    for folder in folders:
+    for folder in cases(args.folders, needed="second"):
         scores.append(score(folder))
         show(scores[-1])
     empty = [s for s in scores if s.truth == "-"]

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from harness import matrix_rate
 
 from matstd.artefact.layout import Blank
 from matstd.artefact.reach import ProbeReach
@@ -58,7 +59,7 @@ def full_model(chain: Chain) -> Model:
 def main() -> list[Result]:
     """Print a line for each model and criterion."""
     print(f"{platform.machine()}, Python {platform.python_version()}, numpy {np.__version__}")
-    print(f"matrix product: {_matrix_rate():.1f} GFlop/s")
+    print(f"matrix product: {matrix_rate():.1f} GFlop/s")
     chain = read_machine(MACHINE)
     found = []
     for model in (full_model(chain), Population(chain).model):
@@ -93,14 +94,6 @@ def _designs(chain: Chain, model: Model) -> list[Result]:
         )
         found.append(Result(name, len(model.names), efficiency, end - start))
     return found
-
-
-def _matrix_rate() -> float:
-    a = np.random.default_rng(0).normal(size=(1500, 1500))
-    a @ a
-    start = time.perf_counter()
-    a @ a
-    return float(2e-9 * 1500**3 / (time.perf_counter() - start))
 
 
 if __name__ == "__main__":

@@ -9,19 +9,12 @@ other touches in the same set-ups: how far it can be foretold depends on how far
 probed, so it is held against what the comparison expects at its own touches.
 """
 
-import argparse
-import sys
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
-from pathlib import Path
 from unittest.mock import patch
 
 import numpy as np
+from harness import MACHINES, in_processes, run_options
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
-
-LABELS = ("hsm600u", "fork", "hmc1995")
 SEED = 61
 WITHIN = 0.1
 OF_ONE_RUN = ("artefact", "drift")
@@ -45,7 +38,7 @@ def three_runs(number: int):
     from simulator_case import Ordinary, place_one, read_back
 
     rng = np.random.default_rng([SEED, number])
-    label = LABELS[number % 3]
+    label = MACHINES[number % 3]
     first = se.random_experiment(rng, label)
     again = replace(
         first,
@@ -89,13 +82,8 @@ def one(number: int):
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--runs", type=int, default=60)
-    parser.add_argument("--first", type=int, default=0, help="number of the first run")
-    parser.add_argument("--jobs", type=int, default=1)
-    args = parser.parse_args()
-    with ProcessPoolExecutor(args.jobs) as pool:
-        results = list(pool.map(one, range(args.first, args.first + args.runs)))
+    args = run_options(__doc__, runs=60).parse_args()
+    results = in_processes(one, range(args.first, args.first + args.runs), args.jobs)
     for k, (names, stated, same, other, expected) in enumerate(results, args.first):
         print(
             f"{k:3} stated {stated:.3f}, same programme {same:.3f} ({same / stated:.2f}); other "

@@ -12,14 +12,8 @@ one, and the thermometer errs by its uncertainty:
     unstated  15 to 30 degC; the run states nothing
 """
 
-import argparse
-import sys
-from pathlib import Path
-
 import numpy as np
-
-ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "oracles")]
+from harness import MACHINES, parser_of
 
 ALPHA, U_ALPHA = 10.5e-6, 1.05e-6
 U_KNOWN, U_UNKNOWN = 0.3, 2.0
@@ -69,11 +63,11 @@ def scales(seed: int, machine: str, case: str) -> dict[str, tuple[float, float, 
 
 def main() -> None:
     """Print how often the truth lies within two standard uncertainties."""
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser = parser_of(__doc__)
     parser.add_argument("-n", type=int, default=100, help="runs of each case (100)")
     parser.add_argument("--first", type=int, default=0, help="seed of the first run (0)")
     parser.add_argument("--cases", nargs="+", choices=CASES, default=CASES)
-    parser.add_argument("--machine", choices=("hsm600u", "fork", "hmc1995"), default="hsm600u")
+    parser.add_argument("--machine", choices=MACHINES, default="hsm600u")
     args = parser.parse_args()
     for case in args.cases:
         seeds = range(args.first, args.first + args.n)

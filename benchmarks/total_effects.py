@@ -7,19 +7,9 @@ with the matrix-product rate of the run.
 import time
 
 import numpy as np
-from jacobians import best_of, matrix_rate
+from harness import best_of, matrix_rate
 
 from matstd.sensitivity.shares import total_effects
-
-
-def processor_time(work, repeats=5):
-    """Least processor time of all threads, s."""
-    times = []
-    for _ in range(repeats):
-        start = time.process_time()
-        work()
-        times.append(time.process_time() - start)
-    return min(times)
 
 
 def main() -> None:
@@ -29,7 +19,7 @@ def main() -> None:
     total_effects(J[:, :, :4], a, b)  # compiles
     print(f"matrix product, float64: {matrix_rate():.0f} GFLOP/s")
     wall = best_of(lambda: total_effects(J, a, b))
-    busy = processor_time(lambda: total_effects(J, a, b))
+    busy = best_of(lambda: total_effects(J, a, b), clock=time.process_time)
     print(f"compiled: {wall:.3f} s, {busy:.3f} s of processor time")
     some = J[:, :, :1000]
     plain = best_of(lambda: total_effects(some, a, b, compiled=False), repeats=2)

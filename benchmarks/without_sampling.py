@@ -8,7 +8,8 @@ import sys
 import time
 
 import numpy as np
-from jacobians import LENGTH, MACHINE, best_of, matrix_rate
+from harness import best_of, matrix_rate
+from jacobians import LENGTH, MACHINE
 
 from matstd.sensitivity.first_order import Workspace, covariance, latin_hypercube, normal_length
 from matstd.sensitivity.population import Population

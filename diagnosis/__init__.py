@@ -17,7 +17,8 @@ and finds regions where a model fails. `laws` learns what is left as a law witho
 finds sets of effects, `choice` takes the one that predicts best, `answer` turns it into a verdict
 with sizes and look-alikes. `reduced` keeps what the error of any set of effects follows from,
 without the touches. `task` evaluates visits to calibrated features for a user's measuring task.
-`files` reads and writes models and results. `drift` has laws of thermal drift from logs.
+`files` reads and writes models and results. `charts` are control charts of one machine over dated
+runs. `drift` has laws of thermal drift from logs.
 
 Where to add things: a test for structure is a module of `residual` and a `Shape`; something a user
 should know about a run is a record in `remarks`, its sentence in `matstd.report.words`; a
@@ -41,6 +42,7 @@ PARTS = (
     "reduced",
     "task",
     "files",
+    "charts",
     "drift",
 )
 """From bottom to top: each imports only from those before it."""

@@ -15,10 +15,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from matstd.api.comparing import Comparison, compare
     from matstd.api.compensating import Compensation, ProgramOptions, compensate
     from matstd.api.designing import Project, Sensitivities
-    from matstd.api.diagnosing import Diagnosis, diagnose
+    from matstd.api.diagnosing import Comparison, Diagnosis, compare, diagnose
     from matstd.api.drifting import DriftLaws, DriftPrediction, learn_drift, predict_drift
     from matstd.api.evaluating import Evaluation, evaluate
     from matstd.api.learning import LearntLaws, learn
@@ -41,6 +40,7 @@ if TYPE_CHECKING:
         read_standard,
         uncertainty,
     )
+    from matstd.api.trending import trend
     from matstd.artefact.body import Standard
     from matstd.compensation.field import State
     from matstd.diagnosis.answer import Verdict
@@ -56,10 +56,9 @@ if TYPE_CHECKING:
     from matstd.twin.units import DEG, MINUTE, UM, URAD
 
 _PLACES = {
-    "api.comparing": ("Comparison", "compare"),
     "api.compensating": ("Compensation", "ProgramOptions", "compensate"),
     "api.designing": ("Project", "Sensitivities"),
-    "api.diagnosing": ("Diagnosis", "diagnose"),
+    "api.diagnosing": ("Comparison", "Diagnosis", "compare", "diagnose"),
     "api.drifting": ("DriftLaws", "DriftPrediction", "learn_drift", "predict_drift"),
     "api.learning": ("LearntLaws", "learn"),
     "api.machines": (
@@ -83,6 +82,7 @@ _PLACES = {
         "read_standard",
         "uncertainty",
     ),
+    "api.trending": ("trend",),
     "artefact.body": ("Standard",),
     "compensation.field": ("State",),
     "diagnosis.answer": ("Verdict",),
@@ -154,6 +154,7 @@ __all__ = [
     "sensitivities",
     "show",
     "simulate",
+    "trend",
     "uncertainty",
     "virtual_machine",
     "volumetric",

@@ -27,6 +27,7 @@ FOLDERS = {
         "import": "convert tables of instruments, CMMs and spreadsheets to a run file",
         "compare": "compare measurements with the model: where it fails",
         "diagnose": "find the effect that the model lacks and the error that remains with it",
+        "trend": "control charts of one machine over several runs: what changed, and when",
         "learn": "learn the law of what a model leaves, where the library has no effect",
         "thermal": "fit laws of thermal drift to temperature logs and predict with them",
     },

@@ -17,7 +17,7 @@ def next_line(args: Namespace) -> str:
     known = getattr(args, "next", None)
     if known is None and args.command in _AFTER:
         known = _AFTER[args.command](args)
-    if not known:
+    if not known or not known[0]:
         return ""
     words, why = known
     return f"next: {words}" + (f"   ({why})" if why else "")
@@ -152,6 +152,7 @@ _AFTER: dict[str, Callable[[Namespace], Step]] = {
 WITHOUT = {
     "examples": "what was copied decides: `args.next`",
     "diagnose": "its verdict decides: `args.next`",
+    "trend": "what changed decides: `args.next`",
     "serve": "ends when it is stopped",
     "contributions": "its page is the end of a question",
     "show": "its page is the end of a question",

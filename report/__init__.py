@@ -29,6 +29,7 @@ number in a result.
     compensation
             what compensation corrects and what remains, with its page
     drift   laws of a thermal drift, with their page
+    charts  control charts of a machine over several runs, with their page
 
 A new picture is a function from a result to a figure (`maps`, `plots`); a section of a page lists
 it with its caption. A new sentence is a function in `words`.
@@ -55,5 +56,6 @@ PARTS = (
     "pages",
     "compensation",
     "drift",
+    "charts",
 )
 """From bottom to top: each imports only from those before it."""

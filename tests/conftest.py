@@ -89,6 +89,15 @@ def _no_lines_of_progress():
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _one_core():
+    """The workers of the tests share the cores: nothing is done in a further process, where what
+    a test has patched would not be."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("matstd.twin.beside.CORES", 1)
+        yield
+
+
 @pytest.fixture
 def rendered_alone(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     """A function (first words of names): from now on figures are rendered to these files alone."""

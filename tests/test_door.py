@@ -44,6 +44,7 @@ def folder(tmp_path_factory):
         logs = place / "logs" if seed == 0 else None
         matstd.simulate(*files, seed=seed).save(place / name, place / "machine.toml", logs)
     (place / "drift.csv").write_text(drift_log(), encoding="utf-8")
+    shutil.copytree(EXAMPLES / "trend", place / "trend", ignore=shutil.ignore_patterns("*.py"))
     (place / "cmm.csv").write_text(cmm_points(ex06.standard()), encoding="utf-8")
     return place
 

@@ -233,6 +233,7 @@ RESULTS = {
         "diagnosis/files/parts_table.py",
     ],
     "law.json": ["diagnosis/files/law_file.py", "diagnosis/laws/policy.py"],
+    "trend.json": ["diagnosis/charts/history_file.py"],
     "uncertainty.json": ["diagnosis/files/uncertainty_file.py"],
     "identification.json": ["report/identifiability/identification_file.py"],
     "identifiability.json": [

@@ -39,6 +39,7 @@ VOCABULARY = {
     "twin.errors",
     "twin.words",
     "twin.compute",
+    "twin.beside",
     "twin.display",
     "twin.files.whole",
     "twin.versions",

@@ -16,7 +16,7 @@ and a column in `files.run_columns`; a file format of ours is a reader in `files
 another's in `matstd.importers`.
 
 Beside the parts stand the words that every room speaks: `units`, `frames`, `errors`, `words`,
-`compute`, `versions`.
+`compute`, `beside`, `versions`.
 """
 
 PARTS = (

@@ -45,7 +45,7 @@ def compiled_loop(function: Callable[..., None], **options: Any) -> Callable[...
     a second or two per loop.
 
     Args:
-        function: Of a module, loops over arrays.
+        function: Function of a module that loops over arrays.
     """
     try:
         from numba import njit

@@ -79,7 +79,7 @@ class Tabular(Displayed, ABC):
     """A result that is a table, units in the names of its columns.
 
     Attributes:
-        number_format: Of numbers in `to_csv`.
+        number_format: Format of numbers in `to_csv`.
     """
 
     number_format = ".7g"

@@ -47,7 +47,7 @@ class BadArgument(DesignError, ValueError):
     """An argument of a function, or the option of a command that stands for it.
 
     Args:
-        name: Of the argument; the option of the same name has hyphens.
+        name: Name of the argument; the option of the same name has hyphens.
     """
 
     def __init__(self, name: str, found: object, expected: str) -> None:
@@ -172,7 +172,7 @@ class BadFile(DesignError, ValueError):
         Args:
             error: With the facts found and expected: BadValue, UnknownAxis, UnknownSymbol.
             within: Key of the table that the value stood in.
-            key: Of the value; empty for the key in the error.
+            key: Key of the value; empty for the key in the error.
         """
         where = ".".join(part for part in (within, key or str(error.facts["key"])) if part)
         return cls(path, where, error.facts["found"], str(error.facts["expected"]))

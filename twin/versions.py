@@ -12,16 +12,7 @@ LIBRARIES = (
     "manifold3d",
     "pyvista",
 )
-FORMATS = (
-    "machine/1",
-    "errors/1",
-    "run/1",
-    "standard/1",
-    "model/1",
-    "model/2",
-    "project/1",
-    "diagnosis/1",
-)
+FORMATS = ("machine/1", "errors/1", "run/1", "standard/1", "model/2", "project/1", "diagnosis/1")
 
 
 def versions() -> dict[str, str]:

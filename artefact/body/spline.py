@@ -1,6 +1,6 @@
 """Tensor-product B-splines over the plane: values and derivatives at many points at once."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -136,7 +136,14 @@ class Jet:
 
     def plus(self, other: "Jet", factor: float = 1.0) -> "Jet":
         """The jet of the sum of two height fields, the second times a factor."""
-        return Jet(*(getattr(self, f.name) + factor * getattr(other, f.name) for f in fields(self)))
+        return Jet(
+            h=self.h + factor * other.h,
+            hu=self.hu + factor * other.hu,
+            hv=self.hv + factor * other.hv,
+            huu=self.huu + factor * other.huu,
+            huv=self.huv + factor * other.huv,
+            hvv=self.hvv + factor * other.hvv,
+        )
 
 
 def jet(knots_u: Array, knots_v: Array, degree: tuple[int, int], poles: Array, uv: Array) -> Jet:

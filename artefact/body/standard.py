@@ -106,6 +106,12 @@ class Standard(Displayed):
             digest.update(np.array([*sphere.centre, sphere.radius]).tobytes())
         return digest.hexdigest()[:16]
 
+    @property
+    def stamp(self) -> str:
+        """Name, serial number and digest of the design, which a calibration does not change."""
+        digest = self.fingerprint if self.known is None else self.known.nominal
+        return " ".join(filter(None, (self.name, self.serial, digest)))
+
     def sagging(
         self,
         source: str,

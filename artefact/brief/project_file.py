@@ -78,11 +78,11 @@ class MonteCarloTable(Table):
 class CalibrationTable(Table):
     """`[calibration]`: standard uncertainties of place, rotations and form."""
 
-    patch_um: float = Field(default=1.0, ge=0.0)
+    patch_um: float = Field(default=1.0, ge=0.0, le=100.0)
     """uncertainty of every coordinate of a freeform face"""
-    patch_urad: float = Field(default=10.0, ge=0.0)
+    patch_urad: float = Field(default=10.0, ge=0.0, le=1000.0)
     """uncertainty of every rotation of a freeform face"""
-    ball_um: float = Field(default=0.3, ge=0.0)
+    ball_um: float = Field(default=0.3, ge=0.0, le=100.0)
     """uncertainty of every coordinate of a ball centre"""
     scale_ppm: float = Field(default=1.0, ge=0.0, le=1000.0)
     """uncertainty of all lengths, one error that all features share: scales and temperature of the
@@ -105,7 +105,7 @@ class CalibrationTable(Table):
 class SimulationTable(Table):
     """`[simulation]`: the proof on the twin."""
 
-    noise_um: float = Field(default=1.0, gt=0.0)
+    noise_um: float = Field(default=1.0, gt=0.0, le=100.0)
     """standard deviation of one simulated touch"""
     machines: int = Field(default=3, ge=1, le=50)
     """number of random machines that are probed and identified"""

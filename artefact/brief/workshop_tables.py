@@ -33,7 +33,7 @@ class ProbeTable(Table):
 
     model: str | None = None
     """name in the library; radius, length and shape are those of the library unless given"""
-    radius_mm: float | None = Field(default=None, gt=0.0, le=25.0, examples=[3.0])
+    radius_mm: float | None = Field(default=None, ge=0.05, le=25.0, examples=[3.0])
     """radius of the ball; required without a model"""
     length_mm: float | None = Field(default=None, gt=0.0, examples=[160.0])
     """distance from gauge point to ball centre; required without a model"""

@@ -4,6 +4,7 @@ Every artefact is given its best table poses and touches by the criterion of the
 the difference in predicted error is due to the bodies alone.
 """
 
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 
@@ -27,6 +28,7 @@ from matstd.artefact.worth import (
 )
 from matstd.information.criteria import DesignCriterion, Posterior, prior_sd_of_tip
 from matstd.information.selection import Selection, exchange, fill
+from matstd.twin.beside import beside
 from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
@@ -157,7 +159,7 @@ def compare(
         The artefacts, and the names of those without room on the blank or with too few possible
         touches.
     """
-    out, unreachable = [], []
+    jobs, unreachable = list[_Job](), list[str]()
     for name, body in _bodies(criterion, places, blank, options, rng).items():
         try:
             if body is None:
@@ -167,29 +169,70 @@ def compare(
             own = chosen_poses(criterion.plain.on(body), body, surfaces, all_poses, options)
             if body.patches:
                 tried = some_touches(here, body, own, options, rng)
-                chosen = chosen_touches(here, here.objective, tried, options)
             else:
                 tried = touches_to_choose_from(here.reach, body, surfaces, own, options.touches)
-                mask, _ = chosen_touches_on(here, tried, options, RIVAL_ROUNDS)
-                chosen = tried[mask]
+                if len(tried) < options.touches:
+                    raise NotReachable("too few touches")
         except NotReachable:
             unreachable.append(name)
             continue
         lots = random_lots(tried, options.touches, rng)
-        out.append(evaluate_rival(name, here, chosen, lots, library, _count_different(tried), body))
-    tried = _scatter(criterion, spread_poses(all_poses, options.poses), rng)
-    lots = random_lots(tried, options.touches, rng)
-    for name, objective in (("I", criterion.objectives["I"]), ("D", criterion.objectives["D"])):
-        chosen = chosen_touches(criterion, objective, tried, options)
-        out.append(
-            evaluate_rival(
-                f"ideal scatter, chosen by {name}", criterion, chosen, lots, library, len(tried)
+        jobs.append(
+            _Job(
+                name=name,
+                here=here,
+                tried=tried,
+                lots=lots,
+                by=here.name,
+                is_relaxed=not body.patches,
             )
         )
-    out.append(
-        evaluate_rival("ideal scatter, at random", criterion, lots[0], lots, library, len(tried))
-    )
+    tried = _scatter(criterion, spread_poses(all_poses, options.poses), rng)
+    lots = random_lots(tried, options.touches, rng)
+    for name, by in (("chosen by I", "I"), ("chosen by D", "D"), ("at random", "")):
+        jobs.append(
+            _Job(name=f"ideal scatter, {name}", here=criterion, tried=tried, lots=lots, by=by)
+        )
+    # nothing is drawn from here on: two cores share them
+    with beside(_judged, jobs[1::2], options, library) as others:
+        mine = _judged(jobs[::2], options, library)
+        theirs = others()
+    out = (mine[k // 2] if k % 2 == 0 else theirs[k // 2] for k in range(len(jobs)))
     return tuple(out), tuple(unreachable)
+
+
+@dataclass(frozen=True, eq=False)
+class _Job:
+    """An artefact whose touches are to be chosen.
+
+    Attributes:
+        here: Criterion on the artefact, or on none.
+        tried: Touches that can be made.
+        lots: Some of them at random.
+        by: What they are chosen for, a name in `CRITERIA`; empty for the first lot.
+        is_relaxed: Whether they are chosen as those of the standard.
+    """
+
+    name: str
+    here: Criterion
+    tried: Requests
+    lots: list[Requests]
+    by: str
+    is_relaxed: bool = False
+
+
+def _judged(jobs: Sequence[_Job], options: TouchOptions, library: Visibility) -> list[Rival]:
+    """Figures of artefacts after their chosen touches."""
+    out = []
+    for job in jobs:
+        here, tried, chosen = job.here, job.tried, job.lots[0]
+        if job.is_relaxed:
+            chosen = tried[chosen_touches_on(here, tried, options, RIVAL_ROUNDS)[0]]
+        elif job.by:
+            chosen = chosen_touches(here, here.objectives[job.by], tried, options)
+        available = len(tried) if here.body is None else _count_different(tried)
+        out.append(evaluate_rival(job.name, here, chosen, job.lots, library, available, here.body))
+    return out
 
 
 def _bodies(

@@ -4,6 +4,8 @@ A shape is a paraboloid plus one wave; it is scaled until its slope, height or c
 reaches a limit, because larger differences of normals and heights carry more information.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from matstd.artefact.body import Limits, graph_patch
@@ -59,11 +61,15 @@ def smooth_heights(
     across = np.cos(direction) * u + np.sin(direction) * v
     h += rng.uniform(0.3, 0.9) / k * np.sin(k * across + phase)
     h -= h.mean()
-    return slanted + h * _strength(half_size, h, limits, tallest, slanted)
+    return slanted + h * _strength(half_size, h, limits, tallest, plane)
 
 
 def _strength(
-    half_size: tuple[float, float], heights: Array, limits: Limits, tallest: float, slanted: Array
+    half_size: tuple[float, float],
+    heights: Array,
+    limits: Limits,
+    tallest: float,
+    plane: tuple[float, float],
 ) -> float:
     """Factor that brings a shape on a plane to its limits.
 
@@ -71,15 +77,15 @@ def _strength(
     is bisected on a grid of derivatives that is evaluated once.
     """
     patch = graph_patch("trial", np.eye(4), half_size, heights)
-    plane = graph_patch("plane", np.eye(4), half_size, slanted)
-    uv = patch.grid(_PITCH)
-    j, p = patch.jet(uv), plane.jet(uv)
-    left = steepest_slope(limits) - float(np.hypot(p.hu, p.hv).max())
+    j = patch.jet(patch.grid(_PITCH))
+    # the plane below it has slopes alone; its height is not looked at
+    flat = replace(j.plus(j, -1.0), hu=plane[0] + 0.0 * j.hu, hv=plane[1] + 0.0 * j.hv)
+    left = steepest_slope(limits) - float(np.hypot(*plane))
     high = min(left / float(np.hypot(j.hu, j.hv).max()), tallest / float(np.abs(j.h).max()))
     low = 0.0
     for _ in range(20):
         middle = 0.5 * (low + high)
-        largest = float(p.plus(j, middle).curvature[:, 0].max())
+        largest = float(flat.plus(j, middle).curvature[:, 0].max())
         if largest * _MARGIN * limits.min_concave_radius > 1.0:
             high = middle
         else:

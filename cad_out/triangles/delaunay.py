@@ -17,6 +17,8 @@ from matstd.twin.frames import Array
 _FAR = 3.0 * np.array([[-1.0, -1.1], [1.2, -1.0], [1.0, 1.3], [-1.1, 1.0]])
 """Corners far outside, so that the outside is connected."""
 
+_AT_ONCE = 1024  # places that are compared with an outline together
+
 
 class Sheet:
     """Delaunay triangulation of points in a plane, and the pieces of an outline in it.
@@ -102,9 +104,22 @@ class Sheet:
         return np.where(wall[row, one] & wall[row, other], 1.0, sine)
 
     def contains(self, places: Array) -> np.ndarray:
-        """Whether places lie in a triangle inside, (N,)."""
-        at = self._whole.find_simplex(places)
-        return (at >= 0) & self.inside[at]
+        """Whether places lie inside the outline, (N,): a ray to the right leaves it oddly often.
+
+        A search in the triangles falls back to trying all of them where some are flat, as beside
+        a straight outline: 0.2 s a call on a large face.
+        """
+        a, b = self.places[self.ends[:, 0]], self.places[self.ends[:, 1]]
+        level = a[:, 1] == b[:, 1]
+        a, b = a[~level], b[~level]
+        slope = (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
+        inside = np.empty(len(places), dtype=bool)
+        for begin in range(0, len(places), _AT_ONCE):
+            x, y = places[begin : begin + _AT_ONCE].T[:, :, None]
+            beside = (a[:, 1] <= y) != (b[:, 1] <= y)
+            to_right = a[:, 0] + slope * (y - a[:, 1]) > x
+            inside[begin : begin + _AT_ONCE] = np.sum(beside & to_right, axis=1) % 2 == 1
+        return inside
 
 
 def cross(a: Array, b: Array) -> Array:

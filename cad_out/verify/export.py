@@ -16,11 +16,22 @@ from matstd.twin.errors import DesignError
 STL, CONFORMITY = "standard.stl", "conformity.json"
 NOT_STATED = "not stated"
 
+_CHORD, _RELATIVE_CHORD = 0.01, 1e-4
+"""Distance of the mesh from the faces, mm; and relative to the largest side of a face: a wavy face
+of 200 mm has 130 000 triangles at 0.02 mm and twice as many at 0.01 mm, in a file that shows a
+shape. Tool paths come from the STEP file."""
+
+
+def mesh_chord(standard: Standard) -> float:
+    """Distance of the mesh from the faces that suits a standard, mm."""
+    sides = (2.0 * half for patch in standard.patches for half in patch.half_size)
+    return max(_CHORD, round(_RELATIVE_CHORD * max(sides, default=0.0), 3))
+
 
 def export_standard(
     standard: Standard,
     out_dir: str | Path,
-    chord: float = 0.01,
+    chord: float | None = None,
     author: str = NOT_STATED,
     organisation: str = NOT_STATED,
 ) -> Conformity:
@@ -30,7 +41,7 @@ def export_standard(
     that a refusal or a crash leaves the former files.
 
     Args:
-        chord: Largest distance of the mesh from the exact faces, mm.
+        chord: Largest distance of the mesh from the exact faces, mm; None for that of `mesh_chord`.
         author: Who is responsible for the design, for the header of the STEP file.
         organisation: The author's employer.
 
@@ -45,7 +56,8 @@ def export_standard(
     except OSError as error:
         raise DesignError(f"{out_dir}: cannot be written ({error.strerror})") from error
     try:
-        conformity, _ = build_and_measure(standard, place, chord, author, organisation)
+        kept = mesh_chord(standard) if chord is None else chord
+        conformity, _ = build_and_measure(standard, place, kept, author, organisation)
         refuse_faults(standard.name, conformity)
         write_conformity(place / CONFORMITY, conformity)
         for name in (STEP, FACES, STL, *SCENES, CONFORMITY):

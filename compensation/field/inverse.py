@@ -29,7 +29,7 @@ class Datum:
 
     Attributes:
         q: Readings, (A,).
-        length: Of the tool, mm.
+        length: Length of the tool, mm.
     """
 
     q: Array

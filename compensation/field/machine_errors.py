@@ -1,7 +1,7 @@
 """The errors of a machine as a model knows them, without what only the measurement had."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal, Protocol
 
@@ -11,6 +11,7 @@ from scipy.linalg import block_diag
 from matstd.compensation.field.state import SWITCHED_ON, State
 from matstd.diagnosis.files import SavedModel, model_of
 from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.geometry import Estimate
 from matstd.twin.errors import BadValue
 from matstd.twin.frames import Array
 from matstd.twin.machine import (
@@ -59,12 +60,14 @@ class MachineErrors:
     Attributes:
         effects: The physics that moves the tool point through an axis.
         theta: Parameters of each effect, base units.
-        root: Of the covariance of all parameters, effect after effect, (P, K), of a machine whose
+        root: Root of the covariance of all parameters, effect by effect, (P, K), of a machine whose
             tools are set against the probe that measured it.
-        tool_root: What the covariance has beside that, (P, T), where it is unknown how a tool
+        tool_root: What the covariance has in addition, (P, T), where it is unknown how a tool
             stands in the spindle against that probe: a run cannot distinguish that from the lines
             of rotary axes.
         left_out: Names of effects of the model that are not the machine's.
+        determined: Location errors as the run of the model determines them, by symbol. A parameter
+            shares with others what the run cannot separate; this is what was reported.
     """
 
     chain: Chain
@@ -74,6 +77,7 @@ class MachineErrors:
     tool_root: Array
     state: State = SWITCHED_ON
     left_out: tuple[str, ...] = ()
+    determined: Mapping[str, Estimate] = field(default_factory=dict)
 
     @classmethod
     def of_model(cls, model: SavedModel | Fit, state: State = SWITCHED_ON) -> "MachineErrors":
@@ -84,7 +88,11 @@ class MachineErrors:
         known = list(zip(effects, theta, strict=True))
         out = cls._of_machine(saved.model.chain, known, saved.estimates.root, state)
         others = (one.effect.name for one in saved.left_out)
-        return replace(out, left_out=(*out.left_out, *others))
+        return replace(
+            out,
+            left_out=(*out.left_out, *others),
+            determined={one.symbol: one.estimate for one in saved.determined},
+        )
 
     @classmethod
     def of_errors(
@@ -121,10 +129,10 @@ class MachineErrors:
     def with_known(
         self, errors: Sequence[tuple[Effect, Array]], root: Array | None = None
     ) -> "MachineErrors":
-        """The same with further errors that are known by themselves.
+        """These errors and further ones, known independently.
 
         Args:
-            root: Of the covariance of those, (P', K'); None without uncertainty.
+            root: Root of their covariance, (P', K'); None without uncertainty.
         """
         count = sum(len(e.parameters) for e, _ in errors)
         own = np.zeros((count, 0)) if root is None else root
@@ -137,11 +145,11 @@ class MachineErrors:
         )
 
     def widened(self, number: int, effect: Effect, theta: Array, root: Array) -> "MachineErrors":
-        """The same where one effect has further parameters behind those it has.
+        """These errors with further parameters appended to those of one effect.
 
         Args:
-            theta: Their values, (p,).
-            root: Of their covariance, (p, K'), independent of all others.
+            theta: Values of the further parameters, (p,).
+            root: Root of their covariance, (p, K'), independent of all others.
         """
         end = sum(len(t) for t in self.theta[: number + 1])
         before, behind = self.root[:end], self.root[end:]
@@ -223,7 +231,7 @@ class MachineErrors:
         return np.concatenate([np.arange(starts[i], starts[i + 1]) for i in self.groups[group]])
 
     def words(self, group: str) -> set[str]:
-        """Every word under which the errors of a group are switched (`switched`)."""
+        """All words that switch the errors of a group (`switched`)."""
         return {w for i in self.groups[group] for w in words_of(self.chain, self.effects[i])}
 
     def only(self, group: str) -> "MachineErrors":
@@ -238,7 +246,7 @@ class MachineErrors:
         )
 
     def switched(self, factors: Mapping[str, float]) -> "MachineErrors":
-        """The errors scaled: 0 switches off, 1 leaves, 2 doubles; later words go before earlier.
+        """The errors scaled: 0 is off, 1 leaves them, 2 doubles; later words override earlier ones.
 
         Args:
             factors: By symbol (`EXX`), effect (`backlash(X)`), kind (`backlash`), class
@@ -267,6 +275,7 @@ class MachineErrors:
             theta=tuple(theta),
             root=scale * self.root,
             tool_root=scale * self.tool_root,
+            determined={},
         )
 
 
@@ -281,7 +290,7 @@ _PLAIN = ("geometric", "location")
 
 
 def words_of(chain: Chain, effect: Effect) -> set[str]:
-    """Every word under which an effect is switched."""
+    """All words that switch an effect."""
     words = {"all", effect.kind, effect.name, group_of(effect)}
     symbol = traits(effect).symbol or parse_symbol(group_of(effect))
     if symbol is not None:

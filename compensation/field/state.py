@@ -40,7 +40,7 @@ class State:
 
         Args:
             q: Readings, (N, A).
-            length: Of the tool, scalar or (N,), mm.
+            length: Length of the tool, scalar or (N,), mm.
             approach: Sign of the last motion of every axis, (N, A); None where nothing moved.
             elapsed: Time since `time` at every pose, (N,), s.
         """

@@ -21,7 +21,7 @@ async def serve_linuxcnc(
     """Answer until the event is set, or for ever.
 
     Args:
-        path: Of the socket; one without a listener is removed.
+        path: Path of the socket; one without a listener is removed.
         ready: Called when the component can connect.
         until: Ends it.
 

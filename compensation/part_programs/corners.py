@@ -10,7 +10,7 @@ from matstd.compensation.part_programs.radius import MAX_OVERSHOOT, Element, cut
 from matstd.twin.frames import Array
 
 MAX_SMOOTH_SINE = 1e-6
-"""Sine of the angle of a corner that is none, rad."""
+"""Largest sine of the angle of a smooth transition, which is no corner."""
 
 
 def without_corners(items: Sequence[Item | Corner], reading: Reading) -> list[Item]:

@@ -14,7 +14,7 @@ OPENS = re.compile(r"%|O\d+|(?:\([^)]*\)|;.*)?\s*\Z", re.IGNORECASE)
 """Blocks that stay before all others: some controls look for the program's number there."""
 
 _DECIMALS = 5
-"""Of a length in mm, and of an angle in degrees: 10 nm, and 9 nm at half a metre."""
+"""Decimals of a length in mm and of an angle in degrees: 10 nm, and 90 nm at half a metre."""
 
 HAS_INVERSE_TIME = True
 
@@ -39,7 +39,7 @@ def decimals(is_length: bool, unit: Array) -> Array:
 
 @cache
 def _form(axes: tuple[str, ...], places: int) -> str:
-    """Of the words of some axes; lengths have so many decimals."""
+    """Format of the words of some axes; lengths have `places` decimals."""
     return "".join(f" {a}%.{places if a in 'XYZ' else _DECIMALS}f" for a in axes)
 
 

@@ -25,7 +25,7 @@ _KEPT = frozenset(
 
 _READ = MODAL | {53.0} | _KEPT
 _ENDS = frozenset({15.0, 50.0, 50.1, 69.0, 92.1, 92.2})
-"""End what is refused: they name no axis."""
+"""They end modes that are refused, and name no axis."""
 
 _KEPT_M = frozenset({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 19, 29, 30, 48, 49})
 _SUBPROGRAMS = (97, 98, 99)
@@ -104,9 +104,9 @@ class _Reader:
 
     Attributes:
         calls_by_t: Whether T itself changes the tool: nowhere in the program is an M6.
-        minutes: That the motion takes, of an F word in inverse time.
+        minutes: Time that the motion takes, from an F word in inverse time.
         cycle: Words of a canned cycle that stay in force; None outside of one.
-        height: Of Z when the first of the cycles in a row was called, mm.
+        height: Z when the first of the cycles in a row was called, mm.
     """
 
     def __init__(self, reading: Reading, calls_by_t: bool) -> None:

@@ -35,7 +35,7 @@ def decimals(is_length: bool, unit: Array) -> Array:
 
 @cache
 def _form(axes: tuple[str, ...], places: int) -> str:
-    """Of the words of some axes; lengths have so many decimals."""
+    """Format of the words of some axes; lengths have `places` decimals."""
     return "".join(f" {a}%+.{places if a in 'XYZ' else _DECIMALS}f" for a in axes)
 
 

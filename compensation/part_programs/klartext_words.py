@@ -19,8 +19,8 @@ class Modes:
     """What stays in force from block to block.
 
     Attributes:
-        pole: Of circles and polar coordinates, with the shift, mm.
-        tool_feed: Of the last TOOL CALL, which F AUTO means.
+        pole: Pole of circles and polar coordinates, with the shift, mm.
+        tool_feed: Feed of the last TOOL CALL, which F AUTO means.
     """
 
     def __init__(self, reading: Reading) -> None:

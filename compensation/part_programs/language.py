@@ -29,15 +29,15 @@ class Reading:
 
     Attributes:
         frame: Where the program's zero stands on the machine.
-        lengths: Of tools by number or name, mm; of the others that of the datum.
-        radii: Of tools by number, mm.
-        passed: Numbers of M functions of the machine of which the user says that they move nothing.
+        lengths: Lengths of tools by number or name, mm; other tools have that of the datum.
+        radii: Radii of tools by number, mm.
+        passed: Numbers of M functions of the machine that move nothing, as the user states.
         tcp_functions: M functions of the machine that switch tool-point control on, and off.
         at: Program coordinates with the shift, (A,), mm and rad; nan where unknown.
         offset: Shift of the program's zero, (A,), mm.
         tool: Number, or name, of that in the spindle.
         more_radius: What the program adds to its radius, mm.
-        side: Of the contour on which the tool goes: 1 left, -1 right, 0 on it.
+        side: Side of the contour on which the tool goes: 1 left, -1 right, 0 on it.
         feed: Number of the F word in force; degrees/min where axes turn alone.
         feed_unit: One of it where linear axes move, mm/min.
     """
@@ -201,8 +201,8 @@ class Reading:
 
         Args:
             place: Where the axes stand above it, (A,).
-            heights: Of Z above the hole, at its bottom and after it, mm.
-            minutes: That it takes to the bottom where the feed in force is not its own.
+            heights: Z above the hole, at its bottom and after it, mm.
+            minutes: Time to the bottom where the feed in force is not that of the cycle.
 
         Raises:
             BadFile: A place that is not known, a contour or a turning table.

@@ -17,7 +17,7 @@ class Keep:
 
     Attributes:
         text: Without its number.
-        moves: Whether it moves an axis all the same: in coordinates of the machine, or before
+        moves: Whether it still moves an axis: in coordinates of the machine, or before
             the place of every axis is known.
     """
 
@@ -43,7 +43,7 @@ class Arc(NamedTuple):
 
     Attributes:
         plane: Columns of the readings, in the order in which a positive angle turns.
-        centre: Of the circle in that plane, (2,), mm.
+        centre: Centre of the circle in that plane, (2,), mm.
         angle: From start to end, signed, rad.
     """
 
@@ -59,8 +59,8 @@ class Cycle(NamedTuple):
     its bottom needs.
 
     Attributes:
-        block: That calls it, with `{place}` and `{top}`; nothing but for the second of the three.
-        depth: Of the bottom below what the block states as its top, mm: R of G-code, the surface of
+        block: Block that calls it, with `{place}` and `{top}`; the second motion alone has one.
+        depth: Bottom below what the block states as its top, mm: R of G-code, the surface of
             Klartext.
         ahead: Motions from here to the second of the three.
     """
@@ -77,17 +77,17 @@ class Motion(NamedTuple):
         start: Program coordinates of every axis, (A,), mm and rad.
         is_rapid: Whether it cuts nothing.
         feed: mm/min, or degrees/min where axes turn alone; 0 where it is rapid.
-        word: The same as the number that the program states.
+        word: The feed as the number that the program states.
         is_from_known: Whether the place of every axis is known where it begins.
         tcpm: Whether coordinates are those of the tool point on the turning table.
-        length: Of the tool, mm.
+        length: Length of the tool, mm.
         offset: What the program has shifted its zero by, (A,), mm; in `start` and `end` already.
         unit: One unit of the program's lengths, mm.
         words: What else stands in the block, for its first line.
         arc: None for a straight line.
         beside: Way by which the tool's centre goes to the left of the path that is programmed, mm;
             to the right below zero. Zero once it is resolved.
-        minutes: That it takes where the program states a time instead of a feed; else 0.
+        minutes: Time that it takes where the program states that instead of a feed; else 0.
         cycle: None where the program itself says how the axes move.
     """
 
@@ -134,7 +134,7 @@ class Paths:
     """Where motions lead.
 
     Attributes:
-        start: Of every motion, (M, A), mm and rad.
+        start: Start of every motion, (M, A), mm and rad.
         arcs: Numbers of the motions that are arcs, with these.
         far: Length of the way of the linear axes, (M,), mm.
         turned: Angle of the rotary axes, (M,), degrees; the root of the sum of squares.
@@ -154,7 +154,7 @@ class Paths:
         self.travel = np.where(self.far > 0.0, self.far, self.turned)
 
     def radius(self, k: int, arc: Arc) -> float:
-        """Of a motion that is an arc, mm."""
+        """Radius of a motion that is an arc, mm."""
         return float(np.hypot(*(self.start[k, list(arc.plane)] - arc.centre)))
 
     def at(self, which: IntArray, share: Array) -> Array:
@@ -162,7 +162,7 @@ class Paths:
 
         Args:
             which: Number of the motion, ascending, (N,).
-            share: Of it that is done, 0 to 1, (N,).
+            share: Share of it that is done, 0 to 1, (N,).
         """
         out = self.start[which] + share[:, None] * (self.end - self.start)[which]
         for k, arc in self.arcs:

@@ -17,7 +17,6 @@ from matstd.compensation.part_programs.motion import Item, Motion
 from matstd.compensation.part_programs.radius import resolved
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_any_text
-from matstd.twin.units import DEG
 
 _ENDINGS = {".h": klartext, ".ngc": gcode, ".nc": gcode, ".tap": gcode}
 _READ = {klartext: klartext_reader.read, gcode: gcode_reader.read}
@@ -61,8 +60,8 @@ def read_part_program(
 
     Args:
         frame: Where its zero stands; the datum's tool is that of tools without a length.
-        lengths: Of tools by number or name, mm.
-        radii: Of tools by number or name, mm; needed where the program goes beside a contour.
+        lengths: Lengths of tools by number or name, mm.
+        radii: Radii of tools by number or name, mm; needed where the program goes beside a contour.
         passed: Numbers of M functions of the machine that move nothing.
         tcp_functions: Those of G-code that switch tool-point control on, and off.
 
@@ -111,7 +110,7 @@ def _check_travel(program: Program) -> None:
         beyond = np.argwhere((q < low - 1e-9) | (q > high + 1e-9))
         if len(beyond):
             row, k = (int(v) for v in beyond[0])
-            unit = 1.0 if chain.link(chain.axes[k]).kind == "linear" else DEG
+            unit = chain.link(chain.axes[k]).unit
             found = f"{chain.axes[k]} at a reading of {q[row, k] / unit:.3f}"
             expected = f"{low[k] / unit:g} to {high[k] / unit:g}; is --datum right?"
             raise BadFile(program.path, f"line {own[row].line}", found, expected)

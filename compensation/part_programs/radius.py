@@ -16,7 +16,7 @@ from matstd.compensation.part_programs.motion import Arc, Item, Keep, Motion, an
 from matstd.twin.frames import Array
 
 MAX_SMOOTH_SINE = 1e-4
-"""Sine of the angle of a corner that is none, rad: contours are programmed to a micrometre."""
+"""Largest sine of the angle of a smooth transition: contours are programmed to a micrometre."""
 
 MAX_OVERSHOOT = 1e-3
 """A cut may lie beyond the end of a shifted path by so much, mm: programmed in micrometres."""
@@ -68,7 +68,7 @@ class Element:
 
     @property
     def radius(self) -> float:
-        """Of the shifted arc, mm; not above zero where the tool does not fit."""
+        """Radius of the shifted arc, mm; zero or less where the tool does not fit."""
         assert self.arc is not None
         own = float(np.linalg.norm(self.start - self.arc.centre))
         return own - self.d * float(np.sign(self.arc.angle))

@@ -9,11 +9,11 @@ from matstd.twin.machine import tip
 from matstd.twin.record import IntArray
 
 CHECKED_SHARES = (0.25, 0.5, 0.75)
-"""Of a line, at which it is looked at: what is left of a chord is a parabola, largest in its
-middle, and of a jump of the error not."""
+"""Shares of a line at which it is checked: the error of a chord is a parabola, largest in its
+middle; that of a jump of the error is not."""
 
 BLOCK = 20_000
-"""Lines that are looked at together."""
+"""Lines that are checked together: bounds the memory."""
 
 
 def off_path(path: ProgramPath, which: IntArray, share: Array, written: Array) -> Array:
@@ -26,7 +26,7 @@ def off_path(path: ProgramPath, which: IntArray, share: Array, written: Array) -
 
     Args:
         which: Motion of every line, (N,).
-        share: Of its motion that is done at its end, (N,).
+        share: Share of its motion that is done at its end, (N,).
         written: Where it ends, program coordinates as written, (N, A).
     """
     begin = path.begins_at(which, written)

@@ -43,8 +43,8 @@ class Compensated:
         before: Deviation of the tool point from there without compensation, (N, 3), mm.
         after: The same with it, rounded as it was written.
         between: Largest distance of the tool point from the nominal path inside the line that ends
-            at every point, (N,), mm; nan where it is not looked at (`off_path`).
-        tolerance: That lines were divided for, mm.
+            at every point, (N,), mm; nan where it is not checked (`off_path`).
+        tolerance: Tolerance to which lines were divided, mm.
         u: Standard uncertainty of both from that of the model at some points, (M,), mm.
         u_at: Those points, (M,).
         unmoved: Lines of motions that stay as they are, since no place is known there.
@@ -72,12 +72,12 @@ class Compensated:
 
     @property
     def is_cut(self) -> bool:
-        """Whether a motion with a feed is looked at between the ends of its lines."""
+        """Whether a motion with a feed is checked between the ends of its lines."""
         return bool(np.isfinite(self.between).any())
 
     @property
     def worst_between(self) -> float:
-        """Largest distance from the path between line ends, mm; zero where none is looked at."""
+        """Largest distance from the path between line ends, mm; zero where none is checked."""
         return float(np.nanmax(self.between)) if self.is_cut else 0.0
 
     @property

@@ -126,7 +126,7 @@ class ProgramPath:
 
 
 _STEP = 1e-4
-"""Of a motion, over which its direction is taken."""
+"""Share of a motion over which its direction is taken."""
 
 
 def _feels_approach(errors: MachineErrors) -> bool:

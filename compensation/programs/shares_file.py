@@ -10,7 +10,7 @@ from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
 from matstd.twin.record import Touches
 from matstd.twin.text import csv_text
-from matstd.twin.units import DEG, UM
+from matstd.twin.units import UM
 
 
 def write_shares(path: str | Path, touches: Touches, whole: Array, shares: Sequence[Share]) -> None:
@@ -20,16 +20,13 @@ def write_shares(path: str | Path, touches: Touches, whole: Array, shares: Seque
         whole: Deviation of all together, (N, 3), mm.
     """
     chain = touches.chain
-    axes = list(chain.programmed_axes)
-    is_rotary = [chain.link(a).kind == "rotary" for a in axes]
-    names = [f"{a}_{'deg' if turns else 'mm'}" for a, turns in zip(axes, is_rotary, strict=True)]
-    readings = [
-        touches.reading(a) / (DEG if r else 1.0) for a, r in zip(axes, is_rotary, strict=True)
-    ]
+    links = [chain.link(a) for a in chain.programmed_axes]
+    names = [link.column for link in links]
+    readings = [touches.reading(link.name) / link.unit for link in links]
     fields = [("all", whole), *((s.name.replace(",", " "), s.field) for s in shares)]
     names += [f"{name}_d{c}_um" for name, _ in fields for c in "xyz"]
     table = np.column_stack([touches.time, *readings, *(field / UM for _, field in fields)])
     rows = (
-        [f"{v:.5g}" if k > len(axes) else f"{v:.5f}" for k, v in enumerate(row)] for row in table
+        [f"{v:.5g}" if k > len(links) else f"{v:.5f}" for k, v in enumerate(row)] for row in table
     )
     write_whole(path, csv_text(["time_s", *names], rows))

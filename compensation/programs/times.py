@@ -1,7 +1,7 @@
 """Lines with rotary axes take the time that the program gives them.
 
-F of a line that turns axes alone is degrees a minute; as soon as a linear axis moves, and be it by
-the micrometre of a correction, it is millimetres a minute of that way (LinuxCNC; Fanuc adds degrees
+F of a line that turns axes alone is in degrees per minute; as soon as a linear axis moves, even by
+the micrometre of a correction, it is in millimetres per minute (LinuxCNC; Fanuc adds degrees
 to millimetres). Such lines are written in inverse time.
 """
 
@@ -20,17 +20,17 @@ MIN_CHANGED_SHARE = 0.02
 """Share of the way of the linear axes below which a correction does not change the feed."""
 
 MAX_TIME_DIFFERENCE = 0.05
-"""Of the time of a line: by less the controls agree in how they count F of lines that do both."""
+"""Share of the time of a line within which controls agree on F of lines that move and turn."""
 
 MIN_INVERSE_FEED = 0.1
-"""LinuxCNC runs no line of inverse time slower, mm/min or degrees/min (inches in inches); with 1 µm
-of correction in 6 s it would be faster than it was."""
+"""Slowest feed of LinuxCNC in inverse time, mm/min or degrees/min (inches in inches): a line with
+1 µm of correction in 6 s would be faster than programmed."""
 
 MARGIN = 1.2
-"""Times `MIN_INVERSE_FEED`, as what lines are written: coordinates are rounded to 10 nm."""
+"""Factor on `MIN_INVERSE_FEED` at which lines are written: coordinates are rounded to 10 nm."""
 
 MAX_LAG_SHARE = 0.1
-"""Of the tolerance: a smaller change of the correction waits for the next line."""
+"""Share of the tolerance below which a change of the correction waits for the next line."""
 
 
 class Timed(NamedTuple):
@@ -38,9 +38,9 @@ class Timed(NamedTuple):
 
     Attributes:
         which: Motion of every line, (N,).
-        share: Of its motion that is done at its end, (N,).
+        share: Share of its motion that is done at its end, (N,).
         written: Program coordinates, rounded, (N, A).
-        motions: Numbers of those of which F alone would change the time.
+        motions: Numbers of the motions whose time would change if F alone were kept.
     """
 
     which: IntArray
@@ -56,12 +56,12 @@ def in_time(
 
     Args:
         which: Motion of every line, (N,).
-        share: Of its motion at its end, (N,).
+        share: Share of its motion that is done at its end, (N,).
         written: Where it ends, program coordinates, rounded, (N, A).
         tolerance: By which corrections may lag where LinuxCNC cannot go slowly enough, mm.
 
     Raises:
-        BadFile: A line of which no way to state its time is known.
+        BadFile: A line whose time cannot be stated in the program's language.
     """
     linear = path.frame.linear
     begin = path.begins_at(which, written)

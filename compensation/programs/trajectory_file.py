@@ -7,7 +7,7 @@ import numpy as np
 from matstd.compensation.programs.compensation import Compensated
 from matstd.twin.files import write_whole
 from matstd.twin.text import csv_text
-from matstd.twin.units import DEG, UM
+from matstd.twin.units import UM
 
 
 def write_trajectory(path: str | Path, done: Compensated) -> None:
@@ -17,11 +17,9 @@ def write_trajectory(path: str | Path, done: Compensated) -> None:
     """
     frame = done.program.frame
     chain = frame.chain
-    axes = list(chain.programmed_axes)
-    columns = [chain.axis_index(a) for a in axes]
-    units = np.array([DEG if chain.link(a).kind == "rotary" else 1.0 for a in axes])
-    names = ["line", "time_s"]
-    names += [f"{a}_{'deg' if chain.link(a).kind == 'rotary' else 'mm'}" for a in axes]
+    links = [chain.link(a) for a in chain.programmed_axes]
+    columns = [chain.axis_index(link.name) for link in links]
+    names = ["line", "time_s", *(link.column for link in links)]
     names += [f"added_{a}_um" for a in "XYZ"] + [f"{c}_mm" for c in "xyz"]
     names += [f"{when}_d{c}_um" for when in ("before", "after") for c in "xyz"]
     names += ["between_um"]
@@ -30,7 +28,7 @@ def write_trajectory(path: str | Path, done: Compensated) -> None:
         [
             lines,
             done.elapsed,
-            done.q[:, columns] / units,
+            done.q[:, columns] / [link.unit for link in links],
             done.added[:, frame.linear] / UM,
             done.nominal,
             done.before / UM,
@@ -38,6 +36,6 @@ def write_trajectory(path: str | Path, done: Compensated) -> None:
             done.between / UM,
         ]
     )
-    forms = ["%d", "%.3f", *["%.5f"] * len(axes), *["%.3f"] * 3, *["%.5f"] * 3, *["%.3f"] * 7]
+    forms = ["%d", "%.3f", *["%.5f"] * len(links), *["%.3f"] * 3, *["%.5f"] * 3, *["%.3f"] * 7]
     rows = ([form % v for form, v in zip(forms, row, strict=True)] for row in table.tolist())
     write_whole(path, csv_text(names, rows))

@@ -36,7 +36,7 @@ class Drifts:
 
     @property
     def drift(self) -> list[float]:
-        """Of every column since the preset, mm or rad."""
+        """Drift of every column since the preset, mm or rad."""
         return [float(v) for live in self._laws for v in live.drift]
 
     @property

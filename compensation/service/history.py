@@ -54,7 +54,7 @@ class History:
 
         Args:
             q: Readings, (N, A).
-            length: Of the tool, mm.
+            length: Length of the tool, mm.
             approach: Sign of the last motion of every axis, (N, A).
 
         Returns:

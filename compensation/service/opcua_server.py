@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from asyncua.server.server import Server
 
 NAMESPACE = "urn:material-standard:compensation"
-"""Of the nodes."""
+"""Namespace of the nodes."""
 
 PERIOD = 0.005
 """Time between two outputs without a request, s."""
@@ -108,11 +108,11 @@ async def _follow(service: Service, nodes: _Nodes, until: asyncio.Event) -> None
         if now - driven >= DRIVEN_EVERY:
             driven = now
             await nodes.drive(service, service.errors.state.time + now - begun)
-            await nodes.tell_drift(service)
+            await nodes.write_drift(service)
         await nodes.learn(service)
         if now - nodes.known_at >= _KNOWN_EVERY:
             nodes.known_at = now
-            await nodes.tell_uncertainty(service)
+            await nodes.write_uncertainty(service)
 
 
 class _Nodes:
@@ -225,14 +225,14 @@ class _Nodes:
         self._probed = sequence
         await self.outputs["ProbedAnswered"].write_value(sequence)
 
-    async def tell_drift(self, service: Service) -> None:
-        """Columns of saved laws since the preset."""
+    async def write_drift(self, service: Service) -> None:
+        """Write the drift of the columns of saved laws since the preset."""
         if service.drifts.columns:
             await self.outputs["Drift"].write_value(service.drifts.drift)
             await self.outputs["DriftUncertainty"].write_value(service.drifts.u)
 
-    async def tell_uncertainty(self, service: Service) -> None:
-        """Of the last readings."""
+    async def write_uncertainty(self, service: Service) -> None:
+        """Write the uncertainty at the last readings."""
         readings = await self.inputs["Readings"].read_value() or []
         try:
             u = await asyncio.to_thread(service.uncertainty, readings)

@@ -27,10 +27,10 @@ class OutputLimits:
     """What a control is asked to add at most.
 
     Attributes:
-        most: Of each axis, mm.
-        rate: Of each axis, mm/s: 1 mm/s follows 0.5 µm/mm at 120 m/min, and 20 µm in 20 ms.
-        patience: After which a correction is no longer valid, s.
-        hold: After which it goes to zero, s.
+        most: Largest correction of each axis, mm.
+        rate: Its change, mm/s: 1 mm/s follows 0.5 µm/mm at 120 m/min, and 20 µm in 20 ms.
+        patience: Age at which a correction is no longer valid, s.
+        hold: Age at which it begins to go to zero, s.
 
     Raises:
         BadValue: A number that is not above zero, or a hold shorter than the patience.
@@ -57,7 +57,7 @@ class Sent:
     """What is given to the control.
 
     Attributes:
-        values: Of the three linear axes, mm.
+        values: Corrections of the three linear axes, mm.
         age: Since the readings that they were made for, s; infinite before the first.
         lag: Largest way that a value still has to go, mm.
     """

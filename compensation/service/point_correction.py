@@ -21,7 +21,6 @@ from matstd.compensation.service.tabulated import MAX_INTERPOLATION, ErrorTable,
 from matstd.twin.errors import DesignError, OutsideTravel
 from matstd.twin.frames import Array, rotation
 from matstd.twin.machine import Chain, Link
-from matstd.twin.units import DEG
 
 Point = tuple[float, float, float]
 Six = tuple[float, ...]
@@ -58,7 +57,7 @@ class _Step(NamedTuple):
         workpiece: Whether it carries the workpiece, so that its error comes before its motion.
         offset: Added to the reading: the zero of the axis is displaced.
         ideal: Direction of the line without errors.
-        lever: That angular errors turn about, every axis at zero.
+        lever: Point that angular errors turn about, every axis at zero.
         carries: By how much the lever goes along with the reading, in `ideal`: 0, 1 or -1.
         column: Number of the linear axis that it is, -1 for none.
     """
@@ -99,7 +98,7 @@ class PointCorrection:
         """Tabulate the errors.
 
         Args:
-            length: Of the tool, mm.
+            length: Length of the tool, mm.
             datum: Pose at which nothing is corrected; None to correct the whole deviation.
             close: What straight lines between the points of one table may leave, mm at the tip.
 
@@ -117,8 +116,7 @@ class PointCorrection:
         self.interpolation = float(sum(t.left for t in self._tables))
         self._places = _places(errors, length)
         self._columns = tuple(chain.axis_index(name) for name in chain.linear_axes)
-        self._travels = [(name, *chain.link(name).range) for name in chain.axes]
-        self._is_rotary = [chain.link(name).kind == "rotary" for name in chain.axes]
+        self._links = [chain.link(name) for name in chain.axes]
         self._tip = (0.0, 0.0, -float(length))
         self._aim = (0.0, 0.0, 0.0) if datum is None else _point(datum.deviation(errors))
         self._steps = _way(chain, self._places, self._tables)
@@ -142,7 +140,7 @@ class PointCorrection:
         """Corrections of the three linear axes.
 
         Args:
-            readings: Of every axis in the chain's order, mm and rad.
+            readings: Readings of every axis in the chain's order, mm and rad.
             directions: Sign of the last motion of every axis; None where unknown.
 
         Returns:
@@ -170,14 +168,13 @@ class PointCorrection:
         return added[0], added[1], added[2]
 
     def _check(self, readings: Sequence[float]) -> None:
-        for value, (name, low, high), is_rotary in zip(
-            readings, self._travels, self._is_rotary, strict=True
-        ):
+        for value, link in zip(readings, self._links, strict=True):
+            low, high = link.range
             if not low - _BESIDE <= value <= high + _BESIDE:
-                unit, word = (DEG, "degrees") if is_rotary else (1.0, "mm")
+                word = "degrees" if link.kind == "rotary" else "mm"
                 raise OutsideTravel(
-                    f"{name} {value / unit:g} {word}, beyond its travel {low / unit:g} to "
-                    f"{high / unit:g}"
+                    f"{link.name} {value / link.unit:g} {word}, beyond its travel "
+                    f"{low / link.unit:g} to {high / link.unit:g}"
                 )
 
     def _nominal(self, q: Sequence[float], columns: Columns) -> Point:

@@ -14,7 +14,6 @@ from matstd.compensation.service.history import History
 from matstd.compensation.service.output import Output, OutputLimits, Quality, Sent
 from matstd.compensation.service.point_correction import Point, PointCorrection
 from matstd.twin.errors import DesignError, OutsideTravel
-from matstd.twin.units import DEG
 
 DRIVEN_EVERY = 2.0
 """Between two looks at temperatures, s: bodies are slower, and tables are made again."""
@@ -55,7 +54,7 @@ class Service:
         """Tabulate the errors.
 
         Args:
-            length: Of the tool, mm.
+            length: Length of the tool, mm.
             datum: Pose at which the preset was taken: nothing is corrected there.
 
         Raises:
@@ -135,7 +134,7 @@ class Service:
         The law of the drift is corrected by it, and its uncertainty.
 
         Args:
-            left: Of every column of `drifts.columns`, mm or rad; NaN where nothing was probed.
+            left: Remainder of every column of `drifts.columns`, mm or rad; NaN where not probed.
 
         Raises:
             DesignError: No law is followed, other numbers of values, or a correction that was not
@@ -184,8 +183,7 @@ class Service:
                 raise OutsideTravel(
                     f"{len(given)} {name}, expected {len(chain.axes)}: {', '.join(chain.axes)}"
                 )
-        is_rotary = [chain.link(name).kind == "rotary" for name in chain.axes]
-        q = [v * DEG if r else float(v) for v, r in zip(readings, is_rotary, strict=True)]
+        q = [v * chain.link(name).unit for v, name in zip(readings, chain.axes, strict=True)]
         return q, None if directions is None else [int(np.sign(d)) for d in directions]
 
     def _line(

@@ -36,7 +36,7 @@ class ErrorTable:
 
     Attributes:
         terms: Effects that are in it, with their parameters.
-        length: Of the tool, mm.
+        length: Length of the tool, mm.
         axes: Numbers of the readings, none to two.
         turns: Direction of some axes in which it holds, -1, 0 or 1 by the axis's number.
         is_driven: Whether it changes with time, temperatures, speed or columns of the user's own.
@@ -129,7 +129,7 @@ def error_tables(
     """Tables of everything that twists a link; displaced lines of axes are not in them.
 
     Args:
-        length: Of the tool, mm.
+        length: Length of the tool, mm.
         close: What straight lines between the points of one table may leave, mm at the tip.
 
     Raises:

@@ -43,7 +43,7 @@ def acceptance(
     """The one-point test of a table.
 
     Args:
-        datum: To which everything refers.
+        datum: Pose to which everything refers.
         q: Poses of the workspace, (N, A): the place is among them but for the rotary axes.
     """
     is_rotary = np.array([errors.chain.link(a).kind == "rotary" for a in errors.chain.axes])

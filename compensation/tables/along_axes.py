@@ -51,6 +51,11 @@ class AxisTable:
     forward: Array
     reverse: Array
 
+    @property
+    def is_left_out(self) -> bool:
+        """Whether it corrects at most what depends on the direction of motion (`harmless`)."""
+        return not np.any(self.forward + self.reverse)
+
 
 @dataclass(frozen=True, eq=False)
 class AxisTables:
@@ -270,12 +275,30 @@ def _missed_by(table: AxisTable, needed: _Needed) -> float:
     """Largest difference of a table from what is needed between its points, mm or rad."""
     count = 2 * CHECKED_PLACES * (len(table.nodes) - 1) + 1
     between = np.linspace(table.nodes[0], table.nodes[-1], count)
+    ways = _needed_by(table, needed, between)
+    if table.is_left_out:  # what it should not correct is no fault of its points
+        mean = 0.5 * (ways[0] + ways[1])
+        ways = [way - mean for way in ways]
+    held = [np.interp(between, table.nodes, v) for v in (table.forward, table.reverse)]
+    return float(max(np.abs(w - h).max() for w, h in zip(ways, held, strict=True)))
+
+
+def _needed_by(table: AxisTable, needed: _Needed, readings: Array) -> list[Array]:
+    """What a table would have to correct after a positive and a negative motion, 2 x (n,)."""
     k = needed.errors.chain.axis_index(table.moves)
     moves = (0, 0) if np.array_equal(table.forward, table.reverse) else (1, -1)
     own = needed.zero[k] if table.moves == table.over else 0.0
-    ways = [needed.along(table.over, between, move)[:, k] + own for move in moves]
-    held = [np.interp(between, table.nodes, v) for v in (table.forward, table.reverse)]
-    return float(max(np.abs(w - h).max() for w, h in zip(ways, held, strict=True)))
+    return [needed.along(table.over, readings, move)[:, k] + own for move in moves]
+
+
+def left_out(tables: AxisTables, errors: MachineErrors, datum: Datum) -> tuple[str, ...]:
+    """Axes without a table although they err along the line through the datum (`harmless`)."""
+    needed = _Needed(errors, datum)
+    out = []
+    for table in tables.tables:
+        if table.is_left_out and np.abs(sum(_needed_by(table, needed, table.nodes))).max() > NM:
+            out.append(table.over)
+    return tuple(out)
 
 
 def unheld_along(
@@ -288,8 +311,8 @@ def unheld_along(
     out = errors.columns(touches)
     moves = _motion(errors, touches)  # (N, 3, A)
     for table in tables.tables:
-        if not np.any(table.forward + table.reverse):
-            continue  # it was left out as harmful (`harmless`)
+        if table.is_left_out:
+            continue
         k = chain.axis_index(table.moves)
         at = on_table(touches.reading(table.over), table.nodes, chain.link(table.over))
         added = interpolated(at, table.nodes, needed[table.over][:, k])

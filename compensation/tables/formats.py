@@ -13,6 +13,7 @@ from matstd.compensation.tables.along_axes import (
     AxisTables,
     along_axes,
     harmless,
+    left_out,
     line_bound,
     most_useful,
     unheld_along,
@@ -61,6 +62,7 @@ class VerifiedTables:
         interpolation: What interpolation and rounding leave at most, mm: over the workspace where
             tables hold errors by name, on the lines through the datum where they hold axes.
         by_name: Whether tables hold errors by name.
+        left_out: Axes whose table would raise the error beside the line through the datum.
     """
 
     format: str
@@ -68,6 +70,7 @@ class VerifiedTables:
     result: Result
     interpolation: float
     by_name: bool
+    left_out: tuple[str, ...]
     acceptance: Acceptance
 
 
@@ -153,17 +156,20 @@ def verify_tables(
     tables, found = control_format.read(folder, errors.chain)
     found.check(head, folder)
     touches = errors.touches(q, datum.length)
+    harmful: tuple[str, ...] = ()
     if isinstance(tables, NamedTables):
         unheld = unheld_by_name(tables, errors, datum, touches)
         bound = interpolation_bound(tables, errors, datum, q)
     else:
         unheld = unheld_along(tables, errors, datum, touches)
         bound = line_bound(tables, errors, datum)
+        harmful = left_out(tables, errors, datum)
     return VerifiedTables(
         format=control_format.name,
         files=tuple(sorted(p.name for p in folder.iterdir())),
         result=result_of(errors, tables.correction, q, datum, unheld),
         interpolation=bound,
         by_name=isinstance(tables, NamedTables),
+        left_out=harmful,
         acceptance=acceptance(errors, tables.correction, datum, q),
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 from matstd.compensation.field import Datum, State
 from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
-from matstd.twin.units import DEG, MINUTE
+from matstd.twin.units import MINUTE
 
 _LINE = re.compile(r"\W*(matstd (?:[a-z ]+)): (.*?)\s*\)?\Z")
 
@@ -90,7 +90,7 @@ def header_of(chain: Chain, model: str, datum: Datum, state: State, sign: int = 
 
 
 def machine_hash(chain: Chain) -> str:
-    """Of everything that a table is made for: chain, travels, directions, points, table."""
+    """Hash of everything that a table depends on: chain, travels, directions, points, table."""
     words = [" ".join(chain.notation.split()), _digits(chain.table_origin)]
     for link in chain.links:
         words.append(f"{link.name} {_digits(link.range)} {_digits(link.direction)}")
@@ -107,8 +107,8 @@ def datum_text(chain: Chain, datum: Datum) -> str:
     """`X0 Y0 Z-200 B0 C0 L160`: readings in mm and degrees, tool length."""
     words = []
     for name in chain.programmed_axes:
-        unit = DEG if chain.link(name).kind == "rotary" else 1.0
-        words.append(f"{name}{datum.q[chain.axis_index(name)] / unit + 0.0:.6g}")
+        reading = datum.q[chain.axis_index(name)] / chain.link(name).unit
+        words.append(f"{name}{reading + 0.0:.6g}")
     return " ".join([*words, f"L{datum.length:.6g}"])
 
 

@@ -15,7 +15,6 @@ from matstd.compensation.tables.by_name import NamedTables
 from matstd.compensation.tables.header import Header
 from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
-from matstd.twin.units import DEG
 
 MOST_POINTS = 256
 """Points of a table (TNC 407 to iTNC 530)."""
@@ -28,12 +27,11 @@ def write(tables: NamedTables, head: Header) -> dict[str, str]:
     texts = {}
     for axis, nodes in tables.nodes.items():
         link = tables.chain.link(axis)
-        # steps in which the control calculates
-        unit, places = (DEG, 6) if link.kind == "rotary" else (1.0, 4)
+        places = 6 if link.kind == "rotary" else 4  # steps in which the control calculates
         lines = [f"; {line}" for line in head.lines()]
         lines += [f"BEGIN {axis} .COM MM", f"NR AXISPOS {axis}"]
-        values = head.sign * tables.values[axis][:, link.own_component] / unit
-        for k, (at, value) in enumerate(zip(nodes / unit, values, strict=True)):
+        values = head.sign * tables.values[axis][:, link.own_component] / link.unit
+        for k, (at, value) in enumerate(zip(nodes / link.unit, values, strict=True)):
             lines.append(f"{k} {at:+.4f} {value:+.{places}f}")
         texts[f"{axis}.COM"] = "\n".join([*lines, "[END]"]) + "\n"
     return texts
@@ -54,7 +52,6 @@ def read(folder: Path, chain: Chain) -> tuple[NamedTables, Header]:
         if heads[-1] != heads[0]:
             raise BadFile(path, "head", heads[-1].model, f"{heads[0].model}, as of the other axes")
         link = chain.link(axis)
-        unit = DEG if link.kind == "rotary" else 1.0
         rows = []
         for number, line in enumerate(text.splitlines(), start=1):
             if _ROW.match(line):
@@ -62,7 +59,7 @@ def read(folder: Path, chain: Chain) -> tuple[NamedTables, Header]:
                 if len(words) != 3:
                     raise BadFile(path, f"line {number}", f"{len(words)} columns", "3")
                 rows.append([float(word) for word in words[1:]])
-        nodes[axis], own = np.array(rows).T * unit
+        nodes[axis], own = np.array(rows).T * link.unit
         values[axis] = heads[0].sign * np.outer(own, np.eye(6)[link.own_component])
     place = np.zeros((len(chain.links), 6))
     return NamedTables(chain, nodes, values, place, only_own=True), heads[0]

@@ -15,7 +15,6 @@ from matstd.compensation.tables.header import Header
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.machine import LETTERS, Chain, Family, Symbol
-from matstd.twin.units import DEG
 
 NAME = "iso230.csv"
 MOST_POINTS = 1025
@@ -29,7 +28,7 @@ def write(tables: NamedTables, head: Header) -> dict[str, str]:
     lines = [f"{_COMMENT} {line}" for line in head.lines()]
     lines.append(f"{_COMMENT} lengths in mm, angles in rad, readings in mm and degrees")
     for axis, nodes in tables.nodes.items():
-        unit = _unit(tables.chain, axis)
+        unit = tables.chain.link(axis).unit
         lines.append(" ".join([axis, *(f"E{c}{axis}" for c in LETTERS)]))
         for at, row in zip(nodes, head.sign * tables.values[axis], strict=True):
             lines.append(" ".join([f"{at / unit:.6f}", *_words(row)]))
@@ -65,7 +64,7 @@ def read(folder: Path, chain: Chain) -> tuple[NamedTables, Header]:
             expected = [names[0], *(f"E{c}{names[0]}" for c in LETTERS)]
             if names != expected:
                 raise BadFile(path, f"line {number}", " ".join(names), " ".join(expected))
-            nodes[names[0]] = rows[:, 0] * _unit(chain, names[0])
+            nodes[names[0]] = rows[:, 0] * chain.link(names[0]).unit
             values[names[0]] = head.sign * rows[:, 1:]
         else:
             for name, value in zip(names, rows[0], strict=True):
@@ -78,10 +77,6 @@ def _location(chain: Chain) -> list[Symbol]:
     """Location errors of the axes that a program moves."""
     own = (s for s in chain.symbols if s.family is Family.LOCATION)
     return [s for s in own if s.link in chain.programmed_axes]
-
-
-def _unit(chain: Chain, axis: str) -> float:
-    return DEG if chain.link(axis).kind == "rotary" else 1.0
 
 
 def _words(row: Array) -> list[str]:

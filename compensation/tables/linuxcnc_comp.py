@@ -11,8 +11,7 @@ import numpy as np
 from matstd.compensation.tables.along_axes import AxisTable, AxisTables
 from matstd.compensation.tables.header import Header
 from matstd.twin.errors import BadFile
-from matstd.twin.machine import Chain
-from matstd.twin.units import DEG
+from matstd.twin.machine import Chain, Link
 
 MOST_POINTS = 256
 
@@ -22,17 +21,11 @@ def write(tables: AxisTables, head: Header) -> dict[str, str]:
     top = [f"# {line}" for line in head.lines()]
     texts = {}
     for table in tables.tables:
-        unit = DEG if table.over[0] in "ABC" else 1.0
         columns = [table.nodes, head.sign * table.forward, head.sign * table.reverse]
-        rows = np.column_stack(columns) / unit
-        texts[f"{table.over}.comp"] = _text(
-            [*top, *(" ".join(f"{v:.7f}" for v in r) for r in rows)]
-        )
+        rows = np.column_stack(columns) / tables.chain.link(table.over).unit
+        lines = [*top, *(" ".join(f"{v:.7f}" for v in row) for row in rows)]
+        texts[f"{table.over}.comp"] = "\n".join(lines) + "\n"
     return texts
-
-
-def _text(lines: list[str]) -> str:
-    return "\n".join(lines) + "\n"
 
 
 def read(folder: Path, chain: Chain) -> tuple[AxisTables, Header]:
@@ -51,13 +44,13 @@ def read(folder: Path, chain: Chain) -> tuple[AxisTables, Header]:
         if head is not None and own != head:
             raise BadFile(path, "head", own.model, f"{head.model}, as of the other axes")
         head = own
-        made.append(_table(path, text, axis, own.sign))
+        made.append(_table(path, text, chain.link(axis), own.sign))
     if head is None:
         raise BadFile(folder, "files", "none", "a .comp file of an axis")
     return AxisTables(chain, tuple(made)), head
 
 
-def _table(path: Path, text: str, axis: str, sign: int) -> AxisTable:
+def _table(path: Path, text: str, link: Link, sign: int) -> AxisTable:
     rows = []
     for number, line in enumerate(text.splitlines(), start=1):
         if line.startswith("#"):
@@ -67,5 +60,5 @@ def _table(path: Path, text: str, axis: str, sign: int) -> AxisTable:
         except ValueError:
             raise BadFile(path, f"line {number}", repr(line), "three numbers") from None
         rows.append((nominal, sign * forward, sign * reverse))
-    nodes, forward_all, reverse_all = np.array(rows).T * (DEG if axis[0] in "ABC" else 1.0)
-    return AxisTable(axis, axis, nodes, forward=forward_all, reverse=reverse_all)
+    nodes, forward_all, reverse_all = np.array(rows).T * link.unit
+    return AxisTable(link.name, link.name, nodes, forward=forward_all, reverse=reverse_all)

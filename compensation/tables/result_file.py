@@ -14,7 +14,6 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.numbers import in_um, rms_length
 from matstd.twin.text import json_text
-from matstd.twin.units import DEG
 
 FORMAT = "compensation/1"
 
@@ -43,6 +42,7 @@ def _table(verified: VerifiedTables, chain: Chain) -> dict[str, Any]:
         **figures(result),
         "interpolation_um": in_um(verified.interpolation),
         "interpolation_holds": "over the workspace" if verified.by_name else "along the axes",
+        "left_out": list(verified.left_out),
         "not_held": [
             {
                 "error": x.name,
@@ -77,9 +77,6 @@ def figures(result: Result) -> dict[str, Any]:
 
 
 def _readings(chain: Chain, q: Array) -> dict[str, float]:
-    out = {}
-    for name in chain.programmed_axes:
-        is_rotary = chain.link(name).kind == "rotary"
-        value = float(q[chain.axis_index(name)]) / (DEG if is_rotary else 1.0)
-        out[f"{name}_{'deg' if is_rotary else 'mm'}"] = round(value, 4) + 0.0
-    return out
+    links = [chain.link(name) for name in chain.programmed_axes]
+    values = [float(q[chain.axis_index(link.name)]) / link.unit for link in links]
+    return {link.column: round(v, 4) + 0.0 for link, v in zip(links, values, strict=True)}

@@ -13,7 +13,6 @@ from matstd.compensation.tables.along_axes import AxisTable, AxisTables
 from matstd.compensation.tables.header import Header
 from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
-from matstd.twin.units import DEG
 
 NAME = "NC_CEC.INI"
 MOST_POINTS = 257
@@ -29,7 +28,7 @@ def write(tables: AxisTables, head: Header) -> dict[str, str]:
     """Texts by file name."""
     lines = ["%_N_NC_CEC_INI", *(f"; {line}" for line in head.lines()), "CHANDATA(1)"]
     for k, table in enumerate(tables.tables):
-        over, moves = _unit(table.over), _unit(table.moves)
+        over, moves = (tables.chain.link(axis).unit for axis in (table.over, table.moves))
         values = head.sign * table.forward / moves
         lines += [f"$AN_CEC[{k},{i}]={v:.6f}" for i, v in enumerate(values)]
         nodes = table.nodes / over
@@ -46,10 +45,6 @@ def write(tables: AxisTables, head: Header) -> dict[str, str]:
         }
         lines += [f"$AN_CEC_{word}[{k}]={value}" for word, value in words.items()]
     return {NAME: "\n".join([*lines, "M17"]) + "\n"}
-
-
-def _unit(axis: str) -> float:
-    return DEG if axis[0] in "ABC" else 1.0
 
 
 def read(folder: Path, chain: Chain) -> tuple[AxisTables, Header]:
@@ -71,14 +66,14 @@ def read(folder: Path, chain: Chain) -> tuple[AxisTables, Header]:
         elif not line.startswith((";", "%", "CHANDATA", "M17")):
             raise BadFile(path, f"line {number}", repr(line), "$AN_CEC...=...")
     head = Header.of(text, path)
-    made = [_table(values[k], words[k], head.sign) for k in sorted(values)]
+    made = [_table(chain, values[k], words[k], head.sign) for k in sorted(values)]
     return AxisTables(chain, tuple(made)), head
 
 
-def _table(values: dict[int, float], words: dict[str, str], sign: int) -> AxisTable:
+def _table(chain: Chain, values: dict[int, float], words: dict[str, str], sign: int) -> AxisTable:
     """One table, in base units."""
     over, moves = words["INPUT_AXIS"], words["OUTPUT_AXIS"]
     low, step = float(words["MIN"]), float(words["STEP"])
-    nodes = (low + step * np.arange(float(len(values)))) * _unit(over)
-    held = sign * np.array([values[i] for i in range(len(values))]) * _unit(moves)
+    nodes = (low + step * np.arange(float(len(values)))) * chain.link(over).unit
+    held = sign * np.array([values[i] for i in range(len(values))]) * chain.link(moves).unit
     return AxisTable(over, moves, nodes, forward=held, reverse=held)

@@ -1,6 +1,6 @@
 """Models and results as files.
 
-`model.toml` ("model/1") is read and written; `diagnosis.json`, `comparison.json`,
+`model.toml` ("model/2") is read and written; `diagnosis.json`, `comparison.json`,
 `identification.json` and the tables beside them are written. Numbers come from the results,
 sentences from the caller: prose is made in `report`.
 """

@@ -1,7 +1,8 @@
-"""Model file (TOML, "model/1", with curves "model/2"): a machine, its effects, their estimates."""
+"""Model file (TOML, "model/2"): a machine, its effects, and what was learnt of their parameters."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -9,6 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from matstd.diagnosis.files.curve_table import CurveEntry
+from matstd.diagnosis.files.determined import Determined, DeterminedEntry
 from matstd.diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
 from matstd.diagnosis.regression import Memory
 from matstd.diagnosis.remarks import EffectOfOtherRun
@@ -29,8 +31,8 @@ from matstd.twin.model import Effect, Model, is_tunable
 from matstd.twin.record import Run, Touches, without_copies
 from matstd.twin.units import DEG, UM
 
-FORMAT, CURVED = "model/1", "model/2"
-"""Without and with `[[curve]]`: whoever knows no curves is not given any."""
+FORMAT, OLDER = "model/2", "model/1"
+"""Version that is written, and one that is read: it has no hash of its machine."""
 
 LARGEST, SMALLEST = 1e12, 1e-300
 """Variances of a file beyond the first (µm, µrad squared ...) are slips; of none below the second a
@@ -82,7 +84,8 @@ class SourceEntry(Table):
     `revision` counts the runs that the model has learnt from, one after the other; `learnt_from`
     has their fingerprints, so that no touch is counted twice. `held_out_um` is the plain error that
     the model promises for rows it has not seen; 0 where it promises none. `probes` are lengths and
-    radii of the probes that touched, mm.
+    radii of the probes that touched, mm. `machine_hash` is the digest of the machine that was
+    measured; "" in "model/1". `began` and `standard` are those of the run.
     """
 
     run: str
@@ -98,6 +101,14 @@ class SourceEntry(Table):
     probes: list[Annotated[list[float], Field(min_length=2, max_length=2)]] = Field(
         default_factory=list
     )
+    machine_hash: str = ""
+    began: datetime | None = None
+    standard: str = ""
+
+    @property
+    def held_out(self) -> float:
+        """The error that the model promises, mm."""
+        return self.held_out_um * UM
 
 
 class ModelTable(Table):
@@ -110,6 +121,7 @@ class ModelTable(Table):
     covariance: list[list[float]]
     curve: list[CurveEntry] = Field(default_factory=list)
     from_inner: list[list[float]] = Field(default_factory=list)
+    determined: list[DeterminedEntry] = Field(default_factory=list)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -120,6 +132,7 @@ class SavedModel(Displayed):
         estimates: Of the parameters, with their covariance.
         from_inner: Root (P, T) of the part of the covariance that uncertain inner parameters add.
         reported: Numbers of effects as reported of that run, by name.
+        determined: What that run determines of the geometry, as it was reported.
         left_out: What the file has beside that and is not to be applied here.
     """
 
@@ -128,6 +141,7 @@ class SavedModel(Displayed):
     source: SourceEntry
     from_inner: Array
     reported: dict[str, tuple[Reported, ...]]
+    determined: tuple[Determined, ...] = ()
     left_out: tuple[EffectOfOtherRun, ...] = ()
 
     def without(self, left_out: Sequence[EffectOfOtherRun]) -> "SavedModel":
@@ -221,9 +235,10 @@ def parsed_model(
 ) -> SavedModel:
     """The model of a text; arguments and errors as of `read_model`."""
     data = parse_toml(text, path)
-    check_format(data, CURVED if data.get("format") == CURVED else FORMAT, path)
+    check_format(data, OLDER if data.get("format") == OLDER else FORMAT, path)
     table = checked(ModelTable, data, path)
     chain = table.machine.made(path, "machine")
+    _check_hash(table.source, chain, path)
     by_name = {e.name: e for e in known}
     effects, mean, factors = [], [], []
     for i, entry in enumerate(table.effect):
@@ -245,8 +260,25 @@ def parsed_model(
         source=table.source,
         from_inner=_from_inner(table.from_inner, np.array(factors), path),
         reported={entry.name: tuple(_reported(t) for t in entry.told) for entry in table.effect},
+        determined=tuple(entry.determined() for entry in table.determined),
     )
     return whole.without(list(_of_others(table, effects, [without_copies(run) for run in runs])))
+
+
+def _check_hash(source: SourceEntry, chain: Chain, path: str | Path) -> None:
+    """Refuse a model whose machine was changed after it was learnt.
+
+    Estimates belong to the travels, points and directions that they were learnt with: an axis that
+    turns the other way has all its errors with another sign.
+    """
+    if source.machine_hash and source.machine_hash != chain.fingerprint:
+        raise BadFile(
+            path,
+            "machine",
+            f"a machine with the hash {chain.fingerprint}",
+            f"that which was measured ({source.machine_hash}); the description was changed after "
+            "the model was learnt: change the machine file of the run and diagnose it again",
+        )
 
 
 def probes_of(touches: Touches) -> list[tuple[float, float]]:

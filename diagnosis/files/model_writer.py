@@ -1,4 +1,4 @@
-"""Writer of model files ("model/1", "model/2"): what a fit has learnt, for another run."""
+"""Writer of model files ("model/2"): what a fit has learnt, for another day and another run."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from matstd.diagnosis.files.curve_table import curve_entries
+from matstd.diagnosis.files.determined import Determined, determined_text
 from matstd.diagnosis.files.model_file import (
-    CURVED,
     FORMAT,
     SavedModel,
     parameter_keys,
@@ -16,7 +16,7 @@ from matstd.diagnosis.files.model_file import (
     probes_of,
 )
 from matstd.diagnosis.fit import Fit, Learnt, Reported, inner_unit
-from matstd.diagnosis.geometry import standing, state_of_standing
+from matstd.diagnosis.geometry import GeometryRow, standing, state_of_standing
 from matstd.diagnosis.regression import Memory
 from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
@@ -24,7 +24,7 @@ from matstd.twin.library import owner_of
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, columns, inner_values
 from matstd.twin.numbers import rms
-from matstd.twin.units import DEG, UM
+from matstd.twin.units import UM
 
 
 def write_model(
@@ -57,8 +57,12 @@ def model_text(
     made_with: str = "",
     held_out: float | None = None,
     reported: Mapping[str, Sequence[Reported]] | None = None,
+    determined: Sequence[GeometryRow | Determined] = (),
 ) -> str:
-    """Text of a model file; arguments as of `write_model`."""
+    """Text of a model file.
+
+    Arguments as of `write_model`; `determined` are the quantities that the run determines.
+    """
     import tomli_w
 
     learnt = Learnt.of(fit)
@@ -94,11 +98,8 @@ def model_text(
         **({"curve": curves} if curves else {}),
     }
     # top-level keys stand before tables in TOML, so the covariance goes before what it is about
-    head = (
-        f'format = "{CURVED if curves else FORMAT}"\n'
-        + _triangle(shown)
-        + _root(L @ learnt.from_inner / scale[:, None])
-    )
+    root = _root(L @ learnt.from_inner / scale[:, None])
+    head = f'format = "{FORMAT}"\n{determined_text(determined)}{_triangle(shown)}{root}'
     return head + tomli_w.dumps(tables)
 
 
@@ -123,6 +124,9 @@ def _source(
         "held_out_um": float(fit.test_rms if held_out is None else held_out) / UM,
         "held_out_gross_errors": [int(line) for line in fit.run.line[fit.gross_test_rows]],
         "probes": [list(probe) for probe in probes_of(fit.run.touches)],
+        "machine_hash": fit.model.chain.fingerprint,
+        **({} if fit.run.date is None else {"began": fit.run.date}),
+        **({"standard": fit.run.standard} if fit.run.standard else {}),
         **({} if fit.memory is None else {"memory": _memory(fit.memory)}),
     }
 
@@ -193,9 +197,8 @@ def _machine(chain: Chain) -> dict[str, Any]:
     for link in chain.links:
         if link.kind == "fixed":
             continue
-        factor = DEG if link.kind == "rotary" else 1.0
         axes[link.name] = {
-            "range": [float(v) / factor for v in link.range],
+            "range": [float(v) / link.unit for v in link.range],
             "point": [float(v) for v in link.point],
             "direction": [float(v) for v in link.direction],
         }

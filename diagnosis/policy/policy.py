@@ -20,9 +20,7 @@ class Policy:
             accident.
         expansion_least: Least coefficient of expansion that a found effect may have, 1/K: a control
             that corrects for steel where nothing expands shows -12.
-        expansion_most: The largest one: aluminium has 23e-6, and a screw may be warmer by half than
-            the sensor beside it.
-        impossible_ratio: Uncertainties by which a coefficient must lie beyond them to be refused:
+        impossible_ratio: Uncertainties by which a coefficient must lie below that to be refused:
             more happens to one true expansion at the limit in a thousand.
         material_share: Share of the squared residual that a pattern must hold. In ten thousand rows
             less is beyond chance too, but would improve a prediction by half a per cent at most.
@@ -68,7 +66,6 @@ class Policy:
     log_evidence_gain: float = 3.0
     touches_explained: float = 1.5
     expansion_least: float = -15e-6
-    expansion_most: float = 40e-6
     impossible_ratio: float = 3.0
     material_share: float = 0.01
     error_share: float = 0.97

@@ -5,16 +5,17 @@ In: a `Diagnosis` or a `Comparison`. Out: a `Board`: effects to switch (`Switch`
 them; geometry and set-ups are refitted each time. Live pages evaluate them in the browser.
 """
 
-from matstd.diagnosis.reduced.board import Board, compared_board, diagnosed_board
-from matstd.diagnosis.reduced.levels import Errors, Level, Reduced
+from matstd.diagnosis.reduced.board import Board, compared_board, diagnosed_board, learnt_board
+from matstd.diagnosis.reduced.matrices import Errors, Matrices, Reduced
 from matstd.diagnosis.reduced.switches import Switch
 
 __all__ = [
     "Board",
     "Errors",
-    "Level",
+    "Matrices",
     "Reduced",
     "Switch",
     "compared_board",
     "diagnosed_board",
+    "learnt_board",
 ]

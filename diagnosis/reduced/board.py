@@ -17,8 +17,9 @@ from matstd.diagnosis.evidence import (
     signatures,
 )
 from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.reduced.base import Base
-from matstd.diagnosis.reduced.levels import Errors, Reduced, reduced
+from matstd.diagnosis.reduced.matrices import Errors, Reduced, reduced
 from matstd.diagnosis.reduced.switches import Switch, switch
 from matstd.diagnosis.search import FREEDOM
 from matstd.twin.compute import one_blas_thread
@@ -117,6 +118,19 @@ def diagnosed_board(result: Diagnosis) -> Board:
         on |= {step.effect.name} if step.effect is not None else set()
         known[frozenset(on)] = (step.fit.rms, step.fit.test_rms)
     return _board(result.fit, found, alike, library, result.start, known)
+
+
+@one_blas_thread()
+def learnt_board(learning: Learning) -> Board:
+    """The board of laws that were learnt: they are on; others are effects with a cause."""
+    fit, laws = learning.after, [one.law for one in learning.laws]
+    known = {
+        frozenset[str](): (learning.before.rms, learning.before.test_rms),
+        frozenset(law.name for law in laws): (fit.rms, fit.test_rms),
+    }
+    names = {e.name for e in fit.model.effects}
+    library = [e for e in candidate_effects(fit.run.touches) if e.name not in names]
+    return _board(fit, laws, {}, library, learning.before, known)
 
 
 @one_blas_thread()

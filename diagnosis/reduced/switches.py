@@ -18,8 +18,9 @@ from matstd.twin.model import Effect, Inner, Tunable, is_tunable
 NODES = 13
 """Values of an inner parameter at which columns are computed."""
 
-MAX_PRINCIPAL = 5
-"""Most principal columns of one effect."""
+MAX_PRINCIPAL, FEWER_PRINCIPAL = 5, 4
+"""Most principal columns of one effect; of one that was not found. The fifth moves columns by a
+thousandth."""
 
 MIN_PRINCIPAL = 1e-3
 """Share of the first one below which a principal column is left out."""
@@ -85,7 +86,8 @@ def switch(
     values, mixes, stored = np.zeros(0), np.eye(len(sd))[None], own
     found: Inner | None = None
     if inner and len(sd) <= MAX_WIDTH and is_tunable(effect):
-        moved = _moved(base, effect, sd, own, *inner[0])
+        most = MAX_PRINCIPAL if is_found else FEWER_PRINCIPAL
+        moved = _moved(base, effect, sd, own, *inner[0], most)
         if moved is not None:
             found, (values, mixes, stored) = inner[0][1], moved
     return Switch(
@@ -101,7 +103,14 @@ def switch(
 
 
 def _moved(
-    base: Base, effect: Tunable, sd: Array, own: Array, index: int, inner: Inner, value: float
+    base: Base,
+    effect: Tunable,
+    sd: Array,
+    own: Array,
+    index: int,
+    inner: Inner,
+    value: float,
+    most: int,
 ) -> tuple[Array, Array, Array] | None:
     """Values, mixes and stored columns of an effect over its inner parameter; None without any."""
     grid = np.asarray(inner.grid, dtype=float)
@@ -113,7 +122,7 @@ def _moved(
         if not all(np.isfinite(C).all() for C in raw):
             return None
         if _misfit(raw, values, ratio) < MAX_MISFIT:
-            return values, *_principal(base, own, raw)
+            return values, *_principal(base, own, raw, most)
         low, high = (
             (np.sqrt(low * value), np.sqrt(high * value))
             if ratio
@@ -159,14 +168,14 @@ def lagrange(x: Array, at: float) -> Array:
     )
 
 
-def _principal(base: Base, own: Array, raw: Sequence[Array]) -> tuple[Array, Array]:
+def _principal(base: Base, own: Array, raw: Sequence[Array], most: int) -> tuple[Array, Array]:
     """Mixes (V, K, M) and stored columns (N, M) that give columns at all values."""
     count = own.shape[1]
     change = np.hstack([C - own for C in raw])
     whole = base.fit.noise.factor * base.fit.weight
     seen = base.freed(change[base.fit.used], whole)
     _, S, Wt = np.linalg.svd(seen, full_matrices=False)
-    kept = int(np.clip(np.sum(S / max(S[0], 1e-300) > MIN_PRINCIPAL), 0, MAX_PRINCIPAL))
+    kept = int(np.clip(np.sum(S / max(S[0], 1e-300) > MIN_PRINCIPAL), 0, most))
     scale = np.maximum(S[:kept], 1e-300)
     stored = change @ (Wt[:kept].T / scale)  # length 1 where the base is projected out
     weights = (scale[:, None] * Wt[:kept]).T.reshape(len(raw), count, kept)

@@ -14,7 +14,6 @@ import numpy as np
 from matstd.diagnosis.evidence import ResidualSpace
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
-from matstd.twin.units import DEG
 
 ORDER_ALONE = 12
 """Half waves over the range of a variable by itself."""
@@ -67,9 +66,8 @@ def variables(touches: Touches) -> dict[str, Array]:
     chain = touches.chain
     out: dict[str, Array] = {}
     for axis in chain.programmed_axes:
-        rotary = chain.link(axis).kind == "rotary"
-        column = f"{axis}_{'deg' if rotary else 'mm'}"
-        out[column] = touches.reading(axis) / (DEG if rotary else 1.0)
+        link = chain.link(axis)
+        out[link.column] = touches.reading(axis) / link.unit
     out["time_s"] = touches.since_start
     out |= {f"T_{sensor}_degC": values for sensor, values in touches.temperature.items()}
     out |= {f"p{c}_mm": touches.point[:, i] for i, c in enumerate("xyz")}

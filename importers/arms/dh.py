@@ -38,7 +38,7 @@ def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tup
     Args:
         sheet: Columns a and d in mm, alpha and theta (its offset at reading zero) in degrees,
             unless their names say other units.
-        readings: Of the joints, (N, J), rad. Travels are those of columns `min` and `max`, without
+        readings: Readings of the joints, (N, J), rad. Travels are those of `min` and `max`, without
             them half a turn either way, or whole turns where readings go beyond.
         is_modified: Whether a joint turns about z of its own frame (Craig), and not about that of
             the frame before it.

@@ -100,7 +100,7 @@ def disagreement(tool: Array, measured: Array) -> float:
 
     Args:
         tool: Rotation of the tool in the table frame, (N, 3, 3).
-        measured: That of the target in the frame of the tracker, (N, 3, 3).
+        measured: Orientation of the target in the frame of the tracker, (N, 3, 3).
     """
     K = np.einsum("nkl,npq->kpql", measured, tool).reshape(9, 9)
     U, s, _ = np.linalg.svd(K)

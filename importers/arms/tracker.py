@@ -145,7 +145,7 @@ def tracker_run(
         table: Readings in the order of the axes of the arm.
         u: Standard uncertainty of one coordinate, mm.
         reflector: In the tool frame, (3,), mm; None finds it.
-        u_angle: Of the orientation of the target about any direction, rad; None leaves it out.
+        u_angle: Uncertainty of the target's orientation about any axis, rad; None leaves it out.
 
     Raises:
         DesignError: Readings of other joints than the arm has, or of another arm; orientations that

@@ -9,7 +9,7 @@ from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import Run
-from matstd.twin.units import DEG, UM
+from matstd.twin.units import UM
 
 ORDINARY_ERROR = (1.0 * UM, 15e-6)
 """Ordinary translational error of a linear axis: a constant (mm) and a share of the travel. New
@@ -39,13 +39,12 @@ def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
     ]
     for axis in chain.programmed_axes:
         link = chain.link(axis)
-        unit = 1.0 if link.kind == "linear" else DEG
-        low, high = link.range
+        low, high = (end / link.unit for end in link.range)
         doubt = "  # PLACEHOLDER: travel of the joint" if is_known else DATA_TRAVEL
         lines += [
             "",
             f"[axis.{axis}]",
-            f"range = [{low / unit:.12g}, {high / unit:.12g}]{doubt}",
+            f"range = [{low:.12g}, {high:.12g}]{doubt}",
         ]
         if link.kind == "linear":
             expected = link.expected or usual(high - low)
@@ -70,7 +69,7 @@ def with_travels(run: Run, travels: Mapping[str, tuple[float, float]]) -> Run:
     chain = run.touches.chain
     for axis, (low, high) in travels.items():
         q = run.touches.q[:, chain.axis_index(axis)]
-        unit = 1.0 if chain.link(axis).kind == "linear" else DEG
+        unit = chain.link(axis).unit
         if not (low < high and low <= q.min() and q.max() <= high):
             raise DesignError(
                 f"--travel {axis} {low / unit:g} {high / unit:g}: expected limits about the "

@@ -68,7 +68,7 @@ def import_mapped(
     """A run by a mapping file, checked by reading it as the run file that it becomes.
 
     Args:
-        folder: Of the run file, from which its head names the machine.
+        folder: Folder of the run file; its head names the machine relative to it.
         chain: The machine, in place of the one that the head names.
 
     Raises:

@@ -63,7 +63,7 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
     Args:
         plane: `XY`, `ZX` ...: angles count from the first axis to the second.
         radius: Nominal radius, mm.
-        unit: Of deviations whose column names none.
+        unit: Unit of deviations whose column names none.
 
     Raises:
         BadFile: No such columns, a unit or a direction that is not stated.
@@ -186,7 +186,7 @@ def circle_run(
         u: Standard uncertainty of one reading, mm.
         centre: Readings of X, Y and Z at the centre of the circle, mm.
         feed: Along the path, mm/min: times of the rows follow from it; None leaves them 0.
-        bar_force: Of a loaded bar that pushes the tool away from the centre, N; negative pulls.
+        bar_force: Force of a loaded bar that pushes the tool outwards, N; negative pulls.
 
     Raises:
         UnknownAxis: The machine does not have the axes.

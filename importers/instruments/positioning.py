@@ -137,7 +137,7 @@ def read_positioning(
 
     Args:
         axis: Letter of the axis, which says whether it turns (A B C).
-        unit: Of deviations whose column names none.
+        unit: Unit of deviations whose column names none.
         named: Names of the columns of targets and of actual positions, where the words of the
             header do not show them, as in a log of two encoders; empty otherwise.
         component: Component error that was measured, such as EYX or EBX; "" for positioning.

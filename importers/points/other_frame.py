@@ -76,7 +76,7 @@ def measured_frames(points: PointList) -> list[OtherFrame]:
 def in_nominal_frame(points: PointList, frames: Sequence[OtherFrame]) -> PointList:
     """The same list with what was measured brought back to the frame of the nominal places.
 
-    A point of which a coordinate is missing cannot be turned: it counts as not measured.
+    A point without all three coordinates cannot be rotated: it counts as not measured.
     """
     return _moved(points, frames, lambda T, nominal, found: apply(inverse(T), found) - nominal)
 

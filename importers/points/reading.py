@@ -55,7 +55,7 @@ def read_points(sheet: Sheet, unit: str | None = None) -> PointList:
     stands in a column of its own, as reports of CMMs are laid out.
 
     Args:
-        unit: Of columns whose name has none; None takes mm for coordinates and refuses deviations.
+        unit: Unit of columns whose name has none; None: mm for coordinates, deviations are refused.
 
     Raises:
         BadFile: No nominal or no measured coordinate; a deviation without a unit.

@@ -50,7 +50,7 @@ def import_points(
         meaning: Machined part or calibrated standard: see `reading`.
         u: Standard uncertainty of one coordinate, mm.
         machine: None makes one whose travels are those of the points.
-        unit: Of columns whose name has none; None takes mm for coordinates and refuses deviations.
+        unit: Unit of columns whose name has none; None: mm for coordinates, deviations are refused.
 
     Raises:
         DesignError: Points that fit a mirrored frame alone; also what `read_points` refuses, and a

@@ -53,7 +53,7 @@ def read_sheet(
         path: A workbook (xlsx, xls, ods ...) or text with commas, semicolons, tabs or blanks;
             decimal commas are read where every number of the file has them.
         name: Sheet of a workbook; None takes the first that has a table.
-        names: Of the columns, of a table without a header.
+        names: Names of the columns of a table without a header.
         table: Number of the table in `read_tables`; None takes the one with most numbers of the
             first sheet, the first of equal ones.
 
@@ -98,7 +98,7 @@ def listed_tables(tables: Sequence[Sheet]) -> str:
 
 
 def most_read(tables: Sequence[Sheet], readings: Callable[[Sheet], int], axis: str = "") -> Sheet:
-    """The table of which a reader makes most readings; the fullest where it can read none.
+    """The table that gives a reader most readings; the fullest where it can read none.
 
     Args:
         readings: Their number; raises DesignError where the table is of another kind.

@@ -53,7 +53,6 @@ from matstd.twin.files import (
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import Touches
-from matstd.twin.units import DEG
 
 SOMETIMES = (
     "*/*",
@@ -341,11 +340,10 @@ def within_travel(chain: Chain, argument: str, readings: Mapping[str, float]) ->
     """Readings by axis, mm and rad; raises BadArgument beyond the travel of an axis."""
     for name, value in readings.items():
         link = chain.links[chain.link_index(chain.axes[chain.axis_index(name)])]
-        unit = DEG if link.kind == "rotary" else 1.0
         low, high = link.range
         if not low <= value <= high:
-            expected = f"{low / unit:g} to {high / unit:g}, the travel of {name}"
-            raise BadArgument(argument, f"{name}={value / unit:g}", expected)
+            expected = f"{low / link.unit:g} to {high / link.unit:g}, the travel of {name}"
+            raise BadArgument(argument, f"{name}={value / link.unit:g}", expected)
     return dict(readings)
 
 

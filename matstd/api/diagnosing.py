@@ -1,4 +1,4 @@
-"""What a model lacks: the result with its files, its page, and the compensation of the machine."""
+"""What a model leaves of a run and what it lacks: results with files, page and compensation."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
@@ -25,19 +25,26 @@ from matstd.diagnosis.files import (
     model_text,
     parsed_model,
     plan_text,
+    write_comparison,
     write_diagnosis,
+    write_residuals,
 )
 from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.geometry import learnt_geometry
 from matstd.diagnosis.laws import learn_remainder
-from matstd.report.geometry import determined_comment
-from matstd.report.pages import Printer, write_diagnosis_page, write_pdf
-from matstd.report.run_view import Framed, diagnosis_view
-from matstd.report.words import remark_sentence, verdict_sentence
+from matstd.report.pages import Printer, write_compare_page, write_diagnosis_page, write_pdf
+from matstd.report.run_view import Framed, comparison_view, diagnosis_view
+from matstd.report.words import (
+    comparison_sentence,
+    remark_sentence,
+    structure_words,
+    verdict_sentence,
+)
 from matstd.twin.errors import BadArgument
 from matstd.twin.files import write_whole
 from matstd.twin.library import is_visible, kinds, parse_effect, try_effect, users_files
 from matstd.twin.model import Effect
-from matstd.twin.record import Run
+from matstd.twin.record import Run, without_copies
 from matstd.twin.versions import versions
 from matstd.twin.words import deviations_in
 
@@ -84,12 +91,14 @@ class Diagnosis(Saveable, answer.Diagnosis):
         made_with = f"material-standard {versions()['material-standard']}"
         is_all = self.learnt is self.fit and self.choice is not None
         promised = self.choice.best.error if is_all and self.choice else None
+        geometry = self.geometry
         if self.laws is not None and self.learnt is self.laws.after and self.laws.laws:
             promised = self.laws.held_out[0].after
+            geometry = learnt_geometry(self.learnt)
         reported = {s.effect.name: s.reported for s in self.steps if s.effect is not None}
-        known = determined_comment(self.geometry)
-        return known + model_text(
-            self.learnt, self.title, self.before, made_with, promised, reported
+        known = [row for row in geometry.rows if row.is_determined]
+        return model_text(
+            self.learnt, self.title, self.before, made_with, promised, reported, known
         )
 
     @property
@@ -128,7 +137,9 @@ class Diagnosis(Saveable, answer.Diagnosis):
     def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
         """Write the page into an existing folder."""
         with deviations_in(self.run.touches.deviation_unit):
-            write_diagnosis_page(self, folder, self.title, np.random.default_rng(0))
+            write_diagnosis_page(
+                self, folder, self.title, np.random.default_rng(0), is_saved=self.auto
+            )
             if printed_by is not None:
                 write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 
@@ -261,3 +272,88 @@ def _plain(name: str) -> str:
 
 def _is_among(effect: Effect, words: Iterable[str]) -> bool:
     return any(w == effect.kind or _plain(w) == _plain(effect.name) for w in words)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Comparison(Saveable, answer.Comparison):
+    """A run against a model, with what it was made from; `compare` returns it.
+
+    Attributes:
+        saved: The model file, where the model is of one.
+        title: Names of the runs.
+
+    Example:
+        >>> found = compare("run.csv")
+        >>> found.structure[0].variables
+        ('T_spindle_degC',)
+    """
+
+    sometimes = (FOUND, "pictures/*.png", *REPORT_FILES)
+    saved: SavedModel | None = None
+    title: str = ""
+
+    def write(self, folder: Path) -> str:
+        """Write comparison.json and residuals.csv into an existing folder; as of `Saveable`."""
+        with deviations_in(self.run.touches.deviation_unit):
+            write_comparison(
+                folder / "comparison.json",
+                self,
+                [structure_words(s) for s in self.structure],
+                [remark_sentence(r) for r in self.remarks],
+            )
+            write_residuals(folder / "residuals.csv", self)
+            return "" if self.saved else write_found_arm(folder, self.fit, self.title)
+
+    def live(self) -> Framed:
+        """The live view: in a notebook effects are switched where it is shown."""
+        with deviations_in(self.run.touches.deviation_unit):
+            view = comparison_view(self, self.title)
+            return Framed(f"{self.title} against the model", comparison_sentence(self), view)
+
+    def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
+        """Write the page into an existing folder."""
+        reported = self.saved.reported if self.saved else None
+        with deviations_in(self.run.touches.deviation_unit):
+            write_compare_page(self, folder, self.title, np.random.default_rng(0), reported)
+            if printed_by is not None:
+                write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
+
+
+def compare(
+    runs: Runs,
+    model: StartingModel = GEOMETRY,
+    *,
+    pitch: Mapping[str, float] | None = None,
+    progress: Progress = quiet,
+) -> Comparison:
+    """Measured against predicted deviations, and where the model fails.
+
+    Args:
+        runs: A run, the path of a run file, or several of one machine.
+        model: `"geometry"`: the ordinary geometric model, fitted to the run; `"setup"`: where the
+            standard stands, no more; a model, or the path of a model file: with what it learnt from
+            another run it predicts this one.
+        pitch: Pitches of screws or scales by axis, mm.
+        progress: Called with the share done and what is being done.
+
+    Raises:
+        BadFile: A file that cannot be read, or a model of another machine.
+        NotEnoughData: So few touches that nothing can be said.
+
+    Example:
+        >>> found = compare("run.csv")
+        >>> f"{1e3 * found.rms_measured:.1f} µm measured, {1e3 * found.rms:.1f} µm remain"
+        '19.1 µm measured, 0.8 µm remain'
+    """
+    run, start, saved, title = starting_run(
+        runs, model, "so the agreement is optimistic", pitch=pitch
+    )
+    found = answer.compare(
+        run,
+        start,
+        saved.estimates if saved else None,
+        progress,
+        saved.learnt(without_copies(run)) if saved else None,
+    )
+    known = {f.name: getattr(found, f.name) for f in fields(found)}
+    return Comparison(**known, saved=saved, title=title)

@@ -12,8 +12,14 @@ from matstd.diagnosis.files import SavedModel, model_text, parsed_model
 from matstd.diagnosis.fit import prior_for
 from matstd.diagnosis.laws import SecondRun, learn_laws, second_run
 from matstd.diagnosis.search import DiagnosisTask, refined_named
-from matstd.report.laws import effect_text, write_law_page
+from matstd.report.laws import (
+    effect_text,
+    law_sentence,
+    no_law_sentence,
+    write_law_page,
+)
 from matstd.report.pages import Printer, write_pdf
+from matstd.report.run_view import Framed, learnt_view
 from matstd.twin.files import write_whole
 from matstd.twin.model import Model
 from matstd.twin.record import Run
@@ -63,10 +69,17 @@ class LearntLaws(Saveable, laws.Learning):
             write_whole(folder / "model.toml", self.model_text)
         return ""
 
+    def live(self) -> Framed:
+        """The live view, for a notebook: switch the laws, and see the error and their curves."""
+        lead = " ".join(law_sentence(self, one) for one in self.laws) or no_law_sentence(self)
+        with deviations_in(self.after.run.touches.deviation_unit):
+            return Framed(self.title, lead, learnt_view(self, self.title))
+
     def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
         """Write the page into an existing folder."""
         with deviations_in(self.after.run.touches.deviation_unit):
-            write_law_page(self, folder, self.title, self.second)
+            live = learnt_view(self, self.title)
+            write_law_page(self, folder, self.title, self.second, live)
             if printed_by is not None:
                 write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 

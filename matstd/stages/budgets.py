@@ -14,7 +14,7 @@ from matstd.artefact.worth import Calibration
 from matstd.diagnosis.fit import Prior, fit_run
 from matstd.diagnosis.task import TaskUncertainty, Visits, task_uncertainty, visits_of
 from matstd.probe_paths.campaign import VirtualMachine, visits
-from matstd.probe_paths.control import read_program
+from matstd.probe_paths.control import ReadProgram
 from matstd.stages.warm_body import WarmBody
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import pose, rotation
@@ -83,7 +83,7 @@ def places_of(
 def virtual_budgets(
     brief: Brief,
     standard: Standard,
-    programs: Sequence[Path],
+    programs: Sequence[Path | ReadProgram],
     machine: VirtualMachine,
     rng: np.random.Generator,
 ) -> tuple[dict[str, TaskUncertainty], Visits]:
@@ -92,6 +92,9 @@ def virtual_budgets(
     The true standard is beside its calibration as much as that allows, and clamped anew for every
     visit, at another temperature than its thermometer reads. The model is identified from the balls
     of the first.
+
+    Args:
+        programs: Those that are read already are taken for checked.
     """
     known = brief.options.criterion.calibration
     true = displaced_features(standard, known, rng)
@@ -101,9 +104,8 @@ def virtual_budgets(
     ]
     body = WarmBody.of(brief.study, standard, known)
     pieces = body.pieces(true, len(stands), rng.spawn(1)[0])
-    texts = [read_program(path, machine.chain, None, machine.dialect) for path in programs]
     runs = [
-        body.stated_in(visits(texts, piece, [stand], rng, calibrated=standard)[0].run)
+        body.stated_in(visits(programs, piece, [stand], rng, calibrated=standard)[0].run)
         for piece, stand in zip(pieces, stands, strict=True)
     ]
     held_back = np.where(on_faces(standard, runs[0].touches), "test", "train")

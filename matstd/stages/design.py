@@ -4,7 +4,7 @@ Each stage is one call into one room; nothing is computed here.
 """
 
 import shutil
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -28,6 +28,7 @@ from matstd.diagnosis.files import write_uncertainty
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.task import TaskUncertainty, Visits
 from matstd.probe_paths.campaign import Campaign, VirtualMachine, simulate
+from matstd.probe_paths.control import ReadProgram
 from matstd.probe_paths.plan import TouchPlan
 from matstd.probe_paths.stations import (
     all_programs,
@@ -52,7 +53,8 @@ from matstd.stages.refusals import REACH, ROOM
 from matstd.stages.streams import Streams, streams
 from matstd.stages.study_run import study_and_maps
 from matstd.stages.warm_body import WarmBody
-from matstd.twin.compute import Progress
+from matstd.twin.beside import beside
+from matstd.twin.compute import Progress, silent
 from matstd.twin.errors import BadFile
 from matstd.twin.files import errors_toml, write_run, write_whole
 from matstd.twin.frames import Array
@@ -79,30 +81,45 @@ def design(brief: Brief, folder: Path, progress: Progress, workers: Workers = No
     poses = _feasible_poses(brief, folder)
     if brief.machine_path is not None:
         shutil.copyfile(brief.machine_path, folder / "machine.toml")
-    placement = design_standard(brief, rng.placement, progress, poses)
+    where, maps_in = (brief.workspace, brief.study.poses), folder / "sensitivity"
+    # the maps need nothing of the standard: drawn while it is sought, they cost no time
+    with beside(study_and_maps, brief, *where, maps_in, rng, silent, workers) as studied:
+        placement = design_standard(brief, rng.placement, progress, poses)
+        return _made(brief, placement, folder, rng, progress, studied)
+
+
+def _made(
+    brief: Brief,
+    placement: Placement,
+    folder: Path,
+    rng: Streams,
+    progress: Progress,
+    studied: Callable[[], tuple[Study, list[tuple[str, str]]]],
+) -> Design:
+    """Everything that is made of a placement; `studied` waits for the study and its maps."""
     # refused here rather than after programs and CAD, where no touch is like the user's task
     proving = placement.criterion.reach.touches(placement.touches)
     like_task(brief.task, placement.standard, proving)
     placement, stiffness = _with_sag(placement, brief.down)
     _check_first_mode(brief, stiffness)
     plans = _plans(brief, placement)
-    _write_standard(folder, placement.standard)
     if placement.family is Family.WAVY and brief.options.scan is not None:
         face, at = placement.standard.patches[0], scan_poses(placement.touches)
         write_scan_path(folder / "scan_path.csv", face, brief.options.scan, at, brief.reach)
-    with ThreadPoolExecutor(1) as beside:  # the kernel works in processes of its own
-        cad = beside.submit(_export, brief, placement.standard, folder, proving.q)
+    with ThreadPoolExecutor(1) as kernel:  # it works in processes of its own
+        cad = kernel.submit(_export, brief, placement.standard, folder, proving.q)
+        _write_standard(folder, placement.standard)
         progress("identifiability", 0, 1)
         known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
         write_identifiability(folder / "identifiability.json", known)
-        where, maps_in = (brief.workspace, brief.study.poses), folder / "sensitivity"
-        study, maps = study_and_maps(brief, *where, maps_in, rng, progress, workers)
         making = making_of(placement.standard, stiffness)
         write_making(folder / "making.json", making)
         progress("probing programs", 0, 1)
         stations = make_stations(plans, dialects_of(brief), feeds_of(brief))
         paths = all_programs(stations).write(folder / "programs")
         tried = _on_twins(brief, placement, paths, folder, rng, progress)
+        progress("maps", 0, 1)
+        study, maps = studied()
         progress("STEP and STL", 0, 1)
         conformity = cad.result()  # the last: the kernel takes as long as all of these
     _draw(brief, placement.standard, conformity, folder)
@@ -141,17 +158,19 @@ def _on_twins(
     progress: Progress,
 ) -> _OnTwins:
     """Run the programs on random machines, and visit the first again and again for the task."""
-    machines = []
+    machines: list[Proven] = []
+    programs: Sequence[Path | ReadProgram] = paths
     for seed in range(brief.study.machines):
         progress("proof on the twin", seed, brief.study.machines)
-        machine = _prove(brief, placement, paths, seed, rng.proof.spawn(1)[0])
-        machines.append(machine)
+        machines.append(_prove(brief, placement, programs, seed, rng.proof.spawn(1)[0]))
+        # read and checked for the first machine: the text is the same for all
+        programs = [one.program for one in machines[0].campaign.runs]
     first = machines[0]
     write_whole(folder / "errors.toml", errors_toml(first.errors))
     write_run(folder / "run.csv", first.campaign.run, "machine.toml")
     progress("visits on the twin", 0, 1)
     twin, task = _twin(brief, first.errors), brief.task
-    budgets, visits = virtual_budgets(brief, placement.standard, paths, twin, rng.visits)
+    budgets, visits = virtual_budgets(brief, placement.standard, programs, twin, rng.visits)
     write_uncertainty(folder / "uncertainty.json", task.name, budgets, task.tolerance)
     proofs = [m.proof for m in machines]
     found = write_identification(folder / "identification.json", first.fit, proofs)
@@ -248,7 +267,7 @@ def _plans(brief: Brief, placement: Placement) -> list[tuple[int, TouchPlan]]:
 def _prove(
     brief: Brief,
     placement: Placement,
-    programs: list[Path],
+    programs: Sequence[Path | ReadProgram],
     seed: int,
     rng: np.random.Generator,
 ) -> Proven:

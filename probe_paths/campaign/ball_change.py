@@ -209,7 +209,7 @@ def check_changes(changes: Sequence[BallChange], limit: float) -> None:
     """Refuse measurements between which the probe has changed.
 
     Args:
-        limit: That the ball may have moved, or the radius have changed, mm.
+        limit: Largest accepted motion of the ball, or change of its radius, mm.
 
     Raises:
         DesignError: A change beyond the limit that is no noise.

@@ -37,10 +37,10 @@ class VirtualMachine:
         disturbance: What all errors add at given touches; None for a perfect machine.
         setup_error: Pose (4, 4) of the standard where it really stands, seen from where it is
             believed to stand (artefact frame).
-        radius_error: Of the true ball beyond the calibrated one, mm.
-        length_error: Of the true probe beyond the calibrated one, mm.
+        radius_error: Radius of the true ball minus the calibrated one, mm.
+        length_error: Length of the true probe minus the calibrated one, mm.
         noise: Standard deviation of the trigger along the normal, mm.
-        temperature: Of a sensor by name at a time since the campaign began (s), degC.
+        temperature: Reading of a sensor by name at a time since the campaign began (s), degC.
     """
 
     chain: Chain
@@ -166,7 +166,7 @@ class ContactSolver:
         """The record on which effects act, of all touches or some.
 
         Args:
-            time: Of the trigger of all touches, (N,), s since the start of the campaign.
+            time: Time of the trigger of all touches, (N,), s since the start of the campaign.
         """
         rows = np.arange(len(self.start)) if rows is None else rows
         chain = self.machine.chain

@@ -8,7 +8,6 @@ whole record; the analysis of the run knows them at the touches only.
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import datetime
-from typing import Any
 
 import numpy as np
 
@@ -16,14 +15,9 @@ from matstd.twin.files import SensorRecord
 from matstd.twin.frames import Array
 from matstd.twin.machine import Contribution
 from matstd.twin.model import Effect, contribution, traits
-from matstd.twin.record import Setup, Touches
+from matstd.twin.record import Setup, Touches, stacked
 
 Disturbance = Callable[[Touches], Contribution]
-
-_PER_TOUCH = (
-    "q", "length", "radius", "point", "normal", "time", "approach", "feature", "pose", "offset",
-    "body_temperature",
-)  # fmt: skip
 
 
 def effects_over_record(
@@ -67,27 +61,13 @@ def _history(touch: Touches, record: SensorRecord, begin: datetime) -> Touches:
 def joined_touches(parts: Sequence[Touches]) -> Touches:
     """Touches of one machine, one after the other; set-ups of the same name are one."""
     setups: dict[str, Setup] = {}
-    index = []
+    counted = []
     for part in parts:
         for setup in part.setups:
             setups.setdefault(setup.name, setup)
         numbers = np.array([list(setups).index(s.name) for s in part.setups], dtype=np.int64)
-        index.append(numbers[part.setup])
-    first = parts[0]
-    speeds = [p.spindle_rpm for p in parts if p.spindle_rpm is not None]
-    columns: dict[str, Any] = {
-        name: np.concatenate([getattr(p, name) for p in parts]) for name in _PER_TOUCH
-    }
-    return replace(
-        first,
-        setups=tuple(setups.values()),
-        setup=np.concatenate(index),
-        temperature={
-            s: np.concatenate([p.temperature[s] for p in parts]) for s in first.temperature
-        },
-        spindle_rpm=np.concatenate(speeds) if len(speeds) == len(parts) else None,
-        **columns,
-    )
+        counted.append(replace(part, setup=numbers[part.setup]))
+    return stacked(counted, tuple(setups.values()))
 
 
 def in_campaign(

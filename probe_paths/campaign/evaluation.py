@@ -13,7 +13,7 @@ from matstd.probe_paths.campaign.log_parts import (
     logged_temperatures,
     without_rows,
 )
-from matstd.probe_paths.control import LogPart
+from matstd.probe_paths.control import UNDATED, LogPart
 from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.plan import LINEAR, Probe, ProgramFrame
 from matstd.twin.errors import BadFile, NotEnoughData
@@ -61,7 +61,7 @@ def evaluate(
     ``dev = n . (ball centre - p) - radius`` with the believed ball centre.
 
     Args:
-        parts: Of one or several logs; those that measure nothing (`LogPart.is_measuring`) are left
+        parts: Parts of logs; those that measure nothing (`LogPart.is_measuring`) are left
             aside.
         u: Standard uncertainty of one touch, mm; that of the calibrated surface comes to it.
 
@@ -87,7 +87,15 @@ def evaluate(
     u_touch = _uncertainty(standard, touches, u)
     remarks += [*standard.remarks, *_sag_remarks(standard)]
     remarks += logged_temperatures(parts)[1]
-    run = Run(touches, computed_deviation(touches), u_touch, remarks=tuple(remarks))
+    begin = min(part.begin for part in parts)
+    run = Run(
+        touches,
+        computed_deviation(touches),
+        u_touch,
+        remarks=tuple(remarks),
+        date=None if begin.year == UNDATED.year else begin,
+        standard=standard.stamp,
+    )
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be
     return at_true_contacts(run, standard)
 

@@ -45,7 +45,7 @@ class Order:
 
     Attributes:
         touches: Number, anchor touches included.
-        duration: Of all programs, s.
+        duration: Duration of all programs, s.
         drift: Standard deviation of the rate of a drift, its worst direction, mm/h.
         reversal: Standard deviation of the reversal of every rotary axis, in chain order, rad.
     """

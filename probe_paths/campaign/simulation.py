@@ -27,7 +27,7 @@ class Campaign:
     """All programs of one set-up or several, run one after the other.
 
     Attributes:
-        parts: Of their logs, as read back.
+        parts: Parts of their logs, as read back.
         begin: What the clock said at the run's time zero.
     """
 
@@ -68,7 +68,7 @@ def simulate_search(
 
 
 def simulate(
-    programs: Sequence[str | Path],
+    programs: Sequence[str | Path | ReadProgram],
     standard: Standard,
     machine: VirtualMachine,
     rng: np.random.Generator,
@@ -79,7 +79,8 @@ def simulate(
     """Run program files on the twin and evaluate the logs that they leave.
 
     Args:
-        programs: Files, masks of `.H` files beside them, in the order in which they are run.
+        programs: Files, masks of `.H` files beside them, in the order in which they are run; one
+            that is read already is taken for checked.
         machine: As it really is; the evaluation knows only its nominal chain.
         probe: In the spindle; None takes the one that each program states.
         calibrated: What is believed of the standard; None for the truth.

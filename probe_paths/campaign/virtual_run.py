@@ -49,7 +49,7 @@ class VirtualRun:
 
     Attributes:
         q: Readings at the trigger, (N, A); nan for touches without contact.
-        time: Of the trigger, s since the start of the campaign, (N,).
+        time: Time of the trigger, s since the start of the campaign, (N,).
         feature: What was touched, (N,).
         meeting: What the ball ran into, (N,), values of `Meeting`; a contact is one with a surface.
         reached: Number of touches tried before the program ended.

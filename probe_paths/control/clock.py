@@ -15,10 +15,10 @@ class Clock:
     """Speeds of machine and control. Defaults are those of a machine of medium speed.
 
     Attributes:
-        rapid: Of a linear axis, mm/s.
+        rapid: Rapid speed of a linear axis, mm/s.
         turning: Rapid of a rotary axis, rad/s.
-        acceleration: Of a linear axis, mm/s^2.
-        turning_acceleration: Of a rotary axis, rad/s^2.
+        acceleration: Acceleration of a linear axis, mm/s^2.
+        turning_acceleration: Acceleration of a rotary axis, rad/s^2.
         block: What every move costs besides, s.
         probing: What a probing cycle costs besides its motion, s.
     """
@@ -72,7 +72,7 @@ def step_times(
     A touch counts until its contact; its retract belongs to the move that follows.
 
     Args:
-        travel: Of each touch until its contact, (N,), mm; None takes the longest path.
+        travel: Path of each touch to its contact, (N,), mm; None takes the longest path.
     """
     count = len(steps)
     change = np.zeros((count, len(chain.axes)))

@@ -52,10 +52,10 @@ class LogPart:
     Attributes:
         heading: Standard, set-up and probe as planned.
         begin: When the program was started; `UNDATED` where its date cannot be read.
-        radius: Of the ball as calibrated, mm.
+        radius: Calibrated radius of the ball, mm.
         tool_length: As calibrated, mm; that of the tool table where the control keeps none.
-        offset: Of the ball from the spindle axis as calibrated, (2,), mm; the control has already
-            corrected X and Y by it.
+        offset: Calibrated offset of the ball from the spindle axis, (2,), mm; the control has
+            already corrected X and Y by it.
         xyz: As the cycle returned them, (N, 3), mm.
         rotary: Rotary positions by letter, degrees, each (N,).
         side: Side that each rotary axis came from, by letter, each (N,).

@@ -13,7 +13,7 @@ from matstd.twin.units import DEG, MINUTE
 
 _AXIS = re.compile(r"([A-Z])([+-][\d.]+)")
 MAX_FEED = 5000.0
-"""Of a fed move, mm/min or degrees/min: it is fed because something is near."""
+"""Largest feed of a fed move, mm/min or degrees/min: it is fed because something is near."""
 
 _FUNCTIONS = {"M91", "M126"}
 

@@ -45,7 +45,7 @@ class State:
         is_shorter_way: M126 is active.
         is_plane_off: PLANE RESET has been read.
         is_tilted: The head says that coordinates are those of tilted planes.
-        plane: Of the plane that is active; None where none is.
+        plane: The tilted plane that is active; None where none is.
         shift_off: Axes whose datum shift was set to zero.
         is_retracted: Z stands where M91 or M140 put it.
         clearance: Reading of Z that the first move down from the retract went to.

@@ -50,11 +50,11 @@ class ProbeStep:
         direction: Unit vector of the motion in readings, (A,); zero for rotary axes.
         distance: Longest travel, mm.
         feed: mm/s.
-        slow_feed: Of the second touch that measures, mm/s; 0 where the first one does.
+        slow_feed: Feed of the second touch that measures, mm/s; 0 where the first one does.
         step_back: From the surface before the second touch, mm.
         back: Retract after the contact, mm.
         side: Sign of the last motion of every axis before the touch, (A,); 0 where unknown.
-        number: Of the touch, as the log will name it.
+        number: Number of the touch, as the log will name it.
         pose: Number of the table pose in the log.
         feature: Number of the feature in the log.
         on_miss: What the program does when there is no contact; of one in the air, when there is.
@@ -83,7 +83,7 @@ class Print:
     """Lines that FN 16 writes.
 
     Attributes:
-        values: Of the Q parameters in the mask; a sensor for one that it is read from then.
+        values: Values of the Q parameters in the mask; a sensor where it is read at that moment.
     """
 
     line: int

@@ -27,7 +27,7 @@ _NAMES = {
 }
 
 _DIGITS = 1e-4
-"""Of a coordinate in a program, mm."""
+"""Largest difference of a stated coordinate from the planned one, mm: the last decimal."""
 
 
 class Promise(NamedTuple):

@@ -14,7 +14,7 @@ from matstd.twin.frames import Array
 from matstd.twin.units import MINUTE
 
 _FROM_ABOVE = -0.999
-"""Of the Z component of a touch from above."""
+"""Z component of the direction of a touch from above."""
 
 
 class FirstWriter(Writer):

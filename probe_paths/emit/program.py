@@ -24,7 +24,7 @@ DRY_RUN, SEARCH = "DRY", "LOC"
 """Last letters of the names of these programs; others have `BALL` and `FIRST`."""
 
 SEARCH_FEED = 800.0
-"""Of a search, mm/min: its touches are 100 mm long, and the place is needed to 0.3 mm only."""
+"""Feed of a search, mm/min: its touches are 100 mm long; the place is needed to 0.3 mm only."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class ProgramSet:
 
     @property
     def duration(self) -> float:
-        """Of all programs, s."""
+        """Duration of all programs, s."""
         return sum(program.duration for program in self.programs)
 
     def write(self, folder: str | Path) -> list[Path]:
@@ -156,7 +156,7 @@ def make_first(
     """The program that a control is tried with: one touch in the air and one on a ball.
 
     Args:
-        plan: Of touches on one ball, with the rotary axes at home.
+        plan: Touches on one ball, with the rotary axes at home.
 
     Raises:
         NotReachable: The ball is touched at another pose than home, or not from above.

@@ -47,9 +47,9 @@ class Feeds:
     """Feeds as they stand in a program, mm/min and degrees/min, and where a file ends.
 
     Attributes:
-        probing: Of cycle 4; the same at the calibration of the probe.
+        probing: Feed of cycle 4; the same at the calibration of the probe.
         approach: Along Z below the clearance height, and back from a touch.
-        turning: Of the last motion towards a rotary position.
+        turning: Feed of the last motion towards a rotary position.
         touches_per_file: After so many touches the next visit begins a new file.
         minutes_per_file: A file takes no longer, unless one visit does.
     """

@@ -102,17 +102,17 @@ class Dialect:
 
     Attributes:
         language: In which blocks are spelt.
-        cycle_name: Of cycle 4, after `4.0`; its number identifies the cycle.
+        cycle_name: Name of cycle 4, after `4.0`; its number identifies the cycle.
         distance_word: Before the longest path in `4.3`.
-        folder: Of programs, masks and logs on the control; empty where it takes no folders.
+        folder: Folder of programs, masks and logs on the control; empty where it takes none.
         tool: Number of the probe in the tool table.
         preset: Row of the preset table; it stands at the origin of the table frame with every
             rotary axis at zero.
         prefix: First letters of every program name.
         result_height: What Z of a touch in the log belongs to: the spindle's `gauge` point (no
             length compensation) or the `tip` of the tool table. One touch settles it.
-        log_decimals: Of coordinates in the log.
-        slow_feed: Of the second touch, mm/min, where the control measures by a second, slow one.
+        log_decimals: Decimals of coordinates in the log.
+        slow_feed: Feed of the second touch, mm/min, on a control that measures by a slow one.
         step_back: From the surface before the second touch, mm.
         has_planes: The control has PLANE SPATIAL.
         sensors: Temperatures that the control hands to programs.

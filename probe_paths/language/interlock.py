@@ -12,19 +12,19 @@ from matstd.probe_paths.language.language import Datum, Language
 from matstd.probe_paths.plan import LINEAR, ProgramFrame
 
 PRESET_LIMIT = 1.0
-"""Of the preset's place, mm: the clearance that is planned at a touch."""
+"""Largest displacement of the preset, mm: the clearance that is planned at a touch."""
 
 ANGLE_LIMIT = 0.05
-"""Of basic rotation and rotary zeros, degrees: 0.2 mm at 200 mm."""
+"""Largest basic rotation and rotary zero, degrees: 0.2 mm at 200 mm."""
 
 OFFSET_LIMIT = 0.05
-"""Of a tool's offset beside the spindle axis, mm: the program moves by all of it."""
+"""Largest offset of a tool from the spindle axis, mm: the program moves by all of it."""
 
 RADIUS_LIMIT = 0.2
-"""Of the calibrated ball, mm."""
+"""Largest difference of the calibrated ball's radius, mm."""
 
 TOP_LIMIT = 5.0
-"""Of the upper end of Z, mm: the height for turns has the planned clearance above everything."""
+"""Largest missing height at the upper end of Z, mm: turns are planned with that clearance."""
 
 
 class Interlock(NamedTuple):
@@ -32,8 +32,8 @@ class Interlock(NamedTuple):
 
     Attributes:
         what: Is tested.
-        datum: That is read; None for the length in the tool table.
-        work: That is subtracted from it, or None.
+        datum: Datum that is read; None for the length in the tool table.
+        work: Datum that is subtracted from it, or None.
         planned: What is left where all is as planned, mm or degrees.
         limit: By how much it may differ.
     """
@@ -70,7 +70,7 @@ def interlocks(language: Language, frame: ProgramFrame, is_first: bool = False) 
     """Tests of a program, in their order.
 
     Args:
-        is_first: Of a commissioning program, which has blocks for few, and one alarm for all.
+        is_first: For a commissioning program, which has few blocks and one alarm for all.
     """
     probe, chain = frame.probe, frame.chain
     rows: list[tuple[Label, str, Datum | None, Datum | None, float, float]] = [

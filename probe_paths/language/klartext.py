@@ -130,4 +130,4 @@ KLARTEXT = Language(
     operator_stop="STOP",
     has_masks=True,
 )
-"""Of an iTNC 530 and those that take its programs; `M127` fixes the way of a turn."""
+"""Klartext of the iTNC 530 and controls that take its programs; `M127` fixes the way of a turn."""

@@ -126,10 +126,10 @@ class Language:
     planned, printed and re-read numbers agree.
 
     Attributes:
-        ending: Of the name of a program file.
+        ending: Ending of the name of a program file.
         longest: Characters of a line that is emitted.
         forms: Text of every block by the name of its method, with places in braces.
-        stock_forms: Of the blocks of the raw part, which the control draws.
+        stock_forms: Forms of the blocks of the raw part, which the control draws.
         sign: Letter before the number of a parameter.
         tool_length: Parameter with the length of the called tool, as in the tool table.
         system: How each system datum is addressed.
@@ -139,7 +139,7 @@ class Language:
         reset: Blocks that begin a program: nothing that an earlier one left acts afterwards.
         wait: Block that stops the look-ahead: system data are read where the machine stands.
         unwind: Blocks before rotary axes go home the way that the numbers state.
-        tilting: Of planes square to the tool; None where the language has none.
+        tilting: Blocks that tilt the plane square to the tool; None where the language has none.
         operator_stop: Waits for the operator.
         has_masks: The lines of the log stand in mask files, not in the program.
         subprograms_first: They stand before the program itself.

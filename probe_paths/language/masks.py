@@ -221,7 +221,7 @@ def head_mask(
         remarks: Lines of the program's own head (standard, set-up), printed as they are.
         rotary: Letters of the machine's rotary axes: then one touch and the end follow, which is
             the whole log of a commissioning program.
-        decimals: Of the coordinates of that touch.
+        decimals: Decimals of the coordinates of that touch.
     """
     lines = [*_keyword(form.opens), *_head_lines(form, name, remarks)]
     if rotary is not None:

@@ -7,7 +7,7 @@ moment: the axes move on between the contact and the sample.
 import numpy as np
 
 PERIOD = 1e-3
-"""Of the servo thread of our machine, s."""
+"""Period of the servo thread of our machine, s."""
 
 
 def latch_error(feed: float, period: float = PERIOD, latency: float = 0.0) -> float:
@@ -17,9 +17,9 @@ def latch_error(feed: float, period: float = PERIOD, latency: float = 0.0) -> fl
     uniform between ``feed latency`` and this.
 
     Args:
-        feed: Of the touch that measures, mm/s.
-        period: Of the servo thread, s.
-        latency: Of the probe's signal, s.
+        feed: Feed of the touch that measures, mm/s.
+        period: Period of the servo thread, s.
+        latency: Latency of the probe's signal, s.
     """
     return feed * (period + latency)
 
@@ -32,9 +32,9 @@ def latch_u(feed: float, period: float = PERIOD, latency: float = 0.0) -> float:
     common part acts as a larger ball, which the calibration of the probe absorbs.
 
     Args:
-        feed: Of the touch that measures, mm/s.
-        period: Of the servo thread, s.
-        latency: Of the probe's signal, s.
+        feed: Feed of the touch that measures, mm/s.
+        period: Period of the servo thread, s.
+        latency: Latency of the probe's signal, s.
 
     Reference:
         JCGM 100, 4.3.7 (rectangular distribution).

@@ -10,7 +10,7 @@ from matstd.twin.machine import Chain
 from matstd.twin.units import DEG
 
 SPEED, ACCELERATION = 500.0, 5000.0
-"""Of linear axes, mm/s and mm/s^2; of rotary ones in degrees. Nothing is gained by a slow twin."""
+"""Speed and acceleration, mm/s and mm/s^2, or in degrees: nothing is gained by a slow twin."""
 
 PROBER = "prober.py"
 HEADLESS = "headless.py"

@@ -26,7 +26,7 @@ class Stroke:
 
     Attributes:
         contact: Readings where the true ball meets the true surface, (A,); nan where it does not.
-        direction: Of the motion in readings, (A,).
+        direction: Direction of the motion in readings, (A,).
     """
 
     number: int

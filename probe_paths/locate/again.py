@@ -14,7 +14,7 @@ from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
 
 DROPPED = 0.1
-"""Of the touches that may be refused at another place, each with its reason."""
+"""Share of the touches that may be refused at another place, each with its reason."""
 
 
 def planned_again(
@@ -30,7 +30,7 @@ def planned_again(
     heights, ways and order are planned again.
 
     Args:
-        programs: Of one set-up, as read.
+        programs: Programs of one set-up, as read.
         ball: On the table, by which the probe is watched; programs state it as cylinders.
 
     Raises:

@@ -15,7 +15,7 @@ from matstd.twin.machine import table_to_tool
 from matstd.twin.units import DEG
 
 _TILTS = (75.0 * DEG, 60.0 * DEG, 45.0 * DEG)
-"""Of the ring from the tool axis, rad, the steepest first: 75 degrees separate radius from height
+"""Angles of the ring to the tool axis, rad, steepest first: 75 degrees separate radius and height
 five times as well as 45, and leave a stem the room of its own thickness."""
 
 _RING = 6

@@ -19,7 +19,7 @@ from matstd.probe_paths.plan import TouchPlan
 from matstd.twin.errors import NotReachable
 
 RAISED = 100.0
-"""Of a dry run, mm."""
+"""Height by which a dry run is raised, mm."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ def companions(
         raised: By how much the dry run is raised, mm.
         spread: Within which the search finds the standard; None for the widest of `SPREADS` for
             which there is a search.
-        is_further: Of a probe after which the first one has searched and tried the control.
+        is_further: Whether another probe has already searched and tried the control.
     """
     made = Companions(
         dry_run=make_dry_run(plan, raised, dialect, feeds), raised=raised, spread=SPREADS[-1]

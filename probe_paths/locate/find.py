@@ -52,11 +52,11 @@ class Found:
     """Where a standard stands.
 
     Attributes:
-        shift: Of the standard from its believed place, in its own frame, (3,), mm.
+        shift: Shift of the standard from its assumed place, in its own frame, (3,), mm.
         angles: About x, y and z of it, (3,), rad.
         u: Standard uncertainties of both, (6,), mm and rad.
-        rms: Of the touches, mm.
-        next_rms: Of the touches at the best place that is another one, mm.
+        rms: Rms distance of the touches, mm.
+        next_rms: The same at the best of the other places, mm.
     """
 
     setup: Setup
@@ -80,7 +80,7 @@ def find_standard(
     Args:
         ball_table: Centres of the balls at their contacts, table frame, (N, 3), mm; they came along
             -z of the believed standard.
-        radius: Of the ball, mm.
+        radius: Radius of the ball, mm.
         rng: For the places of the first round.
 
     Raises:

@@ -12,7 +12,7 @@ from matstd.artefact.body import FreeformPatch, Standard
 from matstd.twin.frames import Array
 
 PITCH = 1.0
-"""Of the places, mm; what is found on them is refined on the exact surfaces."""
+"""Spacing of the places, mm; what is found on them is refined on the exact surfaces."""
 
 _FINE = 0.4  # mm between points of a face: no place between them stays empty
 _ROUND = 60.0  # mm round the base that belongs to the picture
@@ -26,7 +26,7 @@ class Relief:
 
     Attributes:
         x0: Smallest x and y, (2,), mm.
-        top: Of everything solid, (I, J), mm.
+        top: Upper end of everything solid, (I, J), mm.
         ball: Centre of a ball that comes down from above and touches, (I, J), mm.
     """
 

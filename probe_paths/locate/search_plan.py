@@ -40,7 +40,7 @@ the more informative edges. For 15 mm and 4 degrees 18 of the example's 20 touch
 base, and determine 0.5; for 10 mm and 3 degrees, 1.0."""
 
 _NOISE = 0.03
-"""Of a touch of a search with the errors of a machine in it, mm."""
+"""Standard uncertainty of a touch of a search, the errors of the machine included, mm."""
 
 _MARGIN = 3.0
 """Kept free beside the ball's way and under the body besides everything else, mm."""

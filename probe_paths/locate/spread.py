@@ -7,7 +7,7 @@ from matstd.twin.units import DEG
 
 @dataclass(frozen=True)
 class Spread:
-    """How far beside its believed place the standard may stand, either way in every direction.
+    """Largest offset of the standard from its assumed place, either way in every direction.
 
     Attributes:
         distance: Along x, y and z of its own frame, mm.
@@ -19,5 +19,5 @@ class Spread:
 
 
 SPREADS = tuple(Spread(d, a * DEG) for d, a in ((20.0, 5.0), (15.0, 4.0), (10.0, 3.0), (5.0, 2.0)))
-"""That a search is made for, the first for which there is one: by eye, by a rule, by a stop. A
-standard of tall posts leaves a short stylus no room to come down wherever it may stand."""
+"""Spreads for which a search is tried, the widest first: placed by eye, by a rule, by a stop. A
+standard of tall posts may leave a short stylus no room to come down over a wide spread."""

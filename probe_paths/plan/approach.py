@@ -20,7 +20,7 @@ _LEANS = (15.0 * DEG, 30.0 * DEG)
 """From the normal, rad; beyond 30 degrees the ball slides where it should trigger."""
 
 _SIDES = (0.0, 90.0 * DEG, -90.0 * DEG, 180.0 * DEG)
-"""That are leant to, from that of the spindle, rad."""
+"""Sides to which an approach is inclined, from that of the spindle, rad."""
 
 _ROUNDING = 9  # decimals: a motion that is nothing but the rounding of one has no sign
 
@@ -31,7 +31,7 @@ class Approaches:
 
     Attributes:
         length: Gauge point to ball centre, mm.
-        radius: Of the ball, mm.
+        radius: Radius of the ball, mm.
         contact: Readings at the expected contact, (N, A).
         normal: Outward unit normals, artefact frame, (N, 3).
         back: From the contact to the start, mm.

@@ -14,7 +14,7 @@ from matstd.artefact.body import Standard
 from matstd.artefact.reach import Workshop, still_frames
 from matstd.artefact.tool import Probe
 from matstd.probe_paths.plan.bodies import Bodies, standing_bodies
-from matstd.probe_paths.plan.separation import Sweeps, gaps
+from matstd.probe_paths.plan.separation import Hulls, Sweeps, balls_apart, gaps, least_gaps
 from matstd.twin.frames import Array, apply, turn
 from matstd.twin.machine import Chain, table_to_tool, tip
 from matstd.twin.record import IntArray, Labels, Setup
@@ -92,7 +92,8 @@ class ToolClearance:
             for some in np.array_split(np.arange(len(begin)), len(begin) // _BLOCK + 1):
                 place = (begin[some], axis[some], (end - begin)[some])
                 skip = None if spared is None else spared[np.ix_(some, rows)]
-                best[np.ix_(some, rows)] = _gaps_to(bodies, rows, place, tool, skip, enough)
+                limit = np.minimum(best[some].min(axis=1), enough)
+                best[np.ix_(some, rows)] = _gaps_to(bodies, rows, place, tool, skip, limit)
         nearest = np.argmin(best, axis=1)
         return best[np.arange(len(best)), nearest], bodies.name[nearest]
 
@@ -103,24 +104,45 @@ def _gaps_to(
     place: tuple[Array, Array, Array],
     tool: Array,
     spared: NDArray[np.bool_] | None,
-    enough: float,
+    enough: Array,
 ) -> Array:
-    """Gaps of M moves from some bodies, over all pieces of the tool, (M, rows), mm."""
+    """Gaps of M moves from some bodies, over all pieces of the tool, (M, rows), mm.
+
+    Args:
+        enough: A least gap of a move that is larger need not be known better than that, (M,), mm.
+    """
     move, piece, body = (i.reshape(-1) for i in np.indices((len(place[0]), len(tool), len(rows))))
     if spared is not None:
         keep = ~spared[move, body]
         move, piece, body = move[keep], piece[keep], body[keep]
-    gap = gaps(_sweeps(place, tool, move, piece), bodies.hulls[rows[body]], enough)
-    for i in np.flatnonzero(np.isin(rows, list(bodies.parts))):
-        near = np.flatnonzero((body == i) & (gap < enough))
-        parts = bodies.parts[int(rows[i])]
-        each = np.repeat(near, len(parts))
-        part = np.tile(np.arange(len(parts)), len(near))
-        finer = gaps(_sweeps(place, tool, move[each], piece[each]), parts[part], enough)
-        gap[near] = finer.reshape(len(near), len(parts)).min(axis=1)
+    of = rows[body]
+
+    def search(some: IntArray, limit: Array) -> Array:
+        sweeps = _sweeps(place, tool, move[some], piece[some])
+        gap = gaps(sweeps, bodies.hulls[of[some]], limit)
+        for i in bodies.parts:
+            near = np.flatnonzero((of[some] == i) & (gap < limit))
+            gap[near] = _least_to_parts(bodies.parts[i], sweeps[near], limit[near])
+        return gap
+
+    bound = balls_apart(_sweeps(place, tool, move, piece), bodies.hulls[of])
+    gap = least_gaps(bound, move, enough[move], search)
     best = np.full((len(place[0]), len(rows)), np.inf)
     np.minimum.at(best, (move, body), gap)
     return best
+
+
+def _least_to_parts(parts: Hulls, sweeps: Sweeps, enough: Array) -> Array:
+    """Gap of each sweep from the nearest of the parts of one body, (M,), mm."""
+    each = np.repeat(np.arange(len(sweeps)), len(parts))
+    part = np.tile(np.arange(len(parts)), len(sweeps))
+
+    def search(some: IntArray, limit: Array) -> Array:
+        return gaps(sweeps[each[some]], parts[part[some]], limit)
+
+    bound = balls_apart(sweeps[each], parts[part])
+    gap = least_gaps(bound, each, enough[each], search)
+    return np.asarray(gap.reshape(len(sweeps), len(parts)).min(axis=1))
 
 
 def _sweeps(

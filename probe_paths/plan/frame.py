@@ -24,7 +24,7 @@ from matstd.twin.units import DEG
 LINEAR = "XYZ"
 
 _PARALLEL = 1e-9
-"""Of an axis of a tilted plane against one of the machine, rad."""
+"""Largest angle between an axis of a tilted plane and one of the machine, rad."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +32,7 @@ class ProgramFrame:
     """Converts between axis readings and the words of a program.
 
     Attributes:
-        shift: Of a tilted plane, mm.
+        shift: Shift of a tilted plane, mm.
 
     Raises:
         DesignError: A machine whose axes the programs cannot name.

@@ -48,7 +48,7 @@ class Sensor(NamedTuple):
     """A temperature that the control itself knows, and logs with every touch.
 
     Attributes:
-        name: Of the sensor; its column in a run is `T_<name>_degC`.
+        name: Name of the sensor; its column in a run is `T_<name>_degC`.
         parameter: Q parameter in which the control's PLC hands it to programs.
         factor: degC per unit of the parameter.
         offset: degC at zero.
@@ -143,7 +143,7 @@ class Heading:
 
     @property
     def workshop_hash(self) -> str:
-        """Of probe and workshop, as stated where only the log speaks; empty where it says none."""
+        """Hash of probe and workshop; where only a log is read, as it states it, else empty."""
         if self.workshop is None:
             return self.stated
         ball = f"{self.probe.radius:.6f} {self.probe.length:.6f}"

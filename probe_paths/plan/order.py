@@ -56,7 +56,7 @@ def visits(chain: Chain, rotary: Array, overshoot: float, shortest_visit: int) -
 
     Args:
         rotary: Readings of every request, (N, R), rad.
-        overshoot: Of the last motion towards a reading, rad.
+        overshoot: Length of the last motion towards a reading, rad.
         shortest_visit: Fewest touches for which a pose is split over two visits.
 
     Raises:

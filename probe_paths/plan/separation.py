@@ -7,6 +7,7 @@ Johnson and Keerthi, IEEE J. Robotics and Automation 4 (1988) 193). Every such p
 between the bodies as well, and with it a gap that is never too large.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from itertools import combinations
 
@@ -17,10 +18,10 @@ from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
 CORNERS = 8
-"""Of a body at most."""
+"""Most corners of a body."""
 
 EXACT = 0.01
-"""To which a gap that matters is found, mm."""
+"""Accuracy of a gap that matters, mm."""
 
 _ROUNDS = 60  # of the search; cylinders beside cylinders took up to 35
 _INSIDE = 1e-7  # mm: nearer than this the bodies are in each other
@@ -72,7 +73,7 @@ class Sweeps:
         way: Straight way that is made, (M, 3), mm.
         low: Where the cylinder begins on the axis, (M,), mm.
         high: Where it ends, (M,), mm.
-        radius: Of the cylinder, (M,), mm.
+        radius: Radius of the cylinder, (M,), mm.
         ball: By which it is swollen, (M,), mm.
     """
 
@@ -112,16 +113,57 @@ class Sweeps:
         return point
 
 
+def balls_apart(sweeps: Sweeps, hulls: Hulls) -> Array:
+    """Gap of each sweep from the ball round the body of the same row, (M,), mm; never too large.
+
+    A sweep is seen as a capsule here, as wide on all sides as half of its way is long.
+    """
+    middle = hulls.corner.mean(axis=1)
+    wide = np.linalg.norm(hulls.corner - middle[:, None], axis=2) + hulls.disc
+    off = middle - sweeps.centre - 0.5 * sweeps.way
+    along = np.einsum("mi,mi->m", off, sweeps.axis)
+    off -= np.clip(along, sweeps.low, sweeps.high)[:, None] * sweeps.axis
+    reach = sweeps.radius + sweeps.ball + 0.5 * np.linalg.norm(sweeps.way, axis=1)
+    return np.asarray(np.linalg.norm(off, axis=1) - reach - wide.max(axis=1) - hulls.ball)
+
+
+def least_gaps(
+    bound: Array, group: IntArray, enough: Array, search: Callable[[IntArray, Array], Array]
+) -> Array:
+    """Gaps of which only the least of every group matters, (M,), mm: that one as of `gaps`.
+
+    The body whose ball is nearest is searched first: no other that is farther away needs a search.
+    Of 240 bodies and parts at a position of a probing program, 4 remain.
+
+    Args:
+        bound: Gaps that are never too large, (M,), mm.
+        group: Of every row, (M,), from 0.
+        enough: As of `gaps`, (M,), alike within a group.
+        search: Gaps of some rows, for their `enough`.
+    """
+    gap, limit = bound.copy(), enough.copy()
+    order = np.lexsort((gap, group))
+    nearest = order[np.unique(group[order], return_index=True)[1]]
+    for rows in (nearest, np.arange(len(gap))):
+        rows = rows[gap[rows] < limit[rows]]
+        gap[rows] = np.maximum(gap[rows], search(rows, limit[rows]))
+        least = np.full(int(group.max(initial=-1)) + 1, np.inf)
+        np.minimum.at(least, group[rows], gap[rows])
+        limit = np.minimum(limit, least[group])
+    return gap
+
+
 def _inverted(size: Array) -> Array:
     """1 / size; zero for a size within rounding."""
     return np.where(size > _NOISE, 1.0 / np.maximum(size, _NOISE), 0.0)
 
 
-def gaps(sweeps: Sweeps, hulls: Hulls, enough: float) -> Array:
+def gaps(sweeps: Sweeps, hulls: Hulls, enough: Array | float) -> Array:
     """Gap of each sweep from the body of the same row, (M,), mm.
 
     Args:
-        enough: A gap that is larger need not be known better than that.
+        enough: A gap that is larger need not be known better than that, mm, of every row
+            or of all.
 
     Returns:
         Never too large, and too small by `EXACT` at most where it is less than `enough`; zero for
@@ -130,7 +172,7 @@ def gaps(sweeps: Sweeps, hulls: Hulls, enough: float) -> Array:
     swell = sweeps.ball + hulls.ball
     v = sweeps.middle - hulls.corner.mean(axis=1)
     v = np.where(np.linalg.norm(v, axis=1)[:, None] > _INSIDE, v, [0.0, 0.0, 1.0])
-    lower = np.full(len(v), -np.inf)
+    lower, most = np.full(len(v), -np.inf), np.broadcast_to(enough, len(v))
     old, has = np.zeros((len(v), 3, 3)), np.zeros((len(v), 3), dtype=bool)
     # the first direction is no point of the difference: it counts as infinitely far away
     upper = np.full(len(v), np.inf)
@@ -141,7 +183,7 @@ def gaps(sweeps: Sweeps, hulls: Hulls, enough: float) -> Array:
         plane = np.einsum("mi,mi->m", v[active], w) / size
         lower[active] = np.maximum(lower[active], plane)
         gap = lower[active] - swell[active]
-        is_open = (gap < enough) & (upper[active] - lower[active] > EXACT)
+        is_open = (gap < most[active]) & (upper[active] - lower[active] > EXACT)
         active, w = active[is_open], w[is_open]
         if not len(active):
             break

@@ -39,10 +39,10 @@ def stroke_gaps(
 
     Args:
         start: Readings at the start, (N, A).
-        direction: Of the motion in readings, unit vectors, (N, A).
-        back: To the expected contact, (N,), mm.
+        direction: Direction of the motion in readings, unit vectors, (N, A).
+        back: Distance to the expected contact, (N,), mm.
         distance: Longest travel, (N,), mm.
-        feature: That is touched, (N,).
+        feature: Feature that is touched, (N,).
         enough: A gap that is larger need not be known better than that, mm.
     """
     bodies = clearance.bodies

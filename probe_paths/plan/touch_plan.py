@@ -43,7 +43,7 @@ class PlanOptions:
         anchor_tilt: Angle between the anchor touch's normal and the tool axis, rad.
         shortest_visit: Fewest touches for which a pose is visited twice, half of them each time.
         workshop: What stands beside the standard and is kept clear.
-        ball: Of the workshop, where that is what is touched; the standard has it as a feature.
+        ball: Ball of the workshop where that is touched; the standard has it as a feature.
         tolerated: How many requests may be refused before the whole plan is.
         is_swept: Whether moves are swept with the whole tool; a plan that is timed and never run
             need not be.

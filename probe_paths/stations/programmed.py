@@ -13,7 +13,7 @@ class Station:
     """What one probe does in one clamping.
 
     Attributes:
-        dialect: Of the control, with the probe's tool.
+        dialect: Words of the control, with the probe's tool.
     """
 
     plan: TouchPlan
@@ -27,7 +27,7 @@ class Station:
 
 
 def with_tool(dialect: Dialect, tool: int) -> Dialect:
-    """Words for a further probe, of which all names begin with the tool: `MS31_A_1`."""
+    """Words for a further probe; all its names begin with the tool: `MS31_A_1`."""
     return replace(dialect, tool=tool, prefix=f"{dialect.prefix}{tool}")
 
 
@@ -38,7 +38,7 @@ def make_stations(
 
     Args:
         plans: As of `plan_campaign`, with the number of the probe.
-        words: Of the control, for every probe.
+        words: Words of the control, for every probe.
     """
     return tuple(
         Station(plan, words[probe], make_programs(plan, words[probe], feeds))

@@ -6,9 +6,15 @@ from pathlib import Path
 from matstd.compensation.field import MachineErrors, Result
 from matstd.compensation.tables import Header, VerifiedTables
 from matstd.report.compensation.table_pictures import draw_errors_left, draw_shares
-from matstd.report.compensation.table_words import control_title, extent_of, result_sentence, small
+from matstd.report.compensation.table_words import (
+    control_title,
+    extent_of,
+    left_out_sentence,
+    result_sentence,
+    small,
+)
 from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
-from matstd.report.numbers import digits, signed, with_uncertainty
+from matstd.report.numbers import capital, digits, signed, with_uncertainty
 from matstd.twin.machine import Chain
 from matstd.twin.numbers import rms_length
 from matstd.twin.units import DEG, UM
@@ -18,12 +24,21 @@ PAGE, PICTURES = "report.html", "pictures"
 FEEBLE = 1e-2 * UM
 """Errors below this size are not listed: 10 nm are below the resolution of the tables."""
 
+_MEANS = (
+    "The figures are what the tables do on the exact twin with the estimates as the truth, and "
+    "what the model does not know. They hold in the state, with the datum and for the machine that "
+    "are named above."
+)
+_NEXT = (
+    "Enter one table, run its one-point test with the machine empty, then probe the standard again "
+    "and compare (`matstd compare RUN.csv --model`)."
+)
 _FIGURES = (
     "All figures are deviations of the tool point in the table frame with the workpiece aligned: "
     "the best-fit rigid motion is removed, since presets and alignment are determined on the "
-    "machine itself (determine them with the tables active). Each file was read back by an "
-    "independent reader and applied on the exact twin, with the estimates of the model as the "
-    "truth; the uncertainty of the model comes in addition."
+    "machine itself (determine them with the tables active). Each file was read back from its "
+    "text by a separate reader and applied on the exact twin, with the estimates of the model as "
+    "the truth; the uncertainty of the model comes in addition."
 )
 _TOOLS = (
     "This holds for tools whose length and offset are set relative to the probe of the "
@@ -62,6 +77,8 @@ def write_compensation_page(
         title=f"Compensation with {title}",
         heading=f"Compensation with {title}",
         lead=f"{head.machine}; datum {head.datum}; state {head.state}; model {head.model}.",
+        means=_MEANS,
+        next=_NEXT,
         key=_key(first, done),
         sections=[
             Section(
@@ -113,10 +130,15 @@ def _control(played: VerifiedTables, chain: Chain) -> list[Section]:
         f"{small(played.interpolation / UM, 2)} µm {extent_of(played)}. "
         f"Files: {', '.join(played.files)}."
     )
+    held = []
+    if played.left_out:
+        held = [f"{capital(left_out_sentence(played.left_out))}."]
+    elif not rows:
+        held = ["It represents every error of the model."]
     return [
         Section(
             control_title(played.format),
-            sentences=[words, *([] if rows else ["It represents every error of the model."])],
+            sentences=[words, *held],
             table=Table(("error", "before", "remaining"), rows, caption),
             pictures=pictures,
         ),

@@ -54,15 +54,26 @@ def held_words(left: UncorrectedError) -> str:
     return f"{left.name} ({digits(left.rms / UM)} of {digits(left.before / UM)} µm remain)"
 
 
+def left_out_sentence(axes: tuple[str, ...]) -> str:
+    """Which axes have no table, and why."""
+    which, it = ("a table is", "it") if len(axes) == 1 else ("tables are", "they")
+    return (
+        f"{which} left out for {', '.join(axes)}: {it} would raise the error beside the line "
+        f"through the datum"
+    )
+
+
 def table_lines(played: VerifiedTables) -> Iterator[tuple[str, bool]]:
     """Lines on the console, and whether each is the first of its control."""
     yield f"{control_title(played.format)}: {result_sentence(played.result)}", True
     bound = small(played.interpolation / UM)
     yield f"- interpolation and rounding leave at most {bound} µm {extent_of(played)}", False
+    if played.left_out:
+        yield f"- {left_out_sentence(played.left_out)}", False
     held = [left for left in played.result.left if left.rms > max(played.interpolation, 10 * NM)]
     if held:
         words = ", ".join(held_words(left) for left in held[:NAMED])
         more = f" and {len(held) - NAMED} more" if len(held) > NAMED else ""
         yield f"- cannot represent, rms over the workspace: {words}{more}", False
-    else:
+    elif not played.left_out:
         yield "- represents every error of the model", False

@@ -26,6 +26,14 @@ _CHOICE = (
     "{step} before given, every law looks good, and so does holding the last value, which is no "
     "law."
 )
+_MEANS = (
+    "From the recorded drives alone the law predicts hours that it has not seen to {left} {unit}; "
+    "a constant would leave {constant} {unit}. It holds within the drives of its training."
+)
+_NEXT = (
+    "Predict another day (`matstd thermal --law`), and correct with it in `matstd compensate` or "
+    "`matstd serve`."
+)
 _FOOT = (
     "Uncertainties are standard uncertainties (k = 1): residual and uncertainty of the "
     "coefficients, times the factor by which the blocks left out exceeded these. u grows where "
@@ -69,6 +77,8 @@ def write_drift_page(
         title=f"Thermal drift of {title}",
         heading=f"Thermal drift of {title}",
         lead=f"{law_title(best.name)}: {law_words(best, record)}.",
+        means=_MEANS.format(left=free_run, constant=digits(constant), unit=unit),
+        next=_NEXT,
         key=[
             KeyFigure(
                 f"{digits(constant)} → {free_run} {unit}",

@@ -9,7 +9,6 @@ from matstd.report.geometry.fault_words import fault_sentences
 from matstd.report.geometry.geometry_section import geometry_sections
 from matstd.report.geometry.geometry_words import (
     USUAL,
-    determined_comment,
     estimate_words,
     quantity_name,
     shown_unit,
@@ -21,7 +20,6 @@ __all__ = [
     "change_sentences",
     "console_lines",
     "copy_lines",
-    "determined_comment",
     "estimate_words",
     "fault_sentences",
     "geometry_sections",

@@ -2,6 +2,8 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum
+from typing import Protocol
 
 from matstd.diagnosis.geometry import (
     MIN_CLEAR_EXCESS,
@@ -84,7 +86,23 @@ _NAMES = {
 }
 
 
-def quantity_name(row: GeometryRow) -> str:
+class Named(Protocol):
+    """What has a quantity with its symbol and axes."""
+
+    @property
+    def quantity(self) -> Enum:
+        """Its kind."""
+
+    @property
+    def symbol(self) -> str:
+        """Its ISO 230-1 name."""
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """Its axis, or two."""
+
+
+def quantity_name(row: Named) -> str:
     """`squareness of Y to X (EC0Y)`."""
     axis, letter = row.axes[-1], row.symbol[1]
     about = _TURNS.get(letter)
@@ -102,6 +120,7 @@ def quantity_name(row: GeometryRow) -> str:
             words = f"error motion of {axis} {f'about {about}' if about else f'in {letter}'}"
         case plain:
             first, axes = row.axes[0], listed(list(row.axes))
+            assert isinstance(plain, Quantity)
             words = _NAMES[plain].format(axis=axis, letter=letter, first=first, axes=axes)
     return f"{words} ({row.symbol})"
 
@@ -215,22 +234,6 @@ def _rotary(rows: Sequence[GeometryRow]) -> str:
     return (
         f"line and zero of {rows[0].axes[0]}: {', '.join(parts)}; usual {', '.join(sizes.values())}"
     )
-
-
-def determined_comment(geometry: LearntGeometry) -> str:
-    """The determined quantities as comments at the head of a model file.
-
-    An estimate of one parameter shares what set-up and other parameters imitate; the quantities
-    here are those of the console and the page.
-    """
-    known = [line for line in geometry_lines(geometry) if line.is_determined]
-    if not known:
-        return ""
-    head = (
-        "# What the run determines, as reported. The estimates below are parameters, whose\n"
-        "# indistinguishable parts (of the set-up, of each other) are shared out by the prior.\n"
-    )
-    return head + "".join(f"#   {line.name}: {line.value}\n" for line in known) + "\n"
 
 
 def far_lines(geometry: LearntGeometry) -> list[str]:

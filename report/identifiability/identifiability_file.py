@@ -21,7 +21,6 @@ from matstd.twin.files import write_whole
 from matstd.twin.machine import Chain, Link
 from matstd.twin.numbers import significant
 from matstd.twin.text import json_text
-from matstd.twin.units import DEG
 
 FORMAT = "identifiability/1"
 """Of the file."""
@@ -99,8 +98,7 @@ def _alternative_words(other: Alternative) -> str:
 
 
 def _reading(link: Link, limits: tuple[float, float]) -> tuple[str, list[float]]:
-    suffix, unit = ("_mm", 1.0) if link.kind == "linear" else ("_deg", DEG)
-    return link.name + suffix, [significant(v / unit) for v in limits]
+    return link.column, [significant(v / link.unit) for v in limits]
 
 
 def _degree(degree: Degree, chain: Chain) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """Laws that were learnt, in words, pictures, on a page, and as a Python file of the user's own."""
 
+from matstd.report.laws.curves import LawCurve, law_curve
 from matstd.report.laws.effect_file import effect_text
 from matstd.report.laws.law_page import law_sections, write_law_page
 from matstd.report.laws.law_words import (
@@ -10,11 +11,14 @@ from matstd.report.laws.law_words import (
     no_law_sentence,
     rival_sentence,
     second_run_sentence,
+    size_words,
 )
 
 __all__ = [
+    "LawCurve",
     "effect_text",
     "instead_sentence",
+    "law_curve",
     "law_notes",
     "law_sections",
     "law_sentence",
@@ -22,5 +26,6 @@ __all__ = [
     "no_law_sentence",
     "rival_sentence",
     "second_run_sentence",
+    "size_words",
     "write_law_page",
 ]

@@ -24,7 +24,7 @@ from matstd.report.laws.law_words import (
     second_run_sentence,
     variable_words,
 )
-from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
+from matstd.report.layout import KeyFigure, LiveView, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, microns, sentence
 from matstd.twin.units import UM
 
@@ -41,6 +41,11 @@ _ALIKE = (
     "shares. A run in which they differ decides: other axis positions for other carriers, another "
     "course of time for a temperature."
 )
+_NEXT = (
+    "Try it on another run: `matstd compare RUN.csv --model model.toml --effects effect.py`; only "
+    "then compensate with it."
+)
+_WITHOUT = "Record what could cause it (a temperature, a load, a speed) and probe again."
 _FOOT = (
     "Uncertainties are standard uncertainties (k = 1) of the fit with all parameters of the law; "
     "of an edge that of the gap between touches. That another law might be true is not in them."
@@ -48,16 +53,27 @@ _FOOT = (
 
 
 def write_law_page(
-    learning: Learning, folder: str | Path, title: str, second: SecondRun | None
+    learning: Learning,
+    folder: str | Path,
+    title: str,
+    second: SecondRun | None,
+    live: LiveView | None = None,
 ) -> None:
-    """Write `report.html` and its pictures into a folder."""
+    """Write `report.html` and its pictures into a folder.
+
+    Args:
+        live: View in which the laws are switched; None for a page of pictures.
+    """
     page = Page(
         title=f"Laws learnt from {title}",
         heading=f"What the model leaves of {title}",
         lead=_lead(learning),
+        means=_meaning(learning),
+        next=_NEXT if learning.laws else _WITHOUT,
         key=_key(learning, second),
         sections=law_sections(learning, second),
         foot=[_FOOT],
+        live=live,
     )
     write_page(Path(folder) / PAGE, page)
 
@@ -71,6 +87,18 @@ def law_sections(learning: Learning, second: SecondRun | None = None) -> list[Se
     for i, one in enumerate(learning.laws, start=1):
         out += _law_sections(learning, one, i)
     return [*out, _held_out(learning, second)]
+
+
+def _meaning(learning: Learning) -> str:
+    if not learning.laws:
+        return (
+            "What remains follows from nothing that the run recorded in any form that was tried. "
+            "The model of the starting effects stays as it is."
+        )
+    return (
+        "The law predicts touches that were not fitted. It is no cause: it holds where it was "
+        "learnt, and a named effect with the same form may replace it."
+    )
 
 
 def _lead(learning: Learning) -> str:

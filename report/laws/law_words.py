@@ -163,6 +163,12 @@ def law_sentence(learning: Learning, one: LearntLaw) -> str:
     )
 
 
+def size_words(learning: Learning, law: Law) -> str:
+    """Size of a law with the parameters of its shapes, each with its uncertainty."""
+    where = [place_words(p) for p in places(learning, law) if p.u is not None]
+    return ", ".join([_size(learning, law), *where])
+
+
 def _size(learning: Learning, law: Law) -> str:
     found = amplitudes(learning, law)
     if law.is_curve_alone:

@@ -12,7 +12,7 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, select_autoescap
 from markupsafe import Markup, escape
 
 from matstd.report.layout.section import Heading, Page, Section, Table
-from matstd.report.layout.tables import unmarked, write_tables
+from matstd.report.layout.tables import file_names, unmarked, write_tables
 from matstd.report.numbers import unbroken
 from matstd.report.style import save
 from matstd.twin.files import write_whole
@@ -55,12 +55,14 @@ def rendered(page: Page, folder: Path) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    files = file_names(page)
     environment.filters |= {
         "marked": marked,
         "unmarked": unmarked,
         "is_number": lambda cell: bool(_NUMBER.match(cell)),
         "heading_rows": heading_rows,
         "numeric": numeric,
+        "table_file": lambda table: files[id(table)],
         "picture": lambda file: picture(folder / file, is_small=page.live is not None),
     }
     sections = with_addresses(page.sections)

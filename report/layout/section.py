@@ -44,12 +44,14 @@ class Table:
         rows: Cells; a line break in a cell is one on the page.
         caption: Above the table.
         best: Indices of rows in bold.
+        is_file: Whether the page has a link to its file in the place of its rows.
     """
 
     columns: Sequence[Heading]
     rows: Sequence[Sequence[str]]
     caption: str = ""
     best: Collection[int] = ()
+    is_file: bool = False
 
     @classmethod
     def of(
@@ -83,6 +85,7 @@ class Section:
         warnings: Like notes, for what can cause damage or a wrong result.
         is_part: Whether the title is one of a subsection.
         is_unfolded: Whether a fold is open at first.
+        is_for_screen: Whether a fold is left out of print.
     """
 
     title: str = ""
@@ -97,6 +100,7 @@ class Section:
     warnings: Sequence[str] = ()
     is_part: bool = False
     is_unfolded: bool = False
+    is_for_screen: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +110,7 @@ class KeyFigure:
     Attributes:
         value: With its unit.
         words: What it is.
-        look: `good`, `found` or `bad`; empty for neither.
+        look: `good`, `fair`, `found` or `bad`; empty for neither.
     """
 
     value: str
@@ -140,7 +144,8 @@ class Page:
         key: Its figures.
         sections: Those before the first title stand above the table of contents.
         foot: What the figures rest upon.
-        next: What to do now, in a sentence behind the lead; empty for nothing.
+        means: What the result means for the user, in a box below the lead; empty for nothing.
+        next: What to do now, in the same box; empty for nothing.
         live: What moves, above the sections, which are then folded; None for a page of pictures.
     """
 
@@ -150,5 +155,6 @@ class Page:
     key: Sequence[KeyFigure]
     sections: Sequence[Section]
     foot: Sequence[str] = ()
+    means: str = ""
     next: str = ""
     live: LiveView | None = None

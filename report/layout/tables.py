@@ -18,13 +18,20 @@ _MINUS = re.compile(r"−(?=\d)")
 _MARKS = re.compile(r"`|\*\*|_\{(\w+)\}|\[([^\]]+)\]\([\w./#-]+\)")
 
 
-def page_tables(page: Page) -> list[tuple[str, Table]]:
-    """Tables of a page that have rows, in their order, each with the title above it."""
-    found, title = [], ""
+def file_names(page: Page) -> dict[int, str]:
+    """Files of the tables of a page, as the page names them, by the identity of the table."""
+    return {id(table): f"{FOLDER}/{name}.csv" for name, _, table in page_tables(page)}
+
+
+def page_tables(page: Page) -> list[tuple[str, str, Table]]:
+    """Tables of a page that have rows: name of the file, the title above, and the table."""
+    found: list[tuple[str, str, Table]] = []
+    title = ""
     for section in page.sections:
         title = section.title or title
         if section.table is not None and section.table.rows:
-            found.append((title, section.table))
+            slug = re.sub(r"[^a-z0-9]+", "-", unmarked(title).lower()).strip("-") or "table"
+            found.append((f"{len(found) + 1:02d}-{slug}", title, section.table))
     return found
 
 
@@ -40,10 +47,8 @@ def write_tables(folder: Path, page: Page) -> list[Path]:
 
     book, out = Workbook(), []
     del book["Sheet"]
-    for number, (title, table) in enumerate(page_tables(page), start=1):
+    for name, _, table in page_tables(page):
         headings, rows = _headings(table), [[plain(c) for c in row] for row in table.rows]
-        slug = re.sub(r"[^a-z0-9]+", "-", unmarked(title).lower()).strip("-") or "table"
-        name = f"{number:02d}-{slug}"
         out.append(folder / FOLDER / f"{name}.csv")
         head, *others = [*headings, *rows]
         write_whole(out[-1], csv_text(head, others))

@@ -14,14 +14,14 @@ from typing import Any
 
 import numpy as np
 from markupsafe import Markup
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from matstd.twin.words import in_own_unit
 
 TREE = dict[str, Any]
 """What JSON holds, with packed arrays."""
 
-_KINDS = ("f8", "f4", "i4", "u4", "i2", "u2", "i1", "u1")
+_KINDS = ("f8", "f6", "f4", "f3", "i4", "u4", "i2", "u2", "i1", "u1")
 _IMPORT = re.compile(r'^import (\{[^}]*\}|\* as \w+) from "\.{1,2}/(?:parts/)?(\w+)\.js";', re.M)
 _EXPORT = re.compile(r"^export (?=(?:async )?(?:function|class|const) (\w+))", re.M)
 _FOLDERS = ("parts", "pages")
@@ -34,7 +34,8 @@ def packed(
 
     Args:
         values: Numbers of any shape; for kinds of whole numbers they must be finite.
-        kind: `f8`, `f4`, or of whole numbers `i4`, `u4`, `i2`, `u2`, `i1`, `u1`.
+        kind: `f8`, `f4`, or the upper bytes of the former alone, `f6` (11 digits) and `f3` (3
+            digits); or of whole numbers `i4`, `u4`, `i2`, `u2`, `i1`, `u1`.
         unit: As it is shown.
         name: As it is shown.
         grain: What one step of a whole number is; values are rounded to it.
@@ -51,7 +52,7 @@ def packed(
         if not np.all((steps >= limits.min) & (steps <= limits.max)):
             raise ValueError(f"numbers outside {limits.min} to {limits.max} steps of {grain}")
         array = steps
-    data = np.ascontiguousarray(array, dtype=f"<{kind}").tobytes()
+    data = _bytes(array, kind)
     return {
         "kind": kind,
         "shape": list(array.shape),
@@ -60,6 +61,16 @@ def packed(
         "grain": grain,
         "base64": base64.b64encode(data).decode("ascii"),
     }
+
+
+def _bytes(array: NDArray[np.generic], kind: str) -> bytes:
+    """Numbers as a kind keeps them, the lowest byte first."""
+    if kind not in ("f6", "f3"):
+        return np.ascontiguousarray(array, dtype=f"<{kind}").tobytes()
+    kept = int(kind[1])
+    whole = np.ascontiguousarray(array, dtype="<f8").reshape(-1).view("<u8")
+    half = np.uint64(1 << (8 * (8 - kept) - 1))
+    return (whole + half).view("u1").reshape(-1, 8)[:, 8 - kept :].tobytes()
 
 
 def scripted(page: str, data: TREE) -> Markup:

@@ -100,7 +100,7 @@ def shown_lines(shown: ShownMachine) -> list[str]:
 
 def _lead(shown: ShownMachine) -> str:
     """What is seen, in a sentence or two."""
-    words = [f"{shown.chain.notation}."]
+    words = [f"Kinematic chain {shown.chain.notation}."]
     if shown.program is not None:
         words.append(f"Plays {listed(list(shown.program.names[:3]))}.")
     if shown.source:

@@ -76,8 +76,11 @@ def with_clearance(chain: Chain, played: Played, stands: SetUp) -> Played:
         probe=stands.probe,
         workshop=stands.workshop,
     )
-    clearance, nearest = gaps.gap(played.q)
-    return replace(played, clearance=clearance, nearest=nearest)
+    # before and after a touch, and at anchors, the probe stands in the same places
+    places, which = np.unique(played.q, axis=0, return_inverse=True)
+    clearance, nearest = gaps.gap(places)
+    which = which.reshape(-1)
+    return replace(played, clearance=clearance[which], nearest=nearest[which])
 
 
 def _solid(solid: Solid, T_table_face: Array) -> Array:

@@ -21,7 +21,7 @@ from matstd.report.pages.run_sections import (
     run_foot,
 )
 from matstd.report.run_view import comparison_step, comparison_view
-from matstd.report.verdict import promise_words, repeatability_words
+from matstd.report.verdict import comparison_meaning, promise_words, repeatability_words
 from matstd.report.words import (
     comparison_sentence,
     learnt_lines,
@@ -84,6 +84,7 @@ def write_compare_page(
             outlier_section(found.fit),
         ],
         foot=run_foot(found.run, title),
+        means=comparison_meaning(found),
         next=comparison_step(found, title),
         live=comparison_view(found, title),
     )

@@ -2,14 +2,16 @@
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import standing_remarks
 from matstd.artefact.worth import Criterion, touch_curve
+from matstd.diagnosis.task import guarded
 from matstd.report.design_view import DesignScene, design_live, error_field
 from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
-from matstd.report.numbers import digits, plural, um
+from matstd.report.numbers import digits, percent, plural, um
 from matstd.report.pages.design_result import Design
 from matstd.report.pages.identifiability_section import identifiability_sections
 from matstd.report.pages.proof_sections import proof_sections, task_sections, worst_machine
@@ -37,6 +39,10 @@ from matstd.twin.units import UM
 MAPS = "sensitivity"
 """Folder of the maps."""
 
+GREEN, YELLOW = 0.8, 0.5
+"""Shares of a tolerance in which conformity can be proved from which it is green and yellow. Green:
+the uncertainty takes a tenth of the zone at each end."""
+
 _EXCERPT = 46  # lines of the first program
 
 _CURVES = (
@@ -48,6 +54,10 @@ _CURVES = (
 _SHARES = (
     "An effect counts as visible when 30 % of its signature remain beside the geometric model; the "
     "total are the effects that unrestricted touches could show."
+)
+_NEXT = (
+    "Send `standard.step`, `drawing.pdf` and `making.json` to the workshop, have the piece "
+    "calibrated (`matstd calibrate`), then follow `setup/setup.html` on the machine."
 )
 _CHECKED = (
     "The programs were read back as text and checked block by block, and exactly that text was run "
@@ -87,20 +97,25 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         title=f"{body.name} for {chain.name}",
         heading=f"{body.name}: material standard for {chain.name}",
         lead=verdict_of_design(design.placement, design.brief.ranges),
+        means=_meaning(design),
+        next=_NEXT,
         key=_key(design),
         sections=[
-            _opening(design, folder, remarks),
-            Section("The standard", pictures=standard),
-            Section(table=patch_table(design)),
+            replace(_opening(design, folder, remarks), pictures=standard),
             *_comparison(design, on_machine),
             *proof_sections(design),
             *task_sections(design),
             *_probing(design, order),
-            *cad_sections(design.conformity),
+            Section("The standard", table=patch_table(design)),
             *making_sections(design.making),
+            *cad_sections(design.conformity),
             *identifiability_sections(design),
             *study_sections(
-                design.study, [*design.maps, *volumes], f"{MAPS}/", "Where the errors show"
+                design.study,
+                [*design.maps, *volumes],
+                f"{MAPS}/",
+                "Where the errors show",
+                "volumetric_sections.png",
             ),
             Section("Limits of this design", items=_LIMITS),
         ],
@@ -148,7 +163,7 @@ def _key(design: Design) -> list[KeyFigure]:
     own, rival = design.placement.own, best_rival(design.placement)
     touches, machines = len(design.placement.requests), design.machines
     worst = worst_machine(machines)
-    user, box = worst.in_workspace, worst.proof
+    user, tolerance = worst.in_workspace, design.brief.task.tolerance
     others = f"; the worst of {len(machines)} machines" if len(machines) > 1 else ""
     best = (
         [KeyFigure(um(rival.rms_user), f"the same with the best other artefact: {rival.name}")]
@@ -167,14 +182,19 @@ def _key(design: Design) -> list[KeyFigure]:
             "volumetric error of a simulated machine in your workspace, before and after, rms"
             + others,
         ),
-        KeyFigure(
-            f"{digits(box.rms_before / UM)} → {um(box.rms_after)}", "the same in the probed volume"
-        ),
+        *([] if tolerance is None else [_tolerance_figure(design, tolerance)]),
         KeyFigure(
             at_most(max(design.conformity.face_deviation.values())),
             "largest deviation of a STEP face from its design",
         ),
     ]
+
+
+def _tolerance_figure(design: Design, tolerance: float) -> KeyFigure:
+    """Traffic light of the tolerance of the user's task."""
+    share = _provable(design, tolerance)[0]
+    words = f"of the tolerance of {um(tolerance)} remain for the part"
+    return KeyFigure(percent(share), words, _light(share))
 
 
 def _opening(design: Design, folder: Path, remarks: Sequence[str]) -> Section:
@@ -218,9 +238,13 @@ def _comparison(design: Design, on_machine: dict[str, float]) -> list[Section]:
             "Comparison with other artefacts",
             sentences=identification_lines(placement, design.worst),
             table=comparison_table(design, on_machine),
-            pictures=[Picture("touch_curves.png", caption, drawn)],
             notes=[chosen],
-        )
+        ),
+        Section(
+            fold="Error against the number of touches",
+            is_for_screen=True,
+            pictures=[Picture("touch_curves.png", caption, drawn)],
+        ),
     ]
 
 
@@ -246,20 +270,46 @@ def _probing(design: Design, order: tuple[Table, str]) -> list[Section]:
     reach = "Reach of the machine on such a blank by angle and travels, determined before design."
     sequence = "Rotary readings in the order of execution, with the side of approach."
     first = design.programs.programs[0].text.splitlines()[:_EXCERPT]
-    return [
-        Section(
-            "Probing",
-            sentences=[intro],
-            table=table,
-            pictures=[
-                Picture("reach.png", reach),
-                Picture("plan_touches.png", "Touched points and normals.", draw_touches(plan)),
-                Picture("plan_order.png", sequence, draw_order(plan)),
-            ],
-        ),
-        Section(
-            table=Table(("program", "touches", "minutes"), programs),
-            code="\n".join([*first, "..."]),
-            notes=[_CHECKED],
-        ),
+    pictures = [
+        Picture("reach.png", reach),
+        Picture("plan_touches.png", "Touched points and normals.", draw_touches(plan)),
+        Picture("plan_order.png", sequence, draw_order(plan)),
     ]
+    listed = Table(("program", "touches", "minutes"), programs)
+    return [
+        Section("Probing", sentences=[intro], table=listed, notes=[_CHECKED]),
+        Section(fold="Cost of the order", is_for_screen=True, table=table),
+        Section(fold="Reach, touches and their order", is_for_screen=True, pictures=pictures),
+        Section(fold="First program", is_for_screen=True, code="\n".join([*first, "..."])),
+    ]
+
+
+def _meaning(design: Design) -> str:
+    """Whether the design does what was asked for, with the tolerance where one is given."""
+    user = worst_machine(design.machines).in_workspace
+    words = (
+        f"A machine like yours errs by {um(user.rms_before)} rms in your workspace; after "
+        f"{design.programs.duration / 60.0:.0f} minutes of probing {um(user.rms_after)} are "
+        "not known, as simulated with the emitted programs"
+    )
+    tolerance = design.brief.task.tolerance
+    if tolerance is None:
+        return f"{words}."
+    share, name = _provable(design, tolerance)
+    return (
+        f"{words}. Of the tolerance of {um(tolerance)} of {design.brief.task.name}, "
+        f"{percent(share)} remain in which a part measured on this machine is proved good "
+        f"(results {name}; ISO 14253-1)."
+    )
+
+
+def _provable(design: Design, tolerance: float) -> tuple[float, str]:
+    """Largest share of a tolerance in which conformity can be proved, and by which results."""
+    shares = {n: guarded(tolerance, b.u, b.dof).share for n, b in design.budgets.items()}
+    best = max(shares, key=shares.__getitem__)
+    return shares[best], best
+
+
+def _light(share: float) -> str:
+    """Traffic light of the share of a tolerance that remains."""
+    return "good" if share >= GREEN else "fair" if share >= YELLOW else "bad"

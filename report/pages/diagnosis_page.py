@@ -32,7 +32,7 @@ from matstd.report.pages.trend_section import trend_sections
 from matstd.report.plots import draw_effect, draw_fall, draw_form, is_form
 from matstd.report.run_view import diagnosis_step, diagnosis_view
 from matstd.report.style import series
-from matstd.report.verdict import part_lines
+from matstd.report.verdict import diagnosis_meaning, part_lines
 from matstd.report.words import (
     figures,
     remark_sentence,
@@ -63,7 +63,11 @@ _HELD_OUT = (
 
 
 def write_diagnosis_page(
-    result: Diagnosis, folder: str | Path, title: str, rng: np.random.Generator
+    result: Diagnosis,
+    folder: str | Path,
+    title: str,
+    rng: np.random.Generator,
+    is_saved: bool = False,
 ) -> Path:
     """Write `report.html` and its pictures into a folder.
 
@@ -72,6 +76,7 @@ def write_diagnosis_page(
         folder: For the page.
         title: Name of the run file.
         rng: Shuffles residuals, to show what chance produces.
+        is_saved: Whether the model file has what was found.
     """
     fits = [("starting model", result.start)]
     fits += [("final model", result.fit)] if len(result.steps) > 1 else []
@@ -98,7 +103,8 @@ def write_diagnosis_page(
             outlier_section(result.fit),
         ],
         foot=run_foot(result.run, title),
-        next=diagnosis_step(result, title),
+        means=diagnosis_meaning(result),
+        next=diagnosis_step(result, title, is_saved),
         live=diagnosis_view(result, title),
     )
     path = Path(folder) / PAGE

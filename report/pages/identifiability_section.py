@@ -1,6 +1,7 @@
 """The section of a design page on what the touches can and cannot distinguish."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import groupby
 
 from matstd.artefact.compare import IdentifiabilityReport
@@ -23,16 +24,12 @@ from matstd.report.identifiability import (
 )
 from matstd.report.layout import Picture, Section, Table
 from matstd.report.maps import draw_ties
-from matstd.report.numbers import capital, digits, shown
+from matstd.report.numbers import digits, shown
 from matstd.report.pages.design_result import Design
 from matstd.twin.machine import Chain, Link
 from matstd.twin.units import DEG
 
 CORRELATION = "correlation.png"
-
-_COMBINATIONS = 20  # of the table
-_TIES = 12  # pairs that are not folded
-_OPEN = 12  # rows up to which a table is unfolded
 
 _DEGREES = (
     "Degrees over the whole travel of a linear axis, harmonics of a rotary one, that the touches "
@@ -44,9 +41,11 @@ _ALTERNATIVES = (
     "Effect of measuring half of the touches in another way; each set-up has its own unknown "
     "place, each stylus its own unknown offset. Reach and travel are checked, collisions are not"
 )
+_RESOLVED = "{} combinations that these touches cannot distinguish, but others could"
 _NEVER = (
-    "{count} combinations. They keep their expected values by convention: the datum of a set-up, "
-    "the preset of a tool and the zeros of the axes absorb them."
+    "{} combinations that no touch on a workpiece can distinguish. They keep their expected values "
+    "by convention: the datum of a set-up, the preset of a tool and the zeros of the axes absorb "
+    "them"
 )
 _CORRELATIONS = (
     "Correlations after the fit of the parameters in the largest groups; each group is framed. "
@@ -56,7 +55,7 @@ _CORRELATIONS = (
 
 
 def identifiability_sections(design: Design) -> list[Section]:
-    """Condition, degrees, single errors, combinations, freedoms and correlations."""
+    """Condition and degrees; single errors, combinations, freedoms and correlations as files."""
     known = design.identifiability
     never = [f for f in known.freedoms if f.first.resolution is Resolution.NEVER]
     resolved = [f for f in known.freedoms if f not in never]
@@ -66,15 +65,20 @@ def identifiability_sections(design: Design) -> list[Section]:
         "individually. The other errors do not impair the prediction of the tool point, but no "
         "single one of them can be stated."
     )
+    correlated, drawn = _ties(design)
+    lists = [
+        _conditions(known),
+        _alternatives(known),
+        _single_errors(known),
+        _combinations(known),
+        _freedoms(known, resolved, _RESOLVED.format(sum(f.count for f in resolved))),
+        _freedoms(known, never, _NEVER.format(sum(f.count for f in never))),
+        correlated,
+    ]
     return [
-        Section("What the touches can distinguish", sentences=[words], table=_conditions(known)),
-        Section("Supported degrees of the error functions", is_part=True, table=_degrees(known)),
-        *_single_errors(known),
-        Section("Best known combinations", is_part=True, table=_combinations(known)),
-        _resolved(known, resolved),
-        Section(table=_alternatives(known)),
-        *_never(known.chain, never),
-        *_ties(design),
+        Section("What the touches can distinguish", sentences=[words], table=_degrees(known)),
+        *(Section(table=replace(table, is_file=True)) for table in lists),
+        Section(fold="Correlated parameters", is_for_screen=True, pictures=[drawn]),
     ]
 
 
@@ -136,29 +140,23 @@ def _degree(degree: Degree | None) -> str:
     return f"{which}\n± {_size(degree.u, degree.unit)}"
 
 
-def _single_errors(known: IdentifiabilityReport) -> list[Section]:
-    table = Table.of(
+def _single_errors(known: IdentifiabilityReport) -> Table:
+    return Table.of(
         known.alone,
         {
             "error": lambda a: in_words(a.name, known.chain),
             "expected, standard deviation": lambda a: _size(a.expected, a.unit),
             "remaining standard uncertainty": lambda a: _size(a.u, a.unit),
         },
+        f"{len(known.alone)} errors whose variance the touches reduce at least tenfold",
     )
-    count = len(table.rows)
-    fold = f"{count} errors whose variance the touches reduce at least tenfold"
-    return [
-        Section("Individually known errors", is_part=True),
-        Section(fold=fold, is_unfolded=count <= _OPEN, table=table),
-    ]
 
 
 def _combinations(known: IdentifiabilityReport) -> Table:
     names = [short(name) for name in known.model.names]
     units = [parameter.unit for _, parameter in known.model.parameters]
-    shown_ones = known.combinations[:_COMBINATIONS]
     return Table.of(
-        shown_ones,
+        known.combinations,
         {
             "combination": lambda c: _with_minus(
                 combination_words(names, units, c.weights, c.importance)
@@ -166,8 +164,8 @@ def _combinations(known: IdentifiabilityReport) -> Table:
             "standard uncertainty": lambda c: _size(c.u, c.unit),
             "expected over remaining": lambda c: digits(c.gain, 2),
         },
-        f"The {len(shown_ones)} most certain of {len(known.combinations)} combinations that the "
-        "touches determine better than the expected errors do, with unknown set-up and tool; "
+        f"{len(known.combinations)} combinations, the most certain first, that the touches "
+        "determine better than the expected errors do, with unknown set-up and tool; "
         "scaled to the first error",
     )
 
@@ -184,19 +182,11 @@ def _by_cause(freedoms: Sequence[FreedomFamily], chain: Chain) -> Iterator[tuple
         yield "\n".join(_with_minus(family_words(f, chain)) for f in members), why, by
 
 
-def _resolved(known: IdentifiabilityReport, resolved: Sequence[FreedomFamily]) -> Section:
-    title = "Combinations that these touches cannot distinguish, but others could"
-    if not resolved:
-        words = "None: other touches leave the same combinations free."
-        return Section(title, is_part=True, sentences=[words])
-    count = sum(f.count for f in resolved)
-    rows = [list(row) for row in _by_cause(resolved, known.chain)]
-    return Section(
-        title,
-        is_part=True,
-        sentences=[f"{count} of the {len(known.gauge.freedoms)} free combinations."],
-        table=Table(("indistinguishable", "reason", "distinguished by"), rows),
-    )
+def _freedoms(
+    known: IdentifiabilityReport, freedoms: Sequence[FreedomFamily], caption: str
+) -> Table:
+    rows = [list(row) for row in _by_cause(freedoms, known.chain)]
+    return Table(("indistinguishable", "reason", "distinguished by"), rows, caption)
 
 
 def _alternatives(known: IdentifiabilityReport) -> Table:
@@ -211,36 +201,14 @@ def _alternatives(known: IdentifiabilityReport) -> Table:
     return Table(columns, rows, _ALTERNATIVES)
 
 
-def _never(chain: Chain, never: Sequence[FreedomFamily]) -> list[Section]:
-    title = "Combinations that no touch on a workpiece can distinguish"
-    words = _NEVER.format(count=sum(f.count for f in never))
-    return [
-        Section(title, is_part=True, sentences=[words]),
-        *(
-            Section(sentences=[f"**{capital(why)}:**"], items=lines.split("\n"))
-            for lines, why, _ in _by_cause(never, chain)
-        ),
-    ]
-
-
-def _ties(design: Design) -> list[Section]:
+def _ties(design: Design) -> tuple[Table, Picture]:
     """Parameters that the touches correlate without confounding them."""
     fit = design.machines[0].fit
     found = ties(fit.covariance, [short(name) for name in fit.names])
-    words = [pair_words(pair, found.names) for pair in found.pairs]
-    intro = (
-        f"{len(found.pairs)} pairs of parameters remain correlated beyond "
-        f"{STRONG_CORRELATION} after the fit, in {len(found.groups)} groups. "
-        "Difference and sum are in units of the standard deviations of the parameters."
+    caption = (
+        f"{len(found.pairs)} pairs of parameters that remain correlated beyond "
+        f"{STRONG_CORRELATION} after the fit, in {len(found.groups)} groups; difference and sum "
+        "are in units of their standard deviations"
     )
-    more = len(words) - _TIES
-    return [
-        Section(
-            "Correlated parameters",
-            is_part=True,
-            sentences=[intro],
-            pictures=[Picture(CORRELATION, _CORRELATIONS, draw_ties(found))],
-        ),
-        Section(items=words[:_TIES]),
-        *([Section(fold=f"{more} more pairs", items=words[_TIES:])] if more > 0 else []),
-    ]
+    rows = [[pair_words(pair, found.names)] for pair in found.pairs]
+    return Table(("pair",), rows, caption), Picture(CORRELATION, _CORRELATIONS, draw_ties(found))

@@ -100,6 +100,10 @@ def write_setup_page(
             f"`{calibration_hash(standard)}`, workshop `{workshop}`, as in the head of every "
             "program and log."
         ),
+        means="The programs move as drawn only if standard, probe and preset stand as stated "
+        "here; the first program finds where the standard really is.",
+        next="Work through the steps in their order, single block and feed low at first. Stop at "
+        "any difference from what is stated here.",
         key=(),
         sections=[
             Section(pictures=[Picture(picture, drawing, draw_setup(plan))]),

@@ -118,7 +118,9 @@ def cad_sections(c: Conformity) -> list[Section]:
             f"{max(c.chord_error.values()) / UM:.1f} µm at most, requested {c.chord / UM:.0f} µm",
         ],
     ]
-    return [Section("CAD files, measured after writing", table=Table((), rows))]
+    return [
+        Section(fold="CAD files, measured after writing", is_for_screen=True, table=Table((), rows))
+    ]
 
 
 def at_most(deviation: float) -> str:
@@ -132,7 +134,11 @@ def _yes(value: bool) -> str:
 
 def making_sections(made: Making) -> list[Section]:
     """Cutters, stiffness and milling."""
-    return [Section("Making the standard", table=Table((), making_rows(made)), notes=[_MAKING])]
+    table = Table((), making_rows(made))
+    return [
+        Section("Making the standard", sentences=[_MAKING]),
+        Section(fold="Cutters, stiffness, milling", is_for_screen=True, table=table),
+    ]
 
 
 def making_rows(made: Making) -> list[tuple[str, str]]:

@@ -8,6 +8,7 @@ import numpy as np
 from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, um
 from matstd.report.scenes import Scene, draw_volumes
+from matstd.report.verdict import study_meaning
 from matstd.report.words import dominant_words, place_words, sampling_words, unsampled
 from matstd.sensitivity.shares import regions
 from matstd.sensitivity.study import Study, Volume, has_volume, level, volume
@@ -60,6 +61,8 @@ def write_study_page(
         title=f"Sensitivities of {chain.name}",
         heading=f"Sensitivities of {chain.name}",
         lead=f"Chain `{chain.notation}`, {len(chain.symbols)} error parameters.",
+        means=study_meaning(study),
+        next="`matstd design` places a standard that distinguishes these errors.",
         key=[
             KeyFigure(um(float(v.mean.mean())), "mean volumetric error over the workspace"),
             KeyFigure(um(float(v.p95.mean())), "95 % quantile over machines, mean over the poses"),
@@ -77,7 +80,11 @@ def write_study_page(
 
 
 def study_sections(
-    study: Study, pictures: Sequence[Shown], place: str = "", title: str = ""
+    study: Study,
+    pictures: Sequence[Shown],
+    place: str = "",
+    title: str = "",
+    shown_first: str = "",
 ) -> list[Section]:
     """Sampling, every map, and the errors that dominate in each region.
 
@@ -86,6 +93,7 @@ def study_sections(
         pictures: File and caption of every map.
         place: Folder of the maps as seen from the page, with a slash at its end.
         title: Of the section.
+        shown_first: File of the map that is shown; the others are folded. All are, without one.
     """
     v, names = study.volumetric, [s.name for s in study.chain.symbols]
     order = {name: i for i, name in enumerate(_ORDER)}
@@ -105,9 +113,13 @@ def study_sections(
     )
     maps = [Picture(f"{place}{name}", caption) for name, caption in shown]
     columns = ("region", "volumetric error, µm rms", "errors")
+    first = [one for one in maps if one.file.endswith(shown_first)]
+    others = [one for one in maps if one not in first]
+    fold = f"{len(others)} more maps"
     return [
-        Section(title, sentences=[words], pictures=maps),
+        Section(title, sentences=[words], pictures=first),
         Section(table=Table(columns, rows, _VARIANCE)),
+        *([Section(fold=fold, is_for_screen=True, pictures=others)] if others else []),
     ]
 
 

@@ -7,6 +7,7 @@ from matstd.diagnosis.task import TaskUncertainty
 from matstd.report.layout import Page, Section, Table, write_page
 from matstd.report.numbers import sentence as as_sentence
 from matstd.report.task import budget_rows
+from matstd.report.verdict import uncertainty_meaning
 from matstd.twin.units import UM
 
 _MEASURAND = (
@@ -61,6 +62,9 @@ def write_uncertainty_page(
         title=f"Uncertainty of {task}",
         heading=f"Uncertainty of {task}",
         lead=sentence,
+        means=uncertainty_meaning(found),
+        next="Compare U with the tolerance: a fifth of it or less is usual. To lower U, correct "
+        "results with a model (`--model`), measure more visits, or another place of the machine.",
         key=(),
         sections=[
             Section(sentences=[_MEASURAND.format(standard=standard)]),

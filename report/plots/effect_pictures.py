@@ -83,7 +83,6 @@ def draw_fall(diagnosis: Diagnosis) -> Figure:
         _value(ax, i, fitted[i], not up, BLUE)
     if high > RATIO * low:
         ax.set_yscale("log")
-        ax.yaxis.set_major_formatter("{x:g}")
         ax.set_ylim(0.55 * low, 1.8 * high)
     else:
         ax.set_ylim(0.0, 1.18 * high)

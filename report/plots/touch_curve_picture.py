@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from matstd.artefact.worth import TouchCurve
-from matstd.report.style import INK, LINE, figure, series
+from matstd.report.style import INK, figure, plain, series
 from matstd.twin.units import UM
 
 if TYPE_CHECKING:
@@ -25,9 +25,7 @@ def draw_touch_curves(curves: Sequence[TouchCurve], noise: float) -> Figure:
             _curve(axes, k, curve, (curve.rms_user if user else curve.rms) / UM)
         axes.set(xscale="log", yscale="log", xlabel=f"touches of {noise / UM:.3g} µm noise")
         axes.set_title(title, loc="left", fontsize=10.5, color=INK)
-        axes.grid(which="both", color=LINE, lw=0.6)
-        axes.spines[["top", "right"]].set_visible(False)
-        _plain_numbers(axes)
+        plain(axes)
     left.set_ylabel("unpredicted tool point error in µm rms")
     handles, labels = left.get_legend_handles_labels()
     drawn.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False, fontsize=9)
@@ -50,13 +48,3 @@ def _curve(axes: Any, k: int, curve: TouchCurve, values: Any) -> None:
         zorder=5 if own else 3,
         label=curve.name,
     )
-
-
-def _plain_numbers(axes: Any) -> None:
-    """100 and 0.5 instead of powers of ten."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
-
-    for axis, steps in ((axes.xaxis, (1.0, 2.0, 5.0)), (axes.yaxis, (1.0, 2.0, 5.0))):
-        axis.set_major_locator(LogLocator(subs=steps, numticks=20))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axis.set_minor_formatter(NullFormatter())

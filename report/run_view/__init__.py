@@ -7,15 +7,16 @@ browser.
 
 from matstd.report.run_view.frame import Framed
 from matstd.report.run_view.next_step import comparison_step, diagnosis_step
-from matstd.report.run_view.run_data import Told
-from matstd.report.run_view.view import comparison_view, diagnosis_view, run_view
+from matstd.report.run_view.run_data import Findings
+from matstd.report.run_view.view import comparison_view, diagnosis_view, learnt_view, run_view
 
 __all__ = [
+    "Findings",
     "Framed",
-    "Told",
     "comparison_step",
     "comparison_view",
     "diagnosis_step",
     "diagnosis_view",
+    "learnt_view",
     "run_view",
 ]

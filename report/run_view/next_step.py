@@ -4,40 +4,43 @@ from matstd.diagnosis.answer import Comparison, Diagnosis, Verdict
 from matstd.report.numbers import plural
 
 
-def diagnosis_step(result: Diagnosis, title: str) -> str:
+def diagnosis_step(result: Diagnosis, title: str, is_saved: bool = False) -> str:
     """After a diagnosis.
 
     Args:
         result: The diagnosis.
         title: Name of the run file.
+        is_saved: Whether the model file has what was found.
     """
     if result.verdict is Verdict.UNDECIDED:
         what = plural(len(result.repeat), "touch") if len(result.repeat) else "some touches"
-        return f"Next: repeat {what}; their scatter decides whether the residual is noise."
+        return f"Repeat {what}; their scatter decides whether the residual is noise."
     if result.verdict is Verdict.UNEXPLAINED and result.laws is not None and result.laws.laws:
         return (
-            "Next: look for the cause of the learnt law, rename it in effect.py, and diagnose "
+            "Look for the cause of the learnt law, rename it in effect.py, and diagnose "
             "again with `--effects effect.py`. model.toml predicts with it until then."
         )
     if result.verdict is Verdict.UNEXPLAINED and result.laws is not None:
-        return "Next: record what could cause it (a temperature, a load), and diagnose again."
+        return "Record what could cause it (a temperature, a load), and diagnose again."
     if result.verdict is Verdict.UNEXPLAINED:
         return (
-            f"Next: `matstd learn {title}` looks for a law of what remains. Where none holds, "
+            f"`matstd learn {title}` looks for a law of what remains. Where none holds, "
             "record what could cause it (a temperature, a load), and diagnose again."
         )
     if result.verdict is Verdict.NONE:
-        return "Next: add no effect; `matstd compensate` returns the model to the machine."
+        return "Add no effect; `matstd compensate` returns the model to the machine."
     them = "it" if len(result.steps) == 2 else "them"
-    told = "; probe `next_measurement_1.csv` to learn which cause it is" if result.plans else ""
+    probe = "; probe `next_measurement_1.csv` to learn which cause it is" if result.plans else ""
+    if is_saved:
+        return f"`matstd compensate` returns model.toml to the machine{probe}."
     return (
-        f"Next: `matstd diagnose {title} --auto` puts {them} into model.toml, and "
-        f"`matstd compensate` returns the model to the machine{told}."
+        f"`matstd diagnose {title} --auto` puts {them} into model.toml, and "
+        f"`matstd compensate` returns the model to the machine{probe}."
     )
 
 
 def comparison_step(found: Comparison, title: str) -> str:
     """After a comparison; arguments as of `diagnosis_step`."""
     if not found.structure:
-        return "Next: nothing; the model describes this run down to its noise."
-    return f"Next: `matstd diagnose {title} --auto` looks for the effect that the model lacks."
+        return "Nothing; the model describes this run down to its noise."
+    return f"`matstd diagnose {title} --auto` looks for the effect that the model lacks."

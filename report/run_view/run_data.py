@@ -1,14 +1,15 @@
 """The data of the live view of a run, packed for the page."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from matstd.diagnosis.fit import Fit, file_unit, inner_unit
-from matstd.diagnosis.reduced import Board, Level, Switch
+from matstd.diagnosis.reduced import Board, Matrices, Switch
 from matstd.diagnosis.residual import variables
 from matstd.report.effects import effect_title
+from matstd.report.laws import LawCurve
 from matstd.report.live import TREE, packed
 from matstd.report.numbers import capital, unit_words
 from matstd.report.run_view.touched_bodies import touched_bodies
@@ -30,7 +31,7 @@ MOST_COLUMNS, FEWER_COLUMNS = 40, 10
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class Findings:
     """What the report says of a run, for its live view.
 
     Attributes:
@@ -46,26 +47,30 @@ class Told:
     remains: str = ""
 
 
-def run_data(board: Board, told: Told) -> TREE:
+def run_data(
+    board: Board, findings: Findings, curves: Mapping[str, Sequence[LawCurve]] | None = None
+) -> TREE:
     """Data of `run_page.js`.
 
     Args:
         board: The run with its effects.
-        told: What the report says of it.
+        findings: What the report says of it.
+        curves: Of laws among the switches, by their names, one for every variable.
     """
     fit = board.fit
-    alone = None if told.set_up_alone is None else told.set_up_alone / UM
+    alone = None if findings.set_up_alone is None else findings.set_up_alone / UM
     return {
-        "title": told.title,
-        "remains": in_own_unit(told.remains),
+        "title": findings.title,
+        "remains": in_own_unit(findings.remains),
         "unit": in_own_unit("µm"),
         "noise": float(np.median(fit.run.u)) / UM,
         "foundNoise": float(np.median(fit.u)) / UM,
         "setUpAlone": alone,
         "touches": _touches(fit),
         "columns": _columns(fit.run.touches),
+        "curves": [_curve(law, c) for law, own in (curves or {}).items() for c in own],
         "body": _bodies(fit.run.touches),
-        "switches": [_switch(s, told.sizes.get(s.effect.name, "")) for s in board.switches],
+        "switches": [_switch(s, findings.sizes.get(s.effect.name, "")) for s in board.switches],
         "estimate": packed(board.estimate, "f8"),
         "known": [
             {"on": sorted(on), "fitted": known[0] / UM, "heldOut": known[1] / UM}
@@ -148,6 +153,22 @@ def _columns(touches: Touches) -> list[TREE]:
     return out
 
 
+def _curve(law: str, curve: LawCurve) -> TREE:
+    """A law over a variable; levers in the unit of the residual over that of the carrier."""
+    return {
+        "law": law,
+        "title": f"{curve.title} over {curve.label.partition(' in ')[0]}",
+        "carrier": f"{curve.title} in {in_own_unit(curve.unit)}",
+        "label": capital(curve.label),
+        "x": packed(curve.x, "f4"),
+        "value": packed(curve.value, "f4"),
+        "u": packed(curve.u, "f4"),
+        "touchX": packed(curve.touch_x, "f4"),
+        "touchValue": packed(curve.touch_value, "f4"),
+        "lever": packed(curve.lever * curve.scale / UM, "f4"),
+    }
+
+
 def _bodies(touches: Touches) -> TREE | None:
     """What was touched, in grains that suit its size; None where nothing can be drawn."""
     parts = touched_bodies(touches)
@@ -205,15 +226,20 @@ def _triangle(matrices: Array) -> Array:
     return np.ascontiguousarray(matrices[..., upper[0], upper[1]])
 
 
-def _level(one: Level) -> TREE:
-    """Matrices of one size of the noise, µm for mm in those that are errors."""
+_DIGITS = ("f6", "f6", "f4", "f4", "f4")
+"""Numbers of groups left out, by the order of their term: each is a tenth of the last or less, and
+the six digits of a held-out error follow from differences of them."""
+
+
+def _matrices(one: Matrices, order: int = 0) -> TREE:
+    """Matrices, or a term of their series; those that are errors in µm for mm."""
     return {
-        "s": one.s,
         "G": packed(_triangle(one.G), "f8"),
         "H1": packed(_triangle(one.H1) / UM**2, "f8"),
         "H2": packed(_triangle(one.H2), "f8"),
         "H3": packed(_triangle(one.H3) / UM**2, "f8"),
-        "F": packed(_triangle(one.F), "f4"),
+        "F": packed(_triangle(one.F), _DIGITS[order] if order < len(_DIGITS) else "f3"),
+        "tested": packed(_triangle(one.tested) / UM**2, "f8"),
         "freedom": one.freedom,
         "newRun": one.new_run / UM**2,
     }
@@ -222,17 +248,17 @@ def _level(one: Level) -> TREE:
 def _reduced(board: Board) -> TREE:
     """What the solver takes."""
     known = board.reduced
-    sizes = [len(g) for g in board.fit.groups] if not known.tested else []
-    # where the levels reach to the stated noise, they serve the first pass as well
-    is_within = known.levels[0].s <= 1.0 <= known.levels[-1].s
+    # where the series reaches to the stated noise, it serves the first pass as well
+    is_within = known.span[0] <= 1.0 <= known.span[1]
     return {
         "size": len(board.estimate) + 1,
         "count": known.count,
         "weight": known.weight,
-        "first": None if is_within else _level(known.first),
-        "levels": [_level(k) for k in known.levels],
-        "tested": [packed(_triangle(H) / UM**2, "f8") for H in known.tested],
-        "groupSizes": sizes,
+        "first": None if is_within else _matrices(known.first),
+        "terms": [_matrices(term, order) for order, term in enumerate(known.terms)],
+        "span": list(known.span),
+        "isTested": known.is_tested,
+        "groupSizes": [] if known.is_tested else [len(g) for g in board.fit.groups],
     }
 
 

@@ -1,14 +1,18 @@
 """The live view as a page takes it: elements, style and script."""
 
+from collections.abc import Mapping, Sequence
+
 from markupsafe import Markup
 
 from matstd.diagnosis.answer import Comparison, Diagnosis
 from matstd.diagnosis.geometry import LearntGeometry, Rung
-from matstd.diagnosis.reduced import Board, compared_board, diagnosed_board
+from matstd.diagnosis.laws import Learning
+from matstd.diagnosis.reduced import Board, compared_board, diagnosed_board, learnt_board
+from matstd.report.laws import LawCurve, law_curve, no_law_sentence, size_words
 from matstd.report.layout import LiveView
 from matstd.report.live import scripted, style
 from matstd.report.numbers import sentence
-from matstd.report.run_view.run_data import Told, run_data
+from matstd.report.run_view.run_data import Findings, run_data
 from matstd.report.verdict import part_lines
 from matstd.report.words import sizes, structure_words
 
@@ -21,40 +25,57 @@ _PLACE = Markup(
 )
 
 
-def run_view(board: Board, told: Told) -> LiveView:
+def run_view(
+    board: Board, findings: Findings, curves: Mapping[str, Sequence[LawCurve]] | None = None
+) -> LiveView:
     """The view of a run and its effects.
 
     Args:
-        board: As `diagnosed_board` or `compared_board` makes it.
-        told: What the report says of it.
+        board: As `diagnosed_board`, `learnt_board` or `compared_board` makes it.
+        findings: What the report says of it.
+        curves: Of laws among its effects, by their names.
     """
     return LiveView(
         style=style(),
         place=_PLACE,
-        script=scripted("run_page", run_data(board, told)),
+        script=scripted("run_page", run_data(board, findings, curves)),
     )
 
 
 def diagnosis_view(result: Diagnosis, title: str) -> LiveView:
     """Of a diagnosis: found effects on."""
-    told = Told(
+    findings = Findings(
         title,
         set_up_alone=_set_up_alone(result.geometry),
         sizes={s.effect.name: sizes(s, most=2) for s in result.steps if s.effect is not None},
         remains=sentence(dict(part_lines(result))["what remains"]),
     )
-    return run_view(diagnosed_board(result), told)
+    return run_view(diagnosed_board(result), findings)
+
+
+def learnt_view(learning: Learning, title: str) -> LiveView:
+    """Of laws that were learnt: they are on, each with its curve over its variables."""
+    laws = [one.law for one in learning.laws]
+    findings = Findings(
+        title,
+        sizes={law.name: size_words(learning, law) for law in laws},
+        remains="" if laws else no_law_sentence(learning),
+    )
+    curves = {
+        law.name: [law_curve(learning, law, k) for k in range(len(law.factors))] for law in laws
+    }
+    return run_view(learnt_board(learning), findings, curves)
 
 
 def comparison_view(found: Comparison, title: str) -> LiveView:
     """Of a comparison: no effect on."""
     patterns = "; ".join(structure_words(s) for s in found.structure[:PATTERNS])
-    told = Told(
+    findings = Findings(
         title,
         set_up_alone=_set_up_alone(found.geometry),
         remains=sentence(patterns) if patterns else "Nothing beyond chance.",
     )
-    return run_view(compared_board(found), told)
+    return run_view(compared_board(found), findings)
 
 
 def _set_up_alone(geometry: LearntGeometry) -> float | None:

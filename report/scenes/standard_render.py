@@ -16,7 +16,7 @@ SIZE = (2000, 860)
 _BODY = "#b9bec4"
 _SPHERE = "#f0e442"  # a colour that no patch has
 _PLANE = "#8fae8b"
-_NAME_ROOM = 14.0  # mm in the picture between two names, one over the other
+_FAR, _STRIDE = 500.0, 2.0  # of a line of sight, mm
 _PITCH = 0.8  # mm, of the drawn grid of a face
 _VIEWS = ((38.0, 33.0), (218.0, 33.0))  # azimuth and elevation of the eye, deg
 
@@ -95,7 +95,11 @@ def _face(patch: FreeformPatch) -> Any:
 
 
 def _add_labels(plotter: Any, standard: Standard, eye: Array) -> None:
-    """Names above the faces that are visible, and beside balls and plane."""
+    """Names above the faces that are visible, on the balls that are, and on the plane.
+
+    A name is drawn over everything: beside or above its ball it would stand on another one, and
+    that of a hidden ball on what hides it.
+    """
     right, up = _picture_axes(eye)
     places, names = [], []
     for patch in standard.patches:
@@ -106,37 +110,36 @@ def _add_labels(plotter: Any, standard: Standard, eye: Array) -> None:
             places.append(sides[np.argmax(sides @ up)] + 5.0 * up)
             names.append(patch.name)
     for sphere in standard.spheres:
-        places.append(_beside(sphere, places, right, up))
-        names.append(sphere.name)
+        if _is_seen(standard, sphere, eye):
+            places.append(sphere.centre)
+            names.append(sphere.name)
     places.append(_free_corner(standard, eye))
     names.append(standard.plane.name)
     plotter.add_point_labels(
         # Before everything else, or a label would be half sunk in the part.
         np.array(places) + 400.0 * eye - 6.0 * right,
         names,
-        font_size=20,
+        font_size=18,
         bold=True,
         text_color="black",
         shape_color="white",
-        shape_opacity=0.7,
-        margin=3,
+        shape_opacity=0.6,
+        margin=2,
         show_points=False,
         always_visible=True,
     )
 
 
-def _beside(sphere: DatumSphere, taken: list[Array], right: Array, up: Array) -> Array:
-    """A place for the name of a ball: above it, or where no other name is."""
-    r = sphere.radius
-    around = [(r + 6.0) * up, (r + 20.0) * right, -(r + 20.0) * right, -(r + 14.0) * up]
-    tried = sphere.centre + np.array(around)
-    if not taken:
-        return np.asarray(tried[0])
-    # names are three times as wide as they are high
-    across = (tried[:, None] - np.array(taken)) @ np.stack([right / 3.0, up], axis=-1)
-    room = np.linalg.norm(across, axis=-1).min(axis=1)
-    free: Array = tried[np.argmax(np.minimum(room, _NAME_ROOM))]
-    return free
+def _is_seen(standard: Standard, sphere: DatumSphere, eye: Array) -> bool:
+    """Whether nothing stands between the middle of a ball and the eye."""
+    others = [body for name, body in standard.bodies.items() if name != sphere.name]
+    return _room(others, sphere.centre + (sphere.radius + 0.5) * eye, eye) > 0.0
+
+
+def _room(bodies: list[Any], point: Array, eye: Array) -> float:
+    """Distance of the line from a point to the eye from some bodies, mm."""
+    line = point + np.arange(0.0, _FAR, _STRIDE)[:, None] * eye
+    return float(np.min([body.distance(line) for body in bodies]))
 
 
 def _free_corner(standard: Standard, eye: Array) -> Array:
@@ -145,7 +148,7 @@ def _free_corner(standard: Standard, eye: Array) -> Array:
     sides = np.array([[sx, sy] for sx in (-1, -0.5, 0, 0.5, 1) for sy in (-1, -0.5, 0, 0.5, 1)])
     flat = np.column_stack([half * sides, np.full(len(sides), standard.base.thickness)])
     bodies = [body for name, body in standard.bodies.items() if name != "BASE"]
-    room = np.min([body.distance(flat + 8.0 * eye) for body in bodies], axis=0)
+    room = np.array([_room(bodies, point + 8.0 * eye, eye) for point in flat])
     holes = np.array([[hole.x, hole.y] for hole in standard.holes]).reshape(-1, 2)
     for hole in holes:
         room = np.minimum(room, np.linalg.norm(flat[:, :2] - hole, axis=1) - 12.0)

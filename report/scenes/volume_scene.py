@@ -97,7 +97,8 @@ def draw_volumes(pictures: Mapping[Path, Sequence[Scene]], stl: str | Path | Non
     """
     scenes = [scene for each in pictures.values() for scene in each]
     if stl is not None:
-        scenes = [replace(scene, body=_extent(Path(stl))) for scene in scenes]
+        extent = _extent(Path(stl))
+        scenes = [replace(scene, body=extent) for scene in scenes]
     images = _rendered(scenes, None if stl is None else Path(stl))
     start = 0
     for path, own in pictures.items():

@@ -46,9 +46,23 @@ def nothing(text: str) -> Figure:
 
 
 def plain(ax: Any, grid: Literal["both", "x", "y"] = "both") -> None:
-    """Axes without a box, with a faint grid behind the data."""
+    """Axes without a box, with a faint grid behind the data and 100 in place of powers of ten."""
     ax.spines[["top", "right"]].set_visible(False)
     ax.spines[["left", "bottom"]].set_color(SOFT)
     ax.tick_params(colors=INK, labelsize=8.5, color=SOFT)
     ax.grid(axis=grid, color=LINE, lw=0.6)
     ax.set_axisbelow(True)
+    for axis in (ax.xaxis, ax.yaxis):
+        if axis.get_scale() == "log":
+            _plain_numbers(axis)
+
+
+def _plain_numbers(axis: Any) -> None:
+    """Numbers of a logarithmic axis as 1, 2, 5, 10; powers of ten from three decades on."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    low, high = axis.get_view_interval()
+    steps = (1.0, 2.0, 5.0) if high < 1e3 * low else (1.0,)
+    axis.set_major_locator(LogLocator(subs=steps, numticks=20))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_formatter(NullFormatter())

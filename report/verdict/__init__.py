@@ -1,12 +1,27 @@
-"""The three parts of a verdict in words: geometry, named effects, what remains.
+"""The three parts of a verdict in words, and what results mean for the use of a machine.
 
-In: a `Diagnosis` or a `Comparison`. Out: lines for the console and a section of the page.
+In: a `Diagnosis` or a `Comparison`, budgets, a study. Out: lines for the console and a section of
+the page; the words of the box below its head.
 """
 
+from matstd.report.verdict.meanings import (
+    comparison_meaning,
+    diagnosis_meaning,
+    study_meaning,
+    uncertainty_meaning,
+)
 from matstd.report.verdict.part_words import (
     part_lines,
     promise_words,
     repeatability_words,
 )
 
-__all__ = ["part_lines", "promise_words", "repeatability_words"]
+__all__ = [
+    "comparison_meaning",
+    "diagnosis_meaning",
+    "part_lines",
+    "promise_words",
+    "repeatability_words",
+    "study_meaning",
+    "uncertainty_meaning",
+]

@@ -10,7 +10,6 @@ from matstd.twin.errors import DesignError, NotReachable, OutsideTravel, Unknown
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, inverse_linear, tip
 from matstd.twin.sampling import latin_points
-from matstd.twin.units import DEG
 
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 _ROUNDS = 40  # draws of joints until enough tool points lie in the box
@@ -43,7 +42,7 @@ class Workspace:
             reach = self.chain.link(name).range
             slack = 1e-9 * (reach[1] - reach[0])
             if low < reach[0] - slack or high > reach[1] + slack:
-                unit = 1.0 if self.chain.link(name).kind == "linear" else DEG
+                unit = self.chain.link(name).unit
                 raise OutsideTravel(
                     f"workspace of {name}: {low / unit:g} to {high / unit:g}, beyond the travel "
                     f"{reach[0] / unit:g} to {reach[1] / unit:g}"

@@ -9,7 +9,12 @@ from bench import LENGTH, oracle_tip
 from matstd.cli import main
 from matstd.compensation.field.inverse import datum_of, deviation_after
 from matstd.compensation.field.machine_errors import MachineErrors, deviation
-from matstd.compensation.field.over_workspace import aligned, sample_workspace
+from matstd.compensation.field.over_workspace import (
+    UncorrectedError,
+    _as_determined,
+    aligned,
+    sample_workspace,
+)
 from matstd.compensation.field.state import State
 from matstd.compensation.tables.along_axes import along_axes
 from matstd.compensation.tables.by_name import line
@@ -21,6 +26,8 @@ from matstd.compensation.tables.formats import (
     write_tables,
 )
 from matstd.compensation.tables.header import Header, header_of
+from matstd.diagnosis.geometry.rows import Estimate
+from matstd.report.compensation import table_lines
 from matstd.twin.errors import BadFile
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.library.catalogue import parse_effect
@@ -292,6 +299,12 @@ def test_a_fork_head_is_never_made_worse(tmp_path, capsys):
     write_tables(FORMATS["linuxcnc"], tmp_path / "comp", errors, datum, head, q)
     found = verify_tables(FORMATS["linuxcnc"], tmp_path / "comp", errors, datum, head, q)
     assert rms(found.result.after) < rms(found.result.before) - 5 * UM  # X is still corrected
+    assert set(found.left_out) == {"A", "C"}
+    # a table left out is no fault of interpolation, and its axis's errors are not represented
+    assert found.interpolation < UM
+    lines = [line for line, _ in table_lines(found)]
+    assert any("tables are left out for" in line for line in lines)
+    assert any("cannot represent" in line and "ECC" in line for line in lines)
     refuse_harmful(found)
     harmful = replace(found, result=replace(found.result, after=with_plain))
     with pytest.raises(Harmful, match=r"linuxcnc: the tables would leave .* µm rms .*--within"):
@@ -421,3 +434,17 @@ def test_what_a_model_follows_has_to_be_stated(tmp_path, capsys):
     z = columns(out / "linuxcnc" / "Z.comp", "# matstd sign")
     np.testing.assert_allclose(z[:, 1:], -0.020, atol=1e-6)
     assert "T_frame=25" in (out / "linuxcnc" / "Z.comp").read_text()
+
+
+def test_a_remaining_location_error_has_the_size_that_its_run_determines(bench_chain):
+    """A parameter of 21 ± 30 µm whose line the run determines to 29.2 ± 0.6: both scale alike."""
+    errors = only(bench_chain, "location(EX0C)", 21 * UM)
+    left = UncorrectedError(name="EX0C", before=20 * UM, rms=10 * UM, u=15 * UM)
+    rows = errors.parameter_rows("EX0C")
+    assert _as_determined(left, errors, rows) is left
+    known = replace(errors, determined={"EX0C": Estimate(-29.4 * UM, 0.6 * UM)})
+    found = _as_determined(left, known, rows)
+    # 20 of 21 µm at the tool after alignment, of which half remains
+    np.testing.assert_allclose(found.before, 28.0 * UM)
+    np.testing.assert_allclose(found.rms, 14.0 * UM)
+    np.testing.assert_allclose(found.u, 0.6 / 2.1 * UM)

@@ -230,7 +230,7 @@ def test_a_model_read_back_predicts_the_same(saved, case) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "expected"),
     [
-        ("model/1", "model/3", "format.*model/3"),
+        ("model/2", "model/3", "format.*model/3"),
         ('name = "geometric(EXX,linear)"', 'name = "wobble(EXX)"', "wobble"),
         ("amplitude_um", "amplitude_mm", "amplitude_um"),
         ("[source]", "[sauce]", "sauce|source"),

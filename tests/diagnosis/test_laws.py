@@ -12,8 +12,7 @@ from simulator_case import read_back
 from simulator_experiment import MACHINES
 from simulator_laws import law_case
 
-from matstd.api.comparing import compare
-from matstd.api.diagnosing import diagnose
+from matstd.api.diagnosing import compare, diagnose
 from matstd.cli import main
 from matstd.diagnosis.answer import Verdict
 from matstd.diagnosis.files import model_of, read_model, write_model

@@ -11,7 +11,7 @@ from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.reduced.base import Base
 from matstd.diagnosis.reduced.board import compared_board, diagnosed_board, mix
-from matstd.diagnosis.reduced.levels import reduced
+from matstd.diagnosis.reduced.matrices import reduced
 from matstd.diagnosis.reduced.switches import lagrange, switch
 from matstd.diagnosis.regression.memory import Memory
 from matstd.twin.effects.backlash import KIND as BACKLASH
@@ -19,8 +19,8 @@ from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.model.model import Model, columns
 from matstd.twin.thermal.thermal_lag import KIND as LAG
 
-SAME = 1e-6
-"""Relative: figures of files have six digits."""
+SAME = 1e-7
+"""Relative: figures of files have six digits, of which the last shall be the same."""
 
 
 @pytest.fixture(scope="module")

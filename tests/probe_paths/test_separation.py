@@ -1,8 +1,16 @@
 """Gaps of moving cylinders from convex bodies, against projections that share nothing with them."""
 
 import numpy as np
+import pytest
 
-from matstd.probe_paths.plan.separation import EXACT, Hulls, Sweeps, gaps
+from matstd.probe_paths.plan.separation import (
+    EXACT,
+    Hulls,
+    Sweeps,
+    balls_apart,
+    gaps,
+    least_gaps,
+)
 
 SIGNS = np.array([[a, b, c] for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)])
 SHORT = 1e-6
@@ -93,3 +101,32 @@ def test_discs_and_balls_by_hand():
     # the wall of the cone leans by 45 degrees and is met at 15 in the middle: 10 sin 45
     by_hand = [8.0, 5.0, 3.0, 10.0 / np.sqrt(2.0) - 2.0]
     np.testing.assert_allclose(gaps(still, disc, np.inf), by_hand, atol=2.0 * EXACT)
+
+
+def test_balls_round_bodies_are_never_farther_than_the_bodies():
+    sweeps, hulls, _ = random_pairs(np.random.default_rng(5), 800)
+    bound, exact = balls_apart(sweeps, hulls), gaps(sweeps, hulls, np.inf)
+    assert np.max(bound - exact) < EXACT
+    assert (bound > 0.0).sum() > 100
+
+
+@pytest.mark.parametrize("enough", [np.inf, 8.0])
+def test_least_gaps_of_groups_are_those_of_all_rows_searched(enough: float) -> None:
+    rng = np.random.default_rng(6)
+    sweeps, hulls, _ = random_pairs(rng, 800)
+    group = rng.integers(0, 100, 800)
+    searched = []
+
+    def search(rows, limit):
+        searched.append(rows)
+        return gaps(sweeps[rows], hulls[rows], limit)
+
+    found = least_gaps(balls_apart(sweeps, hulls), group, np.full(800, enough), search)
+    exact = gaps(sweeps, hulls, np.inf)
+    for k in np.unique(group):
+        least = exact[group == k].min()
+        if least < enough - EXACT:
+            assert abs(found[group == k].min() - least) < 2.0 * EXACT
+        else:
+            assert found[group == k].min() > enough - 2.0 * EXACT
+    assert len(np.concatenate(searched)) < 600

@@ -1,7 +1,7 @@
 """The largest errors stand first on the console, rotary centres always."""
 
 from matstd.diagnosis.geometry import Estimate, GeometryRow, LearntGeometry, Quantity
-from matstd.report.geometry.geometry_words import determined_comment, noted_lines
+from matstd.report.geometry.geometry_words import noted_lines
 from matstd.twin.units import UM, URAD
 
 
@@ -47,9 +47,3 @@ def test_the_largest_at_the_tool_stands_first_and_what_is_nothing_is_left_out():
 def test_without_anything_clear_the_usual_quantities_stand():
     (line,) = lines(SCALE)
     assert line.startswith("scale of Z (EZZ): 0.74 ± 0.97 ppm")
-
-
-def test_a_model_file_states_what_was_reported():
-    text = determined_comment(LearntGeometry(rows=(LINE,), ladder=(), corrections=()))
-    assert "#   line of C in X (EX0C): 29.4 ± 1.2 µm\n" in text
-    assert all(line.startswith("#") for line in text.strip().splitlines())

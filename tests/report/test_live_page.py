@@ -16,7 +16,7 @@ from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.reduced import compared_board, diagnosed_board
 from matstd.report.layout import Page, write_page
-from matstd.report.run_view import Framed, Told, diagnosis_view, run_view
+from matstd.report.run_view import Findings, Framed, diagnosis_view, run_view
 from matstd.report.run_view.touched_bodies import touched_bodies
 from matstd.twin.effects.backlash import KIND as BACKLASH
 from matstd.twin.library.ordinary import ordinary_model
@@ -27,8 +27,8 @@ from matstd.twin.units import UM
 
 pytestmark = pytest.mark.browser
 
-SAME = 1e-6
-"""Relative: figures of files have six digits."""
+SAME = 1e-7
+"""Relative: figures of files have six digits, of which the last shall be the same."""
 
 FIGURES = """const { fitted, heldOut } = livePage.shown.now;
     return [fitted, heldOut, document.getElementById("fitted").textContent,
@@ -159,12 +159,12 @@ def test_touches_are_pointed_at_chosen_and_listed(live, diagnosis):
         }
         return out;"""
     (i, x, y), *_ = run(live, hit)
-    tell = """livePage.touched.canvas.dispatchEvent(new PointerEvent("KIND", { bubbles: true,
+    send = """livePage.touched.canvas.dispatchEvent(new PointerEvent("KIND", { bubbles: true,
         clientX: X + livePage.touched.canvas.getBoundingClientRect().x,
         clientY: Y + livePage.touched.canvas.getBoundingClientRect().y }));
         return [document.querySelector(".tip").textContent, livePage.shown.marked];"""
-    tell = tell.replace("X +", f"{x} +").replace("Y +", f"{y} +")
-    words, marked = run(live, tell.replace("KIND", "pointermove"))
+    send = send.replace("X +", f"{x} +").replace("Y +", f"{y} +")
+    words, marked = run(live, send.replace("KIND", "pointermove"))
     assert marked == i
     run_, fit = diagnosis.run, diagnosis.fit
     assert f"line {run_.line[i]}," in words
@@ -248,7 +248,7 @@ def held_out(run_):
 )
 def test_odd_runs_are_shown_as_far_as_they_go(odd, browser, diagnosis, tmp_path):
     found = compare(odd(diagnosis.run[::5]), ordinary_model(diagnosis.run.touches.chain))
-    view = run_view(compared_board(found), Told("odd.csv"))
+    view = run_view(compared_board(found), Findings("odd.csv"))
     opened(browser, written(tmp_path / "odd.html", view))
     assert run(browser, "return document.getElementById('live').dataset.isReady") == "true"
     fitted, held, *_ = run(browser, FIGURES)
@@ -259,7 +259,7 @@ def test_odd_runs_are_shown_as_far_as_they_go(odd, browser, diagnosis, tmp_path)
 def test_no_effect_at_all(browser, diagnosis, tmp_path):
     board = diagnosed_board(replace(diagnosis, steps=diagnosis.steps[:1], candidates=()))
     assert board.switches == ()
-    opened(browser, written(tmp_path / "none.html", run_view(board, Told("none.csv"))))
+    opened(browser, written(tmp_path / "none.html", run_view(board, Findings("none.csv"))))
     said = run(browser, "return document.getElementById('effect-list').textContent")
     assert "no effect that these touches could show" in said
     assert faults(browser) == []

@@ -96,6 +96,22 @@ def test_bodies_dots_and_lines_are_drawn_where_they_are(scene):
 
 
 @pytest.mark.browser
+@pytest.mark.parametrize(("wide", "high"), [(600, 300), (200, 500)])
+def test_a_scene_fills_a_picture_of_any_shape_until_it_is_turned(scene, wide, high):
+    run(scene, "view.fit(); view.draw()")
+    size = f"view.canvas.style.width = '{wide}px'; view.canvas.style.height = '{high}px';"
+    run(scene, size + "view.draw()")
+    corners = [*SQUARE.reshape(-1, 3).tolist(), [-6, -6, 9], [0, 0, -8]]
+    seen_at = np.array(run(scene, f"return {corners}.map(p => view.project(p))"))
+    shares = (seen_at / [wide, high] - 0.5) * 2.0
+    assert np.abs(shares).max() == pytest.approx(0.88, abs=0.03)
+    run(scene, "view.camera.turn += 0.1")
+    turned = run(scene, "return view.camera.far")
+    run(scene, "view.canvas.style.width = '400px'; view.draw()")
+    assert run(scene, "return view.camera.far") == turned
+
+
+@pytest.mark.browser
 def test_what_lies_behind_a_body_is_not_picked(scene):
     picked = """const [x, y] = view.project(POINT), found = view.pick(x, y);
         return found && [found.layer.kind, found.index];"""
@@ -130,33 +146,33 @@ def test_the_camera_obeys_pointer_wheel_and_keys(scene):
     run(
         scene,
         """const kinds = { wheel: WheelEvent, keydown: KeyboardEvent };
-        const tell = (kind, more) => view.canvas.dispatchEvent(new (kinds[kind] || PointerEvent)(
+        const send = (kind, more) => view.canvas.dispatchEvent(new (kinds[kind] || PointerEvent)(
           kind, { bubbles: true, pointerId: 1, isPrimary: true, ...more }));
         view.canvas.setPointerCapture = () => {};
-        window.tell = tell;""",
+        window.send = send;""",
     )
     before = run(scene, "return view.camera.turn")
     run(
         scene,
-        """tell("pointerdown", { clientX: 100, clientY: 100 });
-        tell("pointermove", { clientX: 150, clientY: 100 }); tell("pointerup", {});""",
+        """send("pointerdown", { clientX: 100, clientY: 100 });
+        send("pointermove", { clientX: 150, clientY: 100 }); send("pointerup", {});""",
     )
     assert run(scene, "return view.camera.turn") == pytest.approx(before - 0.4)
-    run(scene, "tell('pointermove', { clientX: 200, clientY: 100 })")  # nothing is held
+    run(scene, "send('pointermove', { clientX: 200, clientY: 100 })")  # nothing is held
     assert run(scene, "return view.camera.turn") == pytest.approx(before - 0.4)
     far = run(scene, "return view.camera.far")
-    run(scene, "tell('wheel', { deltaY: 100 })")
+    run(scene, "send('wheel', { deltaY: 100 })")
     assert run(scene, "return view.camera.far") == pytest.approx(far * np.exp(0.1))
-    run(scene, "tell('keydown', { key: 'ArrowUp' }); tell('keydown', { key: '+' })")
+    run(scene, "send('keydown', { key: 'ArrowUp' }); send('keydown', { key: '+' })")
     assert run(scene, "return view.camera.far") == pytest.approx(0.85 * far * np.exp(0.1))
-    run(scene, "tell('keydown', { key: '0' })")
+    run(scene, "send('keydown', { key: '0' })")
     assert run(scene, "return view.camera.far") == pytest.approx(far)
     # moved with the shift key, the point that was held stays below the pointer
     at = seen(scene, [0.0, 0.0, 0.0])[:2]
     run(
         scene,
-        """tell("pointerdown", { clientX: 100, clientY: 100 });
-        tell("pointermove", { clientX: 140, clientY: 80, shiftKey: true }); view.draw();""",
+        """send("pointerdown", { clientX: 100, clientY: 100 });
+        send("pointermove", { clientX: 140, clientY: 80, shiftKey: true }); view.draw();""",
     )
     assert np.subtract(seen(scene, [0.0, 0.0, 0.0])[:2], at) == pytest.approx([40, -20], abs=4)
 
@@ -209,11 +225,11 @@ def test_dots_are_brushed_and_found(browser, page):
           xRange: [0, 2], yRange: [0, 2] });
         const at = (v, w) => ({ clientX: plot.frame.px(v) + canvas.getBoundingClientRect().x,
           clientY: plot.frame.py(w) + canvas.getBoundingClientRect().y });
-        const tell = (kind, v, w) => canvas.dispatchEvent(new PointerEvent(kind, at(v, w)));
-        tell("pointermove", 1, 1);
-        tell("pointerdown", 0.5, 0.5); tell("pointermove", 2.1, 2.1); tell("pointerup", 2.1, 2.1);
+        const send = (kind, v, w) => canvas.dispatchEvent(new PointerEvent(kind, at(v, w)));
+        send("pointermove", 1, 1);
+        send("pointerdown", 0.5, 0.5); send("pointermove", 2.1, 2.1); send("pointerup", 2.1, 2.1);
         out.after = { ...out }.brushed;
-        tell("pointerdown", 0.5, 0.5); tell("pointerup", 0.5, 0.5);
+        send("pointerdown", 0.5, 0.5); send("pointerup", 0.5, 0.5);
         return out;""",
     )
     assert found == {"over": 1, "after": [1, 2], "brushed": None}

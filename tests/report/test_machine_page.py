@@ -376,14 +376,14 @@ def test_axes_move_and_sensitivities_follow(browser, page, machine):
     assert run(browser, "return machinePage.state.q[1]") == pytest.approx(-np.pi / 4.0)
     q = np.array([run(browser, "return [...machinePage.state.q]")])
     run(browser, "document.getElementById('sensitivities').dispatchEvent(new Event('toggle'))")
-    told = run(
+    shown = run(
         browser,
         """return [...document.querySelectorAll("#sensitivities li")].map(e => [
           e.children[0].textContent, parseFloat(e.querySelector("output").textContent)]);""",
     )
     found = matstd.sensitivities(machine.chain, (q, np.array([LENGTH]))).columns()
-    assert [name for name, _ in told] == list(found)
-    for name, value in told:
+    assert [name for name, _ in shown] == list(found)
+    for name, value in shown:
         assert value == pytest.approx(float(found[name][0]), rel=6e-3, abs=1e-6), name
 
 

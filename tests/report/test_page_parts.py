@@ -2,6 +2,7 @@
 
 import csv
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import openpyxl
@@ -141,3 +142,30 @@ def test_a_browser_prints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails
         write_pdf(tmp_path / "page.html", tmp_path / "page.pdf", printer())
         assert (tmp_path / "page.pdf").read_text() == "<p>page</p>"
     assert sorted(p.name for p in tmp_path.iterdir() if p.name.startswith(".")) == []
+
+
+def test_a_box_says_what_a_result_means_and_what_to_do(tmp_path: Path) -> None:
+    page = replace(page_of(Section("One")), means="It holds.", next="Use `it`.")
+    html = rendered(page, tmp_path)
+    assert "<dt>What it means</dt><dd>It holds.</dd>" in html
+    assert "<dt>What to do</dt><dd>Use <code>it</code>.</dd>" in html
+    assert "What it means" not in rendered(replace(page, means=""), tmp_path)
+    assert 'class="box"' not in rendered(page_of(Section("One")), tmp_path)
+
+
+def test_a_table_may_be_a_file_alone(tmp_path: Path) -> None:
+    """The page has a link in the place of its rows; the file has all of them."""
+    table = Table(("pair",), [["EXX, EYY"]], "All pairs", is_file=True)
+    write_page(
+        tmp_path / "report.html", page_of(Section("Lists", table=LEFT), Section(table=table))
+    )
+    html = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "EXX, EYY" not in html
+    assert '<a href="tables/02-lists.csv">' in html
+    assert "EXX, EYY" in (tmp_path / "tables" / "02-lists.csv").read_text(encoding="utf-8")
+
+
+def test_a_fold_may_be_for_the_screen_alone(tmp_path: Path) -> None:
+    both = Section(fold="more", sentences=["Words."])
+    assert 'class="long"' not in rendered(page_of(both), tmp_path)
+    assert 'class="long"' in rendered(page_of(replace(both, is_for_screen=True)), tmp_path)

@@ -13,9 +13,9 @@ from matstd.twin.record import Touches
 from matstd.twin.units import UM
 
 FORM_DEGREE = 5
-"""Of the polynomial over a patch, 21 coefficients: waves down to the size of the patch."""
+"""Degree of the polynomial over a patch, 21 coefficients: waves down to the size of the patch."""
 DEGREES = [(i, n - i) for n in range(FORM_DEGREE + 1) for i in range(n, -1, -1)]
-"""Of v and w in every coefficient, by rising degree."""
+"""Exponents of v and w of every coefficient, by rising degree."""
 FORM_TOUCHES = 30
 """Fewest touches on a patch whose form is proposed: about three for two of its 21 coefficients."""
 

@@ -29,7 +29,7 @@ class ComponentError(Declared):
     amplitude (`matstd.twin.machine.shapes`).
 
     Attributes:
-        phase: Of the sinusoidal distribution, rad.
+        phase: Phase of the sinusoidal distribution, rad.
         sd: Expected standard deviation of the amplitude, mm or rad.
     """
 

@@ -91,8 +91,8 @@ class StylusError(Declared):
     error of the tool or of the probe.
 
     Attributes:
-        length: Of the stylus as calibrated, gauge point to ball centre, mm.
-        radius: Of its ball as calibrated, mm.
+        length: Calibrated length of the stylus, gauge point to ball centre, mm.
+        radius: Calibrated radius of its ball, mm.
     """
 
     length: float

@@ -39,12 +39,12 @@ class Body(Declared):
     Attributes:
         axis: Linear axis whose frame it carries.
         support: How the beam is held.
-        shape: Of the section, as it is written.
-        at: Of the point from the root at reading zero, mm.
+        shape: Shape of the section as the file writes it.
+        at: Distance of the point from the root at reading zero, mm.
         sense: 1 where the point goes away from the root with the reading, -1 the other way.
         span: Length of the beam, mm; 0 of a ram.
-        mass: That it carries, kg, or an own column `V_name_kg`.
-        offset: Of the mass from the point, machine frame, mm.
+        mass: Mass that it carries, kg, or a column of the user's own, `V_name_kg`.
+        offset: From the point to the mass, machine frame, mm.
         stuff: Word of the material.
         down: Direction of the weight, `-Z`.
         outward: From root to point along X, Y or Z of the machine, (index, sign).
@@ -83,14 +83,14 @@ class Body(Declared):
 
     @property
     def material(self) -> Material:
-        """Of the beam."""
+        """Material of the beam."""
         found = material(self.stuff)
         assert found is not None
         return found
 
     @property
     def section(self) -> Section:
-        """Of the beam."""
+        """Section of the beam."""
         found = section(self.shape, self.material.poisson)
         assert found is not None
         return found

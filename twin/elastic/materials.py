@@ -20,10 +20,10 @@ class Material:
         poisson: Poisson's ratio.
         density: kg/mm3.
         share: Standard uncertainty of the modulus, as a share of it.
-        source: Of the modulus.
+        source: Source of the modulus.
         expansion: Coefficient of linear expansion, 1/K.
         u_expansion: Its standard uncertainty, 1/K.
-        expansion_source: Of the expansion.
+        expansion_source: Source of the expansion.
         hardness: Usual hardness, as a drawing states it.
     """
 

@@ -8,6 +8,7 @@ import ast
 import inspect
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from datetime import date, datetime
 from enum import Enum
 from functools import cache
 from pathlib import Path
@@ -145,6 +146,8 @@ class _Kind(NamedTuple):
 
 
 _PLAIN = {
+    date: _Kind("a date such as 2031-05-06", "dates"),
+    datetime: _Kind("a date with its time, 2031-05-06T07:08:09", "dates with their times"),
     bool: _Kind("true or false", "true or false"),
     str: _Kind("text in quotes", "texts in quotes"),
 }

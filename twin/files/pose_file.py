@@ -12,7 +12,6 @@ from matstd.twin.files.toml import read_text
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import IntArray
-from matstd.twin.units import DEG
 
 FARTHEST = 1e5
 """A length (mm) or an angle (degrees) beyond this is a slip, not a reading or a place."""
@@ -23,10 +22,7 @@ ROUNDING = 1e-6
 
 def reading_columns(chain: Chain) -> dict[str, tuple[str, float]]:
     """Column name and factor to base units of every axis: `X_mm`, `B_deg`."""
-    return {
-        name: (f"{name}_mm", 1.0) if chain.link(name).kind == "linear" else (f"{name}_deg", DEG)
-        for name in chain.axes
-    }
+    return {name: (chain.link(name).column, chain.link(name).unit) for name in chain.axes}
 
 
 def readings(table: CsvTable, chain: Chain) -> Array:

@@ -1,6 +1,7 @@
 """Reader of run files (CSV with a TOML head in comments, format "run/1"): measurements."""
 
 from dataclasses import replace
+from datetime import UTC, date, datetime
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +31,9 @@ from matstd.twin.record import (
     with_body,
 )
 from matstd.twin.units import DEG, UM
+
+Day = datetime | date
+SOME_DAY = date(2031, 5, 6)
 
 _OPTIONAL = (
     "feature",
@@ -116,6 +120,12 @@ class HeadTable(Table):
     Required here or as a column"""
     standard: BodyTable | None = None
     """expansion and temperature of the calibrated piece, the table below; for a touch probe"""
+    date: Day | None = Field(default=None, examples=[SOME_DAY])
+    """date, or date and time, at which the run began; with a time zone it is taken as UTC.
+    `matstd evaluate` takes it from the logs; `matstd trend` orders runs by it"""
+    stamp: str = Field(default="", examples=["FFS-600U 001 7A09B49B2AF2"])
+    """name, serial number and digest of the probed standard, as `matstd evaluate` writes it;
+    `matstd trend` refuses runs of several standards"""
     setup: dict[str, SetupTable] = Field(default_factory=dict)
     """one table `[setup.NAME]` for every position of the standard. Default: one at the origin of
     the table frame"""
@@ -161,7 +171,16 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     except BadFile as refusal:
         refusal.facts["run"] = stated  # for callers that search for the mistake
         raise
-    return replace(run, remarks=tuple(remarks))
+    return replace(run, remarks=tuple(remarks), date=_began(head.date), standard=head.stamp)
+
+
+def _began(stated: date | None) -> datetime | None:
+    """A date as a time without a zone."""
+    if stated is None:
+        return None
+    if not isinstance(stated, datetime):
+        return datetime(stated.year, stated.month, stated.day)
+    return stated if stated.tzinfo is None else stated.astimezone(UTC).replace(tzinfo=None)
 
 
 def _with_body(run: Run, stated: BodyTable, table: CsvTable) -> Run:

@@ -44,6 +44,10 @@ def run_text(run: Run, machine: str) -> str:
         out.write(f'# instrument = "{t.instrument.value}"\n')
     if common_u:
         out.write(f"# u_um = {float(run.u[0]) / UM:.12g}\n")
+    if run.date is not None:
+        out.write(f"# date = {run.date.isoformat(timespec='seconds')}\n")
+    if run.standard:
+        out.write(f"# stamp = {json.dumps(run.standard, ensure_ascii=False)}\n")
     out.write(_body_line(t))
     for setup in t.setups:
         T = setup.T_table_artefact

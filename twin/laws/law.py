@@ -44,7 +44,7 @@ class Carrier:
 
     Attributes:
         name: A component error, `EZX`, or one of `PARTS`.
-        symbol: Of a component error.
+        symbol: Symbol of a component error; None for one of `PARTS`.
     """
 
     name: str
@@ -67,7 +67,7 @@ class Carrier:
 
     @property
     def words(self) -> tuple[str, ...]:
-        """Of its amplitudes; one empty word where there is one alone."""
+        """Letters of its amplitudes; one empty word for a single amplitude."""
         return {SHIFT: ("X", "Y", "Z"), TILT: ("A", "B", "C")}.get(self.name, ("",))
 
     def entries(self, touches: Touches) -> list[tuple[int, Where, Array | float]]:

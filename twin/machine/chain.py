@@ -1,5 +1,6 @@
 """Machines in ISO chain notation, `[w C' B' X' f Y Z (C1) t]`, as an ordered tuple of links."""
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -50,7 +51,7 @@ class Link:
             every axis at zero, (3,), mm.
         range: Smallest and largest reading, mm or rad.
         programmed: False in brackets: a spindle that is not programmed, a quill that stays in.
-        pitch: Of the screw or scale of a linear axis, mm, as its owner states it; None where it is
+        pitch: Pitch of a linear axis's screw or scale, mm, as its owner states it; None where it is
             unknown. It is no part of the kinematics.
         expected: Size of each translational error of a linear axis, mm, beyond which it is unusual
             for such an axis; None for that of its class. No part of its kinematics either.
@@ -78,6 +79,16 @@ class Link:
     def points_along_letter(self) -> bool:
         """Whether the axis moves along, or turns about, the direction of its letter."""
         return bool(np.allclose(self.direction, np.eye(3)[self.own], atol=1e-12))
+
+    @property
+    def unit(self) -> float:
+        """The unit in which files and messages give its readings: 1 mm or 1 degree, base units."""
+        return DEG if self.kind == "rotary" else 1.0
+
+    @property
+    def column(self) -> str:
+        """Column of its readings in a run, pose or result file: `X_mm`, `B_deg`."""
+        return f"{self.name}_{'deg' if self.kind == 'rotary' else 'mm'}"
 
     def scaled(self, reading: Array) -> Array:
         """Readings scaled to [-1, 1] over the range, in any shape."""
@@ -245,9 +256,19 @@ class Chain(Displayed):
             for key in ("range", "point", "direction"):
                 left, right = np.array(getattr(a, key)), np.array(getattr(b, key))
                 if not np.allclose(left, right, rtol=0.0, atol=_SAME):
-                    factor = DEG if key == "range" and a.kind == "rotary" else 1.0
+                    factor = a.unit if key == "range" else 1.0
                     return f"axis.{a.name}.{key}", _listed(left / factor), _listed(right / factor)
         return None
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """Short digest of what `difference` compares; saved models state that of their machine."""
+        numbers = [np.array(self.table_origin)]
+        for link in self.links:
+            numbers += [np.array(getattr(link, key)) for key in ("range", "point", "direction")]
+        text = " ".join(f"{v + 0.0:.6f}" for part in numbers for v in np.round(part, 6).ravel())
+        words = f"{self.name} {' '.join(self.notation.split())} {text}"
+        return hashlib.sha256(words.encode()).hexdigest()[:12]
 
 
 def _location(link: Link) -> list[int]:

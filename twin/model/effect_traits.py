@@ -32,31 +32,31 @@ class Traits:
         axis: Name of its axis, where it has no symbol.
         is_ordinary: Whether it is one distribution of an error parameter, as the ordinary model
             has them (`ordinary_model`).
-        distribution: Of an ordinary component error: constant, linear, parabolic, sinusoidal.
+        distribution: For an ordinary component error: constant, linear, parabolic, sinusoidal.
         is_curve: Whether its parameters are coefficients of one curve over a reading, which is
             reported from peak to valley.
-        is_reported_whole: Of a curve, whether the curve is reported as the effect alone explains
+        is_reported_whole: For a curve, whether it is reported as the effect alone explains
             it, without what the rest of the model could take over.
         is_tensor: Whether its parameters have no common size: reported is the rms that it explains.
         is_by_parameter: Whether every parameter is a quantity of its own, without a common size.
-        changes: Of an effect that goes on beyond the run: what is reported in place of its final
+        changes: For an effect that outlasts the run: what is reported in place of its final
             values, as names of changes, each with two touches, before and after.
         is_shrunk: Whether its parameters share a prior whose size the run chooses; reported as a
             tensor, and weighed against single effects by what it predicts.
         is_table: Whether it could imitate most other effects; it is chosen only where it predicts
             clearly better than effects with a cause.
-        reversal: Of a curve for either direction: forward less backward at every touch, per unit of
+        reversal: For a curve by direction: forward minus backward at every touch, per unit of
             every parameter, (N, P).
         harmonic: Waves a turn of what repeats over a rotary axis; 0 of a curve, which has many.
         wave: What repeats over a linear axis.
-        with_sines: Of a wave: the same error with another period and so many sines of it.
-        parameter_drives: Of an effect that follows several drives: the drive of every parameter.
+        with_sines: For a wave: the same error with another period and number of sines.
+        parameter_drives: For an effect with several drives: the drive of every parameter.
         needs_history: Whether it depends on what drove it before the first touch.
         stated_number: Number of a run that is wrong where this effect acts: `radius`.
         original: The effect that this one repeats, or whose change it is. All other traits are then
             asked of the original.
         repetition: 2 for the second of two effects that differ in their inner parameters alone.
-        since_run: Of a change: number of the first run that shows it, as in `Touches.run`.
+        since_run: For a change: number of the first run that shows it, as in `Touches.run`.
     """
 
     symbol: Symbol | None = None

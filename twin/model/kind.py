@@ -22,7 +22,7 @@ class Kind:
         word: First word of the names of its effects, `backlash`.
         arguments: What stands in the brackets, for help: "axis"; empty where there are none.
         formula: The closed formula, one line.
-        units: Of its parameters and inner parameters, as a user sees them.
+        units: Units of its parameters and inner parameters, as a user sees them.
         typical: Size that is met in practice.
         source: Where the formula and the size are from.
         make: Effect from the arguments of its name; raises a child of DesignError.
@@ -128,7 +128,7 @@ class _Signature:
 
     @classmethod
     def of(cls, effect: Callable[..., Effect]) -> "_Signature":
-        """Of a class with declared fields, or of anything that is made without arguments."""
+        """The kind of a class with declared fields, or of a class made without arguments."""
         declared = effect if isinstance(effect, type) and issubclass(effect, Declared) else None
         if declared is None:
             return cls(effect().kind, effect, {}, 0)

@@ -10,7 +10,7 @@ from matstd.twin.record.commanded import with_commanded
 from matstd.twin.record.copies import without_copies
 from matstd.twin.record.instrument import Instrument
 from matstd.twin.record.run import Run
-from matstd.twin.record.several_runs import joined
+from matstd.twin.record.several_runs import joined, stacked
 from matstd.twin.record.touches import (
     Body,
     IntArray,
@@ -42,6 +42,7 @@ __all__ = [
     "joined",
     "linear_approach",
     "rigid_motion",
+    "stacked",
     "turn_of",
     "with_body",
     "with_commanded",

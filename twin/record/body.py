@@ -85,8 +85,8 @@ def with_body(run: Run, stated: StatedBody) -> Run:
     Only here the growth of a standard is subtracted; `raw_deviation` adds it back.
 
     Args:
-        run: Of calibrated points at 20 degC, sensors included.
-        stated: Of its standard; readings of the sensor `body` stand for the one temperature.
+        run: Run on points calibrated at 20 degC, sensors included.
+        stated: Body of its standard; readings of the sensor `body` replace the one temperature.
 
     Raises:
         BadValue: An instrument without a standard, or temperatures that cannot be.

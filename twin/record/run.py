@@ -2,6 +2,7 @@
 
 import hashlib
 from dataclasses import dataclass, field, replace
+from datetime import datetime
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,8 @@ class Run(Displayed):
         repeat: Number of the repetition, equal points share everything else; None if not recorded.
         line: Line of each row in its file, for messages, (N,).
         remarks: What the reader noticed and did about it, one clear line each.
+        date: When it began; None where it is not recorded.
+        standard: Name, serial number and digest of the probed standard; "" where not recorded.
     """
 
     touches: Touches
@@ -33,6 +36,8 @@ class Run(Displayed):
     repeat: IntArray | None = None
     line: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     remarks: tuple[str, ...] = ()
+    date: datetime | None = None
+    standard: str = ""
 
     def __post_init__(self) -> None:
         n = len(self.touches)
@@ -67,7 +72,7 @@ class Run(Displayed):
 
     @property
     def fingerprints(self) -> tuple[str, ...]:
-        """Of every run that was joined, in their order, and last of all together."""
+        """One value for every run that was joined, in their order, and last for all together."""
         of = self.touches.run
         each = [self[of == i].fingerprint for i in np.unique(of)]
         return (*each, self.fingerprint) if len(each) > 1 else (self.fingerprint,)

@@ -47,7 +47,12 @@ def joined(runs: Mapping[str, Run]) -> Run:
         for name, t, begin in zip(names, every, starts, strict=True)
         for s in t.setups
     ]
-    touches = _stacked(every, tuple(setups), starts)
+    first = np.cumsum([0, *(len(t.setups) for t in every[:-1])])
+    moved = [
+        replace(t, setup=t.setup + k, time=t.time + s)
+        for t, k, s in zip(every, first, starts, strict=True)
+    ]
+    touches = stacked(moved, tuple(setups))
     return Run(
         touches=touches,
         deviation=np.concatenate([part.deviation for part in parts]),
@@ -100,15 +105,12 @@ def _starts(every: Sequence[Touches]) -> list[float]:
     return starts
 
 
-def _stacked(
-    every: Sequence[Touches], setups: tuple[Setup, ...], starts: Sequence[float]
-) -> Touches:
-    """The touches of all runs, one run after the other."""
-    first = np.cumsum([0, *(len(t.setups) for t in every[:-1])])
-    every = [
-        replace(t, setup=t.setup + k, time=t.time + s)
-        for t, k, s in zip(every, first, starts, strict=True)
-    ]
+def stacked(every: Sequence[Touches], setups: tuple[Setup, ...]) -> Touches:
+    """Touches of one machine, one record after the other; a column is kept that all have.
+
+    Args:
+        setups: Set-ups of all of them; `Touches.setup` of every record already counts in these.
+    """
     columns = {name: _all_of([getattr(t, name) for t in every]) for name in PER_TOUCH}
     for kind in MAPS:
         records = [getattr(t, kind) for t in every]

@@ -88,9 +88,9 @@ class Touches:
         commanded: The same without what was measured, (N, A), which is what errors are functions
             of; None where `q` is that already (`with_commanded`).
         length: Probe length to the ball centre, (N,), mm.
-        offset: Of the ball centre, or of a reflector, from the tool axis, x and y of the tool
+        offset: Ball centre, or reflector, relative to the tool axis, x and y of the tool
             frame, (N, 2), mm; on the axis where nothing is given.
-        radius: Of the ball, (N,), mm.
+        radius: Radius of the ball, (N,), mm.
         point: Calibrated contact point, artefact frame, (N, 3), mm.
         normal: Outward unit normal there, artefact frame, (N, 3).
         setups: The placements of the standard.
@@ -104,7 +104,7 @@ class Touches:
         pose: Label of the table pose, (N,).
         instrument: What measured them all.
         value: Columns of the user's own by name and unit (`coolant_l_min`), each (N,).
-        body_temperature: Of the standard as far as it is stated, else 20, (N,), degC.
+        body_temperature: Temperature of the standard where stated, else 20, (N,), degC.
     """
 
     chain: Chain
@@ -315,7 +315,7 @@ def motion(q: Array, time: Array) -> Array:
 
     Args:
         q: Readings, (N, A).
-        time: Of every row, (N,), s; rows of one time are in order.
+        time: Time of every row, (N,), s; rows of one time are in order.
 
     Example:
         >>> motion(np.array([0.0, 1.0, 2.0, 2.0, 1.5])[:, None], np.arange(5.0))[:, 0]

@@ -71,7 +71,7 @@ def amplitude_unit(drive: str, unit: str, sd: float) -> tuple[str, float]:
 
     Args:
         drive: The drive; empty for switching on.
-        unit: Of the error, "mm" or "rad".
+        unit: Unit of the error, "mm" or "rad".
         sd: Usual size of the error at 10 000 rpm.
     """
     if not drive or is_speed(drive):
@@ -87,7 +87,7 @@ def driven(touches: Touches, drive: str, tau: float, effect: str, step: float = 
             10 000 rpm, or an own column in units of a step.
         tau: Time constant, s; zero follows at once.
         effect: Name of the effect, for the message.
-        step: Of an own column, in its unit.
+        step: Step of the user's own column, in its unit.
     """
     if is_speed(drive) and touches.spindle_rpm is None:
         raise UnknownEffect(f"'{effect}': the spindle speed of these touches is unknown")
@@ -167,7 +167,7 @@ def first_order_lag(time: Array, drive: Array, tau: float, steps: bool = False) 
     before the last term, d0 being the drive that was set at the record before.
 
     Args:
-        time: Of the records, shape (N,), s, in any order.
+        time: Times of the records, shape (N,), s, in any order.
         drive: Values, shape (N,).
         tau: Time constant, s.
         steps: Whether the drive is constant from one record to the next, and the body cold (y = 0)

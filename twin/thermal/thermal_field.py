@@ -45,7 +45,7 @@ class ThermalField(Declared):
     Attributes:
         axis: Whose body warms.
         drives: Names of sensors, `spindle_rpm`, or own columns `V_name_unit`.
-        steps: Of the own columns among them, in their units; empty for 1 each.
+        steps: Steps of the user's own columns among them, in their units; empty for 1 each.
 
     Reference:
         ISO 230-3; ridge regression of thermal errors on many sensors.

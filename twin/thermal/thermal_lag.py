@@ -57,7 +57,7 @@ class ThermalLag(Declared):
     Attributes:
         drive: Sensor, `spindle_rpm`, an own column `V_name_unit`, or "" for switching on.
         tau: Time constant, s.
-        step: Of an own column, in its unit; the amplitude is that after such a step.
+        step: Step of the user's own column, in its unit; the amplitude is that after such a step.
     """
 
     symbol: ComponentSymbol

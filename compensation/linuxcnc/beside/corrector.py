@@ -22,10 +22,10 @@ PERIOD = 0.002
 """Between two looks at the pins, s."""
 
 STILL = 1e-6
-"""Of a position, mm or degrees: less is no motion."""
+"""Smallest change of a position that is a motion, mm or degrees."""
 
 LONGEST = 0.005
-"""That one step may stand for, s: a pause is no licence to jump."""
+"""Longest time that one step may stand for, s: a pause is no licence to jump."""
 
 LOST = 25
 """Looks in a row at which the control has another offset than it was given, until that counts."""
@@ -58,7 +58,7 @@ class Giver:
         self.wanted, self.answered_at = list(wanted), now
 
     def age(self, now: float) -> float:
-        """Of the last correction, s."""
+        """Age of the last correction, s."""
         return 1e9 if self.answered_at is None else now - self.answered_at
 
     def is_valid(self, now: float) -> bool:
@@ -113,8 +113,8 @@ def room_of(
     Args:
         position: mm.
         speed: mm/s.
-        ends: Of the travel, mm.
-        rate: At which an offset changes, mm/s.
+        ends: Ends of the travel, mm.
+        rate: Rate at which an offset changes, mm/s.
     """
     low, high = ends
     share = min(1.0, rate / abs(speed)) if speed else 1.0
@@ -257,7 +257,7 @@ class Corrector:
         pins["age"] = self.giver.age(now)
 
     def _speeds(self, at: "dict[str, float]", now: float) -> "dict[str, float]":
-        """Of every axis since the last look; remembers which way it went last."""
+        """Speed of every axis since the last look; remembers which way it went last."""
         passed = max(now - self.looked_at, 1e-4)
         moved = {x: at[x] - self.at.get(x, at[x]) for x in at}
         for x, way in moved.items():

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from matstd.options import add_measured, asked_printer, pitches, starting_model
 
 if TYPE_CHECKING:
-    from matstd.api.comparing import Comparison
+    from matstd.api.diagnosing import Comparison
 
 MIN_UNCERTAINTIES = 2.0
 """Standard uncertainties from which a region is off on average, and does not merely scatter."""
@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Compare; the folder appears whole or not at all."""
-    from matstd.api.comparing import Comparison, compare
+    from matstd.api.diagnosing import Comparison, compare
     from matstd.effect_kinds import register_effects
     from matstd.progress import stages, turns
     from matstd.twin.files import results_folder

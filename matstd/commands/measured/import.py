@@ -294,7 +294,6 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
 def _travels(stated: Sequence[Sequence[str]], chain: Chain) -> dict[str, tuple[float, float]]:
     """Travels of `--travel`, mm and rad."""
     from matstd.twin.errors import DesignError
-    from matstd.twin.units import DEG
 
     out = {}
     for axis, *ends in stated:
@@ -302,6 +301,6 @@ def _travels(stated: Sequence[Sequence[str]], chain: Chain) -> dict[str, tuple[f
             low, high = map(float, ends)
         except ValueError:
             raise DesignError(f"--travel {axis} {' '.join(ends)}: expected two numbers") from None
-        unit = 1.0 if chain.link(axis).kind == "linear" else DEG
+        unit = chain.link(axis).unit
         out[axis] = low * unit, high * unit
     return out

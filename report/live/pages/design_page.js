@@ -19,7 +19,7 @@ const standard = new StandardView(byId("standard"), data, choose);
 
 const names = data.features.map(f => f.name).filter(Boolean);
 const chosen = element("select", { "aria-label": "feature", onchange: () => choose(chosen.value) },
-  element("option", { text: "point at a face or a ball", value: "" }),
+  element("option", { text: "choose a face or a ball", value: "" }),
   ...names.map(name => element("option", { text: name, value: name })));
 byId("choice").append(chosen);
 
@@ -144,8 +144,8 @@ function drawCut() {
     found++;
   }
   byId("of-field").textContent = `${field.isAfter ? "After" : "Before"} identification: `
-    + `${digits(Math.sqrt(squares / Math.max(found, 1)))} µm rms in this volume; colours from 0 to `
-    + `${digits(most)} µm.`;
+    + `${digits(Math.sqrt(squares / Math.max(found, 1)))} µm rms in this volume.`;
+  byId("of-colours").replaceChildren("length of the error: 0", element("i"), `${digits(most)} µm`);
 }
 
 function quantile(values) {
@@ -155,7 +155,7 @@ function quantile(values) {
 
 function makeCut() {
   const { at: grid, axes, rotary } = data.field;
-  cut = new VolumeCut(byId("field"), grid);
+  cut = new VolumeCut(byId("field"), grid, axes);
   const middle = a => (a[0] + a[a.length - 1]) / 2;
   field.place = middle(grid[field.axis]);
   const place = slider({ label: "cut at", low: 0, high: 1, value: 0.5, step: 0.005,

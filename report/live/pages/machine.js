@@ -87,7 +87,7 @@ byId("home").addEventListener("click", () => {
 });
 
 byId("view").append(
-  slider({ label: "errors drawn", low: 0, high: 4.5, value: Math.log10(state.exaggeration),
+  slider({ label: "exaggeration", low: 0, high: 4.5, value: Math.log10(state.exaggeration),
     words: v => `× ${digits(10 ** v, 2)}`,
     input: v => { state.exaggeration = 10 ** v; changed(); } }),
   toggle({ label: "bodies with their errors", changed: v => { state.isActual = v; show(); } }),
@@ -184,7 +184,7 @@ function show() {
   if (errors) errors.contributions(each);
   showLargest(each);
   sensitivities.show(state.q, state.length);
-  if (panel) panel.tell(state, deviationAt(state));
+  if (panel) panel.update(state, deviationAt(state));
   if (player && !state.isWhole) drawPath();
   if (curve) curve.show({ at: state.row >= 0 ? state.time / 60 : null });
 }

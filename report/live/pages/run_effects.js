@@ -73,14 +73,14 @@ export class EffectList {
     row.amount = element("p", { class: "amount" });
     const gain = slider({
       label: "gain", low: 0, high: MOST_GAIN, value: 1, step: 0.01,
-      words: v => (one.gain === null ? "fitted" : `${fixed(v, 2)} × fitted`),
+      words: v => (one.gain === null ? "fitted" : `× ${fixed(v, 2)}`),
       input: v => {
         this.board.pull(one, v);
         this.changed();
       },
     });
     row.free = element("button", {
-      type: "button", text: "fit", title: "let the run decide the amount again",
+      type: "button", text: "fit again", title: "let the run determine the amount again",
       onclick: () => {
         this.board.pull(one, null);
         this.changed();
@@ -146,9 +146,11 @@ export class EffectList {
 
   scent(one, row) {
     const heldOut = this.board.scent(one);
-    row.scent.textContent = `${one.isOn ? "without it" : "with it"} ${fixed(heldOut, 3)} `
+    const others = this.board.on.filter(other => this.board.areAlike(one, other));
+    const way = one.isOn ? "without it" : others.length ? "in its place" : "with it";
+    row.scent.textContent = `${way} ${fixed(heldOut, 3)} `
       + this.data.unit;
-    row.scent.title = "error of held-out touches after this switch";
+    row.scent.title = "held-out error after this switch";
   }
 }
 

@@ -37,9 +37,8 @@ function laidOut() {
     element("div", { class: "panel effects" },
       element("div", { class: "bar-of-buttons" },
         element("h2", { text: "Effects" }), again, theme),
-      element("p", { class: "hint", text: "Switch an effect, and the model is fitted again: "
-        + "geometry and set-ups with it. In grey the error of held-out touches that a switch "
-        + "leads to." }),
+      element("p", { class: "hint", text: "A switch fits the model again, geometry and "
+        + "set-ups with it. In grey: the held-out error that the switch leads to." }),
       element("div", { id: "effect-list" })),
     element("div", { class: "panel touched" }),
     element("div", { class: "panel residuals" }),
@@ -75,24 +74,24 @@ function painted() {
 }
 
 function ladder() {
-  const { now } = shown, unit = data.unit, found = board.switches.filter(s => s.isFound);
+  const { now } = shown, unit = data.unit;
   const rungs = [{ name: "starting model", ...start }], on = board.on;
   for (let k = 1; k <= on.length; k++) {
     const last = k === on.length;
     rungs.push({ name: `+ ${on[k - 1].title}`, ...(last ? now : board.errors(on.slice(0, k))) });
   }
   rungs[rungs.length - 1].isNow = true;
-  if (!now.isAsFound) rungs.push({ name: "as found", ...board.errors(found) });
+  if (!now.isAsFound) rungs.push({ name: "as found", ...board.asFound() });
   const most = 1.05 * Math.max(...rungs.map(r => Math.max(r.heldOut, r.fitted)), data.noise);
   showLadder(parts.ladder, { rungs, noise: data.noise, most, words, unit });
   const pinned = on.some(s => s.gain !== null);
   parts.figures.replaceChildren(...[
     element("span", {}, "fitted ", element("b", { id: "fitted", text: words(now.fitted) })),
     element("span", {}, "held out ", element("b", { id: "held-out", text: words(now.heldOut) })),
-    element("span", { text: `noise ${words(data.noise)} ${unit} rms` }),
+    element("span", { text: `${unit} rms` }),
     data.setUpAlone === null ? null
-      : element("span", { text: `without geometry ${words(data.setUpAlone)}` }),
-    pinned ? element("span", { class: "warn", text: "a gain that is set costs no freedom" }) : null,
+      : element("span", { text: `held out without any model of the machine ${words(data.setUpAlone)} ${unit}` }),
+    pinned ? element("span", { class: "warn", text: "the held-out error does not count the gain that you set" }) : null,
   ].filter(Boolean));
   Object.assign(place.dataset, { fitted: now.fitted, heldOut: now.heldOut, noise: now.s });
 }
@@ -118,7 +117,7 @@ const parts = laidOut();
 let waiting = 0;
 const effects = new EffectList(place.querySelector("#effect-list"), board, data, changed);
 const touched = new Touched(place.querySelector(".touched"), data, { mark, choose });
-const residuals = new Residuals(place, data, { mark, choose });
+const residuals = new Residuals(place, board, { mark, choose });
 effects.refresh();
 changed();
 themeButton(parts.theme, () => { touched.recolour(); painted(); });

@@ -2,38 +2,46 @@
 
 import { Bars } from "../parts/bars.js";
 import { copied, element, table } from "../parts/elements.js";
-import { digits, fixed } from "../parts/numbers.js";
+import { digits, fixed, quantile } from "../parts/numbers.js";
 import { Scatter } from "../parts/scatter.js";
 
 const MOST_ROWS = 200;  // of the table that are shown; all are copied
 
 export class Residuals {
-  constructor(page, data, { mark, choose }) {
-    Object.assign(this, { data, choose, tellMark: mark, chosenPlace: page.querySelector("#chosen") });
+  constructor(page, board, { mark, choose }) {
+    const { data } = board;
+    Object.assign(this, { data, board, choose, onMark: mark, chosenPlace: page.querySelector("#chosen") });
     this.overPlace(page.querySelector(".residuals"));
     this.plot = new Scatter(this.canvas, { over: mark, brushed: choose });
-    this.plot.frame.yLabel = `residual in ${data.unit}`;
     this.title = page.querySelector("#by-pose-title");
     this.bars = new Bars(page.querySelector("#by-pose"), { bottom: 30,
       over: k => this.overBar(k), pressed: k => choose(this.members(k)) });
     this.top = 0;
-    this.pick(0);
+    this.pick(data.curves.length ? data.columns.length : 0);
   }
 
   overPlace(place) {
-    const names = this.data.columns.map((c, k) => element("option", { value: k, text: c.name }));
-    this.select = element("select", { "aria-label": "column to plot residuals over",
-      onchange: () => { this.pick(Number(this.select.value)); this.show(this.shown); } }, ...names);
+    const names = this.data.columns.map((c, k) => element("option", { value: k,
+      text: `residual over ${lowered(c.name)}` }));
+    const laws = this.data.curves.map((c, k) => element("option", { value: names.length + k,
+      text: c.title }));
+    this.select = element("select", { "aria-label": "what is plotted",
+      onchange: () => { this.pick(Number(this.select.value)); this.show(this.shown); } },
+    ...names, ...(laws.length ? [element("optgroup", { label: "laws" }, ...laws)] : []));
     this.canvas = element("canvas", { role: "img",
       "aria-label": "Residual of every touch over a recorded column" });
     place.append(element("div", { class: "below" },
-      element("label", {}, "Residual over ", this.select),
-      element("span", { class: "hint", text: "drag to choose touches, click to choose none; "
-        + "shaded: noise, ±2 u" })), this.canvas);
+      element("label", {}, "Plot ", this.select),
+      this.hint = element("span", { class: "hint" })), this.canvas);
   }
 
   pick(k) {
-    this.column = this.data.columns[k];
+    const { columns, curves, unit } = this.data, count = columns.length;
+    this.select.value = k;
+    this.law = k < count ? null : curves[k - count];
+    this.column = this.law ? { values: this.law.touchX.values, name: this.law.label } : columns[k];
+    this.plot.frame.yLabel = this.law ? this.law.carrier : `residual in ${unit}`;
+    this.lawTop = this.law ? this.highest(this.law) : 0;
     const finite = this.column.values.filter(Number.isFinite);
     const [low, high] = finite.length ? extent(finite) : [0, 1];
     this.xRange = [low, high];
@@ -45,12 +53,34 @@ export class Residuals {
     const { residual, colours, chosen, limit } = shown;
     this.top = Math.max(this.top, 1.8 * limit);  // fixed, else nothing is seen to fall
     this.plot.chosen = chosen;
-    const edge = this.top;  // gross errors stand at the edge
-    const y = residual.map(v => Math.max(-edge, Math.min(edge, v)));
+    const [seen, curve] = this.law ? this.putBack(this.law, shown) : [residual, null];
+    const edge = this.law ? this.lawTop : this.top;  // gross errors stand at the edge
+    const y = seen.map(v => Math.max(-edge, Math.min(edge, v)));
     this.plot.show({ x: this.column.values, y, colours, xRange: this.xRange,
-      yRange: [-this.top, this.top], band: 2 * this.data.noise });
+      yRange: [-edge, edge], band: this.law ? 0 : 2 * this.data.noise, curve });
+    this.hint.textContent = `drag to choose touches, click to choose none; ${this.law
+      ? `${curve ? "line: the law with ± 2 u; " : ""}dots: residuals${
+        curve ? " with the law put back" : ""}, over their levers on ${this.law.carrier}`
+      : "shaded: ± 2 u of the stated noise; gross errors stand at the edge"}`;
     this.byPose(shown);
     this.list(shown);
+  }
+
+  /** What every touch shows of a law, and its curve as it is on now; flat where it is off. */
+  putBack({ law, x, value, u, touchValue, lever }, { residual, now }) {
+    const one = this.board.switches.find(s => s.name === law);
+    const share = this.board.isMoved(one) ? 0 : this.board.share(one, now);
+    const seen = residual.map((r, i) => r / lever.values[i] + share * touchValue.values[i]);
+    if (!share) return [seen, null];  // what remains shows the law
+    return [seen, { x: x.values, y: value.values.map(v => share * v),
+      half: u.values.map(v => 2 * v) }];
+  }
+
+  /** End of the scale of a law: that of its curve as it was learnt. */
+  highest({ value, lever, touchValue }) {
+    const rest = this.board.residuals(this.board.errors());
+    const seen = rest.map((r, i) => Math.abs(r / lever.values[i] + touchValue.values[i]));
+    return 1.3 * Math.max(quantile(seen, 0.98) || 0, ...value.values.map(Math.abs)) || 1;
   }
 
   mark({ marked }) {
@@ -65,11 +95,12 @@ export class Residuals {
     let values = now.groups;
     if (!values.length) values = this.ofTestRows(names.length, group.values, residual, state.values);
     this.title.textContent = names.length && /^lines/.test(names[0])
-      ? "Held-out error by stretch of the run" : "Held-out error by table pose";
+      ? "Held-out error by stretch of the run"
+      : `Held-out error by ${this.data.touches.setups.length > 1 ? "set-up and " : ""}table pose`;
     if (!this.before) {
       this.before = values;
       this.barTop = Math.max(...values.filter(Number.isFinite), this.data.noise);
-      this.bars.frame.yLabel = this.data.unit;
+      this.bars.frame.yLabel = `held out, ${this.data.unit}`;
     }
     this.barTop = Math.max(this.barTop, ...values.filter(Number.isFinite));
     this.bars.show({ values, names, line: this.data.noise, top: this.barTop });
@@ -130,6 +161,11 @@ export class Residuals {
       fixed(t.u.values[i] * now.s, 3), fixed(t.measured.values[i], 3),
       ...columns.map(c => digits(c.values[i], 6))]);
   }
+}
+
+/** A name within a sentence: names of axes and symbols stay. */
+function lowered(name) {
+  return /^[A-Z][a-z]/.test(name) ? name[0].toLowerCase() + name.slice(1) : name;
 }
 
 function extent(values) {

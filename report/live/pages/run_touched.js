@@ -1,16 +1,17 @@
-// The standard in space: what was touched, every touch in the colour of its residual, needles.
+// The standard in space: what was touched, every touch in the colour of its residual, arrows.
 
 import { element, slider } from "../parts/elements.js";
 import { digits, signed } from "../parts/numbers.js";
 import { bytes, colour } from "../parts/theme.js";
+import { showTriad } from "../parts/triad.js";
 import { View3D, rgb } from "../parts/view3d.js";
 
-const MOST = 2.5;  // of the scale's end, the longest needle
-const NEEDLE = 0.05;  // length of the needle of the largest residual, over the size of the scene
+const MOST = 2.5;  // of the scale's end, the longest arrow
+const ARROW = 0.05;  // length of the arrow of the largest residual, over the size of the scene
 
 export class Touched {
   constructor(place, data, { mark, choose }) {
-    Object.assign(this, { data, mark: m => this.ring(m), tellMark: mark, choose, stretch: 1 });
+    Object.assign(this, { data, mark: m => this.ring(m), onMark: mark, choose, stretch: 1 });
     this.place = place;
     this.canvas = element("canvas", {
       role: "img", "aria-label": "Touched points in the frame of the standard, coloured by "
@@ -19,8 +20,8 @@ export class Touched {
     this.hint = element("div", { class: "tip", hidden: true });
     this.legend = element("div", { class: "legend" });
     const length = slider({
-      label: "needles", low: 0, high: 10, value: 1, step: 0.05, words: v => `× ${v.toFixed(1)}`,
-      input: v => { this.stretch = v; this.needles(); },
+      label: "arrows", low: 0, high: 10, value: 1, step: 0.05, words: v => `× ${v.toFixed(1)}`,
+      input: v => { this.stretch = v; this.drawArrows(); },
     });
     const all = element("button", { type: "button", text: "show all",
       onclick: () => { this.view.camera.reset(); this.view.request(); } });
@@ -41,9 +42,10 @@ export class Touched {
     this.circle = this.view.points({ positions: new Float32Array(3), colours: new Uint8Array(3),
       size: 13, isVisible: false, isPickable: false });
     this.view.fit();
+    showTriad(this.view);
     this.recolour();
     this.canvas.addEventListener("pointermove", e => this.over(e));
-    this.canvas.addEventListener("pointerleave", () => this.tellMark(-1));
+    this.canvas.addEventListener("pointerleave", () => this.onMark(-1));
     let pressed = null;
     this.canvas.addEventListener("pointerdown", e => { pressed = [e.offsetX, e.offsetY]; });
     this.canvas.addEventListener("click", e => {
@@ -61,7 +63,7 @@ export class Touched {
   over(e) {
     if (e.buttons) return;
     const found = this.view.pick(e.offsetX, e.offsetY);
-    this.tellMark(found && found.layer === this.dots ? found.index : -1);
+    this.onMark(found && found.layer === this.dots ? found.index : -1);
   }
 
   /** A click on a touch chooses its feature; beside all, nothing. */
@@ -86,20 +88,20 @@ export class Touched {
     }
     this.dots.set("colours", out);
     this.arrows.set("colours", out);
-    this.needles();
+    this.drawArrows();
     const { limit } = shown, { unit } = this.data;
     const scale = element("i", { class: "scale" });
     const hasGross = this.data.touches.state.values.includes(1);
-    this.legend.replaceChildren(`−${digits(limit, 2)}`, scale, `+${digits(limit, 2)} ${unit}`,
+    this.legend.replaceChildren(`residual −${digits(limit, 2)}`, scale, `+${digits(limit, 2)} ${unit}`,
       ...(hasGross ? [element("i", { class: "gross" }), "gross error"] : []));
     this.legend.title = "measured minus predicted; the scale is that of the starting model";
   }
 
-  needles() {
+  drawArrows() {
     const { point, normal, count, state } = this.data.touches, { residual, limit } = this.shown;
-    const unit = NEEDLE * this.view.camera.size * this.stretch / limit, out = this.arrows.positions;
+    const unit = ARROW * this.view.camera.size * this.stretch / limit, out = this.arrows.positions;
     for (let i = 0; i < count; i++) {
-      const most = state.values[i] === 1 ? 0 : MOST * limit;  // gross errors have no needle
+      const most = state.values[i] === 1 ? 0 : MOST * limit;  // gross errors have no arrow
       const high = Math.max(-most, Math.min(most, residual[i]));
       for (let k = 0; k < 3; k++) {
         const from = point.values[3 * i + k];

@@ -1,6 +1,7 @@
 // A camera that goes round a point: turn, tilt, distance; by pointer, wheel and keys.
 
 const NEAREST = 1e-3;
+const FILLED = 0.88;  // of the picture, by what is looked at
 
 export class OrbitCamera {
   /** turn and tilt in rad, Z up; far in the unit of the scene; at: the point that is looked at. */
@@ -15,13 +16,54 @@ export class OrbitCamera {
     Object.assign(this, { turn, tilt, far, at: [...at] });
   }
 
-  /** Looks at a box of corners `low` and `high` so that all of it is seen. */
-  fit(low, high) {
-    const size = Math.hypot(...high.map((v, k) => v - low[k])) || 1;
+  /** Looks at points (three numbers each) so that they fill a picture of a shape. */
+  fit(points, aspect) {
+    const low = [Infinity, Infinity, Infinity], high = low.map(v => -v);
+    points.forEach((v, i) => {
+      low[i % 3] = Math.min(low[i % 3], v);
+      high[i % 3] = Math.max(high[i % 3], v);
+    });
+    this.size = Math.hypot(...high.map((v, k) => v - low[k])) || 1;
     this.start.at = low.map((v, k) => (v + high[k]) / 2);
-    this.start.far = 0.95 * size;
-    this.size = size;
+    this.start.far = this.size;
+    this.points = points;
     this.reset();
+    this.refit(aspect);
+  }
+
+  /** Fills a picture of another shape, unless it was turned or moved since. */
+  refit(aspect) {
+    const { start } = this, isMoved = ["turn", "tilt", "far"].some(k => this[k] !== start[k])
+      || start.at.some((v, k) => v !== this.at[k]);
+    if (!this.points || isMoved || aspect === this.aspect) return;
+    this.aspect = aspect;
+    for (let pass = 0; pass < 3; pass++) {  // what is nearer looks larger: the middle moves
+      const { far, middle } = this.filling(aspect), { right, up } = this.axes();
+      start.far = far || this.size;
+      start.at = start.at.map((v, k) => v + middle[0] * right[k] + middle[1] * up[k]);
+      this.reset();
+    }
+  }
+
+  /** Distance from which the points fill a picture, and their middle to the right and above. */
+  filling(aspect) {
+    const { right, up, out } = this.axes(), f = this.focus(aspect) / FILLED, { points, at } = this;
+    const along = (a, i) => a[0] * (points[i] - at[0]) + a[1] * (points[i + 1] - at[1])
+      + a[2] * (points[i + 2] - at[2]);
+    let far = 0;
+    const ends = [Infinity, -Infinity, Infinity, -Infinity];
+    for (let i = 0; i < points.length; i += 3) {
+      const [x, y, z] = [right, up, out].map(a => along(a, i));
+      far = Math.max(far, z + Math.abs(x) * f / aspect, z + Math.abs(y) * f);
+      [ends[0], ends[1]] = [Math.min(ends[0], x), Math.max(ends[1], x)];
+      [ends[2], ends[3]] = [Math.min(ends[2], y), Math.max(ends[3], y)];
+    }
+    return { far, middle: [(ends[0] + ends[1]) / 2, (ends[2] + ends[3]) / 2] };
+  }
+
+  /** Height of a picture at distance 1, as a factor. */
+  focus(aspect) {
+    return 2.2 * Math.min(1, aspect / 1.1);
   }
 
   /** Unit vectors to the right, up and towards the eye. */
@@ -49,7 +91,7 @@ export class OrbitCamera {
 
   /** Columns of the 4 x 4 matrix from the scene to clip space. */
   matrix(aspect) {
-    const { right, up, out } = this.axes(), f = 2.2 * Math.min(1, aspect / 1.1);
+    const { right, up, out } = this.axes(), f = this.focus(aspect);
     const [near, far] = this.range();
     const dot = v => v[0] * this.at[0] + v[1] * this.at[1] + v[2] * this.at[2];
     const m = new Float32Array(16), A = (near + far) / (near - far), away = dot(out) + this.far;

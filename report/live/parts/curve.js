@@ -10,9 +10,9 @@ export class Curves {
     this.frame = new Frame(canvas, frame);
     Object.assign(this, { canvas, curves: [], at: null });
     if (picked) {
-      const tell = e => e.buttons & 1 && picked(this.frame.vx(e.offsetX));
-      canvas.addEventListener("pointerdown", tell);
-      canvas.addEventListener("pointermove", tell);
+      const pick = e => e.buttons & 1 && picked(this.frame.vx(e.offsetX));
+      canvas.addEventListener("pointerdown", pick);
+      canvas.addEventListener("pointermove", pick);
     }
     new ResizeObserver(() => this.draw()).observe(canvas);
   }

@@ -11,9 +11,17 @@ function bytes(text) {
   return out;
 }
 
+/** Doubles of which only the upper bytes were kept. */
+function lengthened(kept, each) {
+  const out = new Uint8Array(8 * kept.length / each);
+  for (let i = 0; i < kept.length; i++) out[8 * Math.floor(i / each) + 8 - each + i % each] = kept[i];
+  return new Float64Array(out.buffer);
+}
+
 /** One packed array: { values, shape, unit, name }; whole numbers with a grain become Float32. */
 export function unpacked(packed) {
-  let values = new KINDS[packed.kind](bytes(packed.base64).buffer);
+  const own = bytes(packed.base64), Kind = KINDS[packed.kind];
+  let values = Kind ? new Kind(own.buffer) : lengthened(own, Number(packed.kind[1]));
   if (packed.grain !== 1) values = Float32Array.from(values, v => v * packed.grain);
   return { values, shape: packed.shape, unit: packed.unit, name: packed.name };
 }

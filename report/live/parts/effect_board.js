@@ -85,7 +85,7 @@ export class EffectBoard {
   /** Whether nothing is moved: neither a gain nor an inner parameter. */
   isPlain(on) {
     return on.every(one => one.gain === null
-      && (!one.inner || one.value === one.inner.values.values[one.inner.present]));
+      && !this.isMoved(one));
   }
 
   /** Errors of a set; of sets that were fitted to the touches the figures of that fit. */
@@ -95,6 +95,12 @@ export class EffectBoard {
     if (known) Object.assign(found, { fitted: known.fitted, heldOut: known.heldOut });
     const isAsFound = this.isPlain(on) && this.switches.every(one => one.isFound === on.includes(one));
     return { ...found, columns, own, isAsFound };
+  }
+
+  /** Errors with what was found, as the command left it. */
+  asFound() {
+    return this.known.get(this.switches.filter(one => one.isFound).map(one => one.name).sort()
+      .join("\n"));
   }
 
   /** Fixes the amounts of an effect at a multiple of what is fitted now; null: fitted again. */
@@ -137,6 +143,24 @@ export class EffectBoard {
       if (share) for (let t = 0; t < n; t++) out[t] += w * share * change[i].values[t];
     }
     return out;
+  }
+
+  /** Amount of an effect now over the one that was found; 0 where it is off. */
+  share(one, { own, estimate }) {
+    if (!one.isOn) return 0;
+    const found = this.estimate.subarray(one.first, one.first + one.amounts.length);
+    const place = own.find(([other]) => other === one)?.[1];
+    let [dot, square] = [0, 0];
+    found.forEach((v, k) => {
+      dot += v * (one.gain === null ? estimate[place + k] : one.gain * one.pinned[k]);
+      square += v * v;
+    });
+    return square ? dot / square : 0;
+  }
+
+  /** Whether the inner parameter of an effect was moved. */
+  isMoved(one) {
+    return one.inner !== null && one.value !== one.inner.values.values[one.inner.present];
   }
 
   /** Held-out error that a switch would bring. */

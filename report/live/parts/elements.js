@@ -18,13 +18,13 @@ export function element(name, attributes = {}, ...children) {
  * while it moves. Its `set(value)` moves it and says nothing.
  */
 export function slider({ label, low, high, value, step = "any", words = String, input }) {
-  const told = element("output", { text: words(value) });
+  const reading = element("output", { text: words(value) });
   const range = element("input", {
     type: "range", min: low, max: high, step, value, "aria-label": label,
     "aria-valuetext": words(value),
   });
   const say = v => {
-    told.textContent = words(v);
+    reading.textContent = words(v);
     range.setAttribute("aria-valuetext", words(v));
   };
   range.addEventListener("input", () => {
@@ -32,7 +32,7 @@ export function slider({ label, low, high, value, step = "any", words = String, 
     input(Number(range.value));
   });
   const made = element("label", { class: "slider" },
-    element("span", { text: label }), range, told);
+    element("span", { text: label }), range, reading);
   made.set = v => {
     range.value = v;
     say(v);

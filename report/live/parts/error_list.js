@@ -16,7 +16,7 @@ export class ErrorList {
       ...words.map(w => element("option", { text: w, value: w })));
     this.find = element("input", { type: "search", placeholder: "name", "aria-label": "find an error",
       oninput: () => this.filter() });
-    this.whole = slider({ label: "factor of these", low: 0, high: MOST,
+    this.whole = slider({ label: "scale these", low: 0, high: MOST,
       value: weights.every(w => w === 0) ? 0 : 1, step: 0.01,
       words: v => `× ${v.toFixed(2)}`, input: v => this.scale(v) });
     const set = (text, weight) => element("button", { type: "button", text,
@@ -25,23 +25,23 @@ export class ErrorList {
     place.append(
       element("div", { class: "row" }, this.kind, this.find),
       element("div", { class: "row" }, set("on", 1), set("off", 0)), this.whole, this.list);
-    this.tell();
+    this.update();
   }
 
   row(error, k) {
-    const told = element("output", { "aria-hidden": "true" }), bar = element("i");
+    const reading = element("output", { "aria-hidden": "true" }), bar = element("i");
     const box = toggle({ label: error.name, value: this.weights[k] !== 0,
-      changed: v => { this.weights[k] = v ? 1 : 0; this.tell(); this.changed(); } });
+      changed: v => { this.weights[k] = v ? 1 : 0; this.update(); this.changed(); } });
     box.title = `${error.title}; ${digits(error.size)} ± ${digits(error.u, 2)} µm rms over the `
       + "workspace";
     const factor = slider({ label: "factor", low: -MOST, high: MOST, value: this.weights[k],
       step: 0.01, words: v => `× ${v.toFixed(2)}`,
-      input: v => { this.weights[k] = v; this.tell(k); this.changed(); } });
+      input: v => { this.weights[k] = v; this.update(k); this.changed(); } });
     factor.range.setAttribute("aria-label", `factor of ${error.name}`);
     const more = element("details", {}, element("summary", { text: error.title }), factor);
-    const item = element("li", {}, element("div", { class: "head" }, box, told),
+    const item = element("li", {}, element("div", { class: "head" }, box, reading),
       element("div", { class: "bar" }, bar), more);
-    return { item, box, factor, told, bar };
+    return { item, box, factor, reading, bar };
   }
 
   /** Numbers of the errors that are listed. */
@@ -59,12 +59,12 @@ export class ErrorList {
   scale(weight) {
     for (const k of this.listed()) this.weights[k] = weight;
     this.whole.set(weight);
-    this.tell();
+    this.update();
     this.changed();
   }
 
   /** Shows the factors, but not that of the slider that is held. */
-  tell(held = -1) {
+  update(held = -1) {
     this.rows.forEach((r, k) => {
       r.box.set(this.weights[k] !== 0);
       if (k !== held) r.factor.set(this.weights[k]);
@@ -76,7 +76,7 @@ export class ErrorList {
     const most = Math.max(...sizes, 1e-9);
     this.rows.forEach((r, k) => {
       // what rounding leaves of nothing is nothing: a picometre
-      r.told.textContent = `${digits(sizes[k] < 1e-6 ? 0 : sizes[k])} µm`;
+      r.reading.textContent = `${digits(sizes[k] < 1e-6 ? 0 : sizes[k])} µm`;
       r.bar.style.width = `${100 * sizes[k] / most}%`;
     });
   }

@@ -5,7 +5,7 @@ import { fixed, ticks } from "./numbers.js";
 
 export class Frame {
   constructor(canvas, { left = 52, right = 12, top = 10, bottom = 38 } = {}) {
-    Object.assign(this, { canvas, left, right, top, bottom, xLabel: "", yLabel: "" });
+    Object.assign(this, { canvas, left, least: left, right, top, bottom, xLabel: "", yLabel: "" });
     this.context = canvas.getContext("2d");
     this.x = [0, 1];
     this.y = [0, 1];
@@ -21,7 +21,8 @@ export class Frame {
     if (canvas.width !== w || canvas.height !== h) [canvas.width, canvas.height] = [w, h];
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     context.clearRect(0, 0, this.wide, this.high);
-    context.font = "12px system-ui, 'Segoe UI', Arial, sans-serif";
+    const size = Math.max(12, 0.86 * parseFloat(getComputedStyle(canvas).fontSize));
+    context.font = `${size}px system-ui, 'Segoe UI', Arial, sans-serif`;
     return true;
   }
 
@@ -49,13 +50,16 @@ export class Frame {
 
   /** Grid, numbers and labels. names: words at 0, 1, 2 ... in place of the numbers below. */
   axes({ names = null } = {}) {
-    const { context: c } = this, [x0, y0] = [this.left, this.high - this.bottom];
+    const { context: c } = this, y0 = this.high - this.bottom;
     c.lineWidth = 1;
     c.strokeStyle = colour("line");
     c.fillStyle = colour("soft");
     c.textAlign = "right";
     c.textBaseline = "middle";
     const up = ticks(...this.y, Math.max(3, Math.floor(this.high / 32)));
+    const widest = Math.max(...up.at.map(v => c.measureText(fixed(v, up.places)).width));
+    this.left = Math.max(this.least, Math.ceil(widest) + (this.yLabel ? 28 : 12));
+    const x0 = this.left;
     for (const v of up.at) {
       const p = Math.round(this.py(v)) + 0.5;
       c.beginPath();

@@ -15,7 +15,9 @@ export function showLadder(place, { rungs, noise, most, words, unit }) {
   const said = rungs.map(r => `${r.name}: fitted ${words(r.fitted)}, held out ${words(r.heldOut)} `
     + unit).join("; ");
   place.setAttribute("aria-label", `${said}${noise === null ? "" : `; noise ${words(noise)} ${unit}`}`);
+  const key = noise === null ? null : element("li", { class: "key" }, element("u", {}),
+    `stated noise ${words(noise)} ${unit}`);
   place.replaceChildren(...rungs.map(r => element("li", { class: r.isNow ? "now" : null },
     element("b", { text: r.name }), bar("held", r.heldOut, "held out"),
-    bar("fitted", r.fitted, "fitted"))));
+    bar("fitted", r.fitted, "fitted"))), ...(key ? [key] : []));
 }

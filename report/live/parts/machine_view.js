@@ -99,8 +99,8 @@ export class MachineView {
   look(path) {
     const { camera } = this.view;
     this.view.fit();
-    camera.start.far *= 0.9;
     if (path.length) {
+      camera.points = null;  // the path alone decides
       const low = [Infinity, Infinity, Infinity], high = low.map(v => -v);
       for (let i = 0; i < path.length; i += 3) {
         placed(this.table, path.slice(i, i + 3)).forEach((v, k) => {

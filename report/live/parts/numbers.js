@@ -4,7 +4,7 @@
 export function digits(value, count = 3) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
   if (!Number.isFinite(value)) return value > 0 ? "∞" : "−∞";
-  const size = Math.abs(value);
+  const size = Math.abs(Number(value.toPrecision(count)));
   if (size === 0) return "0";
   if (size >= 1e6 || size < 1e-4) return value.toExponential(count - 1).replace("-", "−");
   const places = Math.max(0, count - 1 - Math.floor(Math.log10(size)));

@@ -30,7 +30,7 @@ export class ProgramPanel {
         this.stop();
         this.go(Number(this.when.value));
       } });
-    this.told = element("output", { class: "clock" });
+    this.reading = element("output", { class: "clock" });
     this.found = element("p", { class: "found" });
     this.text = element("ol", { class: "program", "aria-label": "program" });
     const step = way => {
@@ -39,7 +39,7 @@ export class ProgramPanel {
     };
     place.append(element("div", { class: "row" },
       button("◀", `${what} before`, () => step(-1)), this.play,
-      button("▶", `next ${what}`, () => step(1)), this.speed, this.when, this.told),
+      button("▶", `next ${what}`, () => step(1)), this.speed, this.when, this.reading),
     this.found, this.text);
   }
 
@@ -77,11 +77,11 @@ export class ProgramPanel {
   }
 
   /** Shows line, clock, touch; deviation: of the tool point, table frame, mm. */
-  tell(state, deviation) {
+  update(state, deviation) {
     const { program } = this, { row } = state;
     if (row < 0) return;
     const which = program.which.values[row], line = program.line.values[row];
-    this.told.textContent = `${clock(this.time)}  ${program.names[which]}, line ${line}`;
+    this.reading.textContent = `${clock(this.time)}  ${program.names[which]}, line ${line}`;
     this.found.textContent = this.findings(row, deviation);
     this.list(which, line);
   }
@@ -98,7 +98,7 @@ export class ProgramPanel {
         said.push(`measured deviation ${signed(-um(along))} µm along the normal`);
       }
     }
-    said.push(`tool point off by ${digits(um(Math.hypot(...deviation)))} µm`);
+    said.push(`deviation of the tool point ${digits(um(Math.hypot(...deviation)))} µm`);
     if (program.clearance && Number.isFinite(program.clearance.values[row])) {
       const body = program.nearest[program.nearest_body.values[row]];
       said.push(`clearance ${fixed(program.clearance.values[row], 1)} mm to ${body}`);

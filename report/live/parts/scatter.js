@@ -19,9 +19,13 @@ export class Scatter {
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
-  /** x, y: numbers; colours: three bytes each; xRange, yRange: [low, high]; band: half a width. */
-  show({ x = this.x, y = this.y, colours = this.colours, xRange, yRange, band = this.band }) {
-    Object.assign(this, { x, y, colours, band });
+  /**
+   * x, y: numbers; colours: three bytes each; xRange, yRange: [low, high]; band: half a width;
+   * curve: { x, y, half } drawn over the dots, half the width of its band, or null.
+   */
+  show({ x = this.x, y = this.y, colours = this.colours, xRange, yRange, band = this.band,
+    curve = null }) {
+    Object.assign(this, { x, y, colours, band, curve });
     if (xRange) this.frame.x = padded(xRange);
     if (yRange) this.frame.y = padded(yRange);
     this.draw();
@@ -43,6 +47,7 @@ export class Scatter {
       frame.high - frame.top - frame.bottom + 8);
     c.clip();
     this.dots(c);
+    if (this.curve) this.line(c);
     if (this.marked >= 0) this.ring(c, this.marked);
     if (this.held && this.held.to) {
       const [[a, b], [x, y]] = [this.held.from, this.held.to];
@@ -74,6 +79,21 @@ export class Scatter {
       }
     }
     c.globalAlpha = 1;
+  }
+
+  line(c) {
+    const { frame, curve: { x, y, half } } = this, at = (i, v) => [frame.px(x[i]), frame.py(v)];
+    c.fillStyle = c.strokeStyle = colour("ink");
+    c.beginPath();
+    for (let i = 0; i < x.length; i++) c.lineTo(...at(i, y[i] + half[i]));
+    for (let i = x.length - 1; i >= 0; i--) c.lineTo(...at(i, y[i] - half[i]));
+    c.globalAlpha = 0.18;
+    c.fill();
+    c.globalAlpha = 1;
+    c.lineWidth = 2;
+    c.beginPath();
+    for (let i = 0; i < x.length; i++) c.lineTo(...at(i, y[i]));
+    c.stroke();
   }
 
   ring(c, i) {

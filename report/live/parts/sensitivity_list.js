@@ -15,10 +15,10 @@ export class SensitivityList {
         a => element("option", { text: a === "w" ? "workpiece" : a === "t" ? "tool" : a,
           value: a })));
     this.rows = symbols.map(symbol => {
-      const bar = element("i"), told = element("output");
+      const bar = element("i"), reading = element("output");
       const item = element("li", { title: symbol.title }, element("span", { text: symbol.name }),
-        element("div", { class: "bar" }, bar), told);
-      return { item, bar, told, symbol };
+        element("div", { class: "bar" }, bar), reading);
+      return { item, bar, reading, symbol };
     });
     this.whole = place;
     place.append(element("div", { class: "row" }, this.kind),
@@ -58,8 +58,8 @@ export class SensitivityList {
     this.rows.forEach((r, k) => {
       const unit = r.symbol.component < 3 ? "µm/µm" : "µm/µrad";
       r.bar.style.width = `${100 * sizes[k] / most}%`;
-      r.told.textContent = `${digits(sizes[k])} ${unit}`;
-      r.told.title = `x ${signed(all[k][0])}, y ${signed(all[k][1])}, z ${signed(all[k][2])}`;
+      r.reading.textContent = `${digits(sizes[k])} ${unit}`;
+      r.reading.title = `x ${signed(all[k][0])}, y ${signed(all[k][1])}, z ${signed(all[k][2])}`;
     });
   }
 }

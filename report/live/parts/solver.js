@@ -74,21 +74,22 @@ export class Solver {
   constructor(reduced) {
     Object.assign(this, reduced);
     this.triangle = this.size * (this.size + 1) / 2;
-    this.logs = this.levels.map(level => Math.log(level.s));
+    const [low, high] = this.span.map(Math.log);
+    this.within = s => Math.max(-1, Math.min(1, (2 * Math.log(s) - low - high) / (high - low)));
   }
 
-  /** Weights of the levels at a size of the noise: Lagrange in its logarithm. */
+  /** Weights of the terms at a size of the noise: Chebyshev's polynomials of its logarithm. */
   shares(s) {
-    const x = this.logs, at = Math.max(x[0], Math.min(x[x.length - 1], Math.log(s)));
-    return x.map((a, i) => x.reduce((w, b, j) => (j === i ? w : w * (at - b) / (a - b)), 1));
+    const angle = Math.acos(this.within(s));
+    return this.terms.map((_, k) => Math.cos(k * angle));
   }
 
-  /** The named matrix of a set at a size of the noise; `weights`: of the levels, null for the first. */
+  /** The named matrix of a set at a size of the noise; `weights`: of the terms, null for the first. */
   matrix(name, columns, weights, size = this.size, first = 0) {
     if (!weights) return mixed(this.first[name].values, first, size, columns);
     let out = null;
     weights.forEach((w, l) => {
-      const part = mixed(this.levels[l][name].values, first, size, columns);
+      const part = mixed(this.terms[l][name].values, first, size, columns);
       if (!out) out = new Float64Array(part.length);
       for (let i = 0; i < part.length; i++) out[i] += w * part[i];
     });
@@ -97,7 +98,7 @@ export class Solver {
 
   number(name, weights) {
     if (!weights) return this.first[name];
-    return weights.reduce((sum, w, l) => sum + w * this.levels[l][name], 0);
+    return weights.reduce((sum, w, l) => sum + w * this.terms[l][name], 0);
   }
 
   /**
@@ -125,8 +126,8 @@ export class Solver {
     }
     const fitted = Math.sqrt(Math.max(quadratic(c, this.matrix("H1", columns, weights), wide), 0));
     const spread = this.spread(L, k, s * this.weight);
-    const held = this.tested.length
-      ? this.ofTestRows(columns, c, s) : this.leftOut(columns, c, L, k, weights);
+    const held = this.isTested
+      ? this.ofTestRows(columns, c, weights) : this.leftOut(columns, c, L, k, weights);
     return { fitted, s, estimate: a, spread, c, ...held };
   }
 
@@ -139,12 +140,8 @@ export class Solver {
     });
   }
 
-  ofTestRows(columns, c, s) {
-    let square = 0;
-    this.shares(s).forEach((w, l) => {
-      const H = mixed(this.tested[l].values, 0, this.size, columns);
-      square += w * quadratic(c, H, columns.length);
-    });
+  ofTestRows(columns, c, weights) {
+    const square = quadratic(c, this.matrix("tested", columns, weights), columns.length);
     return { heldOut: Math.sqrt(Math.max(square, 0)), groups: [] };
   }
 

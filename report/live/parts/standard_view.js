@@ -1,5 +1,6 @@
 // A standard with its features, its touches and the probe; features are pointed at and chosen.
 
+import { showTriad } from "./triad.js";
 import { View3D, rgb } from "./view3d.js";
 import { bytes, colour } from "./theme.js";
 
@@ -29,6 +30,7 @@ export class StandardView {
       if (isStill) picked(this.under(e.offsetX, e.offsetY));
     });
     this.view.fit();
+    showTriad(this.view);
     this.recolour();
   }
 

@@ -4,6 +4,7 @@ import { OrbitCamera } from "./camera.js";
 import { Painter } from "./painter.js";
 import { GlDrawer } from "./gl_drawer.js";
 
+const MOST = 2000;
 const IDENTITY = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
 
 /** "#rrggbb" as three shares of 1. */
@@ -97,22 +98,26 @@ export class View3D {
     this.request();
   }
 
-  /** Looks at all that is there. */
+  /** Looks at all that is there; at most `MOST` points of every layer decide. */
   fit() {
-    const low = [Infinity, Infinity, Infinity], high = low.map(v => -v);
+    const points = [];
     for (const layer of this.layers) {
       const values = layer.corners || layer.positions, m = layer.place;
-      for (let i = 0; i < values.length; i += 3) {
+      const step = 3 * Math.ceil(values.length / 3 / MOST);
+      for (let i = 0; i < values.length; i += step) {
         for (let k = 0; k < 3; k++) {
-          const v = m[k] * values[i] + m[4 + k] * values[i + 1] + m[8 + k] * values[i + 2]
-            + m[12 + k];
-          if (v < low[k]) low[k] = v;
-          if (v > high[k]) high[k] = v;
+          points.push(m[k] * values[i] + m[4 + k] * values[i + 1] + m[8 + k] * values[i + 2]
+            + m[12 + k]);
         }
       }
     }
-    if (low[0] <= high[0]) this.camera.fit(low, high);
+    if (points.length) this.camera.fit(points, this.aspect);
     this.request();
+  }
+
+  /** Width over height. */
+  get aspect() {
+    return this.canvas.clientWidth / this.canvas.clientHeight || 1.3;
   }
 
   /** Draws before the next frame; many calls draw once. */
@@ -144,6 +149,7 @@ export class View3D {
 
   draw() {
     if (!this.resize()) return;
+    this.camera.refit(this.aspect);
     this.drawer.draw(this.shown, this.camera, rgb(this.ground), window.devicePixelRatio || 1);
     this.afterDraw();
   }
@@ -160,7 +166,7 @@ export class View3D {
 
   /** Where a point of the scene is seen, CSS pixels: [x, y]. */
   project(point) {
-    const { canvas } = this, m = this.camera.matrix(canvas.clientWidth / canvas.clientHeight);
+    const { canvas } = this, m = this.camera.matrix(this.aspect);
     const clip = [0, 1, 3].map(
       r => m[r] * point[0] + m[4 + r] * point[1] + m[8 + r] * point[2] + m[12 + r]);
     const x = 0.5 * canvas.clientWidth * (1 + clip[0] / clip[2]);

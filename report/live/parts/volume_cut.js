@@ -1,5 +1,6 @@
 // A volume cut by a plane that is moved through it, in the colours of a number.
 
+import { showTriad } from "./triad.js";
 import { View3D } from "./view3d.js";
 import { bytes, colour, scaleColours } from "./theme.js";
 
@@ -22,8 +23,8 @@ function edges(at) {
 }
 
 export class VolumeCut {
-  /** at: places along each of three axes, ascending. */
-  constructor(canvas, at) {
+  /** at: places along each of three axes, ascending; names: of the axes. */
+  constructor(canvas, at, names) {
     Object.assign(this, { at });
     this.view = new View3D(canvas, { camera: { turn: -1.0, tilt: 0.45 } });
     const positions = edges(at);
@@ -31,8 +32,7 @@ export class VolumeCut {
     this.plane = this.view.mesh({ corners: positions.slice(0, 9), colours: new Uint8Array(9),
       isFlat: true });
     this.view.fit();
-    this.view.camera.start.far *= 1.25;  // a box so near that its edges spread is hard to read
-    this.view.camera.reset();
+    showTriad(this.view, names);
     this.recolour();
   }
 

@@ -1,0 +1,84 @@
+"""`matstd trend`: control charts of one machine over several runs."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+from matstd.options import add_effects, add_output, add_pdf, asked_printer
+
+if TYPE_CHECKING:
+    from matstd.api.trending import Trend
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Arguments of the command."""
+    parser.add_argument(
+        "runs",
+        metavar="FOLDER",
+        nargs="+",
+        help="folder with at least three runs of one machine on one standard, or with their "
+        "diagnoses or model files; or the files themselves",
+    )
+    parser.add_argument(
+        "--add",
+        metavar="EFFECT",
+        action="extend",
+        nargs="+",
+        default=[],
+        help="effects that are fitted to every run beside the geometry, and charted",
+    )
+    add_effects(parser)
+    parser.add_argument(
+        "--no-report", action="store_true", help="do not write the report page and its figures"
+    )
+    add_pdf(parser)
+    add_output(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Chart; the folder appears whole or not at all."""
+    from matstd.api.trending import Trend, trend
+    from matstd.effect_kinds import register_effects
+    from matstd.progress import stages
+    from matstd.twin.files import results_folder
+
+    register_effects(*args.effects)
+    printed_by = asked_printer(args)
+    given = args.runs[0] if len(args.runs) == 1 else args.runs
+    with results_folder(args.output, args.force, Trend.sometimes) as folder, stages() as show:
+        found = trend(given, add=args.add, progress=show)
+        found.write(folder)
+        if not args.no_report:
+            show("report", 0, 1)
+            found.write_page(folder, printed_by)
+    _report(args, found)
+    args.next = _next(args, found)
+    return 0
+
+
+def _next(args: argparse.Namespace, found: Trend) -> tuple[str, str]:
+    """After a step the runs around it are compared; else the last run is diagnosed."""
+    from matstd.next_steps import called
+
+    if found.follows:
+        words = called("diagnose", *found.follows, "--auto", "-o", f"{args.output}-change")
+        return words, "what changed, from both runs together"
+    if found.is_of_models or not found.paths:
+        return "", ""
+    words = called("diagnose", found.paths[-1], "-o", f"{args.output}-last")
+    return words, "what the machine lacks now"
+
+
+def _report(args: argparse.Namespace, found: Trend) -> None:
+    """What changed and when, and where the files are."""
+    from matstd.console import say
+    from matstd.report.charts import history_lines, history_sentence
+
+    say(history_sentence(found), style="bold")
+    for line in history_lines(found):
+        say(f"- {line}")
+    if found.left_out:
+        say(f"- no run files, left out: {', '.join(found.left_out)}")
+    first = "" if args.no_report else "report.html, "
+    say(f"{args.output}: look at {first}trend.json, trend.csv")

@@ -1,0 +1,115 @@
+"""A law over one of its variables, with the touches, as pictures and live pages draw it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from matstd.diagnosis.laws import Learning, curve_of, partial_residual
+from matstd.report.laws.law_words import variable_words
+from matstd.report.numbers import time_unit
+from matstd.twin.frames import Array
+from matstd.twin.laws import Driver, Law
+from matstd.twin.model import columns
+from matstd.twin.units import DEG, UM, URAD
+
+POINTS = 400
+"""Points of a curve that are drawn."""
+
+BEYOND = 0.3
+"""Share of the range by which a curve without a formula is drawn beyond it: there its uncertainty
+comes back."""
+
+MIN_LEVER = 0.2
+"""Share of the largest lever below which a touch shows noise rather than the law."""
+
+
+@dataclass(frozen=True, eq=False)
+class LawCurve:
+    """A law over one of its variables, and what every touch shows of it.
+
+    A touch feels the carrier by a lever: its residual with the law put back, over the lever, is
+    what it says of the curve. Of a product of two shapes the lever holds what the other shape is
+    at the touch.
+
+    Attributes:
+        title: `EBY`.
+        unit: Of the carrier.
+        scale: One of it in base units.
+        label: Of the variable, with its unit.
+        x: Of the curve, as it is shown, (M,).
+        value: Of the curve, in `unit`, (M,).
+        u: Its standard uncertainty, (M,).
+        touch_x: Of every touch, as it is shown, (N,).
+        touch_value: Of the curve at every touch, in `unit`, (N,).
+        lever: Of every touch, mm over the base unit; nan where it is too small, (N,).
+        put_back: Residual with the law put back over the lever, in `unit`, (N,).
+    """
+
+    title: str
+    unit: str
+    scale: float
+    label: str
+    x: Array
+    value: Array
+    u: Array
+    touch_x: Array
+    touch_value: Array
+    lever: Array
+    put_back: Array
+
+
+def law_curve(learning: Learning, law: Law, k: int) -> LawCurve:
+    """The curve of a law over the variable of its k-th factor."""
+    fit, driver = learning.after, law.factors[k].driver
+    x = driver.values(fit.run.touches)
+    used = x[fit.used]
+    label, per = axis_label(driver, used)
+    beyond = BEYOND * float(np.ptp(used)) if law.factors[k].shape.word == "curve" else 0.0
+    grid = np.linspace(float(used.min()) - beyond, float(used.max()) + beyond, POINTS)
+    if driver.nature == "sign":
+        grid = np.array([-1.0, 1.0])
+    value, u = curve_of(learning, law, k, grid)
+    at_touches, _ = curve_of(learning, law, k, x)
+    lever = _levers(learning, law, at_touches)
+    both, _ = partial_residual(learning, law)
+    scale = URAD if law.carrier.is_angular else UM
+    return LawCurve(
+        title=law.carrier.name,
+        unit="µrad" if law.carrier.is_angular else "µm",
+        scale=scale,
+        label=label,
+        x=grid / per,
+        value=value / scale,
+        u=u / scale,
+        touch_x=x / per,
+        touch_value=at_touches / scale,
+        lever=lever,
+        put_back=both / lever / scale,
+    )
+
+
+def _levers(learning: Learning, law: Law, value: Array) -> Array:
+    """What every touch shows of the law's value on the curve that is drawn, nan for too little."""
+    fit = learning.after
+    theta = fit.theta[fit.of_effect(law.name)]
+    felt = columns([law], fit.run.touches) @ theta
+    size = float(np.abs(value).max()) or 1.0
+    way = int(np.argmax(np.abs(theta.reshape(law.carrier.count, -1)).sum(axis=1)))
+    lever = law.carrier.columns(fit.run.touches)[:, way]
+    if len(law.factors) > 1 or law.carrier.count > 1:
+        # what the touch shows of the drawn value holds the other factor and the other ways, too
+        lever = np.divide(felt, value, out=np.zeros_like(felt), where=np.abs(value) > 0.05 * size)
+    seen = np.abs(lever) > MIN_LEVER * float(np.abs(lever).max(initial=1e-300))
+    return np.where(seen, lever, np.nan)
+
+
+def axis_label(driver: Driver, x: Array) -> tuple[str, float]:
+    """Label of a variable, and one of its unit in the base unit."""
+    words = variable_words(driver)
+    if driver.unit == "s":
+        per, unit = time_unit(float(np.abs(x).max(initial=1.0)))
+        return f"{words} in {unit}", per
+    if driver.unit == "rad":
+        return f"{words} in °", DEG
+    unit = driver.unit.replace("degC", "°C")
+    return (f"{words} in {unit}" if unit else words), 1.0

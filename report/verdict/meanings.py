@@ -1,0 +1,72 @@
+"""What the result of a page means for the use of the machine, in the box below its head."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from matstd.diagnosis.answer import Comparison, Diagnosis, Verdict
+from matstd.diagnosis.task import TaskUncertainty
+from matstd.report.numbers import microns, plural, um
+from matstd.sensitivity.study import Study
+
+
+def diagnosis_meaning(result: Diagnosis) -> str:
+    """May the model be used, and how well does it predict."""
+    before, after = (microns(p.elsewhere) for p in (result.promise_before, result.promise))
+    touched = f"the model predicts the tool point to {after} rms within what was probed"
+    if result.verdict is Verdict.NONE:
+        return (
+            f"The model describes the machine as far as this run shows: {touched}. It may be used "
+            "to correct the machine in the state in which it was probed."
+        )
+    if result.verdict is Verdict.MISSING:
+        count = plural(sum(s.effect is not None for s in result.steps), "effect")
+        return (
+            f"The machine has {count} that the starting model lacks. Without it parts made in "
+            f"other states (warm, other direction, other place) differ from the prediction by "
+            f"{before} rms; with it {touched}."
+        )
+    if result.verdict is Verdict.UNEXPLAINED:
+        return (
+            "Something acts on the machine that no effect of the library accounts for. "
+            f"Predictions are off by {after} rms, and a compensation by this model leaves that."
+        )
+    return (
+        "This run does not decide whether what remains is noise or an effect: the noise would have "
+        "to be far above what is stated, and no touch is repeated."
+    )
+
+
+def comparison_meaning(found: Comparison) -> str:
+    """Whether the model may be used for the machine as it is now."""
+    what = "prediction" if found.is_prediction else "fit"
+    if not found.structure:
+        return (
+            f"The {what} leaves {microns(found.rms)} rms without any pattern: the model holds for "
+            "the machine as this run found it."
+        )
+    return (
+        f"The {what} leaves {microns(found.rms)} rms with a pattern that is not due to chance. "
+        "Where and when it acts, parts are wrong by more than the noise; a compensation by this "
+        "model leaves it."
+    )
+
+
+def uncertainty_meaning(found: Mapping[str, TaskUncertainty]) -> str:
+    """What may be stated of a measured part."""
+    best = min(found, key=lambda name: found[name].U)
+    return (
+        f"A result of this task measured on this machine is known to ± {um(found[best].U)} (95 %), "
+        f"{best}. Parts nearer to a limit than that are neither proved good nor proved bad."
+    )
+
+
+def study_meaning(study: Study) -> str:
+    """Which errors are worth an effort, and where."""
+    names = [symbol.name for symbol in study.chain.symbols]
+    share = study.shares.mean(axis=0)
+    first = [names[int(k)] for k in np.argsort(-share)[:3]]
+    return (
+        f"Of machines with the stated error ranges {', '.join(first)} move the tool point most. "
+        "Measure and adjust these first; place accurate work where the maps are light."
+    )

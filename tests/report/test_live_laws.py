@@ -1,0 +1,84 @@
+"""Laws on the live page: their figures against the fits, their curves against the touches."""
+
+import json
+
+import numpy as np
+import pytest
+from browser import faults, opened, requests, run
+from simulator_case import read_back
+from simulator_experiment import MACHINES
+from simulator_laws import law_case
+
+from matstd.diagnosis.laws import amplitudes, learn_laws
+from matstd.diagnosis.reduced import learnt_board
+from matstd.report.laws import law_curve
+from matstd.report.layout import Page, write_page
+from matstd.report.run_view import learnt_view
+from matstd.twin.units import UM
+
+LAW = "law(bias,step time)"
+
+
+@pytest.fixture(scope="module")
+def learning():
+    """A stylus that is changed: the probe reads elsewhere from then on."""
+    text, *_ = law_case(np.random.default_rng(5), "hmc1995", "stylus", (30.0, 31.0), poses=4)
+    return learn_laws(read_back(text, MACHINES["hmc1995"]))
+
+
+def test_the_board_switches_the_law(learning):
+    board = learnt_board(learning)
+    assert board.found == {LAW}
+    on = board.errors({LAW})
+    known = [learning.after.rms, learning.after.test_rms]
+    assert [on.fitted, on.held_out] == pytest.approx(known, rel=1e-7)
+    off = board.errors(())
+    assert off.fitted > 1.2 * on.fitted
+    assert board.known[frozenset()] == (learning.before.rms, learning.before.test_rms)
+
+
+def test_a_step_of_the_probe_stands_at_the_touches_themselves(learning):
+    """The lever on the reading of the probe is 1: dots are residuals plus the step by hand."""
+    (one,) = learning.laws
+    curve = law_curve(learning, one.law, 0)
+    (size,) = amplitudes(learning, one.law)
+    (instant,) = one.law.places
+    t = learning.after.run.touches.time
+    step = np.where(t > instant, size.value, 0.0)
+    assert curve.lever == pytest.approx(1.0)
+    residual = learning.after.residual
+    assert curve.put_back == pytest.approx((residual + step) / UM, abs=1e-6)
+    assert curve.value[[0, -1]] == pytest.approx([0.0, size.value / UM], abs=1e-9)
+    assert curve.u[-1] == pytest.approx(size.u / UM, rel=0.01)
+    assert curve.label == "time in h"
+
+
+@pytest.mark.browser
+def test_the_page_shows_curve_and_touches_and_takes_the_law_away(browser, learning, tmp_path):
+    path = tmp_path / "law.html"
+    view = learnt_view(learning, "run.csv")
+    write_page(path, Page(title="t", heading="h", lead="l", key=(), sections=(), live=view))
+    opened(browser, path)
+    state = """const { plot } = livePage.residuals, { now } = livePage.shown;
+        return JSON.stringify({ y: [...plot.y], curve: plot.curve && [...plot.curve.y],
+          half: plot.curve && [...plot.curve.half], label: plot.frame.yLabel,
+          fitted: now.fitted, heldOut: now.heldOut });"""
+    curve = law_curve(learning, learning.laws[0].law, 0)
+    shown = json.loads(run(browser, state))
+    assert shown["label"] == "bias in µm"
+    assert shown["curve"] == pytest.approx(curve.value.tolist(), abs=1e-3)
+    assert shown["half"] == pytest.approx((2.0 * curve.u).tolist(), abs=1e-3)
+    used = learning.after.used
+    assert np.array(shown["y"])[used] == pytest.approx(curve.put_back[used], abs=5e-3)
+    known = [learning.after.rms / UM, learning.after.test_rms / UM]
+    assert [shown["fitted"], shown["heldOut"]] == pytest.approx(known, rel=1e-12)
+    run(browser, f"""document.querySelector('input[data-effect="{LAW}"]').click()""")
+    shown = json.loads(run(browser, state))
+    assert shown["curve"] is None
+    assert shown["fitted"] == pytest.approx(learning.before.rms / UM, rel=1e-12)
+    run(browser, "livePage.board.reset(); livePage.board.pull(livePage.board.on[0], 0.5)")
+    run(browser, "livePage.changed()")
+    half = json.loads(run(browser, state))["curve"]
+    assert half == pytest.approx((0.5 * curve.value).tolist(), abs=1e-3)
+    assert faults(browser) == []
+    assert requests(browser) == []
