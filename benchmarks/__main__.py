@@ -37,6 +37,8 @@ RUNS: dict[str, tuple[str, ...]] = {
     "large_effects": ("--jobs", "2"),
     "flat_plate": (),
     "real_records": (),
+    "trend_alarms": (),
+    "contradictory_projects": (),
     "standard_temperature": (),
     "live_page": (),
     "machine_page": (),

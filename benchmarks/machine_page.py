@@ -37,7 +37,7 @@ def main() -> None:
     chain = matstd.read_machine(machine)
     drawn = drawn_errors(Population(chain), np.random.default_rng(1))
     errors = MachineErrors.of_errors(chain, drawn)
-    low, high = np.array([chain.link(a).range for a in chain.axes]).T
+    low, high = chain.travels.T
     q = np.random.default_rng(2).uniform(low, high, (POSES, len(low)))
     with tempfile.TemporaryDirectory() as name:
         known, page = Path(name, "errors.toml"), Path(name, "machine.html")

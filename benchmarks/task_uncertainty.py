@@ -57,7 +57,7 @@ def workpieces(run: Run, standard: Standard, rng: np.random.Generator) -> Touche
     t = run.touches
     chain, setup = t.chain, t.setups[0]
     like = t[like_task(Task(), standard, t)]
-    rotary = [chain.axis_index(a) for a in chain.rotary_axes]
+    rotary = chain.rotary_columns
     low, high = like.point.min(axis=0), like.point.max(axis=0)
     limits = np.array([link.range for link in chain.links if link.kind != "fixed"])
     kept = []

@@ -157,3 +157,17 @@ def test_the_machine_of_1995_gives_its_errors_back(tmp_path):
         ppm = planted.SLOPES[symbol] * 1e6
         assert abs(row["value_ppm"] - ppm) < COVERED * row["uncertainty_ppm"]
         assert f"{row['value_ppm']:.0f} ± {row['uncertainty_ppm']:.0f} ppm" in quoted(OLD)
+
+
+def test_the_jump_and_the_drift_of_the_trend_are_found_and_nothing_else():
+    """15 µm between 2 and 9 February, -4 µrad a week, as make_runs.py planted them."""
+    import matstd
+
+    found = matstd.trend(EXAMPLES / "trend")
+    changed = {chart.of.symbol or chart.of.quantity.value: chart for chart in found.changed}
+    assert set(changed) == {"EX0C", "EC0Y", "error with the machine of the first run"}
+    (step,) = changed["EX0C"].course.steps
+    assert found.occasions[step.after].name == "2026-02-09"
+    assert abs(step.size.value - 15.0e-3) < 3.0 * step.size.u
+    rate = changed["EC0Y"].course.drift.rate
+    assert abs(7.0 * rate.value + 4.0e-6) < 3.0 * 7.0 * rate.u

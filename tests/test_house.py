@@ -114,6 +114,12 @@ def tree_of(file: Path) -> ast.Module:
     return ast.parse(file.read_text(encoding="utf-8"))
 
 
+@cache
+def nodes_of(tree: ast.AST) -> list[ast.AST]:
+    """All nodes of a tree; a dozen tests look at those of every file."""
+    return list(ast.walk(tree))
+
+
 def module_of(file: Path) -> str:
     """Dotted name of a file's module."""
     return ".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
@@ -122,7 +128,7 @@ def module_of(file: Path) -> str:
 def imports(tree: ast.AST) -> list[tuple[str, int]]:
     """All imported modules with their line."""
     found = []
-    for node in ast.walk(tree):
+    for node in nodes_of(tree):
         if isinstance(node, ast.Import):
             found += [(in_house(alias.name), node.lineno) for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
@@ -140,7 +146,7 @@ def imports_by_string(tree: ast.AST) -> list[tuple[str, int]]:
     """Modules of ours that are named in a string, as `import_module("matstd.report")` does."""
     return [
         (in_house(text), node.lineno)
-        for node in ast.walk(tree)
+        for node in nodes_of(tree)
         if isinstance(node, ast.Constant | ast.JoinedStr)
         and re.match(r"matstd(\.\w+)+", text := text_of(node))
         and " " not in text
@@ -164,8 +170,12 @@ def test_rooms_have_one_name() -> None:
     files = subprocess.run(
         ["git", "ls-files", "*.py"], cwd=ROOT, capture_output=True, text=True, check=True
     ).stdout.split()
+    ours = set(FILES)
     for file in files:
-        for node in ast.walk(ast.parse((ROOT / file).read_text(encoding="utf-8"))):
+        path = ROOT / file
+        # trees of tests, which no other test looks at, would only fill the memory
+        tree = tree_of(path) if path in ours else ast.parse(path.read_text(encoding="utf-8"))
+        for node in ast.walk(tree):
             names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
             if isinstance(node, ast.ImportFrom) and node.module and not node.level:
                 names.append(node.module)
@@ -205,7 +215,7 @@ def test_parts_are_entered_by_their_faces(room: str) -> None:
     """Other parts and rooms import from an `__init__`, and only what it lists."""
     for file in IN_ROOM[room]:
         mine = part_of(module_of(file))
-        for node in ast.walk(tree_of(file)):
+        for node in nodes_of(tree_of(file)):
             if not isinstance(node, ast.ImportFrom) or not node.module or node.level:
                 continue
             name = in_house(node.module)
@@ -272,14 +282,14 @@ def text_of(node: ast.AST) -> str:
 def prose_with_units(tree: ast.Module) -> list[tuple[str, int]]:
     """Texts of three words and more that name a unit, but for docstrings, refusals and cards."""
     passed: set[int] = set()
-    for node in ast.walk(tree):
+    for node in nodes_of(tree):
         is_docstring = isinstance(node, ast.Expr) and bool(text_of(node.value))
         is_card = isinstance(node, ast.keyword) and node.arg in CARDS
         if isinstance(node, ast.Raise) or is_docstring or is_card:
             passed |= {id(n) for n in ast.walk(node)}
         elif isinstance(node, ast.JoinedStr):
             passed |= {id(n) for n in ast.walk(node) if n is not node}
-    found = [(text_of(n), n.lineno) for n in ast.walk(tree) if id(n) not in passed and text_of(n)]
+    found = [(text_of(n), n.lineno) for n in nodes_of(tree) if id(n) not in passed and text_of(n)]
     return [(text, line) for text, line in found if UNIT.search(text) and len(text.split()) > 2]
 
 
@@ -316,7 +326,7 @@ EFFECTS = ("twin.effects", "twin.thermal", "twin.elastic")
 def questions(tree: ast.Module) -> list[tuple[str, int]]:
     """What a file asks by class or by a string: names in `isinstance`, `match`; flags by name."""
     found = []
-    for node in ast.walk(tree):
+    for node in nodes_of(tree):
         if isinstance(node, ast.MatchClass):
             found.append((ast.unparse(node.cls), node.lineno))
         if not isinstance(node, ast.Call) or len(node.args) < 2:
@@ -381,7 +391,7 @@ def test_files_and_functions_stay_readable(room: str) -> None:
     for file in IN_ROOM[room]:
         assert file.read_text(encoding="utf-8").count("\n") <= MAX_LINES, file
         assert ast.get_docstring(tree_of(file)), f"{file}: no docstring"
-        for node in ast.walk(tree_of(file)):
+        for node in nodes_of(tree_of(file)):
             if isinstance(node, ast.FunctionDef):
                 doc = ast.get_docstring(node) or ""
                 size = (node.end_lineno or 0) - node.lineno - (doc.count("\n") + 1 if doc else 0)
@@ -426,7 +436,7 @@ MAX_PLACES = 4
 def records(tree: ast.AST) -> dict[str, int]:
     """Data classes and named tuples of a file, with their numbers of fields."""
     found = {}
-    for node in ast.walk(tree):
+    for node in nodes_of(tree):
         if isinstance(node, ast.ClassDef):
             marks = [ast.unparse(n) for n in (*node.decorator_list, *node.bases)]
             if any(mark.startswith(("dataclass", "NamedTuple")) for mark in marks):
@@ -441,7 +451,7 @@ def test_long_records_are_built_by_keyword() -> None:
     found = [
         f"{file}:{node.lineno}: {node.func.id}"
         for file in FILES
-        for node in ast.walk(tree_of(file))
+        for node in nodes_of(tree_of(file))
         if isinstance(node, ast.Call)
         and isinstance(node.func, ast.Name)
         and sizes.get(node.func.id, 0) > MAX_PLACES

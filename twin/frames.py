@@ -49,18 +49,15 @@ def pose(R: Array | None = None, t: Array | None = None) -> Array:
     return T
 
 
-def turned_about(point: Array, R: Array, shift: Array | None = None) -> Array:
-    """Pose of a rotation about a point followed by a shift, (..., 4, 4).
-
-    ``x -> point + R (x - point) + shift``.
+def turned_about(point: Array, R: Array) -> Array:
+    """Pose of a rotation about a point, ``x -> point + R (x - point)``, (..., 4, 4).
 
     Args:
         point: Fixed point of the rotation, shape (..., 3), mm.
         R: Rotations, shape (..., 3, 3).
-        shift: Translation afterwards, shape (..., 3), mm.
     """
-    t = point - np.einsum("...ij,...j->...i", R, np.broadcast_to(point, (*R.shape[:-2], 3)))
-    return pose(R, t if shift is None else t + shift)
+    fixed = np.broadcast_to(point, (*R.shape[:-2], 3))
+    return pose(R, point - np.einsum("...ij,...j->...i", R, fixed))
 
 
 def inverse(T: Array) -> Array:

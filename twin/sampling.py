@@ -5,6 +5,7 @@ commands that need a few hundred poses, and its sequences are even only at power
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from matstd.twin.frames import Array
 
@@ -26,6 +27,16 @@ def even_points(count: int, dimensions: int, start: int = 0) -> Array:
         g = (1.0 + g) ** (1.0 / (dimensions + 1))
     alpha = g ** -np.arange(1.0, dimensions + 1.0)
     return np.mod(0.5 + np.outer(np.arange(start + 1, start + count + 1), alpha), 1.0)
+
+
+def spread_rows(count: int, most: int) -> NDArray[np.int64]:
+    """Numbers of rows spread evenly over all, the first and the last among them, (rows,).
+
+    Args:
+        count: Rows that there are.
+        most: Rows that are wanted; all where there are fewer.
+    """
+    return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.int64))
 
 
 def latin_points(low: Array, high: Array, count: int, rng: np.random.Generator) -> Array:

@@ -16,7 +16,7 @@ from matstd.twin.machine import Chain, linear_directions, tip
 from matstd.twin.record import Touches
 from matstd.twin.units import NM
 
-MAX_STEPS = 6
+MAX_INVERSE_STEPS = 6
 """Most steps of the inverse. Each reduces the error to some 1e-4, so two or three are enough."""
 
 SETTLED_STEP = 2.0 * NM
@@ -65,12 +65,12 @@ def correction(
         NotReachable: The steps do not close: the errors are too large for a machine.
     """
     chain, length = disturbance.chain, touches.target
-    columns = np.array([chain.axis_index(name) for name in chain.linear_axes], dtype=np.int64)
+    columns = np.array(chain.linear_columns, dtype=np.int64)  # empty without linear axes
     wanted = tip(chain, touches.q, length) + (0.0 if aim is None else aim)
     across = np.linalg.pinv(linear_directions(chain, touches.q))  # (N, M, 3)
     out = np.zeros_like(touches.q) if start is None else start.copy()
     rows = np.arange(len(out))
-    for _ in range(MAX_STEPS):
+    for _ in range(MAX_INVERSE_STEPS):
         left = actual_tip(disturbance, shifted(touches[rows], out[rows])) - wanted[rows]
         step = np.einsum("nmi,ni->nm", across[rows], left)
         out[np.ix_(rows, columns)] -= step

@@ -13,12 +13,12 @@ from matstd.twin.numbers import rms, rms_length
 from matstd.twin.record import Touches
 from matstd.twin.sampling import even_points
 
-POSES = 256
+RESULT_POSES = 256
 """Poses of the figures: their rms is then known to some 4 %."""
 
 
 def sample_workspace(
-    chain: Chain, limits: Mapping[str, tuple[float, float]], n: int = POSES
+    chain: Chain, limits: Mapping[str, tuple[float, float]], n: int = RESULT_POSES
 ) -> Array:
     """Readings spread evenly over the travels by a deterministic low-discrepancy sequence.
 

@@ -9,6 +9,10 @@ from matstd.compensation.field.machine_errors import MachineErrors, deviation
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms_length
 from matstd.twin.record import Touches
+from matstd.twin.sampling import spread_rows
+
+MAX_U_POSES = 100
+"""Poses at which the uncertainty of a share is taken: it varies slowly over them."""
 
 
 class Share(NamedTuple):
@@ -35,7 +39,7 @@ def contributions(errors: MachineErrors, touches: Touches, datum: Datum) -> tupl
         alone = errors.only(name)
         field = deviation(alone, touches) - datum.deviation(alone)
         there = alone.touches(datum.q[None, :], datum.length)
-        some = np.unique(np.linspace(0, len(touches) - 1, min(len(touches), 100)).astype(int))
+        some = spread_rows(len(touches), MAX_U_POSES)
         spread = (alone.columns(touches[some]) - alone.columns(there)) @ alone.root
         u = float(np.sqrt(np.einsum("nik,nik->", spread, spread) / len(some)))
         out.append(Share(name, field, u))

@@ -102,7 +102,7 @@ def read_part_program(
 def _check_travel(program: Program) -> None:
     """Refuse a program that ends a motion outside the machine; raises BadFile."""
     chain = program.frame.chain
-    low, high = np.array([chain.link(a).range for a in chain.axes]).T
+    low, high = chain.travels.T
     motions = program.motions
     for kind in {(m.tcpm, m.length) for m in motions}:
         own = [m for m in motions if (m.tcpm, m.length) == kind]

@@ -3,7 +3,7 @@
 import numpy as np
 
 from matstd.compensation.field import actual_tip, shifted
-from matstd.compensation.programs.path import ProgramPath, shares_of_lines
+from matstd.compensation.programs.path import ProgramPath, are_first, shares_of_lines
 from matstd.twin.frames import Array
 from matstd.twin.machine import tip
 from matstd.twin.record import IntArray
@@ -12,7 +12,7 @@ CHECKED_SHARES = (0.25, 0.5, 0.75)
 """Shares of a line at which it is checked: the error of a chord is a parabola, largest in its
 middle; that of a jump of the error is not."""
 
-BLOCK = 20_000
+LINES_PER_BLOCK = 20_000
 """Lines that are checked together: bounds the memory."""
 
 
@@ -31,12 +31,11 @@ def off_path(path: ProgramPath, which: IntArray, share: Array, written: Array) -
     """
     begin = path.begins_at(which, written)
     part = shares_of_lines(which, share)
-    is_first = np.append(True, which[1:] != which[:-1])
-    seen = ~path.is_whole[which] & ~(is_first & ~path.is_from_known[which])
+    seen = ~path.is_whole[which] & ~(are_first(which) & ~path.is_from_known[which])
     out = np.full(len(which), np.nan)
     todo = np.flatnonzero(seen)
-    for low in range(0, len(todo), BLOCK):
-        rows = todo[low : low + BLOCK]
+    for low in range(0, len(todo), LINES_PER_BLOCK):
+        rows = todo[low : low + LINES_PER_BLOCK]
         out[rows] = _largest(
             path, which[rows], (share - part)[rows], part[rows], begin[rows], written[rows]
         )

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 from matstd.compensation.field import MachineErrors, actual_tip, aligned, shifted
 from matstd.compensation.part_programs import Keep, Motion, Program
 from matstd.compensation.programs.between import off_path
-from matstd.compensation.programs.path import ProgramPath, shares_of_lines
+from matstd.compensation.programs.path import ProgramPath, are_first, shares_of_lines
 from matstd.compensation.programs.times import Timed, in_time
 from matstd.compensation.tables import Header, point_spacing
 from matstd.twin.errors import OutsideTravel
 from matstd.twin.frames import Array
 from matstd.twin.machine import tip
 from matstd.twin.record import IntArray, Touches
+from matstd.twin.sampling import spread_rows
 from matstd.twin.units import DEG, MINUTE, UM
 
 TOLERANCE = 1.0 * UM
@@ -124,7 +125,7 @@ def compensated(
     nominal = tip(errors.chain, touches.q, touches.target)
     aim = nominal + path.aim
     # the uncertainty varies slowly along a program, so some points are enough
-    some = np.unique(np.linspace(0, len(which) - 1, min(len(which), MAX_U_POINTS)).astype(int))
+    some = spread_rows(len(which), MAX_U_POINTS)
     spread = aligned(nominal[some], errors.columns(touches[some])) @ errors.root
     return Compensated(
         program=program,
@@ -191,7 +192,7 @@ def _divided(
     is_checked[[k for k, _ in path.paths.arcs]] = True
     todo = np.flatnonzero((is_checked & ~path.is_whole)[which])
     low, low_at = (share - 1.0 / pieces[which])[todo], np.empty((len(todo), at.shape[1]))
-    is_first = np.append(True, which[1:] != which[:-1])[todo]
+    is_first = are_first(which)[todo]
     low_at[~is_first] = at[todo[~is_first] - 1]
     low_at[is_first] = path.needed(which[todo[is_first]], np.zeros(int(is_first.sum())))
     ends = [(which, share, at)]
@@ -234,7 +235,7 @@ def _shares(pieces: IntArray) -> tuple[IntArray, Array]:
 
 def _check_travel(path: ProgramPath, which: IntArray, q: Array) -> None:
     chain = path.errors.chain
-    low, high = np.array([chain.link(a).range for a in chain.axes]).T
+    low, high = chain.travels.T
     beyond = (q < low - UM) | (q > high + UM)
     if beyond.any():
         row, k = (int(v) for v in np.argwhere(beyond)[0])

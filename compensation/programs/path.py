@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from matstd.compensation.field import MachineErrors, correction
 from matstd.compensation.part_programs import Paths, Program, forces
@@ -15,10 +16,14 @@ RAPID = 10_000.0
 """Speed of rapid motions where a time is needed, mm/min; drift hardly depends on it."""
 
 
+def are_first(which: IntArray) -> NDArray[np.bool_]:
+    """Which lines are the first of their motions, (N,)."""
+    return np.append(True, which[1:] != which[:-1])
+
+
 def shares_of_lines(which: IntArray, share: Array) -> Array:
     """Share of its motion that every line is, from the shares at the ends of lines, (N,)."""
-    parts = np.diff(share, prepend=0.0)
-    return np.where(np.append(True, which[1:] != which[:-1]), share, parts)
+    return np.where(are_first(which), share, np.diff(share, prepend=0.0))
 
 
 class ProgramPath:
@@ -100,8 +105,7 @@ class ProgramPath:
         """
         q = self.readings(which, written)
         out = self.coordinates(which, np.vstack([q[:1], q[:-1]]))
-        is_first = np.append(True, which[1:] != which[:-1])
-        rows = np.flatnonzero(is_first & ~self.is_from_known[which])
+        rows = np.flatnonzero(are_first(which) & ~self.is_from_known[which])
         out[rows] = self.paths.start[which[rows]]
         return out
 

@@ -26,7 +26,7 @@ MIN_INVERSE_FEED = 0.1
 """Slowest feed of LinuxCNC in inverse time, mm/min or degrees/min (inches in inches): a line with
 1 µm of correction in 6 s would be faster than programmed."""
 
-MARGIN = 1.2
+FEED_MARGIN = 1.2
 """Factor on `MIN_INVERSE_FEED` at which lines are written: coordinates are rounded to 10 nm."""
 
 MAX_LAG_SHARE = 0.1
@@ -112,7 +112,7 @@ def _slowed(
     takes the correction along at the slowest feed that there is; the rotary axes turn evenly.
     """
     linear = path.frame.linear
-    slowest = MARGIN * MIN_INVERSE_FEED * path.motions[k].unit / MINUTE  # mm/s
+    slowest = FEED_MARGIN * MIN_INVERSE_FEED * path.motions[k].unit / MINUTE  # mm/s
     at, done = start.copy(), 0.0
     for share, end in zip(shares.tolist(), ends, strict=True):
         far = float(np.linalg.norm((end - at)[linear]))
@@ -176,10 +176,10 @@ def _check(path: ProgramPath, k: int) -> None:
             f"{said} while X, Y, Z go {far:.4g} mm, which its correction changes",
             "it in inverse time (G93): LinuxCNC takes F for the mm alone, Fanuc for degrees too",
         )
-    if turned / path.seconds[k] * MINUTE < MARGIN * MIN_INVERSE_FEED:
+    if turned / path.seconds[k] * MINUTE < FEED_MARGIN * MIN_INVERSE_FEED:
         raise BadFile(
             file,
             line,
             said,
-            f"{MARGIN * MIN_INVERSE_FEED:g} degrees/min or more: LinuxCNC's slowest in G93",
+            f"{FEED_MARGIN * MIN_INVERSE_FEED:g} degrees/min or more: LinuxCNC's slowest in G93",
         )

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 NAMESPACE = "urn:material-standard:compensation"
 """Namespace of the nodes."""
 
-PERIOD = 0.005
+OUTPUT_PERIOD = 0.005
 """Time between two outputs without a request, s."""
 
 MOVING = 0.002
@@ -77,7 +77,7 @@ async def serve(
                 written.clear()
                 lag = await nodes.exchange(service)
                 with suppress(TimeoutError):
-                    await asyncio.wait_for(written.wait(), MOVING if lag else PERIOD)
+                    await asyncio.wait_for(written.wait(), MOVING if lag else OUTPUT_PERIOD)
             await slow
     finally:
         await server.stop()

@@ -159,7 +159,7 @@ def _dependence(
 ) -> tuple[tuple[int, ...], tuple[int, ...], bool]:
     """Readings and directions on which an effect depends, and whether it changes with the state."""
     chain, rng, terms = errors.chain, np.random.default_rng(0), [(effect, theta)]
-    low, high = np.array([chain.link(a).range for a in chain.axes]).T
+    low, high = chain.travels.T
     q, other = rng.uniform(low, high, (2, _POSES, len(low)))
     still = np.zeros_like(q)
     at = _twist(errors, terms, q, still, length)

@@ -1,6 +1,5 @@
 """Tables of corrections over single axes, as controls without a volumetric model hold them."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -16,8 +15,8 @@ from matstd.compensation.field import (
 )
 from matstd.compensation.tables.by_name import (
     CHECKED_PLACES,
+    FIRST_POINTS,
     MAX_INTERPOLATION,
-    MIN_POINTS,
     interpolated,
     line,
     on_table,
@@ -75,13 +74,7 @@ class AxisTables:
         return out
 
 
-def along_axes(
-    errors: MachineErrors,
-    datum: Datum,
-    most: int,
-    crosswise: bool,
-    points: Mapping[str, int] | None = None,
-) -> AxisTables:
+def along_axes(errors: MachineErrors, datum: Datum, most: int, crosswise: bool) -> AxisTables:
     """Corrections along the lines through the datum.
 
     Args:
@@ -90,15 +83,13 @@ def along_axes(
         crosswise: Whether an axis may correct others, in both directions alike; else every axis
             corrects itself, each direction by itself, over all of its travel: LinuxCNC holds the
             last value beyond a table and knows no turns.
-        points: By axis, where they are given.
     """
     chain = errors.chain
     needed = _Needed(errors, datum)
     out = []
-    for axis in points or chain.programmed_axes:
+    for axis in chain.programmed_axes:
         low, high = span(chain.link(axis)) if crosswise else chain.link(axis).range
-        count = points[axis] if points else _points(needed, axis, (low, high), most)
-        nodes = np.linspace(low, high, count)
+        nodes = np.linspace(low, high, _points(needed, axis, (low, high), most))
         ways = [needed.along(axis, nodes, move) for move in _moves(errors, axis, crosswise)]
         names = [*chain.linear_axes, axis] if crosswise else [axis]
         for name in dict.fromkeys(names):
@@ -180,7 +171,7 @@ def _rotary(errors: MachineErrors, touches: Touches) -> Array:
 def _points(needed: _Needed, axis: str, over: tuple[float, float], most: int) -> int:
     """Points of an axis, doubled until linear interpolation is good enough or the table full."""
     low, high = over
-    count = MIN_POINTS
+    count = FIRST_POINTS
     while True:
         between = np.linspace(low, high, CHECKED_PLACES * (count - 1) + 1)
         values = needed.along(axis, between, 1)
@@ -331,7 +322,7 @@ def _motion(errors: MachineErrors, touches: Touches) -> Array:
     """Motion of the tool point per unit of every axis's reading, (N, 3, A)."""
     chain = errors.chain
     out = np.zeros((len(touches), 3, len(chain.axes)))
-    linear = [chain.axis_index(a) for a in chain.linear_axes]
+    linear = chain.linear_columns
     out[:, :, linear] = linear_directions(chain, touches.q)
     for axis in chain.rotary_axes:
         i, own = chain.link_index(axis), chain.link(axis).own_component
@@ -347,7 +338,7 @@ def _unit_zero(errors: MachineErrors, datum: Datum) -> Array:
     moved = np.einsum("lcx,lcp->xp", there.reach.twist[0], twist)
     moved += np.einsum("lcx,lcp->xp", there.reach.place[0], place)
     out = np.zeros((len(chain.axes), moved.shape[1]))
-    linear = [chain.axis_index(a) for a in chain.linear_axes]
+    linear = chain.linear_columns
     out[linear] = -np.linalg.pinv(linear_directions(chain, there.q)[0]) @ moved
     return out
 
@@ -357,7 +348,7 @@ def _unit_needed(errors: MachineErrors, datum: Datum, over: str, tables: AxisTab
     chain, there = errors.chain, errors.touches(datum.q[None, :], datum.length)
     touches = line(errors, datum, over, _overs(tables)[over])
     out = _unit_rotary(errors, touches) - _unit_rotary(errors, there)
-    zero, linear = _unit_zero(errors, datum), [chain.axis_index(a) for a in chain.linear_axes]
+    zero, linear = _unit_zero(errors, datum), chain.linear_columns
     moves, at_datum = _motion(errors, touches), _motion(errors, there)
     left = errors.columns(touches) + moves @ (zero + out)
     left = left - (errors.columns(there) + at_datum @ zero)

@@ -11,7 +11,7 @@ from matstd.twin.machine import Chain, Contribution, Link
 from matstd.twin.record import Touches
 from matstd.twin.units import NM
 
-MIN_POINTS = 17
+FIRST_POINTS = 17
 """Points of an axis from which the number is doubled until they are enough."""
 
 MAX_INTERPOLATION = 20.0 * NM
@@ -97,18 +97,15 @@ def line(errors: MachineErrors, datum: Datum, axis: str, readings: Array, move: 
     return errors.touches(q, datum.length, approach)
 
 
-def sampled(
-    errors: MachineErrors, datum: Datum, most: int, points: Mapping[str, int] | None = None
-) -> NamedTables:
+def sampled(errors: MachineErrors, datum: Datum, most: int) -> NamedTables:
     """Tables of the errors with as many points as linear interpolation needs.
 
     Args:
         datum: Where the other axes stand while one is sampled.
         most: Points of an axis that the format holds.
-        points: By axis, where they are given.
     """
     chain = errors.chain
-    counts = points or {a: _points(errors, datum, a, most) for a in chain.programmed_axes}
+    counts = {a: _points(errors, datum, a, most) for a in chain.programmed_axes}
     nodes = {a: np.linspace(*span(chain.link(a)), n) for a, n in counts.items()}
     values = {a: _twist(errors, datum, a, at) for a, at in nodes.items()}
     there = errors.contribution(errors.touches(datum.q[None, :], datum.length))
@@ -124,7 +121,7 @@ def _points(errors: MachineErrors, datum: Datum, axis: str, most: int) -> int:
     """Points of an axis, doubled until linear interpolation is good enough or the table full."""
     lever = _levers(errors.chain)
     low, high = span(errors.chain.link(axis))
-    count = MIN_POINTS
+    count = FIRST_POINTS
     while True:
         nodes = np.linspace(low, high, count)
         between = np.linspace(low, high, CHECKED_PLACES * (count - 1) + 1)

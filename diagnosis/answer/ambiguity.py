@@ -17,14 +17,15 @@ from matstd.diagnosis.evidence import (
     signatures,
 )
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.search import refined
+from matstd.diagnosis.search import follows_driver, refined
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 from matstd.twin.record import Touches
+from matstd.twin.thermal import drives
 
 LISTED_FAR = 2
-"""Candidates that are refined where all rivals are far behind: the effect itself and one that says
-how far."""
+"""Candidates far behind that are refined too: one that says how far the next explanation outside
+the class is, and a second, since the first may be the effect itself."""
 
 MAX_RIVALS = 40
 """Most rivals that are refined, the most likely first; a larger class would not help a reader."""
@@ -77,8 +78,8 @@ class ConfusionClass:
 
     @property
     def runner_up(self) -> Rival | None:
-        """The next best explanation, however far behind."""
-        return next(iter((*self.rivals, *self.distinguished)), None)
+        """The next best explanation outside the class, however far behind."""
+        return next(iter(self.distinguished), None)
 
     def headed(self, sized: ScaledEffect) -> "ConfusionClass":
         """The class with another of its members named: the one that was weighed."""
@@ -108,12 +109,15 @@ def plausibility(effects: Sequence[Effect], touches: Touches) -> dict[str, float
 
     Every family - a kind, and apart from it the same kind after a sensor - is as likely as every
     other, and shares its weight among its members; a sensor is likely to explain the axis whose
-    letter it bears.
+    letter it bears, and what follows no sensor supposes less.
     """
+    chosen = POLICY.log_odds_unrecorded + float(np.log(max(len(drives(touches)), 1)))
     family = {e.name: _family(e, touches) for e in effects}
     labels = list(family.values())
     return {
-        e.name: _own_sensor(e, touches) - float(np.log(labels.count(family[e.name])))
+        e.name: _own_sensor(e, touches)
+        - chosen * follows_driver(e)
+        - float(np.log(labels.count(family[e.name])))
         for e in effects
     }
 
@@ -178,8 +182,9 @@ def _ranked(pool: Signatures, evidence: Array, least: float) -> list[int]:
     order = np.argsort(-evidence, kind="stable")
     _, first = np.unique(pool.owner[order], return_index=True)
     ranked = order[np.sort(first)]
-    close = [int(v) for v in ranked if evidence[v] > least][:MAX_RIVALS]
-    return close if len(close) > 1 else [int(v) for v in ranked[:LISTED_FAR]]
+    close = int(np.count_nonzero(evidence[ranked] > least))
+    near = ranked[: min(close, MAX_RIVALS)]
+    return [int(v) for v in (*near, *ranked[close : close + LISTED_FAR])]
 
 
 def _explained(without: EffectSet, sized: ScaledEffect) -> Array:

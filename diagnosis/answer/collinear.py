@@ -11,6 +11,7 @@ from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.remarks import NotSignificant
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
+from matstd.twin.model import Effect
 
 EXPANSION = "um_per_m_K"
 """Unit of a coefficient of expansion, as it is reported."""
@@ -93,7 +94,7 @@ def weakest(steps: Sequence[Step], is_weighed: bool) -> str | None:
             worth = worth if step.p_value > POLICY.chance_of_member else np.inf
         elif step.p_value >= POLICY.false_alarm:
             worth = 0.0
-        elif step.p_value < POLICY.certain_p or len(step.effect.parameters) > MAX_SIZED_PARAMETERS:
+        elif step.p_value < _certain(step.effect):
             continue
         if worth < least:
             out, least = step.effect.name, worth
@@ -113,10 +114,15 @@ def _is_possible(step: Step) -> bool:
 def is_significant(step: Step) -> bool:
     """Whether an effect exceeds its own uncertainty, or needs not to."""
     size = _size(step.reported)
-    many = step.effect is not None and len(step.effect.parameters) > MAX_SIZED_PARAMETERS
-    if size is None or not size.u or many or step.p_value < POLICY.certain_p:
+    if size is None or not size.u or step.effect is None or step.p_value < _certain(step.effect):
         return True
     return abs(size.value) >= POLICY.significant_ratio * size.u
+
+
+def _certain(effect: Effect) -> float:
+    """Probability by chance below which an effect stands whatever the uncertainty of its size."""
+    is_sized = len(effect.parameters) <= MAX_SIZED_PARAMETERS
+    return POLICY.certain_p if is_sized else POLICY.close_p
 
 
 def _size(numbers: Sequence[Reported]) -> Reported | None:

@@ -1,18 +1,13 @@
-"""Variables on which a residual depends, and whether time may stand for one that is recorded."""
+"""Variables on which a residual depends, and odds against a driver that was not recorded."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
-from matstd.diagnosis.answer.ambiguity import arguments
 from matstd.diagnosis.answer.verdict import Dependence
-from matstd.diagnosis.evidence import EffectSet, Progress
-from matstd.diagnosis.residual import Shape, Structure, find_structure
-from matstd.diagnosis.search import SearchState, most_evident
-from matstd.twin.model import Effect
-from matstd.twin.record import Touches
-
-CLOCK = "time_s"
+from matstd.diagnosis.evidence import EffectSet, Grid, Progress, score_all, signatures
+from matstd.diagnosis.residual import Structure, find_structure
+from matstd.diagnosis.search import SearchState, follows_driver, most_evident, unrecorded
 
 MAX_DEPENDENCES = 2
 """Most patterns that `depends_on` reports, one after the other."""
@@ -48,27 +43,19 @@ def dependences(found: Sequence[Structure]) -> tuple[Dependence, ...]:
 
 
 def odds_against_drift(state: SearchState) -> dict[str, float]:
-    """Log odds for every effect that follows a sensor against a drift in time, by its name.
+    """Log odds for every effect that follows a driver against one that was not recorded, by name.
 
-    All temperatures of a workshop rise in the morning: a law of one of them may describe what
-    another, unrecorded one did.
+    The most likely law of such a driver stands in its place, with any smooth course in time.
     """
-    touches = state.pool.complement.touches
-    members, whole = state.chosen.members, state.chosen.effects
+    complement, members = state.pool.complement, state.chosen.members
+    led = [m for m in members if follows_driver(m.effect)]
+    rivals = unrecorded(complement.touches) if led else []
+    if not rivals:
+        return {}
+    drifts = signatures(complement, [Grid(one, (one,), 1) for one in rivals], 1)
     out = {}
-    for i, member in enumerate(members):
-        if _follows_sensor(member.effect, touches):
-            others = state.search.evaluate(members[:i] + members[i + 1 :]).effects
-            left = find_structure(others, smooth=state.smooth)
-            drifts = [
-                s.evidence for s in left if s.shape is Shape.SMOOTH and s.variables == (CLOCK,)
-            ]
-            if drifts:
-                out[member.effect.name] = whole.evidence - others.evidence - max(drifts)
+    for member in led:
+        others = state.search.evaluate(m for m in members if m is not member).effects
+        best = float(score_all(others, drifts).evidence.max())
+        out[member.effect.name] = state.chosen.effects.evidence - best
     return out
-
-
-def _follows_sensor(effect: Effect, touches: Touches) -> bool:
-    """Whether a temperature or the spindle speed drives an effect."""
-    drivers = {*touches.temperature, "spindle_rpm"}
-    return any(word in drivers for word in arguments(effect))

@@ -5,7 +5,7 @@ positions of the axis that it depends on describes whatever repeats over that ax
 than it is stated has only one witness: the same touch again.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -15,11 +15,9 @@ from matstd.diagnosis.evidence import ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors, f_probability
-from matstd.diagnosis.search import DiagnosisTask, refined_named
+from matstd.diagnosis.search import DiagnosisTask, follows_driver, refined_named, tables_along
 from matstd.twin.library import parse_effect
-from matstd.twin.machine import LETTERS
-from matstd.twin.model import Effect
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.record import IntArray
 
 MAX_TRIED = 6
 """Library effects, the best ones by themselves, that are tried beside what was found."""
@@ -39,17 +37,23 @@ def nearest(
     last: Fit,
     candidates: Sequence[Candidate],
     depends_on: Sequence[Dependence],
+    is_driver_missing: bool,
 ) -> tuple[Offer, ...]:
     """Effects nearest to what is left, those that predict best first.
 
     Args:
         candidates: Library effects by themselves, best first.
+        is_driver_missing: Whether what is left follows a driver that was not recorded: no law of
+            another one is offered for it.
     """
     known = {sized.effect.name for sized in found}
     certain = {c.effect for c in candidates if c.p_value < POLICY.close_p} - known
     library = [c.effect for c in candidates if c.effect not in known][:MAX_TRIED]
     effects = [parse_effect(name, task.model.chain) for name in library]
-    effects += [e for e in _tables(last.run.touches, depends_on) if e.name not in known]
+    if is_driver_missing:
+        effects = [e for e in effects if not follows_driver(e)]
+    tables = tables_along(last.run.touches, [d.variable for d in depends_on])
+    effects += [e for e in tables if e.name not in known]
     offers = []
     for effect in effects:
         fit = task.fit([*found, *refined_named(task, [effect], quiet)], gross)
@@ -58,15 +62,6 @@ def nearest(
     offers.sort(key=lambda offer: offer.test_rms)
     likely = [o for o in offers if o.p_value < POLICY.false_alarm and o.test_rms < last.test_rms]
     return tuple((likely or [o for o in offers if o.effect in certain])[:MAX_NAMED])
-
-
-def _tables(touches: Touches, depends_on: Sequence[Dependence]) -> Iterator[Effect]:
-    """Tables of positions of every component of the axes that what is left depends on."""
-    for found in depends_on:
-        axis, _, unit = found.variable.rpartition("_")
-        if unit in ("mm", "deg") and axis in touches.chain.programmed_axes:
-            for letter in LETTERS:
-                yield parse_effect(f"position-table(E{letter}{axis})", touches.chain)
 
 
 def named_probability(before: Fit, after: Fit) -> float:

@@ -198,7 +198,7 @@ def _result(
         geometry=geometry,
         faults=faults,
         remarks=(*not_significant(steps), *_remarks(steps, final)),
-        nearest=nearest(task, beside, gross, steps[-1].fit, candidates, depends_on)
+        nearest=nearest(task, beside, gross, last, candidates, depends_on, bool(final.drifts))
         if parts.remains.is_real
         else (),
         repeat=repeat if verdict is Verdict.UNDECIDED else repeat[:0],

@@ -45,6 +45,9 @@ MIN_ROWS_PER_INDEPENDENT = 4.0
 MAX_SETS_PER_BLOCK = 300.0
 """Sets that the search of one block may try: a fifth of what a whole diagnosis may."""
 
+UNRECORDED = "unrecorded driver"
+"""The way that follows no sensor: a smooth course in time, as the search found it."""
+
 MAX_ROWS = 4000
 """Most rows used to judge ways of choosing, since each block needs a search of its own."""
 
@@ -54,7 +57,8 @@ class ChoiceRule:
     """A way of choosing effects, judged.
 
     Attributes:
-        name: `nothing`, `two time constants`, `single effects`, `thermal field`.
+        name: `nothing`, `unrecorded driver`, `two time constants`, `single effects`,
+            `thermal field`.
         errors: Plain root mean square error of every block left out, the choice made anew each
             time, (B,), mm.
         rows: Of every block, (B,).
@@ -123,7 +127,7 @@ def chosen_by_prediction(
     fit = task.fit((*added, *final.effects), final.base.gross)
     groups = blocks(fit, memory_of(fit)[0])
     budgets: list[Budget] = []
-    choosers = _choosers(added, candidates, groups, budgets)
+    choosers = _choosers(added, final.drifts, candidates, groups, budgets)
     gross = final.base.gross
     rules = []
     for done, (name, chooser) in enumerate(choosers.items()):
@@ -137,6 +141,8 @@ def chosen_by_prediction(
     for rule in rules[1:]:
         if rule.error < POLICY.error_share * best.error:
             best = rule
+    if best.name == UNRECORDED:
+        return None
     if remembers:
         errors = _errors(task, added, gross, groups, lambda task, gross: final.effects)
         if best.error > POLICY.error_share_beside_memory * replace(best, errors=errors).error:
@@ -159,6 +165,7 @@ def candidate_effects(touches: Touches) -> list[Effect]:
 
 def _choosers(
     added: tuple[ScaledEffect, ...],
+    drifts: tuple[ScaledEffect, ...],
     candidates: Sequence[Effect],
     groups: Sequence[IntArray],
     budgets: list[Budget],
@@ -167,6 +174,8 @@ def _choosers(
     single = [e for e in candidates if not traits(e).is_shrunk]
     warm = next((e for e in candidates if traits(e).is_shrunk), None)
     out: dict[str, Chooser] = {"nothing": lambda task, gross: ()}
+    if drifts:
+        out[UNRECORDED] = lambda task, gross: drifts
     if {"thermal-lag", "thermal-static"} <= {e.kind for e in single}:
         out["two time constants"] = lambda task, gross: bodies(task, added, gross)
     if single:

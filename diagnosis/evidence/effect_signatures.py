@@ -215,6 +215,22 @@ class Signatures:
         """Inner product of every column with the residual, (M,)."""
         return np.asarray(self.C.T @ self.complement.residual)
 
+    def without(self, is_left_out: Callable[[Effect], bool]) -> "Signatures":
+        """The same less some candidates, which must be the last ones."""
+        kept = sum(not is_left_out(v) for v in self.variants)
+        owners, width = int(self.owner[kept - 1]) + 1 if kept else 0, int(self.start[kept])
+        assert not any(map(is_left_out, self.variants[:kept]))
+        return replace(
+            self,
+            variants=self.variants[:kept],
+            owner=self.owner[:kept],
+            names=self.names[:owners],
+            C=self.C[:, :width],
+            start=self.start[: kept + 1],
+            size=self.size[:width],
+            tries=self.tries[:owners],
+        )
+
     def columns_of(self, variant: int) -> Array:
         """Projected columns of one variant, (N + P, k)."""
         return self.C[:, self.start[variant] : self.start[variant + 1]]

@@ -129,7 +129,7 @@ class SavedModel(Displayed):
     """A model with what is known of its parameters.
 
     Attributes:
-        estimates: Of the parameters, with their covariance.
+        estimates: Estimates of the parameters, with their covariance.
         from_inner: Root (P, T) of the part of the covariance that uncertain inner parameters add.
         reported: Numbers of effects as reported of that run, by name.
         determined: What that run determines of the geometry, as it was reported.
@@ -222,7 +222,7 @@ def read_model(
     Args:
         known: Effects whose names the library cannot read back, such as those with a prior of a
             project's own; others are made from their names.
-        runs: To which the model is applied, each by itself; none leaves what is the machine's.
+        runs: Runs to which the model is applied, each alone; with none, the machine's part remains.
 
     Raises:
         BadFile: File, key, what stood there, what was expected.

@@ -51,7 +51,7 @@ class Reported:
         unit: As the file spells it: `um`, `min`, `um_per_K`; "" for a pure number.
         u: Standard uncertainty, or None where the run gives none.
         factor: One of that unit in the base unit.
-        role: Of the number among those of its effect.
+        role: Role of the number among those of its effect.
         bound: -1 or 1 where it lies at the lower or upper end of what was scanned, and is no more
             than a bound; 0 for an estimate.
     """
@@ -359,7 +359,7 @@ def _bound(inner: Inner, value: float) -> int:
     if not inner.continuous or inner.acts == "at an instant" or len(grid) < 2:
         return 0
     low, high = sorted((float(grid[0]), float(grid[-1])))
-    # where a scan is finer than that share, what lies within it is an estimate all the same
+    # where a scan is finer than that share, what lies within it is still an estimate
     at_low = value - low < END_SHARE * min(low, high - low)
     at_high = high - value < END_SHARE * min(high, high - low)
     return -1 if at_low else 1 if at_high else 0

@@ -1,12 +1,13 @@
 """What a run determines: combinations of parameters, single parameters, and what it never shows."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from matstd.diagnosis.fit.identification import Fit
 from matstd.information.identifiability import (
+    EstimableCombination,
     Freedom,
     Identifiability,
     combinations,
@@ -17,29 +18,6 @@ from matstd.twin.model import columns
 
 MIN_DETERMINED_GAIN = 10.0
 """A parameter counts as determined when the run cuts its standard deviation by this factor."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Combination:
-    """A combination of parameters that the run determines by itself.
-
-    ``value = sum_k weight_k theta_k``, scaled so that the leading parameter has weight 1, in whose
-    unit the value is.
-
-    Attributes:
-        value: Estimate, base unit of the leading parameter.
-        gain: Prior over posterior standard deviation.
-        unit: Base unit of the leading parameter.
-        weights: Weight of every parameter, (P,).
-        importance: Weights in units of what is expected of each parameter, (P,).
-    """
-
-    value: float
-    u: float
-    gain: float
-    unit: str
-    weights: Array
-    importance: Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,14 +38,14 @@ class Estimable:
     Attributes:
         rows: Columns of the touches in use over their noise, times the prior's standard deviations.
         effective: Number of parameters that the data rather than the prior decide.
-        combinations: Of the machine's parameters, best determined first.
+        combinations: Combinations of the machine's parameters, best determined first.
         determined: Parameters that are determined by themselves, best first.
     """
 
     fit: Fit
     rows: Array
     effective: float
-    combinations: tuple[Combination, ...]
+    combinations: tuple[EstimableCombination, ...]
     determined: tuple[Determined, ...]
 
     @cached_property
@@ -103,18 +81,15 @@ def estimable(fit: Fit) -> Estimable:
     )
 
 
-def _combinations(fit: Fit, W: Array) -> tuple[Combination, ...]:
+def _combinations(fit: Fit, W: Array) -> tuple[EstimableCombination, ...]:
     """Combinations of the machine's parameters with their values in this fit."""
     free = range(len(fit.model.parameters), len(fit.prior))
     units = [p.unit for _, p in fit.parameters]
     return tuple(
-        Combination(
+        replace(
+            c,
             value=float(c.weights @ fit.theta),
             u=float(np.linalg.norm(fit.spread.T @ c.weights)),
-            gain=c.gain,
-            unit=c.unit,
-            weights=c.weights,
-            importance=c.importance,
         )
         for c in combinations(W, fit.prior.expected, units, free)
     )

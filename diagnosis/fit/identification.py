@@ -58,14 +58,14 @@ class Fit(Displayed):
     Attributes:
         setups: The free set-ups of the standard, every further stylus, and its size where stated.
         tangents: Displacements of inner parameters that were left free.
-        prior: Of all parameters, as it was used.
+        prior: Prior of all parameters, as it was used.
         X: Columns of all rows times the root of the prior over the noise, (N, P).
         y: Deviations over the noise, less what the prior's mean predicts, all rows, (N,).
         used: Rows that the estimates rest upon, (N,): not held out, no gross error.
         noise: What the noise is, against what is stated.
         widened: Factor by which the prior of the machine was widened, 1 unless it was exceeded.
-        memory: Of the noise, of which `X`, `y` and `solution` are freed in the rows used; None for
-            white noise.
+        memory: Correlation of the noise, of which `X`, `y` and `solution` are already free in the
+            rows used; None for white noise.
     """
 
     run: Run
@@ -134,7 +134,7 @@ class Fit(Displayed):
 
     @cached_property
     def unseen_setups(self) -> tuple[tuple[NDArray[np.int64], slice], ...]:
-        """Rows and parameters of every set-up, or further stylus, of which no touch was used."""
+        """Rows and parameters of every set-up, or further stylus, without a touch that was used."""
         t = self.run.touches
         rows = [(np.flatnonzero(s.here(t)), s.name) for s in placing_errors(t)]
         return tuple((r, self.of_effect(name)) for r, name in rows if not self.used[r].any())
@@ -285,12 +285,12 @@ def fit_run(
     prior; the second weights with what was found, and more follow while the gross errors change.
 
     Args:
-        prior: Of the model's parameters; None for what its effects state, less where the run says
+        prior: Prior of the parameters; None for what the effects state, less where the run says
             that the machine is better (`prior_for`).
         free_inner: Linear parameters of the model, at which tangents of its inner parameters are
             added to the fit; None leaves the inner parameters where they are.
         gross: Gross errors found before, to keep; None looks for them, as if noise were white.
-        memory: Of the noise; None for white noise.
+        memory: Correlation of the noise; None for white noise.
         beside: A fit with more effects, whose size of the noise and widening of the prior are
             taken; None finds those of this model.
 

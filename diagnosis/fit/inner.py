@@ -9,7 +9,7 @@ from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Inner, Model, Parameter, Term, Tunable, columns, is_tunable
 from matstd.twin.record import Touches
 
-STEP = 0.02
+DIFFERENCE_STEP = 0.02
 """Step of the central difference, as a share of the distance to the neighbour on the grid."""
 
 TANGENT_PRIOR_SD = 5.0
@@ -26,7 +26,7 @@ class Tangent:
 
     Attributes:
         theta: Present linear parameters of the effect, (K,), base units.
-        step: Of the difference, base unit of the inner parameter.
+        step: Step of the difference, base unit of the inner parameter.
         sd: Prior standard deviation of the displacement.
     """
 
@@ -109,7 +109,7 @@ def tangents(model: Model, touches: Touches, theta: Array) -> list[Tangent]:
         start += count
         for index, inner, value in continuous_inner(effect, touches):
             assert is_tunable(effect)
-            step = STEP * spacing(inner, value)
+            step = DIFFERENCE_STEP * spacing(inner, value)
             if not is_smooth(effect, index, step, touches):
                 continue
             sd = TANGENT_PRIOR_SD * spacing(inner, value)

@@ -26,11 +26,11 @@ class Learnt:
     """What must be known of a fit, besides its run and its model, to make it again.
 
     Attributes:
-        estimates: Of the machine's parameters, inner parameters held.
+        estimates: Estimates of the machine's parameters, inner parameters held.
         from_inner: Root (P, T) of the covariance that T uncertain inner parameters add to it.
         factor: Noise over the stated one, as the fit weighted with.
         gross: Rows that were set aside as gross errors, held out or not, (N,).
-        memory: Of the noise; None for white noise.
+        memory: Correlation of the noise; None for white noise.
     """
 
     estimates: Prior
@@ -54,7 +54,7 @@ class Learnt:
 
     @property
     def covariance(self) -> Array:
-        """Of the estimates, that of inner parameters among it, (P, P), base units."""
+        """Covariance of the estimates, that of inner parameters included, (P, P), base units."""
         root = self.estimates.root
         return np.asarray(root @ root.T + self.from_inner @ self.from_inner.T)
 

@@ -1,7 +1,7 @@
 """The prior that suits a machine: its errors curve as expected, or clearly less.
 
 What is expected of a class of machines is wide, since it must hold for the worst of them. On a good
-machine, probed at few places, curves of which the run says little would then be free to follow the
+machine, probed at few places, curves that the run hardly determines would be free to follow the
 noise, and the model would predict worse than none. So the run may say that this machine is better
 than its class: what bends over an axis (parabolas, waves), and what tilts or leads aside over it,
 each get the one factor of a few under which the run is most likely,
@@ -50,7 +50,7 @@ def narrowed(prior: Prior, model: Model, X: Array, y: Array) -> Prior:
     """The prior with the factors under which a run is most likely.
 
     Args:
-        prior: Of the parameters of the model: what the class of the machine says.
+        prior: Prior of the model's parameters, from the class of the machine.
         X: Columns of the effects, then of the set-ups, in units of the prior and of the noise, rows
             in use, (M, P).
         y: Deviations in units of the noise, (M,).

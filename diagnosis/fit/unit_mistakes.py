@@ -45,9 +45,9 @@ class UnitMistake:
 
     Attributes:
         what: Which column, and which unit it looks like.
-        expected: Of the deviations of such a machine before it was probed: what its model predicts,
+        expected: Size of the deviations before the machine is probed: what its model predicts,
             and the spread that the parameters have.
-        stated: Of the standard uncertainty of a touch.
+        stated: Standard uncertainty of a touch as stated.
     """
 
     what: MistakenUnit

@@ -38,7 +38,7 @@ reported."""
 MIN_LINE_DISTANCE = 1.0
 """Distance (mm) of parallel lines below which no link has a direction."""
 
-STEP = 1e-4
+LINE_STEP = 1e-4
 """Step (mm, rad) of the differences by which a parameter moves the lines: all are nearly linear."""
 
 
@@ -93,14 +93,14 @@ def arm_functionals(fit: Fit, joints: Sequence[str]) -> Iterator[Functional]:
         if constant is not None and constant.link in names:
             ahead, behind = (
                 _measures(_moved(nominal, names, chain, constant, s), nominal, names)
-                for s in (STEP, -STEP)
+                for s in (LINE_STEP, -LINE_STEP)
             )
             for key, (_, value) in ahead.items():
                 row = weights.setdefault(key, np.zeros(len(fit.model.parameters)))
                 change = value - behind[key][1]
                 if key[0] in (Quantity.JOINT_ZERO, Quantity.LINK_TWIST):  # may lie at half a turn
                     change = (change + np.pi) % (2.0 * np.pi) - np.pi
-                row[start] = change / (2.0 * STEP)
+                row[start] = change / (2.0 * LINE_STEP)
     for (quantity, symbol), (axes, _) in _measures(nominal, nominal, names).items():
         is_length = quantity in (Quantity.LINK_LENGTH, Quantity.JOINT_OFFSET)
         w = weights.get((quantity, symbol), np.zeros(0))

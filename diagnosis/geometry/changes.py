@@ -64,7 +64,7 @@ def with_changes(prior: Prior, model: Model) -> Prior:
 
 
 def of_first(prior: Prior, model: Model) -> Prior:
-    """Of what is believed of a model, the effects before its first change."""
+    """Prior of the effects before the first change of a model."""
     since = [traits(e).since_run for e, _ in model.parameters]
     first = next((i for i, run in enumerate(since) if run is not None), None)
     return prior if first is None else Prior(prior.mean[:first], prior.root[:first, :first])

@@ -39,7 +39,7 @@ def corrections(
     direction, ``d' = d + omega x d``. Only what the run determines by itself.
 
     Returns:
-        The corrections, and numbers each of which explains by itself all lines that are far from
+        The corrections, and numbers that each explain alone all lines that are far from
         where they are stated: a zero of a rotary axis tilts and displaces the axes that it carries.
     """
     kinds = (Quantity.ROTARY_LINE, Quantity.SQUARENESS)

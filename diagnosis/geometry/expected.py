@@ -12,7 +12,7 @@ def expected_size(fit: Fit, weights: Array, stated: Array) -> float:
     """Standard deviation before the run, as the axis or the class of the machine has it.
 
     Args:
-        weights: Of the parameters, (P,).
+        weights: Weights of the parameters, (P,).
         stated: `stated_sizes` of the fit.
     """
     part = slice(len(weights))

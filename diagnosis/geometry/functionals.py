@@ -25,14 +25,15 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import LETTERS, Chain, Family, Link, tip
 from matstd.twin.model import Model, traits
 from matstd.twin.record import Touches, at_poses
+from matstd.twin.sampling import spread_rows
 
-POINTS = 21
+TRAVEL_POINTS = 21
 """Poses of a line along an axis: a sine over the travel has ten of them in every half wave."""
 
 MAX_POSITIONS = 400
 """Probed positions at which an affine field is fitted: more do not move a slope by a per cent."""
 
-MIN_INDEPENDENT = 0.1
+MIN_INDEPENDENT_SHARE = 0.1
 """Least singular value of unit columns of readings from which axes moved independently."""
 
 
@@ -40,7 +41,7 @@ def functionals(fit: Fit, theta: Array) -> Iterator[Functional]:
     """All quantities that can be reported, axis by axis.
 
     Args:
-        fit: Of a model with component and location errors; others are no geometry.
+        fit: Fit of a model with component and location errors; others are no geometry.
         theta: Parameters (P,) at which the peaks and valleys of curves are looked for.
     """
     chain = fit.model.chain
@@ -86,7 +87,7 @@ def _along_axis(fit: Fit, axis: str) -> Touches:
     low, high = _probed(fit, axis)
     targets = np.unique(np.round(t.reading(axis), 3))
     targets = targets[(targets > low - 1e-3) & (targets < high + 1e-3)]
-    along = targets if 2 < len(targets) < POINTS else np.linspace(low, high, POINTS)
+    along = targets if 2 < len(targets) < TRAVEL_POINTS else np.linspace(low, high, TRAVEL_POINTS)
     q = np.zeros((len(along), len(chain.axes)))
     for name in chain.linear_axes:
         q[:, chain.axis_index(name)] = np.mean(_probed(fit, name))
@@ -192,14 +193,14 @@ def _affine_slopes(fit: Fit, axes: Sequence[str]) -> Mapping[str, Array]:
     """
     t = fit.run.touches[fit.used]
     chain = t.chain
-    rows = np.unique(np.linspace(0, len(t) - 1, min(MAX_POSITIONS, len(t))).astype(int))
+    rows = spread_rows(len(t), MAX_POSITIONS)
     q = np.zeros((len(rows), len(chain.axes)))
     for axis in axes:
         q[:, chain.axis_index(axis)] = t.reading(axis)[rows]
     at = np.column_stack([q[:, chain.axis_index(a)] for a in axes]) if axes else q[:, :0]
     at = at - at.mean(axis=0)
     size = np.linalg.norm(at, axis=0)
-    if not axes or np.linalg.svd(at / size, compute_uv=False)[-1] < MIN_INDEPENDENT:
+    if not axes or np.linalg.svd(at / size, compute_uv=False)[-1] < MIN_INDEPENDENT_SHARE:
         return {}
     D = _displacements(fit, at_poses(chain, q, float(np.mean(t.length))))
     slopes = np.tensordot(np.linalg.pinv(at / size) / size[:, None], D, axes=1)  # (A, 3, P)

@@ -76,7 +76,7 @@ class LearntGeometry:
     Attributes:
         rows: Every quantity, axis by axis.
         ladder: The error from the set-up alone to everything in the model.
-        together: Numbers each of which explains by itself all lines far from where they are stated,
+        together: Numbers that each explain alone all lines far from where they are stated,
             where several keys of the machine file would have to be changed instead.
     """
 
@@ -92,7 +92,7 @@ def learnt_geometry(
     """What a fit says of the geometry of its machine.
 
     Args:
-        fit: Of a model with component and location errors; others are no geometry.
+        fit: Fit of a model with component and location errors; others are no geometry.
         before: Estimates of the first parameters of that model by an earlier one; the machine is
             then fitted anew to this run alone, so that what is compared are two measurements.
         start: The same without further effects, if the fit has some.

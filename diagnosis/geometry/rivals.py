@@ -18,6 +18,7 @@ from matstd.twin.library import ordinary_model
 from matstd.twin.machine import Family
 from matstd.twin.model import Effect, columns, traits
 from matstd.twin.record import Touches
+from matstd.twin.sampling import spread_rows
 
 MAX_TOUCHES = 1000
 """Most touches that are used: more do not distinguish any further columns."""
@@ -51,9 +52,7 @@ class Descriptions:
 
     def __init__(self, fit: Fit) -> None:
         rows = np.flatnonzero(fit.used)
-        rows = rows[
-            np.unique(np.linspace(0, len(rows) - 1, min(MAX_TOUCHES, len(rows))).astype(int))
-        ]
+        rows = rows[spread_rows(len(rows), MAX_TOUCHES)]
         touches = fit.run.touches[rows]
         unit = fit.u[rows][:, None]
         # beside what was found: a number that imitates a found effect is no rival of a line
@@ -78,7 +77,7 @@ class Descriptions:
         known = [(self.names.index(name), d) for name, d in wrong if name in self.names]
         if not known:
             return ()
-        y = sum(d * self._left[:, k] for k, d in known)
+        y = sum((d * self._left[:, k] for k, d in known), start=np.zeros(len(self._left)))
         cost = 0.5 * float(y @ y)
         found = []
         for k, name in enumerate(self.names):

@@ -54,7 +54,7 @@ class GeometryRow:
         course: The same in every run, in their order, where there are several; None in a run that
             does not determine it.
         steps: What changed into every run but the first; None where either is not determined.
-        usual: Of the line or zero of a rotary axis the usual size of the error that it is named by.
+        usual: For the line or zero of a rotary axis: usual size of the error that names it.
         u_model: What the choice of the model contributes to the uncertainty of the estimate.
     """
 

@@ -40,13 +40,14 @@ MOST_PARAMETERS = 12
 
 MOST_TOUCHES = 3000
 """Touches from which others are ranked by an even choice of them, at a few points of their grids
-and without the many periods that waves may have; their inner parameters then stay."""
+and without the many periods that waves may have."""
 
 FEW = 3
 """Points of a grid, of a long run."""
 
-MOST_COLUMNS = 20
-"""Stored columns above which no further inner parameter is moved: their number counts squared."""
+MOST_COLUMNS, FEW_COLUMNS = 20, 8
+"""Stored columns above which no further inner parameter is moved: their number counts squared; of a
+long run."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,16 +122,22 @@ def diagnosed_board(result: Diagnosis) -> Board:
 
 
 @one_blas_thread()
-def learnt_board(learning: Learning) -> Board:
-    """The board of laws that were learnt: they are on; others are effects with a cause."""
-    fit, laws = learning.after, [one.law for one in learning.laws]
+def learnt_board(learning: Learning, found: Sequence[Effect] = ()) -> Board:
+    """The board of laws that were learnt: they are on; others are effects with a cause.
+
+    Args:
+        found: Effects that a diagnosis found before; those in the model are switches, too.
+    """
+    fit, names = learning.after, {e.name for e in learning.after.model.effects}
+    named = [e for e in fit.model.effects if e.name in {one.name for one in found}]
+    laws: list[Effect] = [one.law for one in learning.laws]
+    before = frozenset(e.name for e in named)
     known = {
-        frozenset[str](): (learning.before.rms, learning.before.test_rms),
-        frozenset(law.name for law in laws): (fit.rms, fit.test_rms),
+        before: (learning.before.rms, learning.before.test_rms),
+        before | {law.name for law in laws}: (fit.rms, fit.test_rms),
     }
-    names = {e.name for e in fit.model.effects}
     library = [e for e in candidate_effects(fit.run.touches) if e.name not in names]
-    return _board(fit, laws, {}, library, learning.before, known)
+    return _board(fit, [*named, *laws], {}, library, learning.before, known)
 
 
 @one_blas_thread()
@@ -170,7 +177,7 @@ def _board(
     for sized, same in others:
         sd = np.array([p.sd for p in sized.effect.parameters]) * FREEDOM * sized.scale
         width = sum(s.columns.shape[1] for s in switches)
-        is_movable = is_short and width < MOST_COLUMNS
+        is_movable = width < (MOST_COLUMNS if is_short else FEW_COLUMNS)
         made = switch(base, sized.effect, sd, is_found=False, alike=same, is_movable=is_movable)
         if np.isfinite(made.columns).all():
             switches.append(made)
@@ -178,14 +185,13 @@ def _board(
     A = np.hstack([s.columns for s in switches] or [np.zeros((len(base.y), 0))])
     every = {s.effect.name for s in switches}
     sets = [mix(switches, estimate, on) for on in (set(), {e.name for e in found}, every)]
-    less = Base(fit, base.X, base.y - A @ estimate, base.is_setup)
     return Board(
         fit=fit,
         base=base,
         switches=tuple(switches),
         estimate=estimate,
         known=known,
-        reduced=reduced(less, A, sets),
+        reduced=reduced(base, np.column_stack([A, base.y - A @ estimate]), sets),
     )
 
 

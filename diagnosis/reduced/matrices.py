@@ -185,16 +185,16 @@ def _left_out(base: Base, B: Array, whole: float) -> Array:
     return np.array(out)
 
 
-def reduced(base: Base, A: Array, sets: Sequence[Array]) -> Reduced:
+def reduced(base: Base, C: Array, sets: Sequence[Array]) -> Reduced:
     """Reduce a run to matrices that serve all sets of some columns.
 
     Args:
         base: What is always refitted.
-        A: Columns over the stated uncertainty and times their prior, all rows, (N, K).
+        C: Columns over the stated uncertainty and times their prior, the deviation last, all rows,
+            (N, K + 1).
         sets: Some sets as `Reduced.errors` takes them; the series reaches as far as they do.
     """
     fit = base.fit
-    C = np.column_stack([A, base.y])
     first, count = matrices(base, C, 1.0), int(fit.used.sum())
     span = _span(base, C[fit.used], first, sets)
     return Reduced(

@@ -38,7 +38,7 @@ MIN_SCORE_SHARE = 0.5
 """A round takes out only what stands out at least half as far as the farthest touch: chips that
 bend the fit make good touches look bad, until they are out."""
 
-MAX_ROUNDS = 30
+MAX_GROSS_ROUNDS = 30
 """Most rounds; two touches that alternate would never settle."""
 
 MIN_DOF = 10.0
@@ -117,7 +117,7 @@ def find_gross(
         X: Whitened columns, (N, P).
         y: Whitened observations, (N,).
         allowed: Rows that may be used at all (not those held out), (N,).
-        shot: Of every row, as from `shots`, (N,); None where each is one of its own.
+        shot: Shot of every row, as from `shots`, (N,); None where each is one of its own.
 
     Returns:
         The fit to the used rows, in their order, and the gross errors of all rows.
@@ -130,7 +130,7 @@ def find_gross(
     if fit.dof < MIN_DOF:
         zero, nothing = np.zeros(len(y)), np.zeros(len(y), dtype=bool)
         return fit, GrossErrors(rows=nothing, size=zero, score=zero, limit=limit)
-    for _ in range(MAX_ROUNDS):
+    for _ in range(MAX_GROSS_ROUNDS):
         error, variance = _left_out_each(X, y, fit, used)
         z = error / np.sqrt(variance)
         scale = robust_scale(z[allowed])

@@ -99,14 +99,14 @@ class Whitener:
         """Values over their uncertainty at some of the rows, (R, K), made white.
 
         Args:
-            values: Of rows by number; asked for these, and for those before them.
+            values: Values of rows by number; called for these rows and for those before them.
             rows: By number, (R,).
         """
         before = values(np.maximum(self.before[rows], 0))
         return (values(rows) - self.kept[rows, None] * before) / self.alone[rows, None]
 
     def coloured(self, z: Array) -> Array:
-        """Values (n,) of which white ones are the filter's result."""
+        """Values (n,) that the filter turns into white ones: its inverse."""
         band = np.ones((2, len(z)))
         band[1, :-1] = -self.kept[self.order][1:]
         out = np.empty_like(z)

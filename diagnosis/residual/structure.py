@@ -33,6 +33,7 @@ class Shape(Enum):
     WAVE = "wave"
     NEIGHBOURS = "neighbours"
     CROWD = "crowd"
+    DRIVER = "unrecorded driver"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,6 +46,7 @@ class Structure:
         columns: Projected features scaled to their most likely size, (N + P, K): a prior of one
             each; None for tests that name no pattern.
         period: Of a wave, s; zero for everything else.
+        law: Of a driver that was not recorded: how it acts, as `thermal-expansion(Z)`.
     """
 
     shape: Shape
@@ -55,6 +57,7 @@ class Structure:
     evidence: float
     columns: Array | None
     period: float = 0.0
+    law: str = ""
 
 
 def find_structure(

@@ -7,6 +7,8 @@ way through, `selection` the choice, `refine` and `regrid` what a grid is too co
 """
 
 from matstd.diagnosis.search.budget import MOST_SETS, Budget
+from matstd.diagnosis.search.members import Member, Verified
+from matstd.diagnosis.search.missing_driver import follows_driver, unrecorded
 from matstd.diagnosis.search.refine import refined, refined_set, with_moved_points
 from matstd.diagnosis.search.screened import best_set, scaled
 from matstd.diagnosis.search.screening import WHOLE_BELOW, Library
@@ -16,12 +18,8 @@ from matstd.diagnosis.search.search_loop import (
     refined_named,
     search_until_stable,
 )
-from matstd.diagnosis.search.selection import (
-    MAX_LISTED,
-    Member,
-    Search,
-    Verified,
-)
+from matstd.diagnosis.search.selection import MAX_LISTED, Search
+from matstd.diagnosis.search.tables import tables_along
 from matstd.diagnosis.search.task import FREEDOM, DiagnosisTask
 
 __all__ = [
@@ -37,11 +35,14 @@ __all__ = [
     "SearchState",
     "Verified",
     "best_set",
+    "follows_driver",
     "most_evident",
     "refined",
     "refined_named",
     "refined_set",
     "scaled",
     "search_until_stable",
+    "tables_along",
+    "unrecorded",
     "with_moved_points",
 ]

@@ -1,4 +1,4 @@
-"""Gross errors at an edge in time: accidents, or all touches on one side of a slip.
+"""Gross errors that effects may explain: all touches on one side of a slip, poses predicted again.
 
 A standard that slips two touches before the end of its set-up leaves two touches that no other
 agrees with. As accidents they would lie anywhere; where that is too unlikely they are put back into
@@ -12,8 +12,10 @@ import numpy as np
 from scipy.special import gammaln
 
 from matstd.diagnosis.evidence import ScaledEffect
+from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression import BoolArray, GrossErrors
+from matstd.diagnosis.regression import BoolArray, GrossErrors, shots
+from matstd.diagnosis.search.task import DiagnosisTask
 from matstd.twin.frames import Array
 from matstd.twin.model import inner_values
 from matstd.twin.record import IntArray, Touches
@@ -94,3 +96,29 @@ def _by_chance(touches: int, gross: int, length: int, found: int) -> float:
 def _log_choose(n: int, k: IntArray) -> Array:
     """Logarithm of the number of choices of k of n."""
     return np.asarray(gammaln(n + 1.0) - gammaln(k + 1.0) - gammaln(n - k + 1.0))
+
+
+def restore_predicted_outliers(
+    task: DiagnosisTask, effects: Sequence[ScaledEffect], before: GrossErrors
+) -> Fit:
+    """The fit with effects; outliers that the effects predict are taken back into it.
+
+    Of an instrument that sees a target from afar (`shots`): a pose that its neighbours know little
+    of, as the only one of an arm far out, bends an effect in all its coordinates until it fits. It
+    returns if effects that were found without it, and fitted without it, say what it reads; where
+    they merely do not contradict it, it stays out. Single touches return as they like: of a drift
+    they are the first after a step, which what drives it explains.
+    """
+    whole = task.fit(effects)
+    shot = shots(task.run.touches)
+    is_several = np.bincount(shot)[shot] > 1
+    returned = before.rows & ~whole.gross.rows & is_several
+    if not returned.any():
+        return whole
+    without = task.fit(effects, before)
+    noise = without.noise.factor * task.run.u
+    missed = returned & (np.abs(without.residual) > before.limit * noise)
+    if not missed.any():
+        return whole
+    missed = returned & np.isin(shot, shot[missed])
+    return task.fit(effects, replace(whole.gross, rows=whole.gross.rows | missed))

@@ -7,12 +7,19 @@ there, and the search is made again from that set: whatever only mopped up the d
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import islice
 
 from matstd.diagnosis.evidence import EffectSet, Grid, ScaledEffect, projected, signatures
 from matstd.diagnosis.fit import continuous_inner
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.search.refine import refined_set, with_moved_points
-from matstd.diagnosis.search.selection import EffectSubset, Member, Search
+from matstd.diagnosis.search.members import EffectSubset, Member
+from matstd.diagnosis.search.missing_driver import follows_driver, is_unrecorded
+from matstd.diagnosis.search.refine import refined, refined_set, with_moved_points
+from matstd.diagnosis.search.selection import Search
+from matstd.twin.model import Effect
+
+MAX_REFINED_DRIVERS = 4
+"""Most laws of recorded drivers that are refined beside one that was not recorded."""
 
 MAX_SEARCHES = 3
 """Most searches with points of the grid moved to refined inner parameters."""
@@ -27,6 +34,7 @@ def regridded(search: Search, chosen: EffectSubset) -> tuple[Search, EffectSubse
     Returns:
         The search with the moved points, and its result.
     """
+    search, chosen = _with_refined_drivers(search, chosen)
     for _ in range(MAX_SEARCHES):
         start = [ScaledEffect(m.effect, m.scale) for m in chosen.members]
         members = refined_set(search.complement, start)
@@ -42,6 +50,27 @@ def regridded(search: Search, chosen: EffectSubset) -> tuple[Search, EffectSubse
         moved = zip(kept, members, strict=True)
         chosen = search.run([replace(m, effect=s.effect, scale=s.scale) for m, s in moved])
     return search, chosen
+
+
+def _with_refined_drivers(search: Search, chosen: EffectSubset) -> tuple[Search, EffectSubset]:
+    """Search again where the best laws of recorded drivers stand between points of their grids.
+
+    A driver that was not recorded has no grid, and would win by what the grid of a lag loses.
+    """
+    pool = search.pool
+    moved: dict[int, Effect] = {}
+    for member in chosen.members:
+        if not is_unrecorded(member.effect):
+            continue
+        others = search.evaluate(m for m in chosen.members if m is not member)
+        laws = (v for v in search.ranking(others) if follows_driver(pool.variants[v]))
+        for variant in islice(laws, MAX_REFINED_DRIVERS):
+            moved[variant] = refined(others.effects, pool.variants[variant])[0].effect
+    moved = {v: e for v, e in moved.items() if e != pool.variants[v]}
+    if not moved:
+        return search, chosen
+    search = Search(with_moved_points(pool, moved), search.fixed, search.progress, search.budget)
+    return search, search.run(chosen.members)
 
 
 def _needed(

@@ -4,10 +4,11 @@ from collections.abc import Sequence
 
 from matstd.diagnosis.evidence import EffectSet, Progress, ScaledEffect, projected, quiet
 from matstd.diagnosis.search.budget import Budget
+from matstd.diagnosis.search.members import EffectSubset, Member
 from matstd.diagnosis.search.refine import with_moved_points
 from matstd.diagnosis.search.regrid import regridded
 from matstd.diagnosis.search.screening import Library, joined_shortlists
-from matstd.diagnosis.search.selection import EffectSubset, Member, Search
+from matstd.diagnosis.search.selection import Search
 
 MAX_SCREENINGS = 3
 """Most screenings of the library in one round of a long run."""

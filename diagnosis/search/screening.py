@@ -8,7 +8,7 @@ points of grids that may matter beside a set of effects; the search then has exa
 those points alone, and a search asks for another shortlist once it knows more effects.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -29,6 +29,7 @@ from matstd.diagnosis.evidence import (
     screen,
     signatures,
 )
+from matstd.diagnosis.search.missing_driver import is_unrecorded
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 
@@ -53,6 +54,11 @@ def joined_shortlists(first: Shortlist, second: Shortlist) -> Shortlist:
     return {k: first.get(k, nothing) | second.get(k, nothing) for k in {*first, *second}}
 
 
+def tried(grids: Sequence[Grid]) -> int:
+    """Candidates that may be named; what only competes with them costs no chance."""
+    return sum(not is_unrecorded(g.effect) for g in grids)
+
+
 @dataclass(frozen=True, eq=False)
 class Library:
     """Candidate effects with what is needed to search among them in one run.
@@ -73,7 +79,13 @@ class Library:
         grids = scanned_grids(candidates, complement)
         n = len(complement.u)
         seen = complement if n <= WHOLE_BELOW else complement.thinned(WHOLE_BELOW)
-        return cls(complement, tuple(grids), signatures(seen, grids, len(grids), progress))
+        return cls(complement, tuple(grids), signatures(seen, grids, tried(grids), progress))
+
+    def without(self, is_left_out: Callable[[Effect], bool]) -> "Library":
+        """The same less some candidates, which must be the last ones."""
+        grids = tuple(g for g in self.grids if not is_left_out(g.effect))
+        complement, sample = self.complement, self.sample.without(is_left_out)
+        return Library(complement, grids, sample)
 
     @property
     def is_whole(self) -> bool:
@@ -94,7 +106,7 @@ class Library:
             variants = tuple(self.variants[v] for v in sorted(shortlist[index]))
             grid = self.grids[index]
             grids.append(Grid(grid.effect, variants, grid.tries))
-        return signatures(self.complement, grids, len(self.grids))
+        return signatures(self.complement, grids, tried(self.grids))
 
     def shortlist(self, found: Sequence[ScaledEffect], effects: EffectSet) -> Shortlist:
         """Candidates that may matter beside a set of effects; empty where all are searched."""

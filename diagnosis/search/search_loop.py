@@ -32,16 +32,22 @@ from matstd.diagnosis.evidence import (
 )
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.residual import PatternTests, Structure, find_structure
+from matstd.diagnosis.residual import PatternTests, Shape, Structure, find_structure
 from matstd.diagnosis.search.budget import Budget
 from matstd.diagnosis.search.domains import by_time
-from matstd.diagnosis.search.edges import unexplained_near_slip, without
+from matstd.diagnosis.search.edges import (
+    restore_predicted_outliers,
+    unexplained_near_slip,
+    without,
+)
+from matstd.diagnosis.search.members import EffectSubset, Member
+from matstd.diagnosis.search.missing_driver import is_unrecorded, unrecorded
 from matstd.diagnosis.search.overtones import with_overtones
 from matstd.diagnosis.search.refine import refined_set
-from matstd.diagnosis.search.restore_outliers import restore_predicted_outliers
 from matstd.diagnosis.search.screened import best_set, scaled
 from matstd.diagnosis.search.screening import Library
-from matstd.diagnosis.search.selection import EffectSubset, Search
+from matstd.diagnosis.search.selection import Search
+from matstd.diagnosis.search.tables import tables_along
 from matstd.diagnosis.search.task import DiagnosisTask
 from matstd.twin.effects import repeat
 from matstd.twin.frames import Array
@@ -73,6 +79,7 @@ class SearchState:
         effects: The same effects with their inner parameters refined.
         smooth: Tests for patterns in what the starting model leaves.
         nameless: Patterns without a name that had to be put beside them.
+        drifts: Laws of drivers that were not recorded, whose patterns are among these.
         chances: Probabilities by chance that rest on blocks left out, by the name of the effect.
         is_weighed: Whether the set was chosen by prediction, and no other may stand in for it.
         is_ended: Whether the search was ended by its limit of sets.
@@ -87,6 +94,7 @@ class SearchState:
     at_start: tuple[Structure, ...]
     left: tuple[Structure, ...]
     nameless: tuple[Structure, ...]
+    drifts: tuple[ScaledEffect, ...] = ()
     chances: Mapping[str, float] = field(default_factory=dict)
     is_weighed: bool = False
     is_ended: bool = False
@@ -129,7 +137,9 @@ def search_until_stable(
     """Search among laws, then with tables, which say where an axis is wrong and not why.
 
     A table is followed only where it predicts plainly better than what the laws came to: it can
-    imitate any of them.
+    imitate any of them. Where a remainder depends on an axis, the tables of its components are
+    offered too, and one of them is followed only if nothing remains beside it: several together
+    imitate any function of several axes.
 
     Args:
         start: A set to begin with, inner parameters refined, as a choice of the rows gave it: what
@@ -138,10 +148,20 @@ def search_until_stable(
     begun = {s.effect.name for s in start}
     laws = [e for e in candidates if not traits(e).is_table or e.name in begun]
     state = _with_further_periods(task, added, laws, progress, start)
-    if start or len(laws) == len(candidates):
+    if start:
         return state
-    other = _with_further_periods(task, added, candidates, progress, ())
-    return other if _held_out(other) < POLICY.error_share * _held_out(state) else state
+    if len(laws) < len(candidates):
+        other = _with_further_periods(task, added, candidates, progress, ())
+        state = other if _held_out(other) < POLICY.error_share * _held_out(state) else state
+    known = {e.name for e in candidates}
+    depends_on = [v for s in (*state.nameless, *state.left) for v in s.variables]
+    tables = [e for e in tables_along(task.run.touches, depends_on) if e.name not in known]
+    if not tables:
+        return state
+    other = _with_further_periods(task, added, [*laws, *tables], progress, ())
+    followed = sum(traits(s.effect).is_table for s in other.effects)
+    is_whole = followed == 1 and not other.left and not other.nameless
+    return other if is_whole and _held_out(other) < POLICY.error_share * _held_out(state) else state
 
 
 def _held_out(state: SearchState) -> float:
@@ -176,7 +196,8 @@ def _with_further_periods(
             break
         offered += further
         other = _until_gross_errors_stay(task, added, offered, progress, start)
-        if not {a.name for a in further} & {s.effect.name for s in other.effects}:
+        is_taken = {a.name for a in further} & {s.effect.name for s in other.effects}
+        if not is_taken or _held_out(other) >= _held_out(state):
             break
         state = other
     return state
@@ -227,6 +248,7 @@ def _until_gross_errors_stay(
     explains them, and if not they are gross errors in the next turn.
     """
     touches = task.run.touches
+    nameless = unrecorded(touches)
     whole = task.fit((*added, *start))
     base = task.fit(added, whole.gross, whole) if start else whole
     tried = unexplained_near_slip(touches, base.gross, start)
@@ -235,7 +257,7 @@ def _until_gross_errors_stay(
     found: Sequence[ScaledEffect] = start
     budget = Budget()
     for remaining in reversed(range(MAX_ROUNDS)):
-        library = Library.of(ResidualSpace.of(base), candidates, progress)
+        library = Library.of(ResidualSpace.of(base), [*candidates, *nameless], progress)
         search, chosen = best_set(library, found, budget, progress)
         effects = refined_set(library.complement, scaled(chosen))
         whole = restore_predicted_outliers(task, (*added, *effects), base.gross)
@@ -263,9 +285,9 @@ def _with_structure(
     smooth = PatternTests(nothing.effects.complement)
     at_start = find_structure(nothing.effects, progress, smooth)
     left = find_structure(chosen.effects, progress, smooth) if chosen.members else at_start
+    nameless: list[Structure] = []
     if not left:
         left = _patterns_that_win(at_start, nothing, chosen)
-    nameless: list[Structure] = []
     named = (search, chosen, left)
     # an unexplained pattern would otherwise be imitated by several named effects
     while any(s.columns is not None for s in left) and len(nameless) < MAX_NAMELESS:
@@ -278,6 +300,10 @@ def _with_structure(
         (search, chosen, left), nameless = named, []
     elif nameless:
         chosen = _both(search, named[1], chosen)
+    drifts = tuple(
+        ScaledEffect(m.effect, m.scale) for m in chosen.members if is_unrecorded(m.effect)
+    )
+    library, search, chosen, unnamed = _without_drivers(library, search, chosen)
     return SearchState(
         base=base,
         library=library,
@@ -287,8 +313,41 @@ def _with_structure(
         smooth=smooth,
         at_start=tuple(at_start),
         left=tuple(left),
-        nameless=tuple(nameless),
+        nameless=(*unnamed, *nameless),
+        drifts=drifts,
         is_ended=search.budget.is_spent,
+    )
+
+
+def _without_drivers(
+    library: Library, search: Search, chosen: EffectSubset
+) -> tuple[Library, Search, EffectSubset, list[Structure]]:
+    """A result whose drivers that nobody recorded are patterns without a name."""
+    drifts = [m for m in chosen.members if is_unrecorded(m.effect)]
+    found = [_as_pattern(search, chosen, m) for m in drifts]
+    library = library.without(is_unrecorded)
+    pool = library.sample if library.is_whole else search.pool.without(is_unrecorded)
+    blocks = [] if search.fixed is None else [search.fixed]
+    blocks += [s.columns for s in found if s.columns is not None]
+    fixed = np.hstack(blocks) if blocks else None
+    search = Search(pool, fixed, search.progress, search.budget)
+    return library, search, search.evaluate(m for m in chosen.members if m not in drifts), found
+
+
+def _as_pattern(search: Search, chosen: EffectSubset, member: Member) -> Structure:
+    """A member of a set as a pattern."""
+    others = search.evaluate(m for m in chosen.members if m is not member)
+    tested = search.verified(others, chosen, member)
+    fall = others.effects.objective - chosen.effects.objective
+    return Structure(
+        shape=Shape.DRIVER,
+        variables=("time_s",),
+        direction="normal",
+        p_value=tested.p_value,
+        share=min(fall / others.effects.objective, 1.0),
+        evidence=tested.evidence,
+        columns=member.scale * search.pool.columns_of(member.variant),
+        law=member.effect.name.partition(": ")[2],
     )
 
 
@@ -299,7 +358,7 @@ def _evicted(before: EffectSubset, after: EffectSubset) -> bool:
     runs well.
     """
     kept = {m.effect.name for m in after.members}
-    if all(m.effect.name in kept for m in before.members):
+    if all(m.effect.name in kept or is_unrecorded(m.effect) for m in before.members):
         return False
     return _by_stretches(after.effects) > POLICY.error_share * _by_stretches(before.effects)
 
@@ -311,7 +370,7 @@ def _both(search: Search, before: EffectSubset, after: EffectSubset) -> EffectSu
         search: With the patterns in every set.
     """
     kept = {m.effect.name for m in after.members}
-    if all(m.effect.name in kept for m in before.members):
+    if all(m.effect.name in kept or is_unrecorded(m.effect) for m in before.members):
         return after
     both = search.evaluate(before.members)
     is_better = _by_stretches(both.effects) < POLICY.error_share * _by_stretches(after.effects)

@@ -9,28 +9,29 @@ left out of the fit.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import combinations, count
 
 import numpy as np
 
 from matstd.diagnosis.evidence import (
-    EffectSet,
     Progress,
-    ResidualSpace,
     Scores,
     Signatures,
     quiet,
     score_all,
 )
 from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.regression import BoolArray
 from matstd.diagnosis.search.budget import Budget
 from matstd.diagnosis.search.domains import domain_gain
 from matstd.diagnosis.search.instants import p_by_instants
-from matstd.diagnosis.search.nested import contains
+from matstd.diagnosis.search.members import EffectSubset, Member, Verified, effect_set
+from matstd.diagnosis.search.missing_driver import follows_driver, is_unrecorded, moves_alike
+from matstd.diagnosis.search.tables import contains
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect
+from matstd.twin.thermal import drives
 
 MIN_CORRELATION_ALIKE = 0.95
 """Correlation of two fitted signatures from which only one of the sets is carried on."""
@@ -49,77 +50,6 @@ USUAL_SET_SIZE = 6
 
 MAX_LISTED = 25
 """Most candidates that are listed, best first."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Member:
-    """An effect in a set, at one point of its grid."""
-
-    variant: int
-    candidate: int
-    effect: Effect
-    scale: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class EffectSubset:
-    """A set of effects with what it explains in the projection."""
-
-    members: tuple[Member, ...]
-    effects: EffectSet
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Verified:
-    """Tests of one member with all the others in place.
-
-    Attributes:
-        p_value: Probability by chance, corrected for grid and number of candidates.
-        held_out: Held-out error with it over that without it.
-        density: Gain of the held-out log predictive density by it.
-        touches: Effective number it explains, ``(sum d^2)^2 / sum d^4`` of what it changes.
-        domain_density: Least gain of the log predictive density over domains of which blocks are
-            left out (parts of the time, set-ups); 0 where an earlier test fails already.
-        is_possible: Whether no coefficient of expansion is of a body that shrinks when it warms.
-    """
-
-    member: Member
-    p_value: float
-    evidence: float
-    held_out: float
-    density: float
-    touches: float
-    domain_density: float = 0.0
-    is_possible: bool = True
-
-    @property
-    def stands(self) -> bool:
-        """Whether all tests are passed."""
-        return self.stands_by_poses and self.is_possible and self.domain_density > 0.0
-
-    @property
-    def stands_by_poses(self) -> bool:
-        """Whether the tests are passed that leave out one pose at a time."""
-        return (
-            self.p_value < POLICY.false_alarm
-            and self.evidence > POLICY.log_evidence_gain
-            and self.held_out < 1.0
-            and self.density > POLICY.log_evidence_gain
-            and self.touches > POLICY.touches_explained
-        )
-
-
-def effect_set(
-    complement: ResidualSpace,
-    pool: Signatures,
-    members: Sequence[Member],
-    fixed: Array | None = None,
-) -> EffectSet:
-    """Set of members of a pool, with further fixed columns beside them."""
-    blocks = [] if fixed is None else [fixed]
-    blocks += [m.scale * pool.columns_of(m.variant) for m in members]
-    rows = len(complement.residual)
-    return EffectSet(complement, np.hstack(blocks) if blocks else np.zeros((rows, 0)))
 
 
 class Search:
@@ -151,7 +81,8 @@ class Search:
         effects = effect_set(self.complement, self.pool, members, self.fixed)
         rows, own = effects.A.shape
         self.budget.spend(rows, own, self.pool.C.shape[1])
-        return EffectSubset(members, effects)
+        prior = float(sum(self._prior[m.variant] for m in members))
+        return EffectSubset(members, effects, prior)
 
     def member(self, chosen: EffectSubset, variant: int) -> Member:
         """A variant as an addition to a set, at its likeliest scale there."""
@@ -171,7 +102,10 @@ class Search:
         key = tuple(sorted((m.variant, m.scale) for m in chosen.members))
         if key not in self._known:
             scores = score_all(chosen.effects, self.pool, self._inside(chosen))
-            order = np.argsort(-scores.evidence, kind="stable")
+            scores = replace(scores, evidence=scores.evidence + self._prior + chosen.prior)
+            # a drift that would not stand must not hide a law that does
+            chance = self._is_unrecorded & (scores.p * self.pool.tried >= POLICY.false_alarm)
+            order = np.argsort(-np.where(chance, -np.inf, scores.evidence), kind="stable")
             _, first = np.unique(self.pool.owner[order], return_index=True)
             self._known[key] = scores, order[np.sort(first)].tolist()
         return self._known[key]
@@ -210,7 +144,7 @@ class Search:
         directions: list[Array] = []
         scores = self.scores(chosen)
         for variant in self.additions(chosen)[: 12 * most]:
-            if len(out) >= most or scores.evidence[variant] <= chosen.effects.evidence:
+            if len(out) >= most or scores.evidence[variant] <= chosen.evidence:
                 break
             direction = self.explained(chosen, variant)
             if all(abs(direction @ d) < MIN_CORRELATION_ALIKE for d in directions):
@@ -238,7 +172,7 @@ class Search:
                 others = self.evaluate(chosen.members[:i] + chosen.members[i + 1 :])
                 ranked = self.additions(others)
                 best = ranked[0] if ranked else chosen.members[i].variant
-                gain = self.scores(others).evidence[best] - chosen.effects.evidence
+                gain = self.scores(others).evidence[best] - chosen.evidence
                 if gain > 1e-6:
                     members = list(chosen.members)
                     members[i] = self.member(others, best)
@@ -280,11 +214,47 @@ class Search:
             held_out=whole.effects.held_out.rms / max(others.effects.held_out.rms, 1e-300),
             density=float(density),
             touches=touches,
-            is_possible=self._is_possible(whole, member),
+            is_possible=self._is_possible(whole, member)
+            and self._is_preferred(others, whole, member),
         )
         if not found.stands_by_poses:
             return found
         return replace(found, domain_density=domain_gain(others.effects, whole.effects))
+
+    def _is_preferred(self, others: EffectSubset, whole: EffectSubset, member: Member) -> bool:
+        """Whether a recorded driver is more likely than one that was not recorded.
+
+        What the course of such a driver leaves is more likely its own than another driver's.
+        """
+        if not follows_driver(member.effect):
+            return True
+        if any(moves_alike(member.effect, m.effect) for m in whole.members):
+            return False
+        rivals = self.scores(others).evidence[self._is_unrecorded]
+        return bool(np.all(whole.evidence > rivals))
+
+    @cached_property
+    def _is_unrecorded(self) -> BoolArray:
+        """Which variants follow a driver that was not recorded, (V,)."""
+        return np.array([is_unrecorded(v) for v in self.pool.variants], dtype=bool)
+
+    @cached_property
+    def _prior(self) -> Array:
+        """Log prior of every variant, (V,).
+
+        A law of a recorded driver was chosen among many drivers and lags, and one that was not
+        recorded may stand behind it.
+        """
+        touches, pool = self.complement.touches, self.pool
+        _, first = np.unique(pool.owner, return_index=True)
+        several = max(len(drives(touches)), 1)
+        prior = [
+            -np.log(several * tries) - POLICY.log_odds_unrecorded
+            if follows_driver(pool.variants[v])
+            else 0.0
+            for v, tries in zip(first, pool.tries, strict=True)
+        ]
+        return np.asarray(prior)[pool.owner] if prior else np.zeros(0)
 
     def _is_possible(self, whole: EffectSubset, member: Member) -> bool:
         """Whether a body may expand as a member says, within its uncertainty.
@@ -318,10 +288,7 @@ class Search:
         for _ in range(MAX_REOPENINGS):
             best = self.backward(self.grown(best))
             other = self.reopened(best)
-            if (
-                other.effects.evidence <= best.effects.evidence + POLICY.log_evidence_gain
-                or not self.stands(other)
-            ):
+            if other.evidence <= best.evidence + POLICY.log_evidence_gain or not self.stands(other):
                 break
             best = other
         return best
@@ -337,11 +304,7 @@ class Search:
                 self.polished(s) for s in grown[: MAX_CARRIED_SETS * MAX_CARRIED_SETS]
             )
             self.progress(min(size / USUAL_SET_SIZE, 1.0), "sets of effects")
-            better = [
-                c
-                for c in carried
-                if c.effects.evidence > best.effects.evidence + POLICY.log_evidence_gain
-            ]
+            better = [c for c in carried if c.evidence > best.evidence + POLICY.log_evidence_gain]
             standing = next((c for c in better if self.stands(c)), None)
             if standing is None:
                 break
@@ -362,14 +325,14 @@ class Search:
             for first in self.extensions(rest, MAX_REOPENED_SETS):
                 for second in self.extensions(first, 1):
                     found = self.polished(second)
-                    if found.effects.evidence > best.effects.evidence:
+                    if found.evidence > best.evidence:
                         best = found
         return best
 
     def kept(self, sets: Iterable[EffectSubset]) -> list[EffectSubset]:
         """The few best of some sets, each once."""
         unique = {tuple(sorted(m.variant for m in s.members)): s for s in sets}
-        return sorted(unique.values(), key=lambda s: -s.effects.evidence)[:MAX_CARRIED_SETS]
+        return sorted(unique.values(), key=lambda s: -s.evidence)[:MAX_CARRIED_SETS]
 
     def backward(self, chosen: EffectSubset) -> EffectSubset:
         """Take out members that a better one made superfluous, the weakest first."""

@@ -10,9 +10,9 @@ visit, errs by a normal deviate of the variance
 
     s_b^2 (1 + 1'R1 / J^2) + |K'1 / J|^2 + s_p^2 (1 + 1'R'1 / (n J^2)) + u_w^2
 
-if s_b, s_p, R and R' are known. They are not: it is averaged over what the visits leave of them. So
+if s_b, s_p, R and R' are known. They are not: it is averaged over what the visits allow. So
 the variance of the machine can be small but never negative, and it is known as well as the visits
-tell, not as well as a rule for degrees of freedom says.
+determine, not as well as a rule for degrees of freedom says.
 
 Of s_b the prior is that of Berger and Bernardo, sqrt(tr((P R)^2)) s_b, P the inverse covariance of
 the contrasts: it gives Student's distribution where the calibration is exact, and is flat in s_b^2
@@ -22,7 +22,7 @@ Errors of a machine hang together by the region where its linear axes stand, by 
 pose, or not at all; the changes between visits by all, by feature, by table pose, or not at all. R
 is a sum of these parts, no part's share is known, and every combination of "none", "a tenth" and
 "as much" is as probable as any other at first. Features whose calibration is no better than the
-machine tell of what goes by feature only through this: an error that hardly goes by region, pose
+machine inform about a part by feature only through this: an error that hardly goes by region, pose
 and place is not expected to go by feature.
 
 Reference:
@@ -54,8 +54,8 @@ class Expected:
     """The error of the next result: a mixture of normal distributions about zero.
 
     Attributes:
-        probability: Of every component, (M,).
-        variance: Of every component, (M,), mm^2.
+        probability: Probability of every component, (M,).
+        variance: Variance of every component, (M,), mm^2.
     """
 
     probability: Array
@@ -106,7 +106,7 @@ def _averaged(p: Array, variance: Array) -> Expected:
 
 @dataclass(frozen=True, eq=False)
 class _Covariance:
-    """Of J places: r coordinates are separate, in the other directions it is a multiple of one.
+    """Covariance of J places: r coordinates are separate, the others share one variance.
 
     Attributes:
         separate: (r, r).
@@ -132,8 +132,8 @@ class _Frame:
     Attributes:
         places: Their number J.
         others: Number of directions beside the r coordinates.
-        mean: Of the visits, (r,).
-        within: Of every visit about it, (n, r).
+        mean: Mean of the visits, (r,).
+        within: Deviations of every visit from the mean, (n, r).
         mean_beside: Sum of squares of the mean in the other directions.
         within_beside: Of all visits about it.
         of_machine: What may add to its error: by region, by feature, by pose, by place, those that

@@ -45,13 +45,13 @@ class TaskUncertainty:
     Attributes:
         faces: Number of features that the places are on.
         bias: b, mm.
-        u_cal: Of b by the calibration, mm.
-        u_p: Of one visit, mm.
+        u_cal: Standard uncertainty of b by the calibration, mm.
+        u_p: Standard uncertainty of one visit, mm.
         spread: Root mean square of the places' means about b, mm.
         expected: What calibration lets expect of it, mm.
-        u_w: Of the workpieces, mm.
+        u_w: Standard uncertainty by the workpieces, mm.
         u: Combined standard uncertainty of a result that is corrected for b, mm.
-        by_face: Of every feature its name, the mean of its places and their spread about it, mm.
+        by_face: Name of every feature, mean of its places and their spread about it, mm.
     """
 
     visits: int
@@ -70,7 +70,7 @@ class TaskUncertainty:
 
     @property
     def u_b(self) -> float:
-        """Of b over the task, mm."""
+        """Standard uncertainty of b over the task, mm."""
         rest = self.u**2 - self.u_cal**2 - self.u_p**2 - self.u_w**2
         return float(np.sqrt(max(rest, 0.0)))
 

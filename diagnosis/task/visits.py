@@ -35,7 +35,7 @@ class Visits:
             features, (n, J), mm.
         face: Feature of every place, (J,).
         pose: Table pose of every place, (J,).
-        region: Of the machine, by the half of its range that every linear axis is in there, (J,).
+        region: Region of the machine, by the half of its range that every linear axis is in, (J,).
         shared: Deviation per standard uncertainty of everything that the calibration leaves
             unknown, the datum features included, (J, Q), mm.
         lost: Places that not every visit has.
@@ -153,7 +153,7 @@ def _placed_columns(run: Run, is_datum: BoolArray, calibration: Array) -> Array:
 
 def _region(touches: Touches) -> np.ndarray:
     """Number of the part of the machine where a touch is, one of eight for three linear axes."""
-    linear = [touches.chain.axis_index(name) for name in touches.chain.linear_axes]
+    linear = touches.chain.linear_columns
     q = touches.q[:, linear]
     return np.asarray((q > 0.5 * (q.min(axis=0) + q.max(axis=0))) @ 2 ** np.arange(len(linear)))
 
@@ -166,7 +166,7 @@ def _apart(touches: Touches, rows: np.ndarray) -> np.ndarray:
 
 def _same_places(first: Touches, rows: np.ndarray, other: Touches, among: np.ndarray) -> np.ndarray:
     """Row of the touch at the same place of the standard for every row, the first such; else -1."""
-    rotary = [first.chain.axis_index(a) for a in first.chain.rotary_axes]
+    rotary = first.chain.rotary_columns
     out = np.full(len(rows), -1)
     for k, row in enumerate(rows):
         same = among[other.feature[among] == first.feature[row]]

@@ -17,7 +17,8 @@ import numpy as np
 
 from matstd.importers.sheets import ANGLES, Sheet
 from matstd.twin.errors import DesignError
-from matstd.twin.frames import Array
+from matstd.twin.frames import Array, rotation, skew
+from matstd.twin.numbers import rms
 
 MAX_NORM_ERROR = 0.01
 """Error of the length of a quaternion beyond which its columns hold something else."""
@@ -63,7 +64,7 @@ def rotations(sheet: Sheet, found: Oriented) -> Array:
         BadFile: A quaternion that is not of unit length, a rotation vector without a unit.
     """
     if len(found.columns) == 3:
-        return from_vectors(np.stack([sheet.quantity(i, ANGLES) for i in found.columns], axis=1))
+        return rotation(np.stack([sheet.quantity(i, ANGLES) for i in found.columns], axis=1))
     q = np.stack([sheet.numbers(i) for i in found.columns], axis=1)
     length = np.linalg.norm(q, axis=1)
     odd = np.flatnonzero(np.abs(length - 1.0) > MAX_NORM_ERROR)
@@ -76,19 +77,8 @@ def rotations(sheet: Sheet, found: Oriented) -> Array:
 
 def from_quaternions(q: Array) -> Array:
     """Rotations of unit quaternions w, x, y, z, (N, 4) to (N, 3, 3)."""
-    w, v = q[:, 0], q[:, 1:]
-    K = _cross(v)
-    out: Array = np.eye(3) + 2.0 * (w[:, None, None] * K + K @ K)
-    return out
-
-
-def from_vectors(v: Array) -> Array:
-    """Rotations about vectors by their lengths, (N, 3), rad, to (N, 3, 3) (Rodrigues)."""
-    angle = np.linalg.norm(v, axis=1)
-    K = _cross(v)
-    first = np.sinc(angle / np.pi)
-    second = 0.5 * np.sinc(0.5 * angle / np.pi) ** 2
-    out: Array = np.eye(3) + first[:, None, None] * K + second[:, None, None] * (K @ K)
+    K = skew(q[:, 1:])
+    out: Array = np.eye(3) + 2.0 * (q[:, 0, None, None] * K + K @ K)
     return out
 
 
@@ -111,7 +101,7 @@ def disagreement(tool: Array, measured: Array) -> float:
     X = target_rotation(tool, measured, Y)
     off = np.einsum("nji,jk,nkl,lm->nim", measured, Y, tool, X)
     angle = np.arccos(np.clip(0.5 * (np.trace(off, axis1=1, axis2=2) - 1.0), -1.0, 1.0))
-    return float(np.sqrt(np.mean(angle**2)))
+    return rms(angle)
 
 
 def check_orientations(sheet: Sheet, tool: Array, measured: Array) -> None:
@@ -149,8 +139,3 @@ def arms(lever: float) -> tuple[Array, Array]:
     place = [side * lever * np.eye(3)[i] for i, _ in PAIRS for side in (1.0, -1.0)]
     along = [np.eye(3)[j] for _, j in PAIRS for _ in range(2)]
     return np.array(place), np.array(along)
-
-
-def _cross(v: Array) -> Array:
-    """Matrices of the cross products with vectors, (N, 3, 3)."""
-    return np.cross(v[:, None], np.eye(3)).swapaxes(1, 2)

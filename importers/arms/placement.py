@@ -9,11 +9,12 @@ from matstd.importers.arms.table import ArmTable
 from matstd.twin.errors import DesignError, NotEnoughData
 from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.machine import Chain, table_to_tool
+from matstd.twin.numbers import rms, rms_length
 from matstd.twin.record import rigid_motion
 
 MIN_POSES = 6
-"""Poses for the nine unknown numbers of tracker and reflector, three equations each, with some
-over."""
+"""Poses for the nine unknown numbers of tracker and reflector, three equations each, with a
+margin."""
 
 UNDETERMINED_SD = 10.0
 """From this standard uncertainty (mm) a direction is undetermined. Thirty poses of an arm that is 1
@@ -82,14 +83,14 @@ def located(table: ArmTable, chain: Chain, u: float, reflector: Array | None) ->
         v, is_settled = found.x.reshape(-1, 3), bool(found.status > 0)
     else:
         v, is_settled = reflector[None], True
-    rms = float(np.sqrt(np.mean(problem.residuals(v) ** 2)))
+    left = rms(problem.residuals(v))
     return Placement(
         T_table_tracker=inverse(problem.tracker(v)),
         reflector=v,
-        rms=rms,
-        spread=float(np.sqrt(np.mean((problem.measured - problem.measured.mean(axis=0)) ** 2))),
+        rms=left,
+        spread=rms(problem.measured - problem.measured.mean(axis=0)),
         is_settled=is_settled,
-        free=tuple(problem.free(v, float(np.clip(rms, u, max(u, MAX_SCATTER))))),
+        free=tuple(problem.free(v, float(np.clip(left, u, max(u, MAX_SCATTER))))),
     )
 
 
@@ -125,7 +126,7 @@ class _Problem:
         """
         R, at = self.tracker(v)[:3, :3], self.nominal_places(v)
         arm = at - at.mean(axis=0)
-        reach = max(float(np.sqrt(np.mean(np.sum(arm**2, axis=1)))), 1e-9)
+        reach = max(rms_length(arm), 1e-9)
         J = np.zeros((len(at), 3, 6 + 3 * self.count))
         J[:, :, :3] = np.cross(np.eye(3), arm[:, None]).swapaxes(1, 2) / reach
         J[:, :, 3:6] = np.eye(3)

@@ -87,21 +87,12 @@ def read_arm(sheet: Sheet, axes: Sequence[str] = (), is_oriented: bool = False) 
             name: np.stack([sheet.quantity(of[c], MM, "mm") for c in "xyz"], axis=1)
             for name, of in fixed.items()
         },
-        repeat=None if cycle is None else _repetitions(sheet, cycle),
+        repeat=None if cycle is None else sheet.whole_numbers(cycle, "the number of a repetition"),
     )
     if table.turn is not None and several:
         found = f"orientations beside {len(reflectors)} reflectors"
         raise BadFile(sheet.path, "header", found, "one target with an orientation")
     return _without_standing(table)
-
-
-def _repetitions(sheet: Sheet, column: int) -> IntArray:
-    """Numbers of repetitions."""
-    numbers = sheet.numbers(column)
-    odd = np.flatnonzero(~np.isfinite(numbers) | (numbers != np.round(numbers)))
-    if len(odd):
-        raise sheet.bad(int(odd[0]), column, f"{numbers[odd[0]]:g}", "the number of a repetition")
-    return numbers.astype(np.int64)
 
 
 def _without_standing(table: ArmTable) -> ArmTable:
@@ -189,7 +180,7 @@ def _words(name: str) -> str:
 
 
 def coupled(q: Array, how: str) -> Array:
-    """Readings of joints one of which counts from another one's link, (N, J); raises DesignError.
+    """Readings of joints where one counts from the link of another, (N, J); raises DesignError.
 
     On arms with a parallel linkage, and in the readings of some controls without one, joint 3
     counts from the horizontal: its angle against link 2 is J3 + J2 (or J3 - J2).

@@ -24,6 +24,7 @@ from matstd.importers.sheets import Sheet, loads, own_columns, seconds, temperat
 from matstd.twin.errors import DesignError, NotEnoughData
 from matstd.twin.frames import Array, inverse
 from matstd.twin.machine import Chain, table_to_tool
+from matstd.twin.numbers import rms
 from matstd.twin.record import (
     Instrument,
     IntArray,
@@ -57,7 +58,7 @@ class ArmImport:
     @property
     def rms(self) -> float:
         """Deviations of the arm as it is described, mm."""
-        return float(np.sqrt(np.mean(self.run.deviation**2)))
+        return rms(self.run.deviation)
 
     @property
     def reflectors(self) -> dict[str, Array]:

@@ -170,7 +170,7 @@ def read_positioning(
         axis=axis,
         target=at,
         deviation=deviation - at if is_position else deviation,
-        cycle=stroke if cycle is None else _cycle_numbers(sheet, cycle),
+        cycle=stroke if cycle is None else sheet.whole_numbers(cycle, "the number of a cycle"),
         direction=sign if direction is None else signs(sheet, direction),
         line=np.array(sheet.lines),
         time=None if clock is None else seconds(sheet, clock),
@@ -326,12 +326,3 @@ def _without_gaps(sheet: Sheet, test: PositioningTest) -> PositioningTest:
     if not rows.any():
         raise BadFile(sheet.path, "table", "no row with a target and a reading", "one or more")
     return picked(test, rows)
-
-
-def _cycle_numbers(sheet: Sheet, column: int) -> IntArray:
-    """Numbers of cycles."""
-    numbers = sheet.numbers(column)
-    odd = np.flatnonzero(~np.isfinite(numbers) | (numbers != np.round(numbers)))
-    if len(odd):
-        raise sheet.bad(int(odd[0]), column, f"{numbers[odd[0]]:g}", "the number of a cycle")
-    return numbers.astype(np.int64)

@@ -14,6 +14,7 @@ import numpy as np
 from matstd.importers.points.point_list import PointList
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.numbers import rms
 from matstd.twin.record import rigid_motion, turn_of
 
 SHIFT = 1.0
@@ -24,10 +25,10 @@ TURN = 1e-3
 """A larger rotation (rad) is another frame: half its square times 200 mm is 0.1 µm, the error of
 the linear fit of the set-up."""
 
-OUTLIER_RATIO = 5.0
+OFF_FRAME_RATIO = 5.0
 """Points farther off than this multiple of the median are outliers and left out of the fit."""
 
-MAX_ROUNDS = 20
+MAX_FRAME_ROUNDS = 20
 """Repetitions of the choice of near points; two are usual."""
 
 MIRROR_RATIO = 10.0
@@ -114,15 +115,15 @@ def _moved(
 def _motion(setup: str, a: Array, b: Array) -> Array:
     """Pose (k + 1, k + 1) that takes a to b in k directions, without outliers."""
     near = np.ones(len(a), dtype=bool)
-    for _ in range(MAX_ROUNDS):
+    for _ in range(MAX_FRAME_ROUNDS):
         T = rigid_motion(a[near], b[near])
         off = np.linalg.norm(_at(T, a) - b, axis=1)
-        kept = off <= max(OUTLIER_RATIO * float(np.median(off)), 1e-9)
+        kept = off <= max(OFF_FRAME_RATIO * float(np.median(off)), 1e-9)
         if np.array_equal(kept, near):
             break
         near = kept
     mirrored = rigid_motion(a[near], b[near], is_mirrored=True)
-    left, other = (float(np.sqrt(np.mean((_at(M, a[near]) - b[near]) ** 2))) for M in (T, mirrored))
+    left, other = (rms(_at(M, a[near]) - b[near]) for M in (T, mirrored))
     if a.shape[1] > 1 and left > SHIFT and left > MIRROR_RATIO * other and _fills(a):
         raise DesignError(
             f"points of {setup!r}: they fit a mirrored frame to {other:.3g} mm rms and no other "

@@ -12,7 +12,7 @@ from matstd.twin.record import IntArray, Labels
 MISPLACED_RATIO = 2.0
 """A point this many times nearer to another one's place than to its own is misplaced."""
 
-MIN_POINTS = 4
+MIN_LISTED_POINTS = 4
 """Points needed to determine a common displacement."""
 
 
@@ -45,7 +45,7 @@ def misplaced(points: PointList) -> list[tuple[str, str]]:
     for one in np.unique(points.setup):
         of = points.setup == one
         nominal, seen = points.nominal[of], np.isfinite(points.deviation[of])
-        if len(nominal) < MIN_POINTS or not seen.any():
+        if len(nominal) < MIN_LISTED_POINTS or not seen.any():
             continue
         off = points.deviation[of]
         common = [np.median(v[s]) if s.any() else 0.0 for v, s in zip(off.T, seen.T, strict=True)]

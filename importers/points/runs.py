@@ -144,7 +144,7 @@ def _readings(chain: Chain, place: Array) -> Array:
     if len(chain.linear_axes) == 3:
         return inverse_linear(chain, place, q, 0.0)
     # fewer axes reach places in their own directions only; the rest belongs to the set-up
-    columns = [chain.axis_index(name) for name in chain.linear_axes]
+    columns = chain.linear_columns
     back = np.linalg.pinv(linear_directions(chain, q))
     q[:, columns] = np.einsum("nmi,ni->nm", back, place - tip(chain, q, 0.0))
     return q

@@ -3,6 +3,8 @@
 import re
 from collections import Counter
 
+from matstd.importers.sheets.rows import filled_lines
+
 _WIDE = re.compile(r"\s{2,}|\t")
 _NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?\Z")
 
@@ -20,7 +22,7 @@ def by_blanks(text: str) -> list[tuple[int, list[str]]]:
         >>> by_blanks("  Nom X    Meas X\n  10.0     10.1\n  20.0     20.2\n")
         [(1, ['Nom X', 'Meas X']), (2, ['10.0', '10.1']), (3, ['20.0', '20.2'])]
     """
-    lines = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
+    lines = filled_lines(text)
     narrow = {i: line.split() for i, line in lines}
     data = [i for i, _ in lines if len(narrow[i]) > 1 and _are_numbers(narrow[i])]
     if len(data) < 2:

@@ -13,6 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from matstd.importers.sheets.rows import filled_lines
+
 _LINE = re.compile(r"(\S+)\s+(\d{4}-\d{2}-\d{2})[T\s]+(\d{2}:\d{2}:\d{2}(?:\.\d+)?)\s+(\S.*)\Z")
 _CLOCK = re.compile(r"ts|t|time|timestamp|eventtime|zeit", re.IGNORECASE)
 """Keys of the time of an object."""
@@ -45,7 +47,7 @@ def by_channels(text: str) -> list[tuple[int, list[str]]]:
         ...             "b 2024-05-31 10:00:02 6\nb 2024-05-31 10:00:03 7\n")[:2]
         [(1, ['time [s]', 'a', 'b']), (1, ['0.0', '1.0', '5.0'])]
     """
-    lines = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
+    lines = filled_lines(text)
     readings = [r for r in _of_lines(lines) or _of_objects(lines) if r.values]
     at: dict[str, list[Reading]] = {}
     for reading in readings:

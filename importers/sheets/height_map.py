@@ -9,6 +9,7 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
+from matstd.importers.sheets.rows import filled_lines
 from matstd.twin.errors import BadFile
 
 _REPRAP = re.compile(r"\W*RepRapFirmware height map file", re.IGNORECASE)
@@ -37,7 +38,7 @@ def by_heights(path: Path, text: str) -> Rows:
     Raises:
         BadFile: A head without its numbers, axes that are not X and Y, a matrix of another size.
     """
-    lines = [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
+    lines = filled_lines(text)
     if lines and _REPRAP.match(lines[0][1]):
         return [(lines[0][0], HEADER), *_reprap(path, lines)]
     meshes = [(k, m[1].strip()) for k, (_, line) in enumerate(lines) if (m := _MESH.match(line))]

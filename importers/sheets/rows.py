@@ -18,6 +18,11 @@ if TYPE_CHECKING:
     Record = TypeVar("Record", bound=DataclassInstance)
 
 
+def filled_lines(text: str) -> list[tuple[int, str]]:
+    """Lines of a text that are not blank, stripped, with their numbers from 1."""
+    return [(i, line.strip()) for i, line in enumerate(text.splitlines(), 1) if line.strip()]
+
+
 def picked(record: Record, rows: np.ndarray) -> Record:
     """The record with those of its rows, by a mask or by their indices."""
     found: dict[str, Any] = {}

@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from matstd.importers.sheets.units import bare, unit_of_column
 from matstd.twin.errors import BadFile
@@ -77,6 +78,14 @@ class Sheet:
             expected = f"one of {', '.join(units)} behind the name, or --unit"
             raise BadFile(self.path, "header", found, expected)
         return self.numbers(column) * units[unit]
+
+    def whole_numbers(self, column: int, what: str) -> NDArray[np.int64]:
+        """Whole numbers of a column, (N,); raises BadFile, which expects `what`."""
+        numbers = self.numbers(column)
+        odd = np.flatnonzero(~np.isfinite(numbers) | (numbers != np.round(numbers)))
+        if len(odd):
+            raise self.bad(int(odd[0]), column, f"{numbers[odd[0]]:g}", what)
+        return numbers.astype(np.int64)
 
     def text(self, column: int) -> list[str]:
         """Cells of a column as text; whole numbers without a decimal mark."""

@@ -12,7 +12,8 @@ from matstd.twin.frames import Array
 class EstimableCombination:
     """A combination of parameters that touches determine by itself.
 
-    ``sum_k weight_k theta_k`` with weight 1 at the leading parameter, in whose unit u is.
+    ``sum_k weight_k theta_k`` with weight 1 at the leading parameter, in whose unit value and u
+    are.
     """
 
     u: float  # standard uncertainty after the touches, base unit of the leading parameter
@@ -20,6 +21,7 @@ class EstimableCombination:
     unit: str  # base unit of the leading parameter
     weights: Array  # of every parameter, (P,)
     importance: Array  # weights in units of what is expected of each parameter, (P,)
+    value: float = np.nan  # estimate of a fit; not a number where nothing was measured
 
 
 def combinations(

@@ -256,7 +256,7 @@ def _dialect(control: str | None, program: Path) -> Dialect:
 
 def feeds_of(programs: list[ReadProgram], chain: Chain) -> Feeds:
     """Feeds of programs: of touches, of moves down to them, of the last turn to a pose."""
-    rotary = [chain.axis_index(a) for a in chain.rotary_axes]
+    rotary = chain.rotary_columns
     feeds = Feeds(probing=programs[0].touches[0].feed * MINUTE)
     steps = [s for program in programs for s in program.steps if isinstance(s, (Move, ProbeStep))]
     for before, step in pairwise(steps):

@@ -71,7 +71,7 @@ def places_of(
     faces = [on_faces(standard, run.touches) for run in runs]
     wanted = [like_task(task, standard, run.touches) for run in runs]
     first = runs[0].touches
-    rotary = first.q[:, [first.chain.axis_index(a) for a in first.chain.rotary_axes]]
+    rotary = first.q[:, first.chain.rotary_columns]
     columns = known.columns(standard, Requests(first.feature, first.point, first.normal, rotary))
     out = {}
     for name, model in models.items():

@@ -77,7 +77,6 @@ def check_as_programmed(
     """Refuse logs that contradict the programs that wrote them.
 
     Args:
-        parts: Parts of the logs.
         programs: By name; logs of other programs are ignored.
 
     Raises:

@@ -39,7 +39,7 @@ def check_moves(program: ReadProgram, standard: Standard, chain: Chain) -> None:
     )
     solid = solid_hull(standard, setup, workshop)
     line, before, after = _moves(program)
-    rotary = [chain.axis_index(name) for name in chain.rotary_axes]
+    rotary = chain.rotary_columns
     z = chain.axis_index("Z")
     is_turning = np.any(np.abs(after - before)[:, rotary] > 0.0, axis=1)
     for i in np.flatnonzero(is_turning):
@@ -95,9 +95,9 @@ def _check_touches(program: ReadProgram, clearance: ToolClearance) -> None:
     feature = np.array(names, dtype="U32")
     is_air = np.array([touch.is_air for touch in touches], dtype=bool)
     T_artefact_table = inverse(clearance.setup.T_table_artefact)
-    columns = [chain.axis_index(a) for a in chain.linear_axes]
     along = linear_directions(chain, start)
-    way = turn(T_artefact_table, np.einsum("nij,nj->ni", along, direction[:, columns]))
+    motion = np.einsum("nij,nj->ni", along, direction[:, chain.linear_columns])
+    way = turn(T_artefact_table, motion)
     centre = apply(T_artefact_table, tip(chain, start, clearance.probe.length))
     met = contact(clearance.standard, centre, way, clearance.probe.radius, distance)
     # the touches of a search may meet any feature

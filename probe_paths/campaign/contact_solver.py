@@ -80,9 +80,8 @@ class ContactSolver:
     def _nominal_contact(self) -> None:
         """First contact of every ball with the standard at its true place, on a perfect machine."""
         chain = self.machine.chain
-        columns = [chain.axis_index(a) for a in chain.linear_axes]
         D = linear_directions(chain, self.start)
-        motion = np.einsum("nij,nj->ni", D, self.direction[:, columns])
+        motion = np.einsum("nij,nj->ni", D, self.direction[:, chain.linear_columns])
         self.motion = turn(self.T_artefact_table, motion)  # (N, 3) of the ball per mm of travel
         centre = apply(self.T_artefact_table, tip(chain, self.start, self.length))
         # errors may advance a contact a little; surfaces farther off are ignored

@@ -8,6 +8,7 @@ from matstd.artefact.body import Meeting, contact
 from matstd.probe_paths.plan import TouchPlan
 from matstd.twin.frames import Array, apply, fixed_xyz, inverse, pose, turn
 from matstd.twin.machine import linear_directions, tip
+from matstd.twin.sampling import spread_rows
 from matstd.twin.units import DEG
 
 STEPS_MM = (0.5, 1.0, 1.5, 2.0, 2.5)
@@ -30,12 +31,11 @@ def setup_tolerance(plan: TouchPlan) -> dict[str, float]:
         step is too much already.
     """
     # a sample of the plan: every touch is marched in twelve directions, 3 ms each
-    rows = np.unique(np.linspace(0, len(plan) - 1, _TOUCHES).astype(np.int64))
-    columns = [plan.chain.axis_index(a) for a in plan.chain.linear_axes]
+    rows = spread_rows(len(plan), _TOUCHES)
     direction = np.zeros((len(rows), len(plan.chain.axes)))
     direction[:, [plan.chain.axis_index(a) for a in "XYZ"]] = plan.direction[rows]
     along = linear_directions(plan.chain, plan.start[rows])
-    way = np.einsum("nij,nj->ni", along, direction[:, columns])
+    way = np.einsum("nij,nj->ni", along, direction[:, plan.chain.linear_columns])
     centre = tip(plan.chain, plan.start[rows], plan.probe.length)
 
     def is_met(T_artefact_standing: Array) -> bool:

@@ -22,7 +22,7 @@ from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 from matstd.twin.units import DAY
 
-LARGEST = 1e6
+LARGEST_COORDINATE = 1e6
 """A coordinate (mm, degrees) or a number of a touch beyond this was not logged by our programs."""
 
 _PAIR = re.compile(r"([A-Z]+)\s*([-+]?\d+(?:\.\d+)?)(?=\s|\Z)")
@@ -358,7 +358,7 @@ def _numbers(text: str, names: Sequence[str]) -> list[float] | None:
     if _PAIR.sub("", text).strip() or [n for n, _ in found] != list(names):
         return None
     numbers = [float(v) for _, v in found]
-    return numbers if all(abs(number) < LARGEST for number in numbers) else None
+    return numbers if all(abs(number) < LARGEST_COORDINATE for number in numbers) else None
 
 
 def _are_counters(values: Sequence[float]) -> bool:

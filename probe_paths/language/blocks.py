@@ -13,7 +13,7 @@ from matstd.twin.errors import BadFile
 _XYZ = rf"X({SIGNED}) Y({SIGNED}) Z({SIGNED})"
 _PATH = r"[A-Z0-9_:\\.-]+"
 
-LONGEST = 1000
+LONGEST_BLOCK = 1000
 """Characters of a block; the longest of our programs has 71."""
 
 
@@ -150,9 +150,9 @@ def read_klartext(data: bytes, path: str | Path, dialect: Dialect) -> list[Block
         shown = f"{number} {folded}".lstrip()
         if shown.endswith("~"):
             raise BadFile(path, where, repr(shown), "a further line after the tilde")
-        if len(shown) > LONGEST:
+        if len(shown) > LONGEST_BLOCK:
             raise BadFile(
-                path, where, f"{len(shown)} characters in one block", f"at most {LONGEST}"
+                path, where, f"{len(shown)} characters in one block", f"at most {LONGEST_BLOCK}"
             )
         is_numbered = bool(number) if is_numbered is None else is_numbered
         if is_numbered != bool(number):

@@ -51,7 +51,7 @@ _LOG = re.compile(r"\(LOG,(.*)\)\Z")
 _APPEND = re.compile(r"\(LOGAPPEND,([A-Z0-9_.]+)\)\Z")
 _VALUE = re.compile(r"#(\d+)")
 
-LONGEST = 255
+LONGEST_LINE = 255
 """Characters of a line that LinuxCNC reads."""
 
 _EXPECTED = (
@@ -76,9 +76,10 @@ def read_gcode(data: bytes, path: str | Path) -> list[Block]:
     own = gcode_lines(physical_lines(data, path))
     lines = [" ".join(line.text.split()) for line in own]
     for number, line in enumerate(lines, 1):
-        if len(line) > LONGEST:
+        if len(line) > LONGEST_LINE:
             found = f"{len(line)} characters: {line[:40]!r}..."
-            raise BadFile(path, f"line {number}", found, f"{LONGEST} at most, as LinuxCNC reads")
+            expected = f"{LONGEST_LINE} at most, as LinuxCNC reads"
+            raise BadFile(path, f"line {number}", found, expected)
     blocks = list(_Reader(lines, path).blocks())
     inside: list[Block] = []
     outside: list[Block] = []

@@ -6,11 +6,11 @@ moment: the axes move on between the contact and the sample.
 
 import numpy as np
 
-PERIOD = 1e-3
+SERVO_PERIOD = 1e-3
 """Period of the servo thread of our machine, s."""
 
 
-def latch_error(feed: float, period: float = PERIOD, latency: float = 0.0) -> float:
+def latch_error(feed: float, period: float = SERVO_PERIOD, latency: float = 0.0) -> float:
     """Largest distance of a latched position beyond the contact, along the stroke, mm.
 
     ``feed (period + latency)``: the contact falls anywhere into a period, so that the error is
@@ -24,7 +24,7 @@ def latch_error(feed: float, period: float = PERIOD, latency: float = 0.0) -> fl
     return feed * (period + latency)
 
 
-def latch_u(feed: float, period: float = PERIOD, latency: float = 0.0) -> float:
+def latch_u(feed: float, period: float = SERVO_PERIOD, latency: float = 0.0) -> float:
     """Standard uncertainty of a touch by the latch, mm, about the contact itself.
 
     The root of the mean square of an error that is uniform between ``a = feed latency`` and

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from matstd.nc.linuxcnc import net, tool_table, variables
 from matstd.probe_paths.language import Dialect
-from matstd.probe_paths.linuxcnc.latch import PERIOD
+from matstd.probe_paths.linuxcnc.latch import SERVO_PERIOD
 from matstd.probe_paths.plan import Probe, ProgramFrame
 from matstd.twin.machine import Chain
 from matstd.twin.units import DEG
@@ -37,7 +37,7 @@ def machine_files(chain: Chain, probe: Probe, dialect: Dialect, socket: str) -> 
         "headless": HEADLESS,
         "prober": PROBER,
         "socket": socket,
-        "period": round(PERIOD * 1e9),
+        "period": round(SERVO_PERIOD * 1e9),
         "letters": "".join(letters),
         "spaced": " ".join(letters),
         "joints": len(letters),

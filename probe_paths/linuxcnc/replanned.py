@@ -95,7 +95,7 @@ def _plan(
 
 def _stops(program: ReadProgram, chain: Chain) -> list[tuple[Visit, list[ProbeStep]]]:
     """Visits of a program in order, each with its touches."""
-    rotary = [chain.axis_index(name) for name in chain.rotary_axes]
+    rotary = chain.rotary_columns
     z = chain.axis_index("Z")
     found: list[tuple[Visit, list[ProbeStep]]] = []
     here: Array | None = None

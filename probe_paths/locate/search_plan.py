@@ -213,7 +213,7 @@ def _refuse_out_of_travel_or_collision(plan: TouchPlan, path: float) -> None:
     """Refuse a search that exceeds the travel or brings the tool to what stands on the table."""
     chain = plan.chain
     z = chain.axis_index("Z")
-    low, high = np.array([chain.link(a).range for a in chain.axes]).T
+    low, high = chain.travels.T
     end = plan.start.copy()
     end[:, z] -= path
     top = high[z] - plan.options.retract

@@ -73,7 +73,7 @@ class Approaches:
     def _along(self, away: Array, normal: Array) -> tuple[Array, Array, Mask]:
         """Ways along given directions in the table frame."""
         chain = self.chain
-        columns = [chain.axis_index(a) for a in chain.linear_axes]
+        columns = chain.linear_columns
         per_axis = np.linalg.inv(linear_directions(chain, self.contact))
         motion = np.zeros(self.contact.shape)
         motion[:, columns] = -np.einsum("nij,nj->ni", per_axis, away)

@@ -74,7 +74,7 @@ class ProgramFrame:
     @cached_property
     def rotary(self) -> list[int]:
         """Columns of the rotary axes in arrays of readings."""
-        return [self.chain.axis_index(name) for name in self.chain.rotary_axes]
+        return self.chain.rotary_columns
 
     def _offset(self, letter: str) -> float:
         i = LINEAR.index(letter)

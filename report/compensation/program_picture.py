@@ -8,21 +8,22 @@ import numpy as np
 
 from matstd.compensation.programs import Compensated
 from matstd.report.style import BLUE, FAINT, INK, RED, figure, plain
+from matstd.twin.sampling import spread_rows
 from matstd.twin.units import MINUTE, UM
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 SHOWN = 0.06
-"""Of the path's size, as which its largest deviation is drawn."""
+"""Share of the path's size as which its largest deviation is drawn."""
 
-POINTS = 6000
+DRAWN_POINTS = 6000
 """Points that are drawn at most."""
 
 
 def draw_program(done: Compensated) -> Figure:
     """Draw the path in its widest plane, deviations exaggerated, and their size over time."""
-    rows = np.unique(np.linspace(0, len(done.q) - 1, min(len(done.q), POINTS)).astype(int))
+    rows = spread_rows(len(done.q), DRAWN_POINTS)
     drawn = figure(4.2)
     left, right = drawn.subplots(1, 2)
     _path(left, done, rows)

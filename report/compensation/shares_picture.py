@@ -17,7 +17,7 @@ from matstd.twin.units import MINUTE, UM
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-LONGEST = 32
+LONGEST_NAME = 32
 """Letters of a label."""
 
 LINES, BARS = 6, 16
@@ -28,9 +28,9 @@ def draw_shares_along(time: Array, whole: Array, shares: Sequence[Share]) -> Fig
     """Size of the deviation along the path, of all together and of the largest by themselves.
 
     Args:
-        time: At every pose, (N,), s; equal times are drawn by their number.
+        time: Time at every pose, (N,), s; equal times are drawn by their number.
         whole: Deviation of all together, (N, 3), mm.
-        shares: Of each, the largest first.
+        shares: Share of each error, the largest first.
     """
     shown = [s for s in shares[:BARS] if rms_length(s.field) > 0.0]
     drawn = figure(max(3.6, 0.9 + 0.24 * len(shown)))
@@ -60,13 +60,13 @@ def draw_shares_along(time: Array, whole: Array, shares: Sequence[Share]) -> Fig
 
 def _short(name: str) -> str:
     """A name as a label: a beam is known by its axis."""
-    return name if len(name) <= LONGEST else f"{name[:LONGEST].rpartition(',')[0]},...)"
+    return name if len(name) <= LONGEST_NAME else f"{name[:LONGEST_NAME].rpartition(',')[0]},...)"
 
 
-def share_lines(whole: Array, shares: Sequence[Share], most: int = 8) -> Iterator[str]:
-    """The total, and its largest contributions."""
+def share_lines(whole: Array, shares: Sequence[Share]) -> Iterator[str]:
+    """The total, and its eight largest contributions."""
     yield f"all together {with_uncertainty(rms_length(whole) / UM, None, 'µm')} rms"
-    for share in shares[:most]:
+    for share in shares[:8]:
         yield f"- {share.name} {_size(share)}"
 
 

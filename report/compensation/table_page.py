@@ -62,10 +62,6 @@ def write_compensation_page(
     """Write `report.html` and its pictures into a folder.
 
     Args:
-        folder: For the page.
-        errors: Of the machine.
-        head: Of the tables.
-        done: Tables of every control.
         title: Name of the model file.
     """
     first = done[0].result

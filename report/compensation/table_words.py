@@ -17,7 +17,7 @@ _TITLES = {
     "heidenhain": "iTNC 530 positioning tables (.COM)",
 }
 
-NAMED = 5
+MAX_NAMED_ERRORS = 5
 """Errors that a control cannot represent, named on the console."""
 
 
@@ -72,8 +72,8 @@ def table_lines(played: VerifiedTables) -> Iterator[tuple[str, bool]]:
         yield f"- {left_out_sentence(played.left_out)}", False
     held = [left for left in played.result.left if left.rms > max(played.interpolation, 10 * NM)]
     if held:
-        words = ", ".join(held_words(left) for left in held[:NAMED])
-        more = f" and {len(held) - NAMED} more" if len(held) > NAMED else ""
+        words = ", ".join(held_words(left) for left in held[:MAX_NAMED_ERRORS])
+        more = f" and {len(held) - MAX_NAMED_ERRORS} more" if len(held) > MAX_NAMED_ERRORS else ""
         yield f"- cannot represent, rms over the workspace: {words}{more}", False
     elif not played.left_out:
         yield "- represents every error of the model", False

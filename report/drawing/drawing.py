@@ -47,9 +47,9 @@ class Issuer:
     Attributes:
         author: Responsible for the design.
         organisation: Whom the author works for.
-        mass: Of body and balls, kg.
+        mass: Mass of body and balls, kg.
         approved: Who approved the drawing.
-        date: Of its issue.
+        date: Date of its issue.
     """
 
     author: str

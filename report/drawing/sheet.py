@@ -18,7 +18,7 @@ WIDE, THIN = 0.5, 0.25
 HATCH = "hatch"
 """Filling of a cut solid (ISO 128-3)."""
 
-LETTERS = 2.5
+LETTER_HEIGHT = 2.5
 """Height of lettering, mm (ISO 3098-1); smaller letters do not survive a copy."""
 
 _POINT = 72.0 / 25.4  # points a millimetre
@@ -33,8 +33,8 @@ class View:
     """Where a view lies on the sheet.
 
     Attributes:
-        x: Of the view's origin, mm of paper.
-        y: Of the view's origin, mm of paper.
+        x: Place of the view's origin, mm of paper.
+        y: The same upwards, mm of paper.
         scale: Paper by part.
     """
 
@@ -112,7 +112,7 @@ class Sheet:
             rotation_mode="anchor", zorder=self._depth,
         )  # fmt: skip
 
-    def label(self, middle: Any, radius: float, words: str, size: float = LETTERS) -> None:
+    def label(self, middle: Any, radius: float, words: str, size: float = LETTER_HEIGHT) -> None:
         """Words beside a circle, on the side where least is drawn."""
         p, half = np.asarray(middle, dtype=float), 0.5 * np.array([_WIDE * len(words), 1.0]) * size
         reach = radius + 2.0 * half[0] + 2.0 * _CLEAR

@@ -109,10 +109,7 @@ def draw_from(
     """A view along a horizontal direction.
 
     Args:
-        sheet: On which is drawn.
         view: Its origin is the middle of the underside.
-        standard: What is seen.
-        details: Of it.
         towards: Unit vector in which one looks, (3,).
     """
     right = np.cross(towards, [0.0, 0.0, 1.0])

@@ -55,10 +55,6 @@ def write_drift_page(
     """Write `report.html` and its pictures into a folder.
 
     Args:
-        folder: For the page.
-        record: All hours.
-        judged: Every law.
-        best: The chosen one.
         hold: Error one step ahead of holding the last value, (K,).
         train: Rows of the training part.
         held: Rows held out.

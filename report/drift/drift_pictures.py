@@ -11,12 +11,13 @@ from matstd.diagnosis.drift import DriftRecord, IntArray, Judged
 from matstd.report.drift.drift_words import law_title, together
 from matstd.report.style import BLUE, FAINT, INK, NEUTRAL, WASH, figure, plain, series
 from matstd.twin.frames import Array
+from matstd.twin.sampling import spread_rows
 from matstd.twin.units import HOUR
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-POINTS = 3000
+DRAWN_MOMENTS = 3000
 """Points of a curve that are drawn at most."""
 
 
@@ -30,7 +31,6 @@ def draw_drift(
     """Every component over time: measured, predicted, and twice its uncertainty.
 
     Args:
-        record: All hours.
         predicted: (N, K), base units.
         u: Standard uncertainty, (N, K).
         held: Rows that were held out, drawn on a ground of their own.
@@ -39,7 +39,7 @@ def draw_drift(
     count = len(record.components)
     drawn = figure(0.7 + 1.5 * count)
     every = np.atleast_1d(drawn.subplots(count, 1, sharex=True))
-    rows = np.unique(np.linspace(0, len(record) - 1, min(len(record), POINTS)).astype(int))
+    rows = spread_rows(len(record), DRAWN_MOMENTS)
     hours = np.arange(len(record)) * record.step / HOUR  # logs stand one behind the other
     for k, ax in enumerate(every):
         size, unit = record.size[k], "µm" if record.units[k] == "mm" else "µrad"

@@ -40,9 +40,6 @@ def drift_lines(
     """The table of laws and the choice, line by line, and whether a line is the chosen one.
 
     Args:
-        record: All hours.
-        judged: Every law.
-        best: The chosen one.
         hold: Error one step ahead of holding the last value, (K,).
     """
     has_noise = any(j.noisy is not None for j in judged)
@@ -79,7 +76,6 @@ def kept_line(result: ProbedPrediction, record: DriftRecord, rows: IntArray, eve
 
     Args:
         result: With the probings.
-        record: All hours.
         rows: Rows that are evaluated.
         every: Time between two probings, s.
     """

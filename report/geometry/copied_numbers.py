@@ -19,7 +19,7 @@ class Way:
     """One way to put a description right.
 
     Attributes:
-        key: Of the file, or the error that does the same where no key states it.
+        key: Key of the file, or the error that does the same where no key states it.
         line: What to write, or what is wrong.
     """
 
@@ -36,7 +36,6 @@ def copy_lines(
     Where several numbers explain the run equally, none of them alone can be recommended.
 
     Args:
-        touches: Of the run, as described.
         geometry: Estimated from it; None where it could not be fitted.
         faults: Mistakes in the description, each with its alternatives.
     """

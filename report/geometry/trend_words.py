@@ -22,7 +22,7 @@ from matstd.report.numbers import digits, microns
 from matstd.twin.record import Touches
 from matstd.twin.units import UM
 
-NAMED = 4
+MAX_NAMED_CHANGES = 4
 """Changes of one run that a sentence lists, the largest over the travel first."""
 
 NEARLY = 3.0
@@ -45,8 +45,12 @@ def change_sentences(trend: Trend) -> list[str]:
         elif not rows:
             out.append(f"{between} the geometry changed{_alone(trend, i)}")
         else:
-            changes = [_changed(row, i) for row in rows[:NAMED]]
-            more = f"; and {len(rows) - NAMED} more in the table" if len(rows) > NAMED else ""
+            changes = [_changed(row, i) for row in rows[:MAX_NAMED_CHANGES]]
+            more = (
+                f"; and {len(rows) - MAX_NAMED_CHANGES} more in the table"
+                if len(rows) > MAX_NAMED_CHANGES
+                else ""
+            )
             out.append(f"{between} {'; '.join(changes)}{more}")
     return out
 

@@ -23,7 +23,7 @@ from matstd.twin.numbers import significant
 from matstd.twin.text import json_text
 
 FORMAT = "identifiability/1"
-"""Of the file."""
+"""Format of the file."""
 
 
 def identifiability_table(known: IdentifiabilityReport) -> dict[str, Any]:

@@ -23,7 +23,7 @@ from matstd.report.numbers import shown
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 
-NAMED = 4
+MAX_NAMED_PARAMETERS = 4
 """Parameters of a combination that are written out at most."""
 
 SHARE = 0.1
@@ -118,7 +118,6 @@ def combination_words(
     """`EXX + 0.52 EXZ - 0.03 µm/µrad EBX ...`: the most important parameters with their weights.
 
     Args:
-        names: Of the parameters.
         units: Base units of the parameters.
         weights: Shape (P,), the leading one's is one.
         importance: Weights in units of the expected size of each parameter, (P,).
@@ -127,11 +126,11 @@ def combination_words(
     kept = [k for k in order if abs(importance[k]) >= SHARE * abs(importance[order[0]])]
     label, factor = shown(units[order[0]])
     parts = []
-    for k in kept[:NAMED]:
+    for k in kept[:MAX_NAMED_PARAMETERS]:
         sign = "-" if weights[k] < 0 else "+"
         own, size = shown(units[k]), abs(weights[k])
         words = f"{size * own[1] / factor:.3g}"
         per = "" if own[0] == label else f"{label}/{own[0]} "
         parts.append(f"{sign} {'' if words == '1' and not per else words + ' '}{per}{names[k]}")
-    rest = len(kept) - NAMED
+    rest = len(kept) - MAX_NAMED_PARAMETERS
     return " ".join(parts).removeprefix("+ ") + (f" and {rest} more" if rest > 0 else "")

@@ -21,8 +21,6 @@ def identification_table(
     """Everything of `identification.json` in the units that stand in its names.
 
     Args:
-        fit: The identified model.
-        known: What it determines.
         proofs: Comparison with simulated machines whose truth is known, if any.
     """
     units = [parameter.unit for _, parameter in fit.parameters]

@@ -6,10 +6,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from matstd.artefact.body import Standard
+from matstd.artefact.place import Placement
 from matstd.artefact.reach import standing_remarks
-from matstd.artefact.worth import Criterion, touch_curve
+from matstd.artefact.worth import Criterion, TouchCurve, touch_curve
 from matstd.diagnosis.task import guarded
-from matstd.report.design_view import DesignScene, design_live, error_field
+from matstd.report.design_view import DesignScene, ErrorField, design_live, error_field
 from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, percent, plural, um
 from matstd.report.pages.design_result import Design
@@ -22,7 +23,7 @@ from matstd.report.pages.standard_sections import (
     making_sections,
     patch_table,
 )
-from matstd.report.pages.study_page import draw_study_volumes, study_sections
+from matstd.report.pages.study_page import Shown, draw_study_volumes, study_sections
 from matstd.report.pages.time_section import minutes, order_content, proof_words
 from matstd.report.plots import draw_order, draw_touch_curves, draw_touches
 from matstd.report.scenes import draw_standard
@@ -85,12 +86,11 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         What could not be drawn and why, one line each; the page states it too.
     """
     remarks = comparison_remarks(design.placement)
-    with ThreadPoolExecutor(1) as beside:  # pictures are rendered in processes of their own
+    with ThreadPoolExecutor(2) as beside:  # pictures are rendered in processes of their own
+        drawn = beside.submit(_renderings, design, folder, remarks)
         counted = beside.submit(_times, design)
-        standard = _standard_picture(design, folder, remarks)
-        stands = design.brief.setup.T_table_artefact
-        stl = folder / "standard.stl"
-        volumes = draw_study_volumes(design.study, folder / MAPS, remarks, stl, stands)
+        curves, field = _curves(design.placement), _field(design)
+        standard, volumes = drawn.result()
         on_machine, order = counted.result()
     chain, body = design.brief.chain, design.placement.standard
     page = Page(
@@ -102,7 +102,7 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
         key=_key(design),
         sections=[
             replace(_opening(design, folder, remarks), pictures=standard),
-            *_comparison(design, on_machine),
+            *_comparison(design, on_machine, curves),
             *proof_sections(design),
             *task_sections(design),
             *_probing(design, order),
@@ -123,22 +123,36 @@ def write_design_page(design: Design, folder: Path) -> list[str]:
             f"Project `{design.brief.path.name}`, seed {design.brief.seed}. Deviations are "
             "tool side minus workpiece side; uncertainties are standard uncertainties (k = 1)."
         ],
-        live=design_live(_scene(design, on_machine)),
+        live=design_live(_scene(design, on_machine, field)),
     )
     write_page(folder / "report.html", page)
     return remarks
 
 
-def _scene(design: Design, on_machine: dict[str, float]) -> DesignScene:
-    """What moves on the page."""
+def _renderings(
+    design: Design, folder: Path, remarks: list[str]
+) -> tuple[list[Picture], list[Shown]]:
+    """The standard, and the maps in three dimensions."""
+    standard = _standard_picture(design, folder, remarks)
+    stands, stl = design.brief.setup.T_table_artefact, folder / "standard.stl"
+    return standard, draw_study_volumes(design.study, folder / MAPS, remarks, stl, stands)
+
+
+def _field(design: Design) -> ErrorField | None:
+    """Errors of the first simulated machine."""
     first = design.machines[0]
     believed = first.campaign.run.touches.setups[0]
+    return error_field(design.brief, believed, first.errors, first.fit)
+
+
+def _scene(design: Design, on_machine: dict[str, float], field: ErrorField | None) -> DesignScene:
+    """What moves on the page."""
     return DesignScene(
         brief=design.brief,
         placement=design.placement,
         plan=design.plan,
         minutes=on_machine,
-        field=error_field(design.brief, believed, first.errors, first.fit),
+        field=field,
     )
 
 
@@ -220,12 +234,18 @@ def _poses(design: Design) -> int:
     return len({v.pose for v in design.plan.visits})
 
 
-def _comparison(design: Design, on_machine: dict[str, float]) -> list[Section]:
-    """What other artefacts would leave unknown."""
-    placement = design.placement
-    curves = [
+def _curves(placement: Placement) -> list[TouchCurve]:
+    """Error against the number of touches on every artefact."""
+    return [
         touch_curve(_on(placement.criterion, r.body), r.name, r.touches) for r in placement.rivals
     ]
+
+
+def _comparison(
+    design: Design, on_machine: dict[str, float], curves: list[TouchCurve]
+) -> list[Section]:
+    """What other artefacts would leave unknown."""
+    placement = design.placement
     drawn = draw_touch_curves(curves, design.brief.noise)
     caption = _CURVES.format(count=len(placement.requests))
     chosen = (

@@ -41,9 +41,7 @@ def draw_pattern(fit: Fit, found: Structure, rng: np.random.Generator) -> Figure
     The shuffled half shows what noise of this size would look like.
 
     Args:
-        fit: The model whose residual it is.
         found: The pattern, of one or two variables.
-        rng: Shuffles.
 
     Returns:
         None where the pattern has no variable to draw over.
@@ -109,7 +107,7 @@ def _map(x: Array, r: Array, weight: Array) -> Array:
     Args:
         x: Two variables, (2, N).
         r: Residuals, (N,).
-        weight: Of each, (N,).
+        weight: Weight of each, (N,).
     """
     from scipy.spatial import cKDTree
 

@@ -23,6 +23,7 @@ from matstd.report.style import (
 )
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
+from matstd.twin.sampling import spread_rows
 from matstd.twin.units import UM
 
 if TYPE_CHECKING:
@@ -36,7 +37,7 @@ COLUMNS = 4
 
 def kept(n: int) -> IntArray:
     """Rows that are drawn, evenly chosen where there are many."""
-    return np.unique(np.linspace(0, n - 1, min(n, MOST_DRAWN)).astype(int))
+    return spread_rows(n, MOST_DRAWN)
 
 
 def draw_over_variables(fit: Fit, panels: Sequence[RankedVariable]) -> Figure:

@@ -20,14 +20,13 @@ ACROSS = 3
 """Quantities side by side."""
 
 HEIGHT = 2.3
-"""Of one row of pictures, inch."""
+"""Height of one row of pictures, inch."""
 
 
 def draw_trend(trend: Trend, rows: Sequence[tuple[GeometryRow, Sequence[bool]]]) -> Figure:
     """Some quantities over the runs with their standard uncertainties, then the errors of each run.
 
     Args:
-        trend: Runs with their figures.
         rows: Quantities to draw, one picture each, with whether each changed into every run but the
             first.
     """

@@ -43,28 +43,37 @@ def run_view(
 
 
 def diagnosis_view(result: Diagnosis, title: str) -> LiveView:
-    """Of a diagnosis: found effects on."""
+    """Of a diagnosis: found effects on, and laws that were learnt of what they leave."""
+    laws = result.laws if result.laws is not None and result.laws.laws else None
+    found = {s.effect.name: sizes(s, most=2) for s in result.steps if s.effect is not None}
     findings = Findings(
         title,
         set_up_alone=_set_up_alone(result.geometry),
-        sizes={s.effect.name: sizes(s, most=2) for s in result.steps if s.effect is not None},
+        sizes=found if laws is None else found | _law_sizes(laws),
         remains=sentence(dict(part_lines(result))["what remains"]),
     )
-    return run_view(diagnosed_board(result), findings)
+    if laws is None:
+        return run_view(diagnosed_board(result), findings)
+    return run_view(learnt_board(laws, result.found), findings, _curves(laws))
 
 
 def learnt_view(learning: Learning, title: str) -> LiveView:
     """Of laws that were learnt: they are on, each with its curve over its variables."""
+    remains = "" if learning.laws else no_law_sentence(learning)
+    findings = Findings(title, sizes=_law_sizes(learning), remains=remains)
+    return run_view(learnt_board(learning), findings, _curves(learning))
+
+
+def _law_sizes(learning: Learning) -> dict[str, str]:
+    return {one.law.name: size_words(learning, one.law) for one in learning.laws}
+
+
+def _curves(learning: Learning) -> dict[str, list[LawCurve]]:
+    """Of every law, over each of its variables."""
     laws = [one.law for one in learning.laws]
-    findings = Findings(
-        title,
-        sizes={law.name: size_words(learning, law) for law in laws},
-        remains="" if laws else no_law_sentence(learning),
-    )
-    curves = {
+    return {
         law.name: [law_curve(learning, law, k) for k in range(len(law.factors))] for law in laws
     }
-    return run_view(learnt_board(learning), findings, curves)
 
 
 def comparison_view(found: Comparison, title: str) -> LiveView:

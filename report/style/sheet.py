@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 WIDTH = 10.0
-"""Of a picture, inch: on a page, which shrinks all alike, letters come out equally large."""
+"""Width of a picture, inch: pages shrink all pictures alike, so letters are equally large."""
 
 DPI = 140
 """1400 dots across: sharp on the 190 mm of a printed page (190 dpi)."""

@@ -67,7 +67,6 @@ def verdict_of_design(placement: Placement, workspace: Mapping[str, tuple[float,
     """Error that remains in the user's workspace, beside the best rival, and axes not covered.
 
     Args:
-        placement: Standard, touches, rivals.
         workspace: Smallest and largest reading by axis, mm or rad.
     """
     words = [_remaining(placement), _extrapolated(placement, workspace), AT_20]

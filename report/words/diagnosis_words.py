@@ -146,6 +146,8 @@ def structure_words(found: Structure) -> str:
             return f"differs from {names} to {names}, along {along}"
         case Shape.SMOOTH:
             return f"varies with {names}, along {along}"
+        case Shape.DRIVER:
+            return f"drifts slowly as {found.law} would after a temperature that was not recorded"
         case Shape.WAVE:
             return f"wave in time of period {span(found.period)}, along {along}"
         case Shape.NEIGHBOURS:
@@ -156,7 +158,7 @@ def structure_words(found: Structure) -> str:
 
 def structure_clause(found: Structure) -> str:
     """The same as a clause after a colon."""
-    it = "it " if found.shape is Shape.SMOOTH else ""
+    it = "it " if found.shape in (Shape.SMOOTH, Shape.DRIVER) else ""
     return it + structure_words(found)
 
 
@@ -203,7 +205,6 @@ def promise_sentence(
     """The error of a prediction beside the one that its model promised.
 
     Args:
-        found: The prediction.
         promised: Error of held-out rows when the model was made, mm.
         others: Effects of another run in the model, which the promise excludes.
     """
@@ -238,7 +239,7 @@ def learnt_lines(fit: Fit, numbers: Mapping[str, Sequence[Reported]]) -> list[st
 
     Args:
         fit: Repeated from the model.
-        numbers: Of the effects, by name, as the model file keeps them.
+        numbers: Numbers of the effects, by name, as the model file keeps them.
     """
     rms, held_out, chi2 = figures(fit)
     first = (

@@ -13,7 +13,7 @@ from matstd.twin.words import listed
 NONE_CERTAIN = ", but none of its effects is significant in all rows"
 """Behind a way of choosing that added nothing."""
 
-STEEL = 11e-6
+STEEL_EXPANSION = 11e-6
 """Expansion of steel, 1/K."""
 
 WARMED, SENSORS = 0.05, 4
@@ -40,13 +40,13 @@ def _body_size(r: noticed.BodySize) -> str:
     of = f"the standard of {r.run}" if r.run else "the standard"
     over = f"over its {r.length:.0f} mm"
     if r.body is None:
-        each = STEEL * r.length / UM
+        each = STEEL_EXPANSION * r.length / UM
         lacks = "expansion and temperature are" if r.temperature is None else "expansion is"
         at = "" if r.temperature is None else f"; T_body_degC reads {r.temperature:.1f} on average"
         return (
             f"scales hold for a standard at 20 °C: the {lacks} not stated for {of}; each kelvin of "
-            f"steel changes it by {1e6 * STEEL:g} ppm, {each:.1f} µm {over}{at} (`standard` in the "
-            "head of the run)"
+            f"steel changes it by {1e6 * STEEL_EXPANSION:g} ppm, {each:.1f} µm {over}{at} "
+            "(`standard` in the head of the run)"
         )
     u = f"a standard uncertainty of {1e6 * r.u:.1f} ppm, {r.u * r.length / UM:.1f} µm"
     if r.temperature is None:

@@ -80,8 +80,6 @@ def dominant_words(region: Region, names: Sequence[str], enough: float = 0.5) ->
     """Errors that cause most of the deviation in a region.
 
     Args:
-        region: The region.
-        names: Of the parameters.
         enough: Smallest share that the named errors cause together.
     """
     shares = region.mean_shares

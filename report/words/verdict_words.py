@@ -69,7 +69,6 @@ def _alike(step: Step, places: Sequence[float]) -> str:
     """Periods that cannot be distinguished from that of an effect, and where to measure.
 
     Args:
-        step: With an effect.
         places: Readings of the axis that would distinguish them, mm; empty where none would.
     """
     alike = step.confusion.alike if step.confusion else None
@@ -210,7 +209,7 @@ def _nearest(diagnosis: Diagnosis) -> str:
 
 
 def _undecided_sentence(diagnosis: Diagnosis) -> str:
-    """That the noise alone would explain the run, if it were large enough."""
+    """Remark that noise alone would explain the run if it were large enough."""
     noise = diagnosis.fit.noise
     lines = [str(line) for line in sorted(diagnosis.run.line[diagnosis.repeat])]
     shown = (

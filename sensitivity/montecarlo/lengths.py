@@ -65,7 +65,7 @@ def count_lengths(
     Args:
         G: Deviation of the tip per unit of every parameter, (N, 3, K), mm.
         theta: Machines, (K, S).
-        width: Of a bin of the histogram at every pose, (N,), mm.
+        width: Width of a bin of the histogram at every pose, (N,), mm.
         tolerance: Longer ones are counted, mm.
         worst: Number of first poses among which the worst are searched, and how many count as
             worst; lengths are then held in single precision, in blocks of machines.

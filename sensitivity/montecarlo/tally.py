@@ -130,7 +130,7 @@ def quantiles(
 
     Args:
         histogram: Counts from zero up, (N, BINS).
-        width: Of a bin in each row, (N,), mm.
+        width: Width of a bin in each row, (N,), mm.
     """
     out = np.empty((len(levels), len(histogram)))
     for rows in blocks(len(histogram), _ROWS):

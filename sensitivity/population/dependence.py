@@ -33,7 +33,7 @@ class Dependence:
     """Correlated errors.
 
     Attributes:
-        correlation: Of their signed amplitudes, (n, n).
+        correlation: Correlation of their signed amplitudes, (n, n).
         alike: Groups of names whose members also have shape, periods and phase in common.
 
     Raises:

@@ -19,7 +19,7 @@ from matstd.twin.frames import Array
 from matstd.twin.sampling import even_points
 from matstd.twin.units import DEG
 
-POSES = 256
+POSES_OF_REGION = 256
 """Poses that stand for a region."""
 
 _TOTAL_POSES = 16  # of a region, for random machines
@@ -188,12 +188,12 @@ def _poses(workspace: Workspace, readings: dict[str, Squeeze]) -> Array:
     chain = workspace.chain
     found = np.zeros((0, len(chain.axes)))
     for attempt in range(_TRIES):
-        unit = even_points(POSES, len(chain.axes), attempt * POSES)
+        unit = even_points(POSES_OF_REGION, len(chain.axes), attempt * POSES_OF_REGION)
         q = np.empty_like(unit)
         for i, name in enumerate(chain.axes):
             low, high = workspace.limit(name)
             q[:, i] = readings.get(name, _interval(low, high))(unit[:, i])
-        found = np.concatenate([found, q[workspace.in_volume(q)]])[:POSES]
-        if len(found) == POSES:
+        found = np.concatenate([found, q[workspace.in_volume(q)]])[:POSES_OF_REGION]
+        if len(found) == POSES_OF_REGION:
             break
     return found

@@ -19,7 +19,7 @@ from matstd.twin.model import Effect, Model, traits
 from matstd.twin.record import at_poses
 from matstd.twin.units import UM, URAD
 
-POSES = 361
+TRAJECTORY_POSES = 361
 _QUARTER = 0.5 * np.pi
 
 
@@ -49,7 +49,7 @@ def paper_trajectory(
     linear: Sequence[str] | None = None,
     swinging: str | None = None,
     periods: float = 2.0,
-    count: int = POSES,
+    count: int = TRAJECTORY_POSES,
     held: Mapping[str, float] | None = None,
 ) -> Trajectory:
     """The path of the D-MT paper: some axes run linearly over their limits, another one swings.

@@ -15,7 +15,7 @@ from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array, apply
 from matstd.twin.machine import Symbol, inverse_linear, reach, tip
 
-POINTS = (19, 19, 17)
+SECTION_POINTS = (19, 19, 17)
 """Readings of each axis in a volume."""
 
 
@@ -89,7 +89,7 @@ def has_volume(workspace: Workspace) -> bool:
 
 
 def volume(
-    workspace: Workspace, rotary: Mapping[str, float], points: tuple[int, int, int] = POINTS
+    workspace: Workspace, rotary: Mapping[str, float], points: tuple[int, int, int] = SECTION_POINTS
 ) -> Volume:
     """Poses that fill the box of the linear readings; raises NotReachable.
 

@@ -57,7 +57,7 @@ def switchboard(fit, effects):
     nothing = np.zeros(sum(s.columns.shape[1] for s in made))
     names = [s.effect.name for s in made]
     sets = [mix(made, nothing, on) for on in ((), names)]
-    return made, nothing, reduced(base, np.hstack([s.columns for s in made]), sets)
+    return made, nothing, reduced(base, np.column_stack([*(s.columns for s in made), base.y]), sets)
 
 
 def assert_as_refitted(fit, effects, draws=6):

@@ -9,14 +9,13 @@ from matstd.importers.arms import arm_from_dh, import_arm, read_arm, tracker_run
 from matstd.importers.arms.orientation import (
     disagreement,
     from_quaternions,
-    from_vectors,
     target_rotation,
 )
 from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.files.run_file import read_run
-from matstd.twin.frames import apply
+from matstd.twin.frames import apply, rotation
 from matstd.twin.machine.kinematics import table_to_tool
 from matstd.twin.units import DEG, UM, URAD
 
@@ -89,7 +88,7 @@ def test_rotations_are_those_of_an_independent_library():
     )
     vectors = np.vstack([turn.as_rotvec(), np.zeros(3), [1e-9, 0.0, 0.0]])
     np.testing.assert_allclose(
-        from_vectors(vectors), Rotation.from_rotvec(vectors).as_matrix(), atol=1e-12
+        rotation(vectors), Rotation.from_rotvec(vectors).as_matrix(), atol=1e-12
     )
 
 

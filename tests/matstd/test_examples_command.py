@@ -24,7 +24,7 @@ def test_a_copy_has_what_the_next_command_reads(name, tmp_path, capsys):
     files = [word for word in words if word.startswith(str(folder))]
     assert files
     for file in files:
-        assert (folder / file).is_file(), file
+        assert (folder / file).is_file() or len(list((folder / file).glob("*.csv"))) > 2, file
         if file.endswith(".csv"):
             assert len(read_run(file)) > 50
 

@@ -1,6 +1,8 @@
 """Laws on the live page: their figures against the fits, their curves against the touches."""
 
 import json
+import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,11 +11,12 @@ from simulator_case import read_back
 from simulator_experiment import MACHINES
 from simulator_laws import law_case
 
-from matstd.diagnosis.laws import amplitudes, learn_laws
+from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.laws import amplitudes, learn_laws, learn_remainder
 from matstd.diagnosis.reduced import learnt_board
 from matstd.report.laws import law_curve
 from matstd.report.layout import Page, write_page
-from matstd.report.run_view import learnt_view
+from matstd.report.run_view import diagnosis_view, learnt_view
 from matstd.twin.units import UM
 
 LAW = "law(bias,step time)"
@@ -37,6 +40,17 @@ def test_the_board_switches_the_law(learning):
     assert board.known[frozenset()] == (learning.before.rms, learning.before.test_rms)
 
 
+def test_effects_found_before_are_switches_beside_the_law(learning):
+    named = learning.after.model.effects[0]
+    board = learnt_board(learning, [named])
+    assert board.found == {named.name, LAW}
+    both = board.errors(board.found)
+    known = [learning.after.rms, learning.after.test_rms]
+    assert [both.fitted, both.held_out] == pytest.approx(known, rel=1e-7)
+    assert board.known[board.found] == (learning.after.rms, learning.after.test_rms)
+    assert board.errors({LAW}).fitted > 1.001 * both.fitted
+
+
 def test_a_step_of_the_probe_stands_at_the_touches_themselves(learning):
     """The lever on the reading of the probe is 1: dots are residuals plus the step by hand."""
     (one,) = learning.laws
@@ -51,6 +65,22 @@ def test_a_step_of_the_probe_stands_at_the_touches_themselves(learning):
     assert curve.value[[0, -1]] == pytest.approx([0.0, size.value / UM], abs=1e-9)
     assert curve.u[-1] == pytest.approx(size.u / UM, rel=0.01)
     assert curve.label == "time in h"
+
+
+@pytest.mark.slow
+def test_a_diagnosis_shows_what_it_found_and_the_law_of_what_remains(learning):
+    found = diagnose(learning.after.run)
+    found = replace(found, laws=learn_remainder(found.start, found.fit))
+    assert found.laws.laws
+    data = re.search(r'id="live-data">(.*?)</script>', diagnosis_view(found, "run.csv").script)
+    page = json.loads(data[1])
+    names = {s["name"] for s in page["switches"] if s["isFound"]}
+    kept = {e.name for e in found.laws.after.model.effects}
+    laws = {one.law.name for one in found.laws.laws}
+    assert names == laws | ({e.name for e in found.found} & kept)
+    assert {c["law"] for c in page["curves"]} == laws
+    last = next(k for k in page["known"] if set(k["on"]) == names)
+    assert last["fitted"] == pytest.approx(found.laws.after.rms / UM)
 
 
 @pytest.mark.browser

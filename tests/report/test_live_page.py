@@ -1,5 +1,6 @@
 """The live page of a run in a real browser: its figures against fits, what a user does on it."""
 
+import base64
 import json
 import re
 from dataclasses import replace
@@ -11,12 +12,15 @@ from browser import faults, opened, requests, run
 
 from matstd.diagnosis.answer.comparison import compare
 from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.choice import candidate_effects
 from matstd.diagnosis.files.diagnosis_file import diagnosis_table
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.reduced import compared_board, diagnosed_board
+from matstd.diagnosis.reduced.board import MOST_SWITCHES
 from matstd.report.layout import Page, write_page
 from matstd.report.run_view import Findings, Framed, diagnosis_view, run_view
+from matstd.report.run_view.run_data import run_data
 from matstd.report.run_view.touched_bodies import touched_bodies
 from matstd.twin.effects.backlash import KIND as BACKLASH
 from matstd.twin.library.ordinary import ordinary_model
@@ -263,6 +267,56 @@ def test_no_effect_at_all(browser, diagnosis, tmp_path):
     said = run(browser, "return document.getElementById('effect-list').textContent")
     assert "no effect that these touches could show" in said
     assert faults(browser) == []
+
+
+def numbers(tree):
+    """Every packed array of a page's data, by its path."""
+    if isinstance(tree, dict) and "base64" in tree:
+        return {"": tree}
+    pairs = tree.items() if isinstance(tree, dict) else enumerate(tree)
+    return {
+        f"{key}.{path}": found
+        for key, part in pairs
+        if isinstance(part, dict | list)
+        for path, found in numbers(part).items()
+    }
+
+
+def unpacked(one):
+    """Numbers of a packed array; of shortened doubles the lower bytes are zero."""
+    raw, kind = base64.b64decode(one["base64"]), one["kind"]
+    if kind not in ("f6", "f3"):
+        return np.frombuffer(raw, f"<{kind}")
+    kept = int(kind[1])
+    whole = np.zeros((len(raw) // kept, 8), dtype="u1")
+    whole[:, 8 - kept :] = np.frombuffer(raw, "u1").reshape(-1, kept)
+    return whole.reshape(-1).view("<f8")
+
+
+def test_of_hundreds_of_effects_fifteen_are_offered(diagnosis):
+    run_ = diagnosis.run[::4]
+    assert len(candidate_effects(run_.touches)) > 200
+    board = compared_board(compare(run_, ordinary_model(run_.touches.chain)))
+    assert 5 < len(board.switches) <= MOST_SWITCHES
+
+
+def test_data_of_odd_runs_hold_numbers_wherever_the_page_computes_with_them(diagnosis):
+    """Twelve touches, no poses, one touch a feature, nothing but NaN in two columns."""
+    few = diagnosis.run[:: len(diagnosis.run) // 12]
+    count = len(few)
+    odd = changed(
+        few,
+        pose=np.zeros(count, dtype=np.int64),
+        feature=np.array([f"f{i}" for i in range(count)]),
+        value={k: np.full(count, np.nan) for k in ("coolant_l_min", "hall_degC")},
+    )
+    found = compare(odd, ordinary_model(odd.touches.chain))
+    data = run_data(compared_board(found), Findings("odd.csv"))
+    arrays = numbers(data)
+    assert arrays["touches.point."]["shape"] == [count, 3]
+    for path, one in arrays.items():
+        if not path.startswith("columns"):
+            assert np.all(np.isfinite(unpacked(one))), path
 
 
 def test_what_was_touched_is_drawn_from_its_points(diagnosis):

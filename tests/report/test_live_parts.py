@@ -1,5 +1,6 @@
 """Parts of live pages, in a real browser: data, view in three dimensions, plots, numbers."""
 
+import json
 import re
 from pathlib import Path
 
@@ -93,6 +94,17 @@ def test_bodies_dots_and_lines_are_drawn_where_they_are(scene):
     run(scene, "view.camera.turn = 0; view.camera.tilt = 0.1; view.draw()")
     assert seen(scene, [0.0, 6.0, 0.0])[0] > seen(scene, [0.0, -6.0, 0.0])[0] + 20
     assert seen(scene, [0.0, 0.0, 6.0])[1] < seen(scene, [0.0, 0.0, -6.0])[1] - 20
+
+
+@pytest.mark.browser
+def test_shortened_doubles_keep_their_upper_digits(browser, page):
+    opened(browser, page)
+    values = np.array([np.pi, -1e-9, 0.0, 6.02e23, 1.0 - 1e-13])
+    for kind, share in (("f8", 0.0), ("f6", 2e-11), ("f4", 6e-8), ("f3", 2e-4)):
+        given = json.dumps(packed(values, kind))
+        kept = run(browser, f"return [...parts.data.unpacked({given}).values]")
+        assert kept == pytest.approx(values.tolist(), rel=share, abs=0.0)
+        assert (kept == values.tolist()) == (kind == "f8")
 
 
 @pytest.mark.browser

@@ -167,5 +167,7 @@ def test_a_table_may_be_a_file_alone(tmp_path: Path) -> None:
 
 def test_a_fold_may_be_for_the_screen_alone(tmp_path: Path) -> None:
     both = Section(fold="more", sentences=["Words."])
-    assert 'class="long"' not in rendered(page_of(both), tmp_path)
-    assert 'class="long"' in rendered(page_of(replace(both, is_for_screen=True)), tmp_path)
+    assert 'class="screen"' not in rendered(page_of(both), tmp_path)
+    html = rendered(page_of(replace(both, is_for_screen=True)), tmp_path)
+    assert '<details class="screen">' in html
+    assert "details.screen { display: none; }" in html

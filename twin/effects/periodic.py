@@ -29,7 +29,7 @@ where the travel holds `MIN_PINION_TURNS` of them; fewer are hard to distinguish
 PITCH_FRACTIONS = 4
 """Whole fractions of a stated pitch that are scanned: starts of the thread, balls of the nut, lines
 of the encoder."""
-OVERSAMPLING = 4.0
+PERIOD_OVERSAMPLING = 4.0
 """Scanned frequencies per resolvable one; the nearest keeps 97 % of a sine between two of them."""
 MAX_OVERTONES = 12
 """Largest number of sines of one period; more would follow single steps."""
@@ -203,7 +203,7 @@ def scanned_periods(q: Array, pitch: float | None = None) -> Array:
         min(LONGEST, 0.5 * travel), min(LONGEST_PINION, travel / MIN_PINION_TURNS), 2.0 * shortest
     )
     low, high = 1.0 / longest, 1.0 / shortest
-    step = 1.0 / (OVERSAMPLING * max(travel, longest))
+    step = 1.0 / (PERIOD_OVERSAMPLING * max(travel, longest))
     frequencies = np.linspace(low, high, int(np.ceil((high - low) / step)) + 1)
     for k in range(1, PITCH_FRACTIONS + 1) if pitch else ():
         around = k / pitch + step * np.arange(-1.0, 2.0) if pitch else np.zeros(0)

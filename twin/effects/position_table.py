@@ -23,7 +23,7 @@ from matstd.twin.units import UM, URAD
 ORDER = 20
 """Half waves over the travel: the resolution of 20 targets; faster ones are `periodic`."""
 
-LENGTHS = (0.04, 0.1, 0.3)
+CORRELATION_LENGTHS = (0.04, 0.1, 0.3)
 """Tried correlation lengths, as shares of the travel: 0.04 is the distance of 25 targets; smoother
 curves than 0.3 are polynomials of low degree."""
 
@@ -73,7 +73,7 @@ class PositionTable(Declared):
     symbol: ComponentSymbol
     by_direction: Annotated[bool, Argument("directions", _directions, _no_or_each)] = False
     is_round: bool = False
-    length: float = scanned("1", LENGTHS, continuous=False)
+    length: float = scanned("1", CORRELATION_LENGTHS, continuous=False)
 
     kind = "position-table"
     usual = (5 * UM, 20 * URAD)

@@ -7,7 +7,7 @@ from typing import Self
 
 import numpy as np
 
-from matstd.twin.errors import UnknownEffect
+from matstd.twin.elastic.stiffness import recorded_force
 from matstd.twin.fields import AxisName, Refuse, moving_axes
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
@@ -62,11 +62,10 @@ class LoadPlay(Declared):
 
 def load_of(touches: Touches, axis: str, name: str) -> Array:
     """Load along an axis, N, or its moment about a rotary one, N mm, (N,)."""
-    if touches.force is None:
-        raise UnknownEffect(f"'{name}': the load on the tool at these touches is unknown")
+    force = recorded_force(touches, name)
     link = touches.chain.link_index(axis)
     own = touches.chain.link(axis).own_component
-    return np.asarray(np.einsum("ni,ni->n", touches.reach.twist[:, link, own], touches.force))
+    return np.asarray(np.einsum("ni,ni->n", touches.reach.twist[:, link, own], force))
 
 
 def propose(touches: Touches) -> Iterable[LoadPlay]:

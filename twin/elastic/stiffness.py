@@ -73,12 +73,13 @@ class Stiffness(Declared):
         The load conjugate to a component is force times the motion of the tip per unit of it.
         """
         i = touches.chain.link_index(self.link)
-        force = _force(touches, self.name)
+        force = recorded_force(touches, self.name)
         loads = np.einsum("nci,ni->nc", touches.reach.twist[:, i], force)
         return tuple(Term(k, Where("twist", i, c), loads[:, c]) for c, k in self.components)
 
 
-def _force(touches: Touches, name: str) -> Array:
+def recorded_force(touches: Touches, name: str) -> Array:
+    """Load on the tool, (N, 3), N; raises UnknownEffect for that name where none is recorded."""
     if touches.force is None:
         raise UnknownEffect(f"'{name}': the load on the tool at these touches is unknown")
     return touches.force

@@ -6,6 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
+from matstd.twin.elastic.stiffness import recorded_force
 from matstd.twin.errors import UnknownEffect
 from matstd.twin.fields import check_count, moving_linear_axes
 from matstd.twin.machine import Chain
@@ -50,12 +51,11 @@ class ToolPointStiffness(Declared):
         return tuple(out)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        if touches.force is None:
-            raise UnknownEffect(f"'{self.name}': the load on the tool at these touches is unknown")
+        force = recorded_force(touches, self.name)
         chain = touches.chain
         i = chain.link_index(self.axes[-1])
         # the load in the frame of the axis, which a rotary table may have turned away from
-        loads = np.einsum("nci,ni->nc", touches.reach.twist[:, i, :3], touches.force)
+        loads = np.einsum("nci,ni->nc", touches.reach.twist[:, i, :3], force)
         shapes = [np.ones(len(touches))]
         shapes += [chain.link(a).scaled(touches.reading(a)) for a in self.axes]
         out = []

@@ -15,7 +15,7 @@ from matstd.twin.machine import Chain, Family, Symbol
 from matstd.twin.model import Effect
 from matstd.twin.units import DEG, UM, URAD
 
-LARGEST = 1e6
+LARGEST_ERROR = 1e6
 """An amplitude beyond this (µm or µrad: a metre, a radian) is a slip of units, not an error."""
 
 
@@ -27,7 +27,7 @@ class ErrorTable(Table):
     )
     """`constant`, `linear`, `parabolic` or `sinusoidal`, for a component error; a location error
     has none"""
-    amplitude: float = Field(ge=-LARGEST, le=LARGEST, examples=[12.0])
+    amplitude: float = Field(ge=-LARGEST_ERROR, le=LARGEST_ERROR, examples=[12.0])
     """peak amplitude, µm, or µrad for `EA.` `EB.` `EC.`"""
     periods: float = Field(default=1.0, gt=0.0, le=1e6)
     """number of periods of a sinusoidal error: over the range of a linear axis, in one turn of a

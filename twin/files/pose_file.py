@@ -16,7 +16,7 @@ from matstd.twin.record import IntArray
 FARTHEST = 1e5
 """A length (mm) or an angle (degrees) beyond this is a slip, not a reading or a place."""
 
-ROUNDING = 1e-6
+READING_ROUNDING = 1e-6
 """Share of the travel by which the rounding of a reading may exceed it."""
 
 
@@ -74,7 +74,7 @@ def read_poses(path: str | Path, chain: Chain) -> tuple[Array, Array]:
     if not len(table):
         raise BadFile(path, "table", "no rows", "one row per pose")
     q = readings(table, chain)
-    for beyond in beyond_travel(chain, q, ROUNDING):
+    for beyond in beyond_travel(chain, q, READING_ROUNDING):
         raise table.bad(int(beyond.rows[0]), beyond.column, beyond.found, beyond.expected)
     if "tool_length_mm" not in table:
         return q, np.zeros(len(table))

@@ -246,7 +246,7 @@ def poses(table: CsvTable, chain: Chain, q: Array, setup: IntArray) -> IntArray:
     """Label of every row's table pose: the column, else equal rotary readings and set-up."""
     if "pose" in table:
         return np.unique(table.text("pose"), return_inverse=True)[1].astype(np.int64)
-    rotary = [chain.axis_index(a) for a in chain.rotary_axes]
+    rotary = chain.rotary_columns
     key = np.column_stack([np.round(q[:, rotary], 6), setup])
     return np.unique(key, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
 

@@ -16,7 +16,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.words import did_you_mean
 
-LARGEST = 1e12
+LARGEST_CELL = 1e12
 """Largest number of any column; larger ones are refused."""
 
 COLDEST, HOTTEST, HOTTEST_HEATED = -60.0, 200.0, 500.0
@@ -163,7 +163,7 @@ class CsvTable:
         name: str,
         empty: float | None = None,
         finite: bool = True,
-        largest: float = LARGEST,
+        largest: float = LARGEST_CELL,
         smallest: float = -math.inf,
     ) -> Array:
         """Column as numbers, (N,); raises BadFile.

@@ -17,7 +17,7 @@ _NO_TEXT = {
 }
 """First bytes of files that users take for text, and what they are."""
 
-LARGEST = 1e18
+LARGEST_NUMBER = 1e18
 """Largest number in our files; the product of two such does not overflow."""
 
 _MANY_DIGITS = re.compile(r"[\d_]{4300,}")
@@ -81,47 +81,42 @@ def _one_line_end(text: str) -> str:
     return text.replace("\r\n", "\n").replace("\r", "\n") if "\r" in text else text
 
 
-def parse_toml(
-    text: str, path: str | Path, first_line: int = 1, twice: str = "it once"
-) -> dict[str, Any]:
+def parse_toml(text: str, path: str | Path, twice: str = "it once") -> dict[str, Any]:
     """Tables of a TOML text; raises BadFile.
 
     Args:
-        first_line: Line number of the text in the file.
         twice: What is expected of a table that stands in two places; `{name}` is its name.
     """
     try:
         return tomllib.loads(text, parse_float=_moderate)
     except tomllib.TOMLDecodeError as error:
-        raise _no_toml(error, text, path, first_line, twice) from error
+        raise _no_toml(error, text, path, twice) from error
     except RecursionError:
         raise BadFile(path, "file", "brackets nested without end", "a valid TOML file") from None
     except ValueError as error:  # Python converts no whole number of more than 4300 digits
         long = _MANY_DIGITS.search(text)
         literal = long.group() if long else str(error)
-        line = first_line + text.count("\n", 0, max(text.find(literal), 0))
-        expected = "a number of fewer digits" if long else f"numbers below {LARGEST:g}"
+        line = 1 + text.count("\n", 0, max(text.find(literal), 0))
+        expected = "a number of fewer digits" if long else f"numbers below {LARGEST_NUMBER:g}"
         raise BadFile(path, f"line {line}", literal, expected) from None
 
 
 def _moderate(literal: str) -> float:
     """A number that may be squared without overflow; NaN and infinity are for the models."""
     value = float(literal)
-    if LARGEST < abs(value) < math.inf:
+    if LARGEST_NUMBER < abs(value) < math.inf:
         raise ValueError(literal)
     return value
 
 
-def _no_toml(
-    error: tomllib.TOMLDecodeError, text: str, path: str | Path, first_line: int, twice: str
-) -> BadFile:
+def _no_toml(error: tomllib.TOMLDecodeError, text: str, path: str | Path, twice: str) -> BadFile:
     """The line that is no TOML, and why."""
     why, _, place = str(error).partition(" (at ")
     match = re.match(r"line (\d+)", place)
     lines = text.splitlines()
     number = int(match.group(1)) if match else len(lines)
     line = lines[number - 1].strip() if 0 < number <= len(lines) else ""
-    place = f"line {first_line + number - 1}"
+    place = f"line {number}"
     repeated = _TWICE.match(why)
     if repeated:
         name = re.sub(r"', '", ".", repeated.group(1)).strip("'")

@@ -52,7 +52,7 @@ from matstd.twin.words import listed, nearest
 
 ENTRY_POINT_GROUP = "material_standard.effects"
 
-ROUNDING = 1e-3 * NM
+SIZE_ROUNDING = 1e-3 * NM
 """Deviations below this are those of floating-point numbers, mm."""
 
 _NAME = re.compile(r"\s*([A-Za-z][\w-]*)\s*(?:\((.*)\))?\s*\Z")
@@ -205,7 +205,7 @@ def is_visible(effect: Effect, touches: Touches) -> bool:
             *(inner.grid[len(inner.grid) // 2] for inner in effect.inner(touches))
         )
     sd = np.array([p.sd for p in effect.parameters])
-    return bool(np.any(np.abs(columns([effect], touches) * sd) > ROUNDING))
+    return bool(np.any(np.abs(columns([effect], touches) * sd) > SIZE_ROUNDING))
 
 
 def load_user_effects(path: Path) -> tuple[Kind, ...]:

@@ -96,7 +96,7 @@ def parse_sized_effect(text: str, chain: Chain) -> SizedEffect:
 
 def _trial_touches(chain: Chain) -> Touches:
     """Poses spread over the travels, a minute apart."""
-    low, high = np.array([chain.link(axis).range for axis in chain.axes]).T
+    low, high = chain.travels.T
     share = np.linspace(0.0, 1.0, _TRIAL_POSES)[:, None]
     touches = at_poses(chain, low + share * (high - low), 100.0)
     touches.time[:] = MINUTE * np.arange(_TRIAL_POSES)

@@ -5,7 +5,7 @@ exact and to first order in every error. A new shape over a reading goes to `sha
 errors to `ranges`; signs and letters are defined in `symbols` and nowhere else.
 """
 
-from matstd.twin.machine.chain import Axis, Chain, Link, make_chain
+from matstd.twin.machine.chain import Axis, Chain, make_chain
 from matstd.twin.machine.contribution import Contribution, Where
 from matstd.twin.machine.kinematics import (
     Reach,
@@ -17,6 +17,7 @@ from matstd.twin.machine.kinematics import (
     table_to_tool,
     tip,
 )
+from matstd.twin.machine.link import Link
 from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges, error_class
 from matstd.twin.machine.shapes import SHAPES, ShapeName, shape, sine_argument
 from matstd.twin.machine.symbols import LETTERS, Family, Symbol, parse_symbol

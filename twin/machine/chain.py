@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 
@@ -13,12 +12,11 @@ from matstd.twin.display import Displayed
 from matstd.twin.errors import BadValue, UnknownAxis, UnknownSymbol
 from matstd.twin.frames import Array
 from matstd.twin.machine.contribution import Where
+from matstd.twin.machine.link import Kind, Link
 from matstd.twin.machine.notation import parse_notation
 from matstd.twin.machine.symbols import ALONG, Family, Symbol, parse_symbol
 from matstd.twin.numbers import significant
 from matstd.twin.units import DEG
-
-Kind = Literal["linear", "rotary", "fixed"]
 
 _SAME = 1e-6
 """Machines whose numbers differ by less (mm, rad) are equal."""
@@ -36,69 +34,6 @@ machine tools have two or three."""
 
 SPINDLE_RANGE = (-360.0 * DEG, 360.0 * DEG)
 """Range of a bracketed spindle without an entry in the machine file, rad."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Link:
-    """One member of the chain: an axis, the workpiece `w` or the tool `t`.
-
-    Attributes:
-        name: Axis letter with number, `w` or `t`.
-        kind: Linear, rotary, or fixed (`w` and `t`, which only carry set-up errors).
-        carries_workpiece: Primed axes and `w`.
-        direction: Positive direction of the *reading* (tool relative to workpiece), unit, (3,).
-        point: Reference point of the angular errors and of a rotary axis's line, machine frame with
-            every axis at zero, (3,), mm.
-        range: Smallest and largest reading, mm or rad.
-        programmed: False in brackets: a spindle that is not programmed, a quill that stays in.
-        pitch: Pitch of a linear axis's screw or scale, mm, as its owner states it; None where it is
-            unknown. It is no part of the kinematics.
-        expected: Size of each translational error of a linear axis, mm, beyond which it is unusual
-            for such an axis; None for that of its class. No part of its kinematics either.
-        is_joint: A rotary axis whose line is known by how it lies to the lines of its neighbours,
-            in an open chain of `OPEN_CHAIN` and more; its errors are of a class of their own.
-    """
-
-    name: str
-    kind: Kind
-    carries_workpiece: bool
-    direction: Array
-    point: Array
-    range: tuple[float, float]
-    programmed: bool = True
-    pitch: float | None = None
-    expected: float | None = None
-    is_joint: bool = False
-
-    @property
-    def own(self) -> int:
-        """Index in X Y Z of the letter's own direction, whatever the direction of the axis."""
-        return "XYZ".index(ALONG[self.name[0]])
-
-    @property
-    def points_along_letter(self) -> bool:
-        """Whether the axis moves along, or turns about, the direction of its letter."""
-        return bool(np.allclose(self.direction, np.eye(3)[self.own], atol=1e-12))
-
-    @property
-    def unit(self) -> float:
-        """The unit in which files and messages give its readings: 1 mm or 1 degree, base units."""
-        return DEG if self.kind == "rotary" else 1.0
-
-    @property
-    def column(self) -> str:
-        """Column of its readings in a run, pose or result file: `X_mm`, `B_deg`."""
-        return f"{self.name}_{'deg' if self.kind == 'rotary' else 'mm'}"
-
-    def scaled(self, reading: Array) -> Array:
-        """Readings scaled to [-1, 1] over the range, in any shape."""
-        low, high = self.range
-        return (2.0 * reading - (low + high)) / (high - low)
-
-    @property
-    def own_component(self) -> int:
-        """Index in X Y Z A B C of the error along a linear axis, about a rotary one."""
-        return self.own if self.kind == "linear" else 3 + self.own
 
 
 @dataclass(frozen=True)
@@ -161,6 +96,21 @@ class Chain(Displayed):
     def rotary_axes(self) -> tuple[str, ...]:
         """Names of the programmed rotary axes in chain order."""
         return tuple(ln.name for ln in self.links if ln.kind == "rotary" and ln.programmed)
+
+    @cached_property
+    def linear_columns(self) -> list[int]:
+        """Columns of the programmed linear axes in an array of readings (N, A), in chain order."""
+        return [self.axis_index(name) for name in self.linear_axes]
+
+    @cached_property
+    def rotary_columns(self) -> list[int]:
+        """Columns of the programmed rotary axes in an array of readings (N, A), in chain order."""
+        return [self.axis_index(name) for name in self.rotary_axes]
+
+    @property
+    def travels(self) -> Array:
+        """Smallest and largest reading of every axis, (A, 2), mm and rad."""
+        return np.array([self.link(name).range for name in self.axes])
 
     @cached_property
     def tool_rotary_axes(self) -> tuple[str, ...]:

@@ -11,8 +11,9 @@ import numpy as np
 
 from matstd.twin.errors import NotReachable, ShapeMismatch
 from matstd.twin.frames import Array, apply, inverse, pose, rotation, turned_about
-from matstd.twin.machine.chain import Chain, Link
+from matstd.twin.machine.chain import Chain
 from matstd.twin.machine.contribution import Contribution, Where
+from matstd.twin.machine.link import Link
 from matstd.twin.machine.moved_point import moved_tip, tip_in_tool
 
 
@@ -250,7 +251,7 @@ def inverse_linear(chain: Chain, target: Array, q: Array, length: Array | float)
         NotReachable: The machine has not three independent linear axes in some pose.
     """
     q = checked_readings(chain, q).copy()
-    columns = [chain.axis_index(name) for name in chain.linear_axes]
+    columns = chain.linear_columns
     if len(columns) != 3:
         raise NotReachable(
             f"machine {chain.name} has {len(columns)} linear axes, "

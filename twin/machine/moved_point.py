@@ -6,8 +6,9 @@ import numpy as np
 
 from matstd.twin.compute import blocks
 from matstd.twin.frames import Array
-from matstd.twin.machine.chain import Chain, Link
+from matstd.twin.machine.chain import Chain
 from matstd.twin.machine.contribution import Contribution
+from matstd.twin.machine.link import Link
 
 _POSES_A_BLOCK = 5000
 """Poses moved at once: the vectors of a block stay in the first caches (8192 take 1.3 times as long

@@ -5,7 +5,7 @@ from typing import Literal
 import numpy as np
 
 from matstd.twin.frames import Array
-from matstd.twin.machine.chain import Link
+from matstd.twin.machine.link import Link
 
 ShapeName = Literal["constant", "linear", "parabolic", "sinusoidal"]
 SHAPES: tuple[ShapeName, ...] = ("constant", "linear", "parabolic", "sinusoidal")

@@ -50,6 +50,8 @@ class Traits:
         harmonic: Waves a turn of what repeats over a rotary axis; 0 of a curve, which has many.
         wave: What repeats over a linear axis.
         with_sines: For a wave: the same error with another period and number of sines.
+        driver: Of an effect that follows a record: the sensor, `spindle_rpm` or own column; a field
+            `sensor` states it.
         parameter_drives: For an effect with several drives: the drive of every parameter.
         needs_history: Whether it depends on what drove it before the first touch.
         stated_number: Number of a run that is wrong where this effect acts: `radius`.
@@ -74,6 +76,7 @@ class Traits:
     harmonic: float | None = None
     wave: Wave | None = None
     with_sines: Callable[[float, int], Effect] | None = None
+    driver: str = ""
     parameter_drives: tuple[str, ...] = ()
     needs_history: bool = False
     stated_number: str = ""
@@ -105,8 +108,8 @@ _TYPES: dict[str, Any] = {name: type(usual) for name, usual in _USUAL.items()} |
     "original": object,
     "since_run": Integral,
 }
-_OLD_NAMES = {"is_reported_whole": "is_told_whole"}
-"""Names that users' effects may still use."""
+_OTHER_NAMES = {"is_reported_whole": "is_told_whole", "driver": "sensor"}
+"""Names by which effects state a trait, too: an old one, and a field that is its driver."""
 
 
 def traits(effect: Effect) -> Traits:
@@ -115,8 +118,8 @@ def traits(effect: Effect) -> Traits:
     A field of a user's effect may have the name of a trait by chance, so values of another type are
     ignored: `wave: float` is not a `Wave`.
     """
-    found = {old: getattr(effect, old, None) for old in (*_USUAL, *_OLD_NAMES.values())}
-    found |= {name: found[old] for name, old in _OLD_NAMES.items() if found[name] is None}
+    found = {n: getattr(effect, n, None) for n in (*_USUAL, *_OTHER_NAMES.values())}
+    found |= {n: found[other] for n, other in _OTHER_NAMES.items() if found[n] is None}
     answers = {n: found[n] for n in _USUAL if isinstance(found[n], _TYPES[n])}
     return Traits(**(_USUAL | answers))
 

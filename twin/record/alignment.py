@@ -26,10 +26,10 @@ TURN = 1e-3
 """Rotation (rad) from which it is moved: half its square times 200 mm is 0.1 µm, what a linear fit
 of the set-up would get wrong."""
 
-MIN_TOUCHES = 6
+MIN_ALIGNED_TOUCHES = 6
 """Touches of a set-up, one for each degree of freedom; with fewer the set-up stays as stated."""
 
-OUTLIER_RATIO = 10.0
+MISALIGNED_RATIO = 10.0
 """Touches farther off than this multiple of the median are outliers and not used."""
 
 MIN_SPREAD = 1.0
@@ -59,12 +59,12 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
     setups, moved = list(t.setups), []
     for i, setup in enumerate(t.setups):
         rows = t.setup == i
-        if rows.sum() < MIN_TOUCHES:
+        if rows.sum() < MIN_ALIGNED_TOUCHES:
             continue
         a, b, stated = centre[rows], reached[rows], setup.T_table_artefact
         T = rigid_motion(a, b, stated)
         far = np.linalg.norm(apply(T, a) - b, axis=1)
-        near = far <= OUTLIER_RATIO * np.median(far)  # an outlier must not turn the standard
+        near = far <= MISALIGNED_RATIO * np.median(far)  # an outlier must not turn the standard
         T = rigid_motion(a[near], b[near], stated)
         middle = centre[rows].mean(axis=0)
         change = apply(T, middle) - apply(setup.T_table_artefact, middle)

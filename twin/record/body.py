@@ -37,7 +37,7 @@ COLDEST, HOTTEST = 0.0, 50.0
 KELVIN = 270.0
 """Higher temperatures are in kelvin."""
 
-LARGEST = 1e-3
+LARGEST_EXPANSION = 1e-3
 """Largest expansion, 1/K; rubber has 2e-4, steel 11.5e-6."""
 
 LARGEST_U = 20.0
@@ -67,8 +67,9 @@ class StatedBody:
     def __post_init__(self) -> None:
         for key in ("expansion_1_K", "expansion_u_1_K"):
             value = getattr(self, key)
-            if value is not None and not 0.0 <= value < LARGEST:
-                raise BadValue(key, f"{value:g}", f"0 to {LARGEST:g} 1/K: of steel 11.5e-6")
+            if value is not None and not 0.0 <= value < LARGEST_EXPANSION:
+                expected = f"0 to {LARGEST_EXPANSION:g} 1/K: of steel 11.5e-6"
+                raise BadValue(key, f"{value:g}", expected)
         if self.body_degC is not None:
             _check_temperature("body_degC", self.body_degC)
         if self.body_u_K is not None and not 0.0 <= self.body_u_K <= LARGEST_U:

@@ -51,7 +51,7 @@ def with_commanded(run: Run) -> Run:
     residual = np.where(holds, _less_setups(touches, implied), 0.0)
     if not residual.any():
         return run
-    linear = [touches.chain.axis_index(axis) for axis in touches.chain.linear_axes]
+    linear = touches.chain.linear_columns
     directions = linear_directions(touches.chain, touches.q)  # (N, 3, axes)
     step = np.linalg.pinv(directions) @ touches.normal_table[:, :, None]
     moved = step[:, :, 0] * residual[:, None]

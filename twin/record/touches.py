@@ -289,7 +289,7 @@ def linear_approach(chain: Chain, q: Array, normal_table: Array) -> Array:
         Shape (N, A): -1, 0 or 1 in the columns of the linear axes, 0 elsewhere.
     """
     out = np.zeros(q.shape)
-    columns = [chain.axis_index(name) for name in chain.linear_axes]
+    columns = chain.linear_columns
     D = linear_directions(chain, q)
     # least squares, because an instrument may stand on a machine with fewer than three linear axes
     velocity = -np.einsum("nmi,ni->nm", np.linalg.pinv(D), normal_table)

@@ -51,6 +51,11 @@ class ColumnBending(Declared):
         return replace(self, component=chain.link(self.axis).own_component)
 
     @property
+    def driver(self) -> str:
+        """The sensor on its warm side."""
+        return self.warm
+
+    @property
     def _across(self) -> tuple[int, int]:
         return (self.component + 1) % 3, (self.component + 2) % 3
 

@@ -88,6 +88,11 @@ class Follows(Declared):
 
     kind, usual = "follows", USUAL_AMPLITUDE
 
+    @property
+    def driver(self) -> str:
+        """What it follows."""
+        return OWN + self.column
+
     @cached_property
     def title(self) -> Title:
         if self.column in (CYCLE, PROGRESS):

@@ -68,6 +68,11 @@ class ThermalLag(Declared):
     kind, usual = "thermal-lag", (30 * UM, 100 * URAD)
 
     @property
+    def driver(self) -> str:
+        """What it follows; empty for switching on."""
+        return self.drive
+
+    @property
     def needs_history(self) -> bool:
         """Whether it follows a drive, which may have moved before the first touch."""
         return bool(self.drive)

@@ -18,13 +18,13 @@ from typing import Any, Optional
 SCALE = 1e-5
 """One count of an external offset, mm."""
 
-PERIOD = 0.002
+LOOK_PERIOD = 0.002
 """Between two looks at the pins, s."""
 
 STILL = 1e-6
 """Smallest change of a position that is a motion, mm or degrees."""
 
-LONGEST = 0.005
+LONGEST_STEP = 0.005
 """Longest time that one step may stand for, s: a pause is no licence to jump."""
 
 LOST = 25
@@ -80,7 +80,7 @@ class Giver:
             requested: Offsets that the control has been given, mm.
             room: Smallest and largest offset that keeps an axis within its travel, mm.
         """
-        passed = 0.0 if self.last is None else min(max(now - self.last, 0.0), LONGEST)
+        passed = 0.0 if self.last is None else min(max(now - self.last, 0.0), LONGEST_STEP)
         self.last = now
         if not is_on:
             self.base, self.given, self.astray = list(self.counts), [0.0] * len(self.given), 0
@@ -296,7 +296,7 @@ def main() -> None:
     try:
         while True:
             corrector.look(time.monotonic())
-            time.sleep(PERIOD)
+            time.sleep(LOOK_PERIOD)
     except KeyboardInterrupt:
         component.exit()
 

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.commands.compensation.options import add_program, add_state
+from matstd.commands.compensation.options import add_model, add_program, add_state
 from matstd.twin.errors import DesignError
 
 if TYPE_CHECKING:
@@ -15,14 +15,7 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "model", metavar="MODEL.toml", help="model of a diagnosis, or a machine file with --errors"
-    )
-    parser.add_argument(
-        "--errors",
-        metavar="ERRORS.toml",
-        help="errors of the machine, if MODEL.toml is a machine file",
-    )
+    add_model(parser)
     parser.add_argument(
         "--tables", metavar="DIR", help="write compensation tables of the controls to this folder"
     )

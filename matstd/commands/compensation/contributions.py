@@ -4,20 +4,13 @@ from __future__ import annotations
 
 import argparse
 
-from matstd.commands.compensation.options import add_program, add_state
+from matstd.commands.compensation.options import add_model, add_program, add_state
 from matstd.twin.errors import DesignError
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "model", metavar="MODEL.toml", help="model of a diagnosis, or a machine file with --errors"
-    )
-    parser.add_argument(
-        "--errors",
-        metavar="ERRORS.toml",
-        help="errors of the machine, if MODEL.toml is a machine file",
-    )
+    add_model(parser)
     parser.add_argument("--program", metavar="IN", help="part program (.H, .ngc)")
     add_program(parser)
     parser.add_argument("--loads", metavar="LOADS.csv", help="process forces by program line")

@@ -2,10 +2,24 @@
 
 import argparse
 
+from matstd.options import add_effects
+
 
 def _several(parser: argparse.ArgumentParser, name: str, metavar: str, meaning: str) -> None:
     """An option that takes one value or more, and none where it is not given."""
     parser.add_argument(name, metavar=metavar, nargs="+", default=[], help=meaning)
+
+
+def add_model(parser: argparse.ArgumentParser) -> None:
+    """The model, or a machine file with known errors."""
+    parser.add_argument(
+        "model", metavar="MODEL.toml", help="model of a diagnosis, or a machine file with --errors"
+    )
+    parser.add_argument(
+        "--errors",
+        metavar="ERRORS.toml",
+        help="errors of the machine, if MODEL.toml is a machine file",
+    )
 
 
 def add_state(parser: argparse.ArgumentParser) -> None:
@@ -43,13 +57,7 @@ def add_state(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="compensation table that is active on the control",
     )
-    parser.add_argument(
-        "--effects",
-        metavar="FILE.py",
-        action="append",
-        default=[],
-        help="file with your own effects; may be repeated",
-    )
+    add_effects(parser)
 
 
 def add_driven(parser: argparse.ArgumentParser) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.commands.compensation.options import add_state
+from matstd.commands.compensation.options import add_model, add_state
 
 if TYPE_CHECKING:
     from matstd.api.compensating import Compensation
@@ -14,14 +14,7 @@ if TYPE_CHECKING:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
-    parser.add_argument(
-        "model", metavar="MODEL.toml", help="model of a diagnosis, or a machine file with --errors"
-    )
-    parser.add_argument(
-        "--errors",
-        metavar="ERRORS.toml",
-        help="errors of the machine, if MODEL.toml is a machine file",
-    )
+    add_model(parser)
     parser.add_argument(
         "--endpoint",
         metavar="URL",

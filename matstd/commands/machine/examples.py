@@ -37,6 +37,11 @@ EXAMPLES = {
         "matstd diagnose {folder}/crash/spring.csv {folder}/crash/summer.csv "
         "{folder}/crash/after_crash.csv -o diagnosis",
     ),
+    "trend": Example(
+        tuple(f"trend/{p}" for p in RUNS),
+        "ten weeks of one machine: a centre that jumps, a squareness that drifts",
+        "matstd trend {folder}/trend -o charts",
+    ),
     "wrong-description": Example(
         tuple(f"wrong_description/{p}" for p in RUNS),
         "runs whose machine file has a mistake: it is named, with the number to copy",

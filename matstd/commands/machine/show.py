@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from matstd.commands.compensation.options import add_driven, add_program
-from matstd.options import add_output
+from matstd.options import add_effects, add_output
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -49,13 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_program(parser)
     parser.add_argument("--loads", metavar="LOADS.csv", help="process forces by program line")
     add_driven(parser)
-    parser.add_argument(
-        "--effects",
-        metavar="FILE.py",
-        action="append",
-        default=[],
-        help="file with your own effects; may be repeated",
-    )
+    add_effects(parser)
     add_output(parser, "PAGE.html")
 
 

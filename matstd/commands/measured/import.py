@@ -255,13 +255,12 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
     """A test of an axis, a circle, an arm, or lists of points."""
     from pathlib import Path
 
-    import numpy as np
-
     from matstd.commands.measured.kinds import arm, circle, points, positioning
     from matstd.console import say
     from matstd.importers import machine_text, with_travels
     from matstd.importers.sheets import timed_by_rows
     from matstd.twin.files import refuse_to_overwrite, write_run, write_whole
+    from matstd.twin.numbers import rms
     from matstd.twin.units import UM
 
     if args.part or args.standard:
@@ -283,9 +282,9 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
         source = ", ".join(s.path.name for s in sheets)
         write_whole(machine, machine_text(chain, source, is_known=args.arm))
     write_run(output, measured, seen_from(output.parent, machine))
-    rms = float(np.sqrt(np.mean(measured.deviation**2))) / UM
+    left = rms(measured.deviation) / UM
     unit = "µrad" if measured.touches.instrument.reads_angle else "µm"  # of an arm of one metre
-    say(f"{output}: {len(measured)} readings, deviations {rms:.3f} {unit} rms")
+    say(f"{output}: {len(measured)} readings, deviations {left:.3f} {unit} rms")
     say(f"- sign: {next(words for kind, words in _SIGN.items() if getattr(args, kind))}")
     if not args.machine:
         say(f"- {machine}: made from the data; check what is marked PLACEHOLDER")

@@ -61,6 +61,7 @@ def run(args: argparse.Namespace) -> int:
     from matstd.api.evaluating import evaluate
     from matstd.console import say, say_assumed, say_each
     from matstd.twin.files import refuse_to_overwrite
+    from matstd.twin.numbers import rms
     from matstd.twin.units import UM
 
     refuse_to_overwrite(args.output, args.force)
@@ -80,11 +81,11 @@ def run(args: argparse.Namespace) -> int:
     if run is None:
         say_each(["no run file: the logs hold no measurements", *found.probe_remarks])
         return 0
-    rms = float(np.sqrt(np.mean(run.raw_deviation**2))) / UM
+    left = rms(run.raw_deviation) / UM
     found.save(args.output, args.machine)
     say(
         f"{args.output}: {len(run)} touches at {len(np.unique(run.touches.pose))} table "
-        f"poses, deviations {rms:.3f} µm rms after the set-up was fitted"
+        f"poses, deviations {left:.3f} µm rms after the set-up was fitted"
     )
     say_assumed(found.chain)
     say_each([*found.probe_remarks, *found.remarks])

@@ -63,13 +63,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the run file; a touch without contact stops the program and writes nothing."""
-    import numpy as np
-
     from matstd.api.probing import leaves_no_run, simulate
     from matstd.api.standards import read_standard
     from matstd.console import say, say_assumed, say_each
     from matstd.progress import stages
     from matstd.twin.files import refuse_to_overwrite
+    from matstd.twin.numbers import rms
     from matstd.twin.units import UM
 
     refuse_to_overwrite(args.output, args.force)
@@ -89,12 +88,12 @@ def run(args: argparse.Namespace) -> int:
             **_piece(args),
         )
     run = found.campaign.run
-    rms = float(np.sqrt(np.mean(run.deviation**2))) / UM
+    left = rms(run.deviation) / UM
     found.save(args.output, args.machine, args.logs, args.force)
     minutes = found.campaign.runs[-1].end / 60.0
     say(
         f"{args.output}: {len(run)} touches in {minutes:.0f} min, "
-        f"deviations {rms:.3f} µm rms after the set-up was fitted"
+        f"deviations {left:.3f} µm rms after the set-up was fitted"
     )
     say_each(f"planted: {text}" for text in args.add)
     say_assumed(run.touches.chain)

@@ -1,0 +1,118 @@
+"""Laws of a driver that was not recorded: any smooth course in time may drive them.
+
+All temperatures of a workshop rise in the morning. Where the sensor that matters is missing, a law
+of another one describes some of what it did, with a coefficient that no material has and a
+prediction that fails the next day. So every body that may follow a temperature is also offered with
+a temperature that nobody recorded. It costs the freedom of a whole curve, so that a sensor that
+does drive the body is preferred; it has no name and predicts nothing, so that it joins the patterns
+that remain.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from matstd.twin.frames import Array
+from matstd.twin.library import proposals
+from matstd.twin.model import Effect, Parameter, Term, original_of, traits
+from matstd.twin.record import Touches
+from matstd.twin.units import T_REF
+
+AT_ONCE = ("thermal-static", "thermal-expansion", "artefact-expansion")
+"""Kinds that are proportional to a temperature; a body that lags behind a smooth one follows
+another smooth one."""
+
+COURSES = {6: 0.12, 12: 0.05}
+"""Half waves of a temperature over a run, and its correlation length as a share of the run: the
+morning of a workshop, and what an air conditioner makes of it."""
+
+SENSOR = "unrecorded"
+
+
+@dataclass(frozen=True)
+class Unrecorded:
+    """A law after a temperature ``T = 20 degC + sum_k a_k cos(pi k t/t_end)`` that is not known.
+
+    Attributes:
+        law: The same after a sensor, `SENSOR`.
+        half_waves: Of the temperature over a run, one of `COURSES`.
+    """
+
+    law: Effect
+    half_waves: int = min(COURSES)
+
+    kind = "unrecorded"
+
+    @property
+    def name(self) -> str:
+        """`unrecorded-6: thermal-expansion(Z)`."""
+        law = self.law.name.replace(f",{SENSOR}", "").replace(f"({SENSOR})", "")
+        return f"unrecorded-{self.half_waves}: {law}"
+
+    @cached_property
+    def parameters(self) -> Sequence[Parameter]:
+        """Amplitudes of its mean and of the half waves; together a kelvin as expected."""
+        one = self.law.parameters[0]
+        k = np.arange(self.half_waves + 1)
+        spectrum = np.exp(-0.5 * (np.pi * k * COURSES[self.half_waves]) ** 2)
+        sizes = np.sqrt(spectrum / spectrum.sum())
+        return tuple(
+            Parameter(f"{one.name} {i}", one.unit, one.sd * float(s))
+            for i, s in zip(k, sizes, strict=True)
+        )
+
+    def terms(self, touches: Touches) -> Sequence[Term]:
+        """Terms of the law, once for the mean and for every half wave."""
+        base = replace(touches, temperature={SENSOR: np.full(len(touches), T_REF)})
+        still = [t.amount for t in self.law.terms(base)]
+        out = []
+        for k in range(self.half_waves + 1):
+            wave = half_wave(touches, k)
+            driven = replace(touches, temperature={SENSOR: T_REF + wave})
+            out += [
+                term._replace(parameter=k, amount=term.amount - zero)
+                for term, zero in zip(self.law.terms(driven), still, strict=True)
+            ]
+        return tuple(out)
+
+
+def half_wave(touches: Touches, k: int) -> Array:
+    """``cos(pi k t/t_end)`` over the time of a run, (N,)."""
+    t = touches.time - touches.time.min()
+    return np.asarray(np.cos(np.pi * k * t / max(float(t.max()), 1e-9)))
+
+
+def unrecorded(touches: Touches) -> list[Unrecorded]:
+    """Every body that a temperature may move at these touches, after one that was not recorded."""
+    if not np.ptp(touches.time) > 0.0:
+        return []
+    rising = T_REF + half_wave(touches, 1)
+    known = replace(touches, temperature={SENSOR: rising})
+    return [Unrecorded(law, k) for law in proposals(known, AT_ONCE) for k in COURSES]
+
+
+def is_unrecorded(effect: Effect) -> bool:
+    """Whether an effect stands for a driver that was not recorded."""
+    return isinstance(effect, Unrecorded)
+
+
+def follows_driver(effect: Effect) -> bool:
+    """Whether a temperature, the spindle speed or an own column drives an effect."""
+    own = traits(original_of(effect))
+    return bool(own.driver or own.parameter_drives)
+
+
+def moves_alike(law: Effect, drift: Effect) -> bool:
+    """Whether a law moves what a driver that was not recorded moves.
+
+    The standard, the scale of one axis, or the same component of any two axes, which touches seldom
+    distinguish.
+    """
+    return isinstance(drift, Unrecorded) and _moved(law) == _moved(drift.law)
+
+
+def _moved(effect: Effect) -> tuple[str, str]:
+    own = traits(effect)
+    return ("", own.symbol.name[:2]) if own.symbol is not None else (effect.kind, own.axis)

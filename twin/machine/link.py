@@ -1,0 +1,75 @@
+"""One member of a chain: an axis, the workpiece or the tool."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from matstd.twin.frames import Array
+from matstd.twin.machine.symbols import ALONG
+from matstd.twin.units import DEG
+
+Kind = Literal["linear", "rotary", "fixed"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Link:
+    """One member of the chain: an axis, the workpiece `w` or the tool `t`.
+
+    Attributes:
+        name: Axis letter with number, `w` or `t`.
+        kind: Linear, rotary, or fixed (`w` and `t`, which only carry set-up errors).
+        carries_workpiece: Primed axes and `w`.
+        direction: Positive direction of the *reading* (tool relative to workpiece), unit, (3,).
+        point: Reference point of the angular errors and of a rotary axis's line, machine frame with
+            every axis at zero, (3,), mm.
+        range: Smallest and largest reading, mm or rad.
+        programmed: False in brackets: a spindle that is not programmed, a quill that stays in.
+        pitch: Pitch of a linear axis's screw or scale, mm, as its owner states it; None where it is
+            unknown. It is no part of the kinematics.
+        expected: Size of each translational error of a linear axis, mm, beyond which it is unusual
+            for such an axis; None for that of its class. No part of its kinematics either.
+        is_joint: A rotary axis whose line is known by how it lies to the lines of its neighbours,
+            in an open chain (`chain.OPEN_CHAIN`); its errors are of a class of their own.
+    """
+
+    name: str
+    kind: Kind
+    carries_workpiece: bool
+    direction: Array
+    point: Array
+    range: tuple[float, float]
+    programmed: bool = True
+    pitch: float | None = None
+    expected: float | None = None
+    is_joint: bool = False
+
+    @property
+    def own(self) -> int:
+        """Index in X Y Z of the letter's own direction, whatever the direction of the axis."""
+        return "XYZ".index(ALONG[self.name[0]])
+
+    @property
+    def points_along_letter(self) -> bool:
+        """Whether the axis moves along, or turns about, the direction of its letter."""
+        return bool(np.allclose(self.direction, np.eye(3)[self.own], atol=1e-12))
+
+    @property
+    def unit(self) -> float:
+        """The unit in which files and messages give its readings: 1 mm or 1 degree, base units."""
+        return DEG if self.kind == "rotary" else 1.0
+
+    @property
+    def column(self) -> str:
+        """Column of its readings in a run, pose or result file: `X_mm`, `B_deg`."""
+        return f"{self.name}_{'deg' if self.kind == 'rotary' else 'mm'}"
+
+    def scaled(self, reading: Array) -> Array:
+        """Readings scaled to [-1, 1] over the range, in any shape."""
+        low, high = self.range
+        return (2.0 * reading - (low + high)) / (high - low)
+
+    @property
+    def own_component(self) -> int:
+        """Index in X Y Z A B C of the error along a linear axis, about a rotary one."""
+        return self.own if self.kind == "linear" else 3 + self.own
