@@ -225,7 +225,7 @@ def instead_sentence(learning: Learning) -> str:
     return (
         f"{what} the run better than {names}, also with a law beside "
         f"{'them' if len(learning.instead_of) > 1 else 'it'}: odds "
-        f"{odds_words(learning.instead_odds)}. Those names are imitations."
+        f"{odds_words(learning.instead_odds)}. Those names may be imitations."
     )
 
 

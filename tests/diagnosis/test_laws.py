@@ -149,7 +149,7 @@ def test_effects_that_explain_nothing_give_way_to_the_law(stylus) -> None:
     end = fit_run(start.run, Model(model.chain, (*model.effects, *wrong)))
     found = learn_remainder(start, end)
     assert list(found.instead_of) == wrong
-    assert found.instead_odds > POLICY.class_odds
+    assert found.instead_odds > POLICY.shorter
     assert len(found.after.model.effects) == len(model.effects) + 1
 
 
