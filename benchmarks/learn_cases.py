@@ -2,6 +2,7 @@
 
     python benchmarks/learn_cases.py DIR [DIR ...]          folders of cases: run.csv, run_test.csv
     python benchmarks/learn_cases.py --make 17 --seed 1     exactly simulated, a family each
+    python benchmarks/learn_cases.py --two 8 --seed 1       two laws at once
     python benchmarks/learn_cases.py --empty 20 --seed 1    nothing hidden: no law may be found
 
 The second run is judged with the set-ups and the ordinary model refitted there: what the learnt law
@@ -14,6 +15,7 @@ import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from harness import cases, parser_of  # puts the simulator on the path
@@ -23,7 +25,7 @@ from simulator_laws import FAMILIES, law_case
 
 from matstd.diagnosis.laws import Learning, learn_laws
 from matstd.twin.files import read_run
-from matstd.twin.laws import carrier_of
+from matstd.twin.laws import Law, carrier_of
 from matstd.twin.record import Run, without_copies
 from matstd.twin.units import UM
 
@@ -68,9 +70,21 @@ def variable(name: str) -> str:
     return NAMES.get(name, "T-" + name[2:] if name.startswith("T_") else name)
 
 
-def is_alike(found: Learning, name: str) -> bool:
-    """Whether the carrier that was found does what another one does at every touch."""
-    law, touches = found.laws[0].law, found.before.run.touches
+def is_right(found: Learning, hidden: dict[str, Any], law: Law) -> tuple[bool, bool, bool]:
+    """Whether carrier, variables and family of a law are those of a hidden one."""
+    families = hidden.get("shapes") or [hidden.get("shape", "")]
+    family = "*".join(sorted(f.shape.word for f in law.factors))
+    alike = [hidden["carrier"], *(a[0] for a in hidden.get("carriers_alike", []))]
+    return (
+        any(is_alike(found, law, name) for name in alike),
+        {f.driver.name for f in law.factors} == {variable(v) for v in hidden["variables"]},
+        family in ["*".join(sorted(words.split("*"))) for words in families],
+    )
+
+
+def is_alike(found: Learning, law: Law, name: str) -> bool:
+    """Whether the carrier of a law does what another one does at every touch."""
+    touches = found.before.run.touches
     if name.startswith("shift") and law.carrier.name.startswith("shift"):
         return True
     try:
@@ -98,22 +112,14 @@ def score(folder: Path) -> Score:
     if free.exists():
         plain = without_copies(read_run(free))
         true = left_of(plain, plain.deviation, Ordinary(plain.touches))
-    hidden = truth["hidden"][0] if truth["hidden"] else None
+    hidden = truth["hidden"]
     names = [one.law.name for one in found.laws]
-    right = [False] * 3
-    if hidden is not None and found.laws:
-        law = found.laws[0].law
-        families = hidden.get("shapes") or [hidden.get("shape", "")]
-        family = "*".join(sorted(f.shape.word for f in law.factors))
-        alike = [hidden["carrier"], *(a[0] for a in hidden.get("carriers_alike", []))]
-        right = [
-            any(is_alike(found, name) for name in alike),
-            {f.driver.name for f in law.factors} == {variable(v) for v in hidden["variables"]},
-            family in ["*".join(sorted(words.split("*"))) for words in families],
-        ]
-    elif hidden is None:
-        right = [not names] * 3
-    told = "-" if hidden is None else f"{hidden['family']} {hidden['carrier']}"
+    right = [not names] * 3
+    if hidden:  # each hidden law is right if a learnt one is
+        each = [[is_right(found, law, one.law) for one in found.laws] for law in hidden]
+        best = [max(marks, default=(False,) * 3) for marks in each]
+        right = [all(marks) for marks in zip(*best, strict=True)]
+    told = " + ".join(f"{law['family']} {law['carrier']}" for law in hidden) or "-"
     return Score(folder.name, told, ", ".join(names) or "-", *right, none, learnt, true, seconds)
 
 
@@ -122,8 +128,12 @@ def make(families: list[str | None], seed: int, into: Path) -> list[Path]:
     out = []
     for i, family in enumerate(families):
         label = list(MACHINES)[(seed + i) % len(MACHINES)]
-        label = "hsm600u" if family == "harmonic_by_direction" else label
-        texts = law_case(np.random.default_rng([seed, i]), label, family)
+        label = "hsm600u" if "harmonic_by_direction" in (family or "") else label
+        try:
+            texts = law_case(np.random.default_rng([seed, i]), label, family)
+        except ValueError as invisible:  # a power law over a short travel
+            print(f"left out: {invisible}")
+            continue
         folder = into / f"{family or 'empty'}_{label}_{i}"
         folder.mkdir(parents=True)
         for name, text in zip(("run", "run_test", "run_test_free"), texts, strict=False):
@@ -152,13 +162,15 @@ def main() -> None:
     parser = parser_of(__doc__)
     parser.add_argument("folders", nargs="*", type=Path)
     parser.add_argument("--make", type=int, default=0, help="number of simulated cases")
+    parser.add_argument("--two", type=int, default=0, help="number of cases with two laws at once")
     parser.add_argument("--empty", type=int, default=0, help="number of cases with nothing hidden")
     parser.add_argument("--seed", type=int, default=1)
     a = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch:
         folders = cases(a.folders, needed="run_test.csv")
         named = [FAMILIES[i % len(FAMILIES)] for i in range(a.make)]
-        folders += make([*named, *[None] * a.empty], a.seed, Path(scratch))
+        pairs = [f"{FAMILIES[(5 * i) % 17]}+{FAMILIES[(5 * i + 8) % 17]}" for i in range(a.two)]
+        folders += make([*named, *pairs, *[None] * a.empty], a.seed, Path(scratch))
         scores = []
         for folder in folders:
             scores.append(score(folder))

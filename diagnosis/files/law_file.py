@@ -39,7 +39,11 @@ def law_table(learning: Learning, run_name: str, second: SecondRun | None = None
     }
     if learning.refused is not None:
         refused = learning.refused
-        table["refused"] = {"law": refused.law.name, "log_evidence": refused.score}
+        table["refused"] = {
+            "law": refused.law.name,
+            "log_evidence": refused.score,
+            "why": learning.refusal.value if learning.refusal else "",
+        }
     if learning.instead_of:
         table["instead_of"] = _instead(learning)
     if second is not None:
@@ -103,7 +107,9 @@ def _law(learning: Learning, one: LearntLaw, effect: str) -> dict[str, Any]:
         "amplitudes": [_amplitude(a) for a in amplitudes(learning, one.law)],
         "parameters": [_place(p) for p in places(learning, one.law)],
         "log_evidence": one.score,
-        "log_evidence_of_curve": one.curve if np.isfinite(one.curve) else None,
+        "log_evidence_of_curve": _finite(one.curve),
+        "unrecorded_drift_log_odds_against": _finite(one.score - one.drift),
+        "noise_with_memory_log_odds_against": _finite(one.score - one.memory),
         "library": None
         if one.library is None
         else {
@@ -116,6 +122,10 @@ def _law(learning: Learning, one: LearntLaw, effect: str) -> dict[str, Any]:
             for r in one.rivals[: policy.most_rivals]
         ],
     }
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None
 
 
 def _plain(law: Law) -> dict[str, float]:

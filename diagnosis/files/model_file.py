@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from matstd.diagnosis.files.curve_table import CurveEntry
 from matstd.diagnosis.files.determined import Determined, DeterminedEntry
 from matstd.diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
 from matstd.diagnosis.regression import Memory
@@ -118,6 +119,7 @@ class ModelTable(Table):
     source: SourceEntry
     effect: list[EffectEntry]
     covariance: list[list[float]]
+    curve: list[CurveEntry] = Field(default_factory=list)
     from_inner: list[list[float]] = Field(default_factory=list)
     determined: list[DeterminedEntry] = Field(default_factory=list)
 

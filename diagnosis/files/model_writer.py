@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from matstd.diagnosis.files.curve_table import curve_entries
 from matstd.diagnosis.files.determined import Determined, determined_text
 from matstd.diagnosis.files.model_file import (
     FORMAT,
@@ -87,11 +88,14 @@ def model_text(
         factors += [factor for _, factor in keys]
         entries.append(entry)
     scale = np.array(factors)
-    shown = L @ learnt.covariance @ L.T / np.outer(scale, scale)
+    covariance = L @ learnt.covariance @ L.T
+    shown = covariance / np.outer(scale, scale)
+    curves = curve_entries(standing(fit.model), theta, covariance)
     tables = {
         "machine": _machine(fit.model.chain),
         "source": _source(fit, run_name, before, made_with, held_out),
         "effect": entries,
+        **({"curve": curves} if curves else {}),
     }
     # top-level keys stand before tables in TOML, so the covariance goes before what it is about
     root = _root(L @ learnt.from_inner / scale[:, None])

@@ -6,6 +6,7 @@ remainder depends on (`screening`), the grammar of shapes makes formulas of them
 formula is kept where it predicts at least as well as the curve (`search`).
 """
 
+from matstd.diagnosis.laws.acceptance import HeldOut, Refusal
 from matstd.diagnosis.laws.estimates import (
     Estimate,
     SecondRun,
@@ -16,7 +17,6 @@ from matstd.diagnosis.laws.estimates import (
     second_run,
 )
 from matstd.diagnosis.laws.learn import (
-    HeldOut,
     Learning,
     LearntLaw,
     Rival,
@@ -32,6 +32,7 @@ __all__ = [
     "LawPolicy",
     "Learning",
     "LearntLaw",
+    "Refusal",
     "Rival",
     "SecondRun",
     "amplitudes",

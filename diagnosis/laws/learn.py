@@ -5,29 +5,30 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.laws.beginning import Beginning, log_odds
+from matstd.diagnosis.laws.acceptance import (
+    HeldOut,
+    Refusal,
+    held_out,
+    memory_left,
+    memory_score,
+    predicts_better,
+    stands_beside_memory,
+)
+from matstd.diagnosis.laws.beginning import Beginning
 from matstd.diagnosis.laws.library import LibraryEffect, nearest_of_library
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
 from matstd.diagnosis.laws.search import Searched, search_law
 from matstd.diagnosis.laws.space import Space
-from matstd.diagnosis.policy import POLICY as DIAGNOSIS
-from matstd.diagnosis.regression import Memory, left_out, likely_memory
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.frames import Array
 from matstd.twin.laws import Carrier, Law
 from matstd.twin.model import Effect, Model, columns
 from matstd.twin.record import Run
 
-IntArray = NDArray[np.int64]
-
 MIN_TOUCHES = 30
 """Fewer touches than this leave no law that could be distinguished from another."""
-
-TIME_BLOCKS, PLACE_BLOCKS = 10, 5
-"""Blocks of time, and of the range of a variable, that are left out one after the other."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,16 +52,20 @@ class LearntLaw:
         alike: Carriers that do the same at every touch of this run.
         score: Log evidence that it gains, all charges taken off.
         curve: That of the best law without a formula.
+        drift: That of a driver which was not recorded but is smooth in time.
         rivals: Other laws, the nearest first; those within the policy's odds are its class.
         library: The effect of the library that explains most of the same; None without any.
+        memory: Log evidence of noise that remembers in the place of the law.
     """
 
     law: Law
     alike: tuple[Carrier, ...]
     score: float
     curve: float
+    drift: float
     rivals: tuple[Rival, ...]
     library: LibraryEffect | None = None
+    memory: float = -np.inf
 
     @property
     def is_in_library(self) -> bool:
@@ -92,21 +97,6 @@ def _what(law: Law) -> tuple[str, ...]:
 
 
 @dataclass(frozen=True, eq=False)
-class HeldOut:
-    """Error of touches that were left out, without and with the laws.
-
-    Attributes:
-        what: "poses", "times", or a variable whose range was cut into blocks.
-        before: Root mean square error with the model alone, mm.
-        after: With the laws, mm.
-    """
-
-    what: str
-    before: float
-    after: float
-
-
-@dataclass(frozen=True, eq=False)
 class Learning:
     """What a model lacked, as laws.
 
@@ -115,7 +105,8 @@ class Learning:
         after: With them; the same where there are none.
         tangent: With the displacements of their parameters besides, which gives uncertainties.
         laws: Those that were learnt, in their order.
-        refused: The best law where none was accepted; None where nothing at all was found.
+        refused: The first law that was not kept; None where nothing at all was found.
+        refusal: Why it was not.
         held_out: Errors of touches left out.
         instead_of: Effects of the library in whose place the laws stand, since they explain the run
             better; empty where the laws stand beside every effect of the model.
@@ -127,6 +118,7 @@ class Learning:
     tangent: Fit
     laws: tuple[LearntLaw, ...]
     refused: LearntLaw | None
+    refusal: Refusal | None
     held_out: tuple[HeldOut, ...]
     policy: LawPolicy
     instead_of: tuple[Effect, ...] = ()
@@ -184,29 +176,39 @@ def learn_laws(run: Run, model: Model | None = None, policy: LawPolicy = POLICY)
 
 
 @one_blas_thread()
-def learn_beside(start: Beginning, policy: LawPolicy = POLICY) -> Learning:
-    """Laws that explain what a fitted model leaves."""
+def learn_beside(
+    start: Beginning, policy: LawPolicy = POLICY, is_searched: bool = False
+) -> Learning:
+    """Laws that explain what a fitted model leaves.
+
+    Args:
+        is_searched: Whether effects of the library were looked for before: then one that comes near
+            a law takes nothing from it.
+    """
     white = replace(start, memory=None)
-    current, refused = start.fit, None
+    current, refused, refusal = start.fit, None, None
     laws: list[LearntLaw] = []
     for _ in range(policy.most_laws if int(current.used.sum()) >= MIN_TOUCHES else 0):
         searched = search_law(Space.of(current), policy)
         best = _learnt(searched)
         if best is None:
             break
-        fit = white.fitted([*(one.law for one in laws), best.law])
-        if best.score < policy.min_score or not predicts_better(current, fit, policy):
-            refused = best
-            break
         learnt = [one.law for one in laws]
-        if not _stands_beside_memory(start, learnt, best, (current, fit), policy):
+        fit = white.fitted([*learnt, best.law])
+        refusal = _refusal(start, learnt, best, (current, fit), policy)
+        if refusal is None:
+            best = replace(
+                best, library=nearest_of_library(searched.space), memory=memory_score(current)
+            )
+            refusal = _by_rival(best, is_searched)
+        if refusal is not None:
             refused = best
             break
-        laws.append(replace(best, library=nearest_of_library(searched.space)))
+        laws.append(best)
         current = fit
     learnt = [one.law for one in laws]
     if start.memory is not None and laws:
-        start = replace(start, memory=_memory_left(current, start.memory))
+        start = replace(start, memory=memory_left(current, start.memory))
         current = start.fitted(learnt, gross=current.gross)
     return Learning(
         beginning=start,
@@ -214,32 +216,38 @@ def learn_beside(start: Beginning, policy: LawPolicy = POLICY) -> Learning:
         tangent=start.fitted(learnt, True) if laws else start.fit,
         laws=tuple(laws),
         refused=refused,
-        held_out=tuple(_held_out(start.fit, current, learnt)),
+        refusal=refusal,
+        held_out=tuple(held_out(start.fit, current, learnt)),
         policy=policy,
     )
 
 
-def _stands_beside_memory(
+def _refusal(
     start: Beginning,
     laws: Sequence[Law],
     best: LearntLaw,
     white: tuple[Fit, Fit],
     policy: LawPolicy,
-) -> bool:
-    """Whether a law explains more than noise does that remembers, where there is such noise."""
-    if start.memory is None:
-        return True
-    charged = log_odds(white[1], white[0], 0.0) - best.score
-    after = start.fitted([*laws, best.law])
-    return log_odds(after, start.fitted(laws, gross=after.gross), charged) > policy.min_score
+) -> Refusal | None:
+    """Why a law is not kept beside others; None where it predicts and is beyond chance.
+
+    Args:
+        white: Fits without and with the law, in white noise.
+    """
+    if best.score < policy.min_score:
+        return Refusal.CHANCE
+    if not predicts_better(*white, policy):
+        return Refusal.PREDICTION
+    if not stands_beside_memory(start, laws, best.law, best.score, white, policy):
+        return Refusal.MEMORY
+    return None
 
 
-def _memory_left(fit: Fit, before: Memory) -> Memory | None:
-    """What the noise still remembers with the laws in the model; most of it was the laws."""
-    memory, gain = likely_memory(fit.run.touches, fit.u, fit.used, fit.X, fit.y)
-    if gain < DIAGNOSIS.memory_gain:
-        return None
-    return replace(memory, is_filtered=before.is_filtered)
+def _by_rival(best: LearntLaw, is_searched: bool) -> Refusal | None:
+    """Which rival of another kind explains more than a law; None for none."""
+    if best.memory > best.score:
+        return Refusal.MEMORY
+    return Refusal.LIBRARY if best.is_in_library and not is_searched else None
 
 
 def _learnt(searched: Searched) -> LearntLaw | None:
@@ -258,6 +266,7 @@ def _learnt(searched: Searched) -> LearntLaw | None:
         alike=tuple(alike),
         score=first.score,
         curve=searched.curve,
+        drift=searched.drift,
         rivals=tuple(sorted(rivals, key=lambda r: r.log_odds)),
     )
 
@@ -271,70 +280,3 @@ def _usual(law: Law, alike: Sequence[Carrier]) -> Carrier:
             if symbol is not None and symbol.link == axis and not symbol.is_angular:
                 return carrier
     return law.carrier
-
-
-def predicts_better(before: Fit, after: Fit, policy: LawPolicy) -> bool:
-    """Whether touches left out, by poses and by times, are predicted better with a law.
-
-    Freed of the uncertainty of the prediction: where a block takes most of a set-up with it, plain
-    errors are those of a set-up that is extrapolated, with and without a law.
-    """
-    for groups in (pose_groups(before), time_groups(before)):
-        was, now = _own_error(before, groups), _own_error(after, _same(groups, after))
-        if now > (1.0 - policy.least_gain) * was:
-            return False
-    return True
-
-
-def pose_groups(fit: Fit) -> list[IntArray]:
-    """Rows of the run, by table pose in every set-up, as the fit has them."""
-    rows = np.flatnonzero(fit.used)
-    return [rows[g] for g in fit.groups]
-
-
-def time_groups(fit: Fit) -> list[IntArray]:
-    """Rows of the run in blocks one after the other."""
-    return list(np.array_split(np.flatnonzero(fit.used), TIME_BLOCKS))
-
-
-def _same(groups: Sequence[IntArray], after: Fit) -> list[IntArray]:
-    """The same blocks of rows, as far as another fit uses them."""
-    return [g[after.used[g]] for g in groups]
-
-
-def _own_error(fit: Fit, groups: Sequence[IntArray]) -> float:
-    """Error of rows left out over what their uncertainty explains, in units of the stated noise."""
-    inside = _within(fit, groups)
-    return left_out(fit.solution.Q, fit.solution.residual, inside).rms * fit.noise.factor
-
-
-def _within(fit: Fit, groups: Sequence[IntArray]) -> list[IntArray]:
-    """Blocks as numbers within the rows that the fit uses."""
-    place = np.full(len(fit.used), -1)
-    place[fit.used] = np.arange(int(fit.used.sum()))
-    inside = [place[g][place[g] >= 0] for g in groups]
-    return [g for g in inside if len(g)]
-
-
-def _error(fit: Fit, groups: Sequence[IntArray]) -> float:
-    """Root mean square error of rows left out block by block, mm."""
-    inside = _within(fit, groups)
-    found = left_out(fit.solution.Q, fit.solution.residual, inside)
-    rows = np.concatenate(inside)
-    return float(np.sqrt(np.mean((found.error * fit.u[fit.used])[rows] ** 2)))
-
-
-def _held_out(before: Fit, after: Fit, laws: Sequence[Law]) -> list[HeldOut]:
-    """Errors of touches left out: by poses, by times, and by blocks of every variable of a law."""
-    blocks = {"poses": pose_groups(before), "times": time_groups(before)}
-    touches = before.run.touches
-    for driver in dict.fromkeys(f.driver for law in laws for f in law.factors):
-        rows = np.flatnonzero(before.used)
-        x = driver.values(touches)[rows]
-        if len(np.unique(x)) > PLACE_BLOCKS:
-            order = rows[np.argsort(x, kind="stable")]
-            blocks[driver.name] = list(np.array_split(order, PLACE_BLOCKS))
-    return [
-        HeldOut(what, _error(before, groups), _error(after, _same(groups, after)))
-        for what, groups in blocks.items()
-    ]

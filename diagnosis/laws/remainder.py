@@ -24,7 +24,7 @@ def learn_remainder(
 
     Effects that a search named may imitate a law that the library lacks. Laws are therefore learnt
     twice: beside these effects, and in their place. Those in their place are returned where their
-    odds against effects and laws together exceed those within which laws form a class.
+    odds against effects and laws together exceed those below which the shorter formula is taken.
 
     Args:
         start: Of the model without the effects that were found.
@@ -32,14 +32,14 @@ def learn_remainder(
         known: What was known of the starting model from another run.
     """
     base = start.model
-    beside = learn_beside(Beginning.of_fit(end, base, known), policy)
+    beside = learn_beside(Beginning.of_fit(end, base, known), policy, True)
     names = {e.name for e in base.effects}
     found = tuple(e for e in end.model.effects if e.name not in names)
     if not found:
         return beside
-    alone = learn_beside(Beginning.of_fit(start, base, known), policy)
+    alone = learn_beside(Beginning.of_fit(start, base, known), policy, True)
     odds = _odds(alone, beside, found) if alone.laws else -np.inf
-    if odds < policy.class_odds:
+    if odds < policy.shorter:
         return beside
     return replace(alone, instead_of=found, instead_odds=odds)
 

@@ -49,6 +49,9 @@ two shapes of that variable is looked for."""
 UNUSUAL = ("power", "saturation", "dead-band", "pulse", "saw", "quad-about")
 """Shapes that are charged for being met seldom."""
 
+DRIFT = "time"
+"""Variable of a driver that nobody recorded: whatever it is, it is smooth in time."""
+
 QUICK = 8.0
 """Periods within the range from which a sine is quick."""
 
@@ -66,12 +69,14 @@ class Searched:
     Attributes:
         candidates: Laws with refined parameters, the best first; the first is the choice.
         curve: Best log evidence of a law without a formula, charged as the candidates are.
+        drift: The same of a curve over time alone: a driver that is smooth and was not recorded.
     """
 
     space: Space
     field: Field
     candidates: tuple[Candidate, ...]
     curve: float
+    drift: float
 
 
 def search_law(space: Space, policy: LawPolicy) -> Searched:
@@ -90,13 +95,21 @@ def search_law(space: Space, policy: LawPolicy) -> Searched:
         found += product_formulas(grids, f.bearer, f.drivers, 4)
     promising = sorted(_distinct(found), key=lambda c: -_charged(c, field, policy).score)
     polished = [_charged(refined(space, field, c), field, policy) for c in promising[:REFINED]]
-    curves = _curves(space, field, one, polished, policy)
+    drifts = [f for f in one if f.drivers[0].name == DRIFT][:1]
+    beside = [f for f in drifts if all(f is not other for other in one[:3])]
+    curves = _curves(space, field, [*one[:3], *beside], polished, policy)
     ranked = sorted(polished, key=lambda c: -c.score)
     best_curve = max((c.score for c in curves), default=-np.inf)
     if not ranked or best_curve > ranked[0].score + policy.curve_margin:
         ranked = sorted([*curves, *ranked], key=lambda c: -c.score)
     ranked = _shorter_first(ranked, policy)
-    return Searched(space=space, field=field, candidates=tuple(ranked), curve=float(best_curve))
+    return Searched(
+        space=space,
+        field=field,
+        candidates=tuple(ranked),
+        curve=float(best_curve),
+        drift=drifts[0].evidence - policy.tried_singles if drifts else -np.inf,
+    )
 
 
 def _worth(found: Sequence[Found], beside: Sequence[Found], share: float, most: int) -> list[Found]:
@@ -175,7 +188,7 @@ def _curves(
 ) -> list[Candidate]:
     """Laws without a formula: the best curves, alone or times a factor that a formula has."""
     out = []
-    for f in one[:3]:
+    for f in one:
         if len(np.unique(field.used(f.drivers[0], space))) > 2:
             law = with_curve(space, field, f.bearer, f.drivers[0], f.length, f.size)
             out.append(_curve_candidate(space, f.bearer, law, f.evidence - policy.tried_singles))

@@ -15,6 +15,10 @@ from matstd.twin.units import DEG, UM, URAD
 POINTS = 400
 """Points of a curve that are drawn."""
 
+BEYOND = 0.3
+"""Share of the range by which a curve without a formula is drawn beyond it: there its uncertainty
+comes back."""
+
 MIN_LEVER = 0.2
 """Share of the largest lever below which a touch shows noise rather than the law."""
 
@@ -60,7 +64,8 @@ def law_curve(learning: Learning, law: Law, k: int) -> LawCurve:
     x = driver.values(fit.run.touches)
     used = x[fit.used]
     label, per = axis_label(driver, used)
-    grid = np.linspace(float(used.min()), float(used.max()), POINTS)
+    beyond = BEYOND * float(np.ptp(used)) if law.factors[k].shape.word == "curve" else 0.0
+    grid = np.linspace(float(used.min()) - beyond, float(used.max()) + beyond, POINTS)
     if driver.nature == "sign":
         grid = np.array([-1.0, 1.0])
     value, u = curve_of(learning, law, k, grid)

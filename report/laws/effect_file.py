@@ -45,8 +45,9 @@ class {name}(Declared):
 )
 '''
 
-CURVE_KNOTS = 25
-"""Knots of a table that stands for a curve without a formula."""
+CURVE_KNOTS, CURVE_FLANKS = 41, 3.0
+"""Knots of a table that stands for a curve without a formula, and correlation lengths by which it
+goes beyond the domain: there it has died away."""
 
 
 def effect_text(learning: Learning, run: str) -> str:
@@ -211,7 +212,9 @@ def _table(learning: Learning, law: Law, factor: int) -> str:
     from matstd.diagnosis.laws import curve_of
 
     start = 0 if factor == 0 else len(law.factors[0].shape.places)
-    low, high = law.places[start], law.places[start + 1]
+    low, high, length, _ = law.places[start : start + 4]
+    flank = CURVE_FLANKS * length * (high - low)
+    low, high = low - flank, high + flank
     x = np.linspace(low, high, CURVE_KNOTS)
     y, _ = curve_of(learning, law, factor, x)
     y = y / max(float(np.abs(y).max()), 1e-300)

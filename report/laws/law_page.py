@@ -20,6 +20,7 @@ from matstd.report.laws.law_words import (
     odds_words,
     place_words,
     rival_sentence,
+    rivals_sentence,
     second_run_sentence,
     variable_words,
 )
@@ -139,7 +140,7 @@ def _law_sections(learning: Learning, one: LearntLaw, number: int) -> list[Secti
         draw_law(learning, law),
     )
     table = Table(("parameter", "value"), numbers, "Numbers of the law")
-    said = [looks_like(law), rival_sentence(one), library_sentence(one)]
+    said = [looks_like(law), rival_sentence(one), library_sentence(one), rivals_sentence(one)]
     first = [f"**{formula_words(law)}**", *filter(None, said)]
     return [
         Section(

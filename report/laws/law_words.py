@@ -7,6 +7,7 @@ from matstd.diagnosis.laws import (
     Estimate,
     Learning,
     LearntLaw,
+    Refusal,
     SecondRun,
     amplitudes,
     places,
@@ -224,7 +225,7 @@ def instead_sentence(learning: Learning) -> str:
     return (
         f"{what} the run better than {names}, also with a law beside "
         f"{'them' if len(learning.instead_of) > 1 else 'it'}: odds "
-        f"{odds_words(learning.instead_odds)}. Those names are imitations."
+        f"{odds_words(learning.instead_odds)}. Those names may be imitations."
     )
 
 
@@ -232,7 +233,7 @@ def law_notes(learning: Learning) -> list[str]:
     """What is to be known of the laws: the library, what they look like, the error elsewhere."""
     out = []
     for one in learning.laws:
-        out += [library_sentence(one), looks_like(one.law)]
+        out += [library_sentence(one), rivals_sentence(one), looks_like(one.law)]
     if learning.laws:
         out.append(held_out_sentence(learning))
     return [line for line in out if line]
@@ -259,14 +260,30 @@ def odds_words(log_odds: float) -> str:
     return f"{digits(value, 2) if value < 100 else f'{round(value, -1):.0f}'} : 1"
 
 
+def rivals_sentence(one: LearntLaw) -> str:
+    """How the law compares with what has no carrier or no variable; empty for a law of time."""
+    if any(f.driver.nature == "time" for f in one.law.factors):
+        return ""
+    odds = odds_words(one.score - max(one.drift, 0.0))
+    return f"Odds against a driver that was not recorded but is smooth in time: {odds}."
+
+
 def no_law_sentence(learning: Learning) -> str:
-    """What is said where no law was learnt."""
+    """What is said where no law was learnt, and why the best one was not kept."""
     noise = microns(float(learning.before.rms))
     touches = int(learning.before.used.sum())
-    return (
-        f"No law: what the model leaves of {touches} touches ({noise} rms) follows no carrier and "
-        "variable beyond chance."
-    )
+    left = f"what the model leaves of {touches} touches ({noise} rms)"
+    best = learning.refused
+    if best is None or learning.refusal in (None, Refusal.CHANCE):
+        return f"No law: {left} follows no carrier and variable beyond chance."
+    name = formula_words(best.law)
+    if learning.refusal is Refusal.LIBRARY:
+        return f"No law beside the library. {library_sentence(best)}"
+    if learning.refusal is Refusal.MEMORY:
+        return (
+            f"No law: noise that remembers from touch to touch explains {left} better than {name}."
+        )
+    return f"No law: touches left out are not predicted better with the best one, {name}."
 
 
 def held_out_sentence(learning: Learning) -> str:

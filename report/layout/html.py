@@ -29,6 +29,9 @@ _MARKS = (
     (re.compile(r"\n"), "<br>"),
 )
 _NEARLY_WHITE = 248  # of 255
+PROSE = 60
+"""Characters from which a cell that begins with a number is a sentence, which is wrapped."""
+
 _NUMBER = re.compile(r"[<±+\-−]?\s?\d")
 
 
@@ -59,7 +62,7 @@ def rendered(page: Page, folder: Path) -> str:
     environment.filters |= {
         "marked": marked,
         "unmarked": unmarked,
-        "is_number": lambda cell: bool(_NUMBER.match(cell)),
+        "is_number": lambda cell: len(cell) < PROSE and bool(_NUMBER.match(cell)),
         "heading_rows": heading_rows,
         "numeric": numeric,
         "table_file": lambda table: files[id(table)],

@@ -3,6 +3,8 @@
 import json
 import subprocess
 import sys
+import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,15 +15,20 @@ from simulator_laws import law_case
 from matstd.api.diagnosing import compare, diagnose
 from matstd.cli import main
 from matstd.diagnosis.answer import Verdict
+from matstd.diagnosis.files import model_of, read_model, write_model
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.laws import (
     POLICY,
+    Refusal,
     amplitudes,
     learn_laws,
     learn_remainder,
     places,
     second_run,
 )
+from matstd.diagnosis.laws.learn import _by_rival as weighed
+from matstd.diagnosis.laws.library import LibraryEffect
+from matstd.report.laws import no_law_sentence
 from matstd.report.verdict import part_lines
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.model import Model
@@ -99,6 +106,22 @@ def test_the_command_writes_an_effect_that_the_other_commands_take(
     assert parse_effect("learnt-law", stylus[1][0].touches.chain).name == "learnt-law"
 
 
+def test_rivals_of_other_kinds_are_weighed_by_the_same_evidence(stylus) -> None:
+    _, (run, *_), found = stylus
+    (one,) = found.laws
+    assert found.refusal is Refusal.CHANCE  # of a second law
+    assert one.memory < one.score  # a step is seen as a memory, too, but less well
+    assert one.drift < one.score
+    effect = parse_effect("backlash(X)", run.touches.chain)
+    better = replace(one, library=LibraryEffect(effect, one.score + 2.0))
+    assert weighed(one, False) is None
+    assert weighed(better, False) is Refusal.LIBRARY
+    assert weighed(better, True) is None  # a diagnosis has looked for it already
+    assert weighed(replace(one, memory=one.score + 1.0), True) is Refusal.MEMORY
+    none = replace(found, laws=(), refused=better, refusal=Refusal.LIBRARY)
+    assert 'matstd diagnose --add "backlash(X)"' in no_law_sentence(none)
+
+
 def test_a_diagnosis_learns_the_law_of_what_remains(stylus, tmp_path) -> None:
     _, (run, second, _), learnt = stylus
     found = diagnose(run, only=["backlash"])
@@ -126,8 +149,45 @@ def test_effects_that_explain_nothing_give_way_to_the_law(stylus) -> None:
     end = fit_run(start.run, Model(model.chain, (*model.effects, *wrong)))
     found = learn_remainder(start, end)
     assert list(found.instead_of) == wrong
-    assert found.instead_odds > POLICY.class_odds
+    assert found.instead_odds > POLICY.shorter
     assert len(found.after.model.effects) == len(model.effects) + 1
+
+
+def test_a_curve_is_saved_and_is_uncertain_where_it_has_not_been(stylus, tmp_path) -> None:
+    run = stylus[1][0]
+    q = run.touches.reading("Y")
+    near = run[q < np.quantile(q, 0.6)]
+    chain = run.touches.chain
+    low, high = (f(near.touches.reading("Y")) for f in (np.min, np.max))
+    size = 20.0 * UM
+    curve = parse_effect("law(EZY,curve Y)", chain).tuned(low, high, 0.2, size)
+    model = ordinary_model(chain)
+    fit = fit_run(near, Model(chain, (*model.effects, curve)))
+    write_model(tmp_path / "model.toml", fit, "near.csv")
+    saved = read_model(tmp_path / "model.toml")
+    text = (tmp_path / "model.toml").read_text(encoding="utf-8")
+    assert text.startswith('format = "model/2"')
+    (table,) = tomllib.loads(text)["curve"]
+    assert (table["carrier"], table["variable"], table["unit"]) == ("EZY", "Y", "um")
+    x, value, u = (np.array(table[key]) for key in ("x", "value", "u"))
+    inside = (x > low) & (x < high)
+    # by hand: Matern 3/2, its variance with the edge's share k^2 and what is new, 1 - k^2
+    z = np.sqrt(3.0) * (x[-1] - high) / (0.2 * (high - low))
+    k = (1.0 + z) * np.exp(-z)
+    edge = np.interp(high, x, u)
+    assert u[-1] == pytest.approx(np.hypot(k * edge, np.sqrt(1.0 - k**2) * size / UM), rel=0.02)
+    assert u[inside].max() < u[-1]
+    assert abs(value[-1]) < abs(np.interp(high, x, value)) + 1e-9
+    # the whole run reaches further: what is predicted there is as uncertain as the curve
+    plain = compare(run, model_of(fit_run(near, model))).u
+    wider = compare(run, saved).u / plain
+    far, known = (q > high + 0.2 * (high - low)), (q > low) & (q < high)
+    assert np.median(wider[far]) > 1.2 * np.median(wider[known])
+    u_again = np.linalg.norm(saved.model.columns(near.touches) @ saved.estimates.root, axis=1)
+    P = len(fit.model.parameters)
+    own = fit.model.columns(near.touches)
+    before = np.sqrt(np.einsum("np,pq,nq->n", own, fit.covariance[:P, :P], own))
+    np.testing.assert_allclose(u_again, before, rtol=1e-3)
 
 
 @pytest.mark.slow

@@ -149,13 +149,13 @@ FAMILIES = (
 
 
 def law_case(rng, label, family=None, signal_to_noise=(15.0, 60.0), poses=10):
-    """Texts of a run, of a second one, of the second one without the law, and the truth.
+    """Texts of a run, of a second one, of the second one without the laws, and the truth.
 
     Args:
         rng: Source of all that is random.
         label: Which machine.
-        family: Word of the law; None hides nothing.
-        signal_to_noise: Range from which its visibility is drawn.
+        family: Word of the law, of two at once with a plus between; None hides nothing.
+        signal_to_noise: Range from which the visibility of each is drawn.
         poses: Table poses of every set-up.
     """
     first, second = random_experiment(rng, label, poses), random_experiment(rng, label, poses)
@@ -164,27 +164,10 @@ def law_case(rng, label, family=None, signal_to_noise=(15.0, 60.0), poses=10):
     if family is not None:
         plain = run_text(first, probe(first, [], np.zeros(len(first.time))), False)
         ordinary = Ordinary(read_back(plain, MACHINES[label]).touches)
-        for _ in range(MOST_DRAWS):
-            law = families(rng, first.machine)[family]
-            effect = Hidden(f"?{family}", "unknown", law.act)
-            per_unit, _ = visible_size(first, effect, ordinary, STATED_NOISE)
-            effect.amplitude = rng.uniform(*signal_to_noise) / max(per_unit, 1e-9)
-            if effect.amplitude < effect.largest:
-                break
-        else:
-            raise ValueError(f"{family} is never visible on {label}")
+    for word in [] if family is None else family.split("+"):
+        effect, about = drawn(rng, first, word, signal_to_noise, ordinary, label)
         hidden.append(effect)
-        truth["hidden"].append(
-            {
-                "effect": effect.name,
-                "family": family,
-                "shapes": list(law.shapes),
-                "carrier": law.carrier,
-                "variables": list(law.variables),
-                "amplitude": round(float(effect.amplitude), 4),
-                "signal_to_noise": round(float(per_unit * effect.amplitude), 2),
-            }
-        )
+        truth["hidden"].append(about)
     noise, other = (rng.normal(0.0, STATED_NOISE, len(e.time)) for e in (first, second))
     return (
         run_text(first, probe(first, hidden, noise), False),
@@ -192,3 +175,25 @@ def law_case(rng, label, family=None, signal_to_noise=(15.0, 60.0), poses=10):
         run_text(second, probe(second, [], other), False),
         truth,
     )
+
+
+def drawn(rng, experiment, family, signal_to_noise, ordinary, label):
+    """One hidden law of a family that an amplitude which machines have makes visible."""
+    for _ in range(MOST_DRAWS):
+        law = families(rng, experiment.machine)[family]
+        effect = Hidden(f"?{family}", "unknown", law.act)
+        per_unit, _ = visible_size(experiment, effect, ordinary, STATED_NOISE)
+        effect.amplitude = rng.uniform(*signal_to_noise) / max(per_unit, 1e-9)
+        if effect.amplitude < effect.largest:
+            break
+    else:
+        raise ValueError(f"{family} is never visible on {label}")
+    return effect, {
+        "effect": effect.name,
+        "family": family,
+        "shapes": list(law.shapes),
+        "carrier": law.carrier,
+        "variables": list(law.variables),
+        "amplitude": round(float(effect.amplitude), 4),
+        "signal_to_noise": round(float(per_unit * effect.amplitude), 2),
+    }

@@ -79,7 +79,7 @@ def curve_waves(length: float) -> Array:
 
 
 def curve_columns(x: Array, low: float, high: float, length: float) -> Array:
-    """Waves of a smooth curve over its domain; beyond it stays what it is at the edge, (N, WAVES).
+    """Waves of a smooth curve over its domain, (N, WAVES); beyond it those at its edge.
 
     Reference:
         Solin and Sarkka, Statistics and Computing 30 (2020): Gaussian processes by waves.
@@ -89,7 +89,17 @@ def curve_columns(x: Array, low: float, high: float, length: float) -> Array:
 
 
 def _curve(x: Array, low: float, high: float, length: float, size: float) -> Sequence[Array]:
-    return list((size * curve_columns(x, low, high, length)).T)
+    """Waves within the domain; beyond it what was learnt dies away, and what was not comes back.
+
+    With d the distance from the edge the curve keeps ``k = (1 + z) exp(-z)``, ``z = sqrt(3) d/l``,
+    of its value there (the correlation of the same process), and two coefficients of their own,
+    which no touch within the domain determines, add the variance that is lost: ``1 - k^2``.
+    """
+    z = np.sqrt(3.0) * np.maximum(np.maximum(low - x, x - high), 0.0) / ((high - low) * length)
+    kept = (1.0 + z) * np.exp(-z)
+    new = size * np.sqrt(np.maximum(1.0 - kept**2, 0.0))
+    waves = size * kept[:, None] * curve_columns(x, low, high, length)
+    return [*waves.T, new * (x < low), new * (x > high)]
 
 
 def _gauss(x: Array, x0: float, width: float) -> Array:
@@ -235,8 +245,9 @@ SHAPES: dict[str, Shape] = {
                "(play(x, {w}) - {zero}) / {unit}",
                lambda x, zero, w, unit: (play(x, w) - zero) / unit, "zero", "w", "unit",
                remembers=True),
-        _several("curve", "smooth curve without a formula, flat beyond its domain", (), _curve,
-              ("low", "high", "length", "size"), tuple(f"c{k}" for k in range(WAVES))),
+        _several("curve", "smooth curve without a formula, dying away beyond its domain", (),
+              _curve, ("low", "high", "length", "size"),
+              (*(f"c{k}" for k in range(WAVES)), "below", "above")),
     )
 }  # fmt: skip
 """Every shape by its word; a new one is a line here and its grid in `matstd.twin.laws.grids`."""

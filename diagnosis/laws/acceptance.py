@@ -1,0 +1,148 @@
+"""Whether a law is kept: it must predict what was left out, and explain more than its rivals."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.laws.beginning import Beginning, log_odds
+from matstd.diagnosis.laws.policy import LawPolicy
+from matstd.diagnosis.policy import POLICY as DIAGNOSIS
+from matstd.diagnosis.regression import Memory, left_out, likely_memory
+from matstd.twin.laws import Law
+
+IntArray = NDArray[np.int64]
+
+TIME_BLOCKS, PLACE_BLOCKS = 10, 5
+"""Blocks of time, and of the range of a variable, that are left out one after the other."""
+
+MEMORY_PARAMETERS = 2
+"""Of noise that remembers: its correlation, and its kind."""
+
+
+class Refusal(Enum):
+    """Why the best law of a search was not kept."""
+
+    CHANCE = "its evidence is within chance"
+    PREDICTION = "touches left out are not predicted better with it"
+    MEMORY = "noise that remembers explains the run better"
+    LIBRARY = "an effect of the library explains it better"
+
+
+@dataclass(frozen=True, eq=False)
+class HeldOut:
+    """Error of touches that were left out, without and with the laws.
+
+    Attributes:
+        what: "poses", "times", or a variable whose range was cut into blocks.
+        before: Root mean square error with the model alone, mm.
+        after: With the laws, mm.
+    """
+
+    what: str
+    before: float
+    after: float
+
+
+def memory_score(fit: Fit) -> float:
+    """Log evidence that noise with memory gains over white noise, its parameters charged.
+
+    White noise that is larger than stated needs no rival of its own: every evidence is that of a
+    noise whose size the run determines.
+    """
+    _, gain = likely_memory(fit.run.touches, fit.u, fit.used, fit.X, fit.y)
+    return gain - 0.5 * MEMORY_PARAMETERS * float(np.log(max(fit.solution.dof, 2.0)))
+
+
+def stands_beside_memory(
+    start: Beginning,
+    laws: Sequence[Law],
+    law: Law,
+    score: float,
+    white: tuple[Fit, Fit],
+    policy: LawPolicy,
+) -> bool:
+    """Whether a law explains more than noise does that remembers, where there is such noise."""
+    if start.memory is None:
+        return True
+    charged = log_odds(white[1], white[0], 0.0) - score
+    after = start.fitted([*laws, law])
+    return log_odds(after, start.fitted(laws, gross=after.gross), charged) > policy.min_score
+
+
+def memory_left(fit: Fit, before: Memory) -> Memory | None:
+    """What the noise still remembers with the laws in the model; most of it was the laws."""
+    memory, gain = likely_memory(fit.run.touches, fit.u, fit.used, fit.X, fit.y)
+    if gain < DIAGNOSIS.memory_gain:
+        return None
+    return replace(memory, is_filtered=before.is_filtered)
+
+
+def predicts_better(before: Fit, after: Fit, policy: LawPolicy) -> bool:
+    """Whether touches left out, by poses and by times, are predicted better with a law.
+
+    Freed of the uncertainty of the prediction: where a block takes most of a set-up with it, plain
+    errors are those of a set-up that is extrapolated, with and without a law.
+    """
+    for groups in (pose_groups(before), time_groups(before)):
+        was, now = _own_error(before, groups), _own_error(after, _same(groups, after))
+        if now > (1.0 - policy.least_gain) * was:
+            return False
+    return True
+
+
+def pose_groups(fit: Fit) -> list[IntArray]:
+    """Rows of the run, by table pose in every set-up, as the fit has them."""
+    rows = np.flatnonzero(fit.used)
+    return [rows[g] for g in fit.groups]
+
+
+def time_groups(fit: Fit) -> list[IntArray]:
+    """Rows of the run in blocks one after the other."""
+    return list(np.array_split(np.flatnonzero(fit.used), TIME_BLOCKS))
+
+
+def _same(groups: Sequence[IntArray], after: Fit) -> list[IntArray]:
+    """The same blocks of rows, as far as another fit uses them."""
+    return [g[after.used[g]] for g in groups]
+
+
+def _own_error(fit: Fit, groups: Sequence[IntArray]) -> float:
+    """Error of rows left out over what their uncertainty explains, in units of the stated noise."""
+    inside = _within(fit, groups)
+    return left_out(fit.solution.Q, fit.solution.residual, inside).rms * fit.noise.factor
+
+
+def _within(fit: Fit, groups: Sequence[IntArray]) -> list[IntArray]:
+    """Blocks as numbers within the rows that the fit uses."""
+    place = np.full(len(fit.used), -1)
+    place[fit.used] = np.arange(int(fit.used.sum()))
+    inside = [place[g][place[g] >= 0] for g in groups]
+    return [g for g in inside if len(g)]
+
+
+def _error(fit: Fit, groups: Sequence[IntArray]) -> float:
+    """Root mean square error of rows left out block by block, mm."""
+    inside = _within(fit, groups)
+    found = left_out(fit.solution.Q, fit.solution.residual, inside)
+    rows = np.concatenate(inside)
+    return float(np.sqrt(np.mean((found.error * fit.u[fit.used])[rows] ** 2)))
+
+
+def held_out(before: Fit, after: Fit, laws: Sequence[Law]) -> list[HeldOut]:
+    """Errors of touches left out: by poses, by times, and by blocks of every variable of a law."""
+    blocks = {"poses": pose_groups(before), "times": time_groups(before)}
+    touches = before.run.touches
+    for driver in dict.fromkeys(f.driver for law in laws for f in law.factors):
+        rows = np.flatnonzero(before.used)
+        x = driver.values(touches)[rows]
+        if len(np.unique(x)) > PLACE_BLOCKS:
+            order = rows[np.argsort(x, kind="stable")]
+            blocks[driver.name] = list(np.array_split(order, PLACE_BLOCKS))
+    return [
+        HeldOut(what, _error(before, groups), _error(after, _same(groups, after)))
+        for what, groups in blocks.items()
+    ]
