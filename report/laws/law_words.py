@@ -148,19 +148,25 @@ def place_words(one: Estimate) -> str:
 def law_sentence(learning: Learning, one: LearntLaw) -> str:
     """What was learnt, in a sentence or two."""
     law = one.law
-    shapes = " times ".join(
-        f"{_SHAPES[f.shape.word]} over {variable_words(f.driver)}" for f in law.factors
-    )
-    size = _size(learning, law)
-    where = [place_words(p) for p in places(learning, law) if p.u is not None]
+    size, shapes = _size(learning, law), " times ".join(_shape_words(learning, law))
     alike = [c.name for c in one.alike]
     borne = (
         f", or {listed(alike, 'or')}, which this run cannot distinguish from it" if alike else ""
     )
-    details = f" ({', '.join(where)})" if where else ""
-    return (
-        f"{carrier_words(law.carrier)}{borne}: {size}, {shapes}{details}".replace("  ", " ") + "."
-    )
+    return f"{carrier_words(law.carrier)}{borne}: {size}, {shapes}".replace("  ", " ") + "."
+
+
+def _shape_words(learning: Learning, law: Law) -> list[str]:
+    """`a step over Y (x0 -19.8 ± 0.6 mm)` of every factor."""
+    left, out = places(learning, law), []
+    for factor in law.factors:
+        count = len(factor.shape.places)
+        own, left = left[:count], left[count:]
+        plain = [p._replace(name=p.name.removesuffix("-2")) for p in own if p.u is not None]
+        where = [place_words(p) for p in plain]
+        details = f" ({', '.join(where)})" if where else ""
+        out.append(f"{_SHAPES[factor.shape.word]} over {variable_words(factor.driver)}{details}")
+    return out
 
 
 def size_words(learning: Learning, law: Law) -> str:

@@ -139,7 +139,8 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         return (
             f"The model lacks {what}: {'; '.join(found)}{more}.{also} With {them} "
             f"{_fall(diagnosis)}{_elsewhere(diagnosis)}; the noise is "
-            f"{noise_words(diagnosis.fit)}.{_also_left(diagnosis)}{_covered(diagnosis)}"
+            f"{noise_words(diagnosis.fit)}.{_imitated(diagnosis)}{_also_left(diagnosis)}"
+            f"{_covered(diagnosis)}"
         )
     if diagnosis.verdict is Verdict.UNEXPLAINED:
         return _unexplained_sentence(diagnosis, [*named, *found])
@@ -170,6 +171,13 @@ def _elsewhere(diagnosis: Diagnosis) -> str:
     return f" (at other places expect {microns(promise.elsewhere)})"
 
 
+def _imitated(diagnosis: Diagnosis) -> str:
+    """That a learnt law explains the run better than the names; empty where none does."""
+    if diagnosis.laws is None or not diagnosis.laws.instead_of:
+        return ""
+    return " A learnt law explains the run better: these names may imitate it."
+
+
 def _also_left(diagnosis: Diagnosis) -> str:
     """What remains beside the names, as a sentence; empty for nothing."""
     left = diagnosis.parts.remains
@@ -196,7 +204,13 @@ def _unexplained_sentence(diagnosis: Diagnosis, added: Sequence[str]) -> str:
 
 
 def _nearest(diagnosis: Diagnosis) -> str:
-    """The effect nearest to the residual, with the error that it would leave; empty for none."""
+    """The learnt law or else the nearest effect, with the error it would leave; empty for none."""
+    if diagnosis.laws is not None and diagnosis.laws.laws and diagnosis.laws.held_out:
+        left_out = diagnosis.laws.held_out[0]
+        return (
+            f" A law was learnt of it: touches that were left out are predicted with "
+            f"{microns(left_out.after)} instead of {microns(left_out.before)}."
+        )
     if not diagnosis.nearest:
         return ""
     best, *others = diagnosis.nearest
