@@ -26,6 +26,12 @@ def diagnosis_meaning(result: Diagnosis) -> str:
             f"other states (warm, other direction, other place) differ from the prediction by "
             f"{before} rms; with it {touched}."
         )
+    if result.verdict is Verdict.UNEXPLAINED and result.laws is not None and result.laws.laws:
+        return (
+            "Something acts on the machine that no effect of the library accounts for. The learnt "
+            "law describes it and model.toml predicts with it, within the range that was probed. "
+            f"Without the law predictions are off by {after} rms."
+        )
     if result.verdict is Verdict.UNEXPLAINED:
         return (
             "Something acts on the machine that no effect of the library accounts for. "
