@@ -35,7 +35,7 @@ def drawn(rng: np.random.Generator, label: str, hard: bool):
 
 
 def usual(name: str, chain) -> float:
-    """Size of an effect that the library expects, in the unit in which amplitudes are told."""
+    """Size of an effect that the library expects, in the unit in which amplitudes are stated."""
     from matstd.diagnosis.fit import file_unit
     from matstd.twin.library import parse_effect
 
@@ -72,8 +72,8 @@ def one(job: tuple[int, float]):
     own = next((s for s in steps if s.effect.name == hidden["effect"]), None)
     size = next((r for r in own.reported if r.quantity == "amplitude"), None) if own else None
     found = listed(steps) or "-"
-    told = None if size is None else (size.value, size.u)
-    return job[0], hidden, found, result.verdict.value, right, told, seconds
+    sized = None if size is None else (size.value, size.u)
+    return job[0], hidden, found, result.verdict.value, right, sized, seconds
 
 
 def main() -> None:
@@ -82,8 +82,8 @@ def main() -> None:
     args = parser.parse_args()
     jobs = [(args.first + k, args.times) for k in range(args.runs)]
     results = in_processes(one, jobs, args.jobs)
-    for number, hidden, found, verdict, right, told, seconds in results:
-        size = "" if told is None else f", told {abs(told[0]):.5g} ± {told[1]:.2g}"
+    for number, hidden, found, verdict, right, sized, seconds in results:
+        size = "" if sized is None else f", size {abs(sized[0]):.5g} ± {sized[1]:.2g}"
         print(
             f"{mark(right)} {number:3} {hidden['effect']} "
             f"{hidden['amplitude']:.4g} ({hidden['signal_to_noise']:.0f} times the noise) -> "

@@ -13,6 +13,7 @@ from matstd.diagnosis.answer import (
 )
 from matstd.diagnosis.geometry import GeometryRow
 from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.residual import Shape
 from matstd.report.effects import effect_words
 from matstd.report.geometry import estimate_words, fault_sentences, quantity_name
 from matstd.report.laws import learnt_words
@@ -133,7 +134,8 @@ def _remains(part: Remainder, repeats: Repeatability) -> str:
     first = structure_words(part.patterns[0])
     others = [n for n in names if n not in first][:NAMED]
     also = f" (also {listed(others)})" if others else ""
-    return f"{words}; it {first}{also}"
+    it = "it " if part.patterns[0].shape in (Shape.SMOOTH, Shape.DRIVER) else ""
+    return f"{words}; {it}{first}{also}"
 
 
 def repeatability_words(found: Repeatability, scatter: float) -> str:
