@@ -129,6 +129,7 @@ def test_inner_parameters_are_found_with_their_uncertainty(case, diagnosed) -> N
     assert lobes.value == case(*key).truth["hidden"][0]["inner"]["lobes"]
 
 
+@pytest.mark.slow
 def test_two_at_once(case, diagnosed) -> None:
     d = diagnosed(*TWO)
     assert d.verdict is Verdict.MISSING

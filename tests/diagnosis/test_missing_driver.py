@@ -39,6 +39,7 @@ def test_a_recorded_driver_is_named(growing: Run) -> None:
     assert found.parts.named[0].against_drift > 0.0
 
 
+@pytest.mark.slow
 def test_no_other_sensor_is_named_where_the_driver_is_missing(growing: Run) -> None:
     run = without_sensor(growing, "artefact")
     found = diagnose(run)

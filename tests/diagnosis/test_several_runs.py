@@ -76,6 +76,7 @@ def test_the_ladder_tells_what_one_geometry_for_all_runs_would_be_worth(told) ->
         assert run.left_out > 2.0 * NOISE  # the machine of the other run is another one
 
 
+@pytest.mark.slow
 def test_where_nothing_changed_it_says_so_and_knows_more() -> None:
     runs = made(4, [{}, {}])
     both = diagnose(joined(runs))
