@@ -132,9 +132,15 @@ def design_lines(placement: Placement, workspace: Mapping[str, tuple[float, floa
 
 
 def identification_lines(placement: Placement, worst: WorstRegions) -> list[str]:
-    """What the freeform faces cost or gain in identification, detect, and miss."""
-    words = (identification_sentence(placement), proof_sentence(placement), blind_spots(placement))
-    return [line for line in (*words, regions_sentence(worst)) if line]
+    """Which features are built, and what the faces cost or gain, detect, and miss."""
+    words = (
+        family_line(placement),
+        identification_sentence(placement),
+        proof_sentence(placement),
+        blind_spots(placement),
+        regions_sentence(worst),
+    )
+    return [line for line in words if line]
 
 
 def identification_sentence(placement: Placement) -> str:
