@@ -119,8 +119,8 @@ def score(folder: Path) -> Score:
         each = [[is_right(found, law, one.law) for one in found.laws] for law in hidden]
         best = [max(marks, default=(False,) * 3) for marks in each]
         right = [all(marks) for marks in zip(*best, strict=True)]
-    told = " + ".join(f"{law['family']} {law['carrier']}" for law in hidden) or "-"
-    return Score(folder.name, told, ", ".join(names) or "-", *right, none, learnt, true, seconds)
+    planted = " + ".join(f"{law['family']} {law['carrier']}" for law in hidden) or "-"
+    return Score(folder.name, planted, ", ".join(names) or "-", *right, none, learnt, true, seconds)
 
 
 def make(families: list[str | None], seed: int, into: Path) -> list[Path]:

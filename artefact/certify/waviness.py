@@ -26,7 +26,7 @@ GAP = 2.0
 SPAN = 0.6
 """Smallest length of a line, as a share of the face."""
 
-MOST = 0.6
+MAX_SHARE_OF_LINES = 0.6
 """Share of the points of a face above which lines are no longer its exception: it was scanned."""
 
 
@@ -50,7 +50,7 @@ def dense_lines(uv: Array, half_size: tuple[float, float]) -> Lines:
         along = _on_lines(uv[:, axis], uv[:, 1 - axis], SPAN * 2.0 * half_size[axis])
         seen.append(bool(along.any()))
         on_line |= along
-    if on_line.mean() > MOST:
+    if on_line.mean() > MAX_SHARE_OF_LINES:
         on_line[:] = False
     return Lines(on_line, (seen[0], seen[1]))
 

@@ -44,7 +44,7 @@ def showing_touches(
         tried: Touches that can be made. Form errors of a face are part of their noise: touches are
             at different places, so that they hardly share them.
         places: Where bumps may be, readings of the linear axes, (K, 3), mm.
-        count: At most as many as places.
+        count: Number of touches, not above the number of places.
         at: Place of every touch that can be made, (N,); each is touched once.
         area: Of every place, (P,): each area gets its share, so that touches are spread.
     """

@@ -15,7 +15,7 @@ from matstd.twin.units import DAY
 FEWEST = 3
 """Occasions from which there is a chart; two are compared by a diagnosis of both."""
 
-MARGIN = 1.0
+SAME_FEATURE_WITHIN = 1.0
 """Distance between the touched parts of one feature beyond which it is another one, mm."""
 
 
@@ -135,7 +135,11 @@ def _check_places(one: Occasion, first: Occasion) -> None:
     """Refuse features of one name at other places: without a stamp they show another standard."""
     for name in one.places.keys() & first.places.keys():
         (low, high), (least, most) = one.places[name], first.places[name]
-        far = np.maximum(least - high, low - most) - np.maximum(high - low, most - least) - MARGIN
+        far = (
+            np.maximum(least - high, low - most)
+            - np.maximum(high - low, most - least)
+            - SAME_FEATURE_WITHIN
+        )
         if (far > 0.0).any():
             raise DesignError(
                 f"{one.name}: {name} was touched about {_point(low, high)} mm, expected "

@@ -17,7 +17,7 @@ from matstd.diagnosis.laws.space import MIN_OWN, Space
 from matstd.twin.frames import Array
 from matstd.twin.laws import SHAPES, Driver, Factor, Law, Shape, grid, shapes_of
 
-BLOCK = 2000
+COLUMNS_AT_A_TIME = 2000
 """Columns that are projected at a time."""
 
 MOST_STEPS = 400
@@ -107,8 +107,8 @@ def scan(grids: Grids, C: Array, driver: Driver, each: int = 1) -> list[tuple[Pa
     for shape, points, columns in grids.of(driver):
         explained = np.concatenate(
             [
-                _explained(space, C, bases, columns[:, :, at : at + BLOCK])
-                for at in range(0, columns.shape[2], BLOCK)
+                _explained(space, C, bases, columns[:, :, at : at + COLUMNS_AT_A_TIME])
+                for at in range(0, columns.shape[2], COLUMNS_AT_A_TIME)
             ]
         )
         for g in np.argsort(-explained)[:each]:

@@ -28,7 +28,7 @@ SURFACE_WAVES = 6
 
 SURFACE_LENGTH = 0.2
 
-MARGIN = 0.1
+DOMAIN_MARGIN = 0.1
 """Share of the range by which the domain of a curve exceeds the values on either side."""
 
 ALIKE = 0.99999
@@ -79,7 +79,7 @@ class Field:
         """Range of a variable with a margin."""
         x = self.x[driver.name]
         low, high = float(x.min()), float(x.max())
-        return low - MARGIN * (high - low), high + MARGIN * (high - low)
+        return low - DOMAIN_MARGIN * (high - low), high + DOMAIN_MARGIN * (high - low)
 
 
 def field_of(space: Space) -> Field:

@@ -50,7 +50,7 @@ UNUSUAL = ("power", "saturation", "dead-band", "pulse", "saw", "quad-about")
 """Shapes that are charged for being met seldom."""
 
 DRIFT = "time"
-"""Variable of a driver that nobody recorded: whatever it is, it is smooth in time."""
+"""Variable of an unrecorded driver, of which only smoothness in time is assumed."""
 
 QUICK = 8.0
 """Periods within the range from which a sine is quick."""

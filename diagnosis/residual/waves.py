@@ -26,7 +26,7 @@ OVERSAMPLING = 2.0
 MAX_FREQUENCIES = 800
 """Most scanned frequencies."""
 
-BLOCK = 64
+FREQUENCIES_AT_A_TIME = 64
 """Frequencies that are tried at a time."""
 
 REFINEMENT_POINTS = 8
@@ -71,7 +71,7 @@ def best_wave(effects: EffectSet, touches: Touches, rows: IntArray) -> Wave:
             columns=np.zeros((len(time), 0)),
         )
     highest = min(len(rows) / (MIN_PERIOD_TOUCHES * span), 1.0 / (MIN_PERIOD_STEPS * _step(time)))
-    count = int(min(MAX_FREQUENCIES, max(BLOCK, OVERSAMPLING * highest * span)))
+    count = int(min(MAX_FREQUENCIES, max(FREQUENCIES_AT_A_TIME, OVERSAMPLING * highest * span)))
     frequency = np.linspace(MIN_TURNS / span, max(highest, 1.0 / span), count)
     along = directions(touches)
     weights = {name: part[complement.used] / complement.u for name, part in along.items()}
@@ -103,7 +103,7 @@ def _scan(
 ) -> tuple[float, float, str]:
     """Largest fall of the objective by a wave, its frequency, and the direction it acts along."""
     best = (0.0, float(frequency[0]), next(iter(weights)))
-    for block in np.array_split(frequency, -(-len(frequency) // BLOCK)):
+    for block in np.array_split(frequency, -(-len(frequency) // FREQUENCIES_AT_A_TIME)):
         seen = _of_rows(effects, time, block, rows)
         for name, weight in weights.items():
             drop = _drops(effects, seen(weight), rows)

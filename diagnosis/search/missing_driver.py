@@ -3,7 +3,7 @@
 All temperatures of a workshop rise in the morning. Where the sensor that matters is missing, a law
 of another one describes some of what it did, with a coefficient that no material has and a
 prediction that fails the next day. So every body that may follow a temperature is also offered with
-a temperature that nobody recorded. It costs the freedom of a whole curve, so that a sensor that
+an unrecorded temperature. It costs the freedom of a whole curve, so that a sensor that
 does drive the body is preferred; it has no name and predicts nothing, so that it joins the patterns
 that remain.
 """

@@ -322,7 +322,7 @@ def _with_structure(
 def _without_drivers(
     library: Library, search: Search, chosen: EffectSubset
 ) -> tuple[Library, Search, EffectSubset, list[Structure]]:
-    """A result whose drivers that nobody recorded are patterns without a name."""
+    """A result in which unrecorded drivers are patterns without a name."""
     drifts = [m for m in chosen.members if is_unrecorded(m.effect)]
     found = [_as_pattern(search, chosen, m) for m in drifts]
     library = library.without(is_unrecorded)

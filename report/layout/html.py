@@ -19,7 +19,7 @@ from matstd.twin.files import write_whole
 from matstd.twin.versions import versions
 from matstd.twin.words import in_own_unit
 
-FEWEST = 3
+MIN_SECTIONS = 3
 """Sections from which a page has a table of contents."""
 
 _MARKS = (
@@ -74,7 +74,7 @@ def rendered(page: Page, folder: Path) -> str:
     return template.render(
         page=page,
         sections=sections,
-        contents=contents if len(contents) >= FEWEST else (),
+        contents=contents if len(contents) >= MIN_SECTIONS else (),
         versions=versions(),
     )
 

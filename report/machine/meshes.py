@@ -11,7 +11,7 @@ from matstd.twin.errors import BadFile, NotBuildable
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 
-MOST = 20_000
+MAX_TRIANGLES = 20_000
 """Triangles of one body on a page: half a megabyte."""
 
 FARTHEST = 1e5
@@ -71,7 +71,7 @@ def _mesh(path: Path) -> Array:
         raise BadFile(path, "file", f"no mesh ({error})", "a mesh") from None
 
 
-def thinned(triangles: Array, most: int = MOST) -> Array:
+def thinned(triangles: Array, most: int = MAX_TRIANGLES) -> Array:
     """Triangles of a body, corners gathered in cells until there are few enough.
 
     Clustering by quadrics keeps edges and works on meshes with holes; 400 000 triangles take 0.1 s,

@@ -14,7 +14,7 @@ from matstd.twin.machine import Chain, linear_directions
 from matstd.twin.record import IntArray
 from matstd.twin.units import DEG
 
-MOST = 40_000
+MAX_POSITIONS = 40_000
 """Positions of one page: of a longer program every second, third ... is left out."""
 
 _STILL = 1e-9
@@ -62,7 +62,7 @@ class Played:
     def __len__(self) -> int:
         return len(self.time)
 
-    def thinned(self, most: int = MOST) -> "Played":
+    def thinned(self, most: int = MAX_POSITIONS) -> "Played":
         """With at most so many positions; those of touches, and the last, stay."""
         if len(self) <= most:
             return self
