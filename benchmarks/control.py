@@ -10,6 +10,7 @@ the touches take; `--touches 0` leaves it out.
 """
 
 import argparse
+import os
 import shutil
 import subprocess
 import sys
@@ -44,7 +45,10 @@ def interpreted(program: Program, folder: Path) -> str:
     (folder / "a.var").write_text("")
     (folder / program.file).write_text(met)
     command = ["rs274", "-t", "tool.tbl", "-v", "a.var", "-g", program.file]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    home = os.environ | {"HOME": str(folder)}  # where it keeps a tool table that two runs share
+    done = subprocess.run(
+        command, cwd=folder, env=home, capture_output=True, text=True, check=False
+    )
     return done.stdout
 
 

@@ -1,13 +1,11 @@
 """Labels, parameters and cutter radius: against LinuxCNC, distances, and values worked by hand."""
 
-import re
-import shutil
-import subprocess
 from itertools import pairwise
 
 import numpy as np
 import pytest
 from bench import LENGTH
+from rs274 import is_there, moves
 
 from matstd.compensation.field.inverse import datum_of
 from matstd.compensation.part_programs.frame import Frame
@@ -15,9 +13,6 @@ from matstd.compensation.part_programs.motion import Motion, Paths
 from matstd.compensation.part_programs.program import read_part_program
 from matstd.twin.errors import BadFile
 
-is_there = pytest.mark.skipif(
-    shutil.which("rs274") is None, reason="LinuxCNC (rs274) is not installed"
-)
 R = 5.0
 START = "BEGIN PGM A MM\nTOOL CALL 3 Z S100\nL X+0 Y+0 Z+9 FMAX\nL Z+0 F500\n"
 
@@ -186,16 +181,8 @@ def test_height_and_words_stay_with_their_motion(frame, tmp_path):
 
 def canonical(text, folder):
     """Ends of the motions of LinuxCNC's own interpreter, the tool 10 mm thick."""
-    (folder / "tool.tbl").write_text(f"T3 P3 Z6.0 D{2 * R / 25.4:.9f}\n")  # inches to it
-    (folder / "a.var").write_text("")
-    (folder / "A.ngc").write_text(text)
-    command = ["rs274", "-t", "tool.tbl", "-v", "a.var", "-g", "A.ngc"]
-    out = subprocess.run(
-        command, cwd=folder, capture_output=True, text=True, timeout=60, check=False
-    )
-    assert "rror" not in out.stderr, out.stderr
-    moves = re.findall(r"(STRAIGHT_TRAVERSE|STRAIGHT_FEED|ARC_FEED)\((.*)\)", out.stdout)
-    return [[name[0], *(float(v) for v in numbers.split(",")[:2])] for name, numbers in moves]
+    tool = f"T3 P3 Z6.0 D{2 * R / 25.4:.9f}"  # inches to it
+    return [[name[0], *numbers[:2]] for name, numbers in moves(text, folder, tool)]
 
 
 @is_there

@@ -1,12 +1,11 @@
 """Part programs: read as LinuxCNC reads them, compensated, played on a second machine model."""
 
 import re
-import shutil
-import subprocess
 
 import numpy as np
 import pytest
 from bench import LENGTH, oracle_tip
+from rs274 import is_there, moves
 
 from matstd.cli import main
 from matstd.compensation.field.machine_errors import MachineErrors
@@ -20,9 +19,7 @@ from matstd.twin.errors import BadFile, OutsideTravel
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.units import DEG, NM, UM
 
-is_there = pytest.mark.skipif(
-    shutil.which("rs274") is None, reason="LinuxCNC (rs274) is not installed"
-)
+PROBE = "T3 P3 Z160.0 D6.0"
 TOLERANCE = 1.0 * UM
 
 GCODE = """%
@@ -93,19 +90,6 @@ def done(known, frame, head, tmp_path_factory):
     }
 
 
-def rs274(text, folder):
-    """Canonical moves of LinuxCNC's own interpreter: name and numbers."""
-    (folder / "tool.tbl").write_text("T3 P3 Z160.0 D6.0\n")
-    (folder / "a.var").write_text("")
-    (folder / "A.ngc").write_text(text)
-    command = ["rs274", "-t", "tool.tbl", "-v", "a.var", "-g", "A.ngc"]
-    out = subprocess.run(
-        command, cwd=folder, capture_output=True, text=True, timeout=60, check=True
-    )
-    moves = re.findall(r"(STRAIGHT_TRAVERSE|STRAIGHT_FEED|ARC_FEED)\((.*)\)", out.stdout)
-    return [(name, [float(v) for v in numbers.split(",")]) for name, numbers in moves]
-
-
 def coordinates(text):
     """X, Y, Z, B and C of every line that has all of X, Y and Z; read by nothing of ours."""
     rows, last = [], {"B": 0.0, "C": 0.0}
@@ -134,9 +118,8 @@ def actual(xyzbc, frame):
 def test_linuxcnc_reads_the_same_motions(frame, tmp_path):
     """Ends, planes, centres, senses and turns of every motion, inches and steps included."""
     motions = program(GCODE, frame, tmp_path).motions
-    theirs = rs274(GCODE, tmp_path)[
-        1:
-    ]  # the first stands still in X and Y, and is no motion of ours
+    theirs = moves(GCODE, tmp_path, PROBE)[1:]
+    # the first stands still in X and Y, and is no motion of ours
     assert len(motions) == len(theirs)
     columns = [frame.chain.axis_index(a) for a in "XYZBC"]
     plane, first = "XY", {"XY": (0, 1, 2), "ZX": (2, 0, 1)}
@@ -264,12 +247,12 @@ def test_tool_point_control_is_met_on_the_turning_table(done, frame):
 @is_there
 def test_linuxcnc_takes_what_is_written(done, tmp_path):
     """Every line as it stands, none more and none less; no arc is left."""
-    moves = rs274(done["part.ngc"].text, tmp_path)
-    assert "ARC_FEED" not in {name for name, _ in moves}
-    theirs = np.array([[*v[:3], *v[4:6]] for _, v in moves])[1:]
+    found = moves(done["part.ngc"].text, tmp_path, PROBE)
+    assert "ARC_FEED" not in {name for name, _ in found}
+    theirs = np.array([[*v[:3], *v[4:6]] for _, v in found])[1:]
     ours = coordinates(done["part.ngc"].text)
     assert len(theirs) == len(ours)
-    inches = np.abs(theirs - ours).max(axis=1) > 1.0  # told in inches of another canonical unit
+    inches = np.abs(theirs - ours).max(axis=1) > 1.0  # written in inches, another canonical unit
     assert inches.sum() < 10
     np.testing.assert_allclose(theirs[~inches], ours[~inches], atol=6e-5)
 
