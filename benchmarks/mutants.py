@@ -33,8 +33,11 @@ from check_types import link_folder  # noqa: E402
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 ROOMS: dict[str, str] = PROJECT["tool"]["setuptools"]["package-dir"]
-TIMEOUT = 600.0
-"""Seconds after which a wrong line that keeps the tests from ending counts as noticed."""
+TIMEOUT = 1800.0
+"""Seconds after which a wrong line that keeps the tests from ending counts as noticed.
+
+Long enough for busy cores: a run that is merely slow must not count.
+"""
 MOST_FILES = 15
 """Test files that one wrong line is shown to: the first of them where all execute it."""
 LONG = 10.0
