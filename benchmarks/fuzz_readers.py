@@ -58,7 +58,7 @@ def outcome(reader: Reader, data: bytes) -> tuple[str, str]:
             return "not what it says", f"{type(error).__name__} in the naive reading: {error}"
         if not is_said:
             return "not what it says", ""
-        found = "read, told" if getattr(result, "remarks", ()) else "read"
+        found = "read, with remarks" if getattr(result, "remarks", ()) else "read"
     spent = time.process_time() - begin
     return ("slow", f"{spent:.1f} s") if spent > SLOW else (found, "")
 
@@ -89,8 +89,8 @@ def main() -> int:
                     faults[reader.name, what, why] += 1
                     if faults[reader.name, what, why] == 1 and len(faults) <= KEPT:
                         print(f"  {reader.name} input {k}: {what}: {why}", flush=True)
-            told = ", ".join(f"{n} {what}" for what, n in sorted(counts.items()))
-            print(f"{reader.name:9} {told} ({time.perf_counter() - begin:.0f} s)", flush=True)
+            stated = ", ".join(f"{n} {what}" for what, n in sorted(counts.items()))
+            print(f"{reader.name:9} {stated} ({time.perf_counter() - begin:.0f} s)", flush=True)
     print(f"{sum(faults.values())} faults of {len(faults)} sorts")
     for (name, what, why), count in faults.most_common():
         print(f"  {count:5} {name}: {what}: {why}")

@@ -88,7 +88,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 @pytest.fixture(scope="session", autouse=True)
 def _no_lines_of_progress():
-    """A slow machine is told every ten seconds how far it is: nothing a test can count on."""
+    """A slow machine prints its progress every ten seconds: nothing a test can count on."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("matstd.progress.PERIOD", 1e6)
         yield

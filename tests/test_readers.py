@@ -30,7 +30,7 @@ to drift, to tasks and calibrations, to parts."""
 
 
 class Cases(dict):
-    """Readers by name; its words are short, because hypothesis tells them with every example."""
+    """Readers by name; its words are short, because hypothesis prints them with every example."""
 
     def __repr__(self) -> str:
         return "cases"

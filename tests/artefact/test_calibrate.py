@@ -248,7 +248,7 @@ def test_a_ball_by_hand() -> None:
 
 
 @pytest.mark.parametrize(
-    ("spoil", "told"),
+    ("spoil", "expected"),
     [
         (lambda rows: [r for r in rows if not r[0].startswith("FF1_1")], "FF1 has"),
         (lambda rows: [r for r in rows if r[0] not in ("SPH1",)], "points on 2 balls"),
@@ -256,10 +256,10 @@ def test_a_ball_by_hand() -> None:
         (lambda rows: [*rows[:-1], (rows[-1][0], *np.add(rows[-1][1:], 5.0))], "FF2"),
     ],
 )
-def test_points_that_do_not_do(nominal, tmp_path, spoil, told) -> None:
+def test_points_that_do_not_do(nominal, tmp_path, spoil, expected) -> None:
     rows = spoil(cmm_rows(nominal, np.random.default_rng(3), per_face=22))
     path = written(tmp_path / "cmm.csv", rows, nominal.fingerprint)
-    with pytest.raises((BadFile, NotEnoughData), match=told):
+    with pytest.raises((BadFile, NotEnoughData), match=expected):
         fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, NOISE)
 
 
@@ -390,7 +390,7 @@ def test_a_head_stands_on_the_side_that_its_angles_say(nominal) -> None:
 
 
 def test_the_piece_is_probed_and_the_design_believed(golden, nominal, found, tmp_path) -> None:
-    """`simulate --real-standard`: the balls that stand off are told by their deviations."""
+    """`simulate --real-standard`: the balls that stand off are reported by their deviations."""
     from matstd.twin.files.run_file import read_run
 
     write_standard(tmp_path / "standard.toml", nominal)
@@ -417,8 +417,8 @@ def test_the_piece_is_probed_and_the_design_believed(golden, nominal, found, tmp
     assert rms["real"] == pytest.approx(0.5, abs=0.15)
 
 
-def test_dust_is_left_out_and_told(nominal, tmp_path) -> None:
-    """A chip of 40 µm under a point of a face and of a ball: the same standard, two lines told."""
+def test_dust_is_left_out_and_reported(nominal, tmp_path) -> None:
+    """A chip of 40 µm under a point of a face and of a ball: the same standard, and two lines."""
     made = []
     for chip in (0.0, 40 * UM):
         rows = cmm_rows(nominal, np.random.default_rng(6))

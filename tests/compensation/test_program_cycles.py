@@ -119,7 +119,7 @@ def test_a_hole_is_where_it_should_be_at_its_bottom(frame, known, head, tmp_path
     }
     assert np.linalg.norm(done.before, axis=1).max() > 10 * UM
     assert max(off[k] for k in bottoms) < 0.03 * UM
-    # above it the same shift holds: what it leaves there is told
+    # above it the same shift holds: what it leaves there is reported
     assert 0.03 * UM < max(off[k - 1] for k in bottoms) < 3 * UM
     assert len(done.leans) == len(bottoms)
     assert max(done.leans) <= max(off[k - 1] + off[k] for k in bottoms)

@@ -220,7 +220,7 @@ net change iocontrol.0.tool-change => iocontrol.0.tool-changed
     for k in range(5)
 )
 STANDS = 200
-"""Periods of 1 ms without motion, by which motions are told apart: dwells take 400."""
+"""Periods of 1 ms without motion, by which motions are distinguished: dwells take 400."""
 
 
 def run_on_linuxcnc(texts):

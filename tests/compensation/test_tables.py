@@ -331,7 +331,7 @@ def test_the_sign_switch_turns_every_value(
 
 
 @pytest.mark.parametrize("name", list(FORMATS))
-def test_the_one_point_test_tells_a_wrong_sign(results, name):
+def test_the_one_point_test_detects_a_wrong_sign(results, name):
     test = results[name].acceptance
     change = test.with_table - test.without
     np.testing.assert_allclose(test.wrong_sign - test.without, -change, atol=0.1 * UM)

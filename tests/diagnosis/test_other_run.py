@@ -85,10 +85,10 @@ def test_a_slip_of_one_run_is_not_predicted_for_another(visits, tmp_path, capsys
     assert before > 5.0
     assert found["rms_um"] < 1.05 * reference["rms_um"]
     assert reference["rms_um"] == pytest.approx(STATED_NOISE / UM, rel=0.1)
-    told = "slip of the set-up (artefact-slip, instant 5935 s) belongs to slipped.csv"
-    assert told in said
+    stated = "slip of the set-up (artefact-slip, instant 5935 s) belongs to slipped.csv"
+    assert stated in said
     assert "it is not applied here" in said
-    assert any(told in remark for remark in found["remarks"])
+    assert any(stated in remark for remark in found["remarks"])
     # what the model says of a run with such a slip is what the slip did to this one
     same = r"had a slip of the set-up of the same size as that run, an error of ([\d.]+) µm"
     again = re.search(same, said)

@@ -56,12 +56,12 @@ def test_a_lag_after_an_own_column_is_found_with_its_size(run, tmp_path) -> None
         run, candidates=[e for e in candidate_effects(run.touches) if e.kind in kinds]
     )
     assert [e.name for e in result.found] == ["thermal-lag(EZZ,V_coolant_bar)"]
-    told = {r.name: r for r in result.steps[-1].reported}
-    assert abs(told["tau_min"].value - TAU / MINUTE) < 3.0 * told["tau_min"].u
-    assert told["tau_min"].u < 3.0
+    reported = {r.name: r for r in result.steps[-1].reported}
+    assert abs(reported["tau_min"].value - TAU / MINUTE) < 3.0 * reported["tau_min"].u
+    assert reported["tau_min"].u < 3.0
     step = result.found[0].tuning["step"]
     assert step == 10.0
-    assert abs(told["amplitude_um"].value - PER_BAR * step) < 3.0 * told["amplitude_um"].u
+    assert abs(reported["amplitude_um"].value - PER_BAR * step) < 3.0 * reported["amplitude_um"].u
     write_model(tmp_path / "model.toml", result.fit, "run.csv")
     saved = read_model(tmp_path / "model.toml")
     assert [e.tuning["step"] for e in saved.model.effects if e.kind == "thermal-lag"] == [step]

@@ -1,4 +1,4 @@
-"""Several probes and clampings in one campaign: who touches what, and what their logs tell."""
+"""Several probes and clampings in one campaign: what touches what, and what their logs report."""
 
 import re
 import sys

@@ -51,9 +51,9 @@ def test_every_alarm_of_the_programs_is_explained(sheet):
     alarms = set(re.findall(r"LBL (\d+) ;(?:ALARM|NOTRIGGER)", programs.programs[0].text))
     assert len(alarms) == 10
     (table,) = [t for t in shown_tables(text) if t.section == "Alarms"]
-    told = {row[0]: row for row in table.rows[table.headings :]}
-    assert set(told) == alarms
-    assert all(len(row[-1]) > 10 for row in told.values())
+    stated = {row[0]: row for row in table.rows[table.headings :]}
+    assert set(stated) == alarms
+    assert all(len(row[-1]) > 10 for row in stated.values())
 
 
 def test_hashes_programs_and_place_are_those_of_the_head(sheet):
