@@ -3,9 +3,9 @@
 import gc
 import os
 import sys
-from base64 import b64decode
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -74,12 +74,6 @@ def pytest_report_header() -> str:
     return "pages are driven in Chromium" if is_here() else MISSING
 
 
-DOT = b64decode(
-    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=="
-)
-"""A PNG of one white pixel."""
-
-
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """The longest files first, the others in their order."""
     rank = {Path(__file__).parent / name: k for k, name in enumerate(LONGEST)}
@@ -106,23 +100,9 @@ def _one_core():
 @pytest.fixture
 def rendered_alone(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     """A function (first words of names): from now on figures are rendered to these files alone."""
+    from figures import render_alone
 
-    def only(*names: str) -> None:
-        from matplotlib.figure import Figure
-
-        render, texts = Figure.savefig, Figure.findobj
-
-        def save(figure: Figure, path: Path, **options: Any) -> None:
-            if path.name.removeprefix(".").startswith(names):
-                render(figure, path, **options)
-            else:
-                path.write_bytes(DOT)
-
-        monkeypatch.setattr(Figure, "savefig", save)
-        # to look for texts is to make every tick
-        monkeypatch.setattr(Figure, "findobj", texts if names else lambda *_: [])
-
-    return only
+    return partial(render_alone, monkeypatch)
 
 
 @pytest.fixture

@@ -18,7 +18,7 @@ from matstd.diagnosis.files.model_file import (
     parsed_model,
     read_model,
 )
-from matstd.diagnosis.files.model_writer import model_of, model_text, write_model
+from matstd.diagnosis.files.model_writer import model_of, model_text
 from matstd.diagnosis.files.uncertainty_file import write_uncertainty
 
 __all__ = [
@@ -32,7 +32,6 @@ __all__ = [
     "write_comparison",
     "write_diagnosis",
     "write_laws",
-    "write_model",
     "write_residuals",
     "write_uncertainty",
 ]

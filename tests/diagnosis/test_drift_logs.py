@@ -87,6 +87,7 @@ def test_probings_stand_where_the_log_was(tmp_path):
         read_probed(late, record)
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_the_command_writes_a_law_that_predicts_the_same_again(tmp_path, capsys):
     log = written(tmp_path / "a.csv", rows_of())
     out = tmp_path / "out"

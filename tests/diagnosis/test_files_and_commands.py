@@ -9,7 +9,7 @@ from simulator_case import simulate_case
 
 from matstd.cli import main
 from matstd.diagnosis.files.model_file import read_model
-from matstd.diagnosis.files.model_writer import write_model
+from matstd.diagnosis.files.model_writer import model_text
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.unit_mistakes import unit_mistake
 from matstd.diagnosis.remarks.run_remarks import remarks
@@ -208,7 +208,7 @@ def test_next_measurement_is_a_run_plan(table, case) -> None:
 def saved(fitted, tmp_path_factory):
     fit = fitted(1, "hmc1995")
     path = tmp_path_factory.mktemp("model") / "model.toml"
-    write_model(path, fit, "run.csv")
+    path.write_text(model_text(fit, "run.csv"), encoding="utf-8")
     return fit, path
 
 

@@ -8,7 +8,7 @@ from scipy.linalg import block_diag
 
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.verdict import Verdict
-from matstd.diagnosis.files.model_writer import write_model
+from matstd.diagnosis.files.model_writer import model_text
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.policy import POLICY
@@ -198,5 +198,5 @@ def test_noise_that_remembers_is_said_to_and_nothing_is_named(noisy, tmp_path) -
     assert any(
         f"the noise is correlated ({stated}" in remark_sentence(r) for r in remarks(result.fit)
     )
-    write_model(tmp_path / "model.toml", result.fit, "run.csv")
+    (tmp_path / "model.toml").write_text(model_text(result.fit, "run.csv"), encoding="utf-8")
     assert "held_out_um" in (tmp_path / "model.toml").read_text(encoding="utf-8")

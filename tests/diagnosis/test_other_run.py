@@ -17,7 +17,7 @@ from simulator_experiment import MACHINES, STATED_NOISE, placed, random_experime
 from matstd.cli import main
 from matstd.compensation.field import MachineErrors
 from matstd.diagnosis.answer import compare
-from matstd.diagnosis.files import read_model, write_model
+from matstd.diagnosis.files import model_text, read_model
 from matstd.diagnosis.fit import fit_run
 from matstd.report.words import remark_sentence
 from matstd.twin.errors import BadFile
@@ -135,7 +135,7 @@ def saved_with(visits, tmp_path, *names):
     start = ordinary_model(run.touches.chain)
     added = tuple(parse_effect(name, run.touches.chain) for name in names)
     fit = fit_run(run, Model(start.chain, (*start.effects, *added)))
-    write_model(tmp_path / "model.toml", fit, "calm.csv")
+    (tmp_path / "model.toml").write_text(model_text(fit, "calm.csv"), encoding="utf-8")
     return tmp_path / "model.toml"
 
 

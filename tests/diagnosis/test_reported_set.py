@@ -16,7 +16,7 @@ from matstd.diagnosis.choice.chosen_set import choice_remarks
 from matstd.diagnosis.choice.prediction import MAX_SETS_PER_BLOCK, Choice, ChoiceRule
 from matstd.diagnosis.files.diagnosis_file import choice_table
 from matstd.diagnosis.files.model_file import read_model
-from matstd.diagnosis.files.model_writer import write_model
+from matstd.diagnosis.files.model_writer import model_text
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.learnt_fit import Learnt
 from matstd.diagnosis.fit.prior import Prior
@@ -146,7 +146,7 @@ def test_uncertain_inner_parameters_widen_what_is_saved(case, tmp_path) -> None:
     root = Learnt.of(fit).from_inner
     count = len(model.parameters)
     assert root.shape == (count, 1)
-    write_model(tmp_path / "model.toml", fit, "run.csv")
+    (tmp_path / "model.toml").write_text(model_text(fit, "run.csv"), encoding="utf-8")
     saved = read_model(tmp_path / "model.toml")
     whole = saved.estimates.root @ saved.estimates.root.T
     held = fit.covariance[:count, :count]

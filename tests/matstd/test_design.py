@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import rs274
 from browser import faults, opened, requests
+from figures import render_alone
 
 from matstd.artefact.body.limits import Limits
 from matstd.artefact.body.standard_file import read_standard
@@ -90,6 +91,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.setattr(comparison, "COUNTS", (4,))
         bodies = comparison.rivals
         patch.setattr(comparison, "rivals", lambda *of: dict([*bodies(*of).items()][:1]))
+        render_alone(patch, "drawing")  # `report/test_*` render the others
         patch.setattr(study_run, "draw_maps", lambda *_: [])
         patch.setattr(design_page, "draw_study_volumes", lambda *_: [])
         assert main(["design", str(small_project(folder)), "-o", str(out)]) == 0

@@ -106,7 +106,7 @@ def shared(first: trimesh.Trimesh, second: trimesh.Trimesh) -> float:
 def test_clamps_in_the_base_are_those_that_share_volume_with_it(upright: bool) -> None:
     rng, seen = np.random.default_rng(11), {True: 0, False: 0}
     project = with_table(example(), sides_mm=[900.0, 900.0])
-    for _ in range(40):
+    for _ in range(24):
         place = np.array([*rng.uniform(-60.0, 60.0, 2), 0.0])
         T_face = pose(rotation(np.array([0.0, 0.0, rng.uniform(-0.6, 0.6)])), place)
         T = T_face.copy()
@@ -126,7 +126,7 @@ def test_clamps_in_the_base_are_those_that_share_volume_with_it(upright: bool) -
             assert "would do" in message
             at = literal_eval(message.rsplit("at_mm = ", 1)[1].removesuffix(" would do"))
             assert shared(base, clamp_mesh(body | {"at_mm": at})) < 1.0
-    assert min(seen.values()) > 8
+    assert min(seen.values()) > 4
 
 
 @pytest.mark.parametrize("is_disc", [True, False])
@@ -149,7 +149,7 @@ def test_standards_over_the_edge_are_those_with_volume_outside(is_disc: bool) ->
         return trimesh.boolean.union(parts, engine="manifold")
 
     tables = {more: table(more) for more in (allowed - NEAR, allowed + NEAR)}
-    for _ in range(100):
+    for _ in range(40):
         place = np.array([*rng.uniform(-80.0, 80.0, 2), 0.0])
         T = pose(rotation(np.array([0.0, 0.0, rng.uniform(-np.pi, np.pi)])), place)
         base = base_mesh().apply_transform(T)
@@ -164,7 +164,7 @@ def test_standards_over_the_edge_are_those_with_volume_outside(is_disc: bool) ->
             origin = literal_eval(message.rsplit("origin_mm = ", 1)[1].removesuffix(" would do"))
             moved = base_mesh().apply_transform(pose(T[:3, :3], np.array(origin)))
             assert moved.volume - shared(moved, tables[allowed + NEAR]) < 1.0
-    assert min(seen.values()) > 20
+    assert min(seen.values()) > 8
 
 
 def setup_at(x: float, y: float, z: float) -> Setup:
