@@ -81,19 +81,17 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _no_lines_of_progress():
-    """A slow machine prints its progress every ten seconds: nothing a test can count on."""
+def _as_in_a_test():
+    """What the commands do otherwise, in a test.
+
+    A slow machine prints its progress every ten seconds: nothing a test can count on. The workers
+    share the cores: nothing is done in a further process, where what a test has patched would not
+    be. Pictures have a third of the dots, which is a quarter of their time.
+    """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("matstd.progress.PERIOD", 1e6)
-        yield
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _one_core():
-    """The workers of the tests share the cores: nothing is done in a further process, where what
-    a test has patched would not be."""
-    with pytest.MonkeyPatch.context() as patch:
         patch.setattr("matstd.twin.beside.CORES", 1)
+        patch.setattr("matstd.report.style.sheet.DPI", 80)
         yield
 
 

@@ -40,7 +40,7 @@ def sheet(golden, tmp_path_factory):
     others.write(folder)
     page = write_setup_page(folder, [Station(plan, Dialect(), programs)], 0, others)
     assert page == folder / PAGE
-    assert (folder / PICTURE).stat().st_size > 10_000
+    assert (folder / PICTURE).stat().st_size > 4_000
     assert "RAISED BY +80.0 MM" in (folder / "MS_A_DRY.H").read_text(encoding="ascii")
     assert "SEARCH FROM ABOVE" in (folder / "MS_A_LOC.H").read_text(encoding="ascii")
     return page.read_text(encoding="utf-8"), programs
