@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "fixtures")]
+sys.path[:0] = [str(ROOT / part) for part in (".", "tests/fixtures", "tests/golden")]
 
 from border_cases import border_readers  # noqa: E402  (found through the path above)
 from foreign_cases import foreign_readers  # noqa: E402
@@ -72,7 +72,7 @@ def main() -> int:
     args = parser.parse_args()
     warnings.simplefilter("error")
     with tempfile.TemporaryDirectory() as folder:
-        place, made = Path(folder), golden()
+        place, made = Path(folder), golden
         every = [*readers(place), *foreign_readers(place, made), *border_readers(place, made)]
         chosen = [r for r in every if args.only in ("", r.name)]
         faults: Counter[tuple[str, str, str]] = Counter()

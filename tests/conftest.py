@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -93,6 +94,14 @@ def _as_in_a_test():
         patch.setattr("matstd.twin.beside.CORES", 1)
         patch.setattr("matstd.report.style.sheet.DPI", 80)
         yield
+
+
+@pytest.fixture(scope="session")
+def golden() -> ModuleType:
+    """The module that makes the golden programs."""
+    import make_programs
+
+    return make_programs
 
 
 @pytest.fixture

@@ -1,6 +1,5 @@
 """A standard with planted errors, a CMM that measures it somewhere, and what comes back."""
 
-import importlib.util
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -48,16 +47,6 @@ def form(uv: np.ndarray) -> np.ndarray:
     """What was planted on FF1, along the normal, mm: place, tilt and a wave."""
     u, v = uv.T / 15.0
     return 6 * UM + 4 * UM * u + 7 * UM * np.sin(2.2 * u + 1.0) * np.cos(1.5 * v)
-
-
-@pytest.fixture(scope="module")
-def golden():
-    spec = importlib.util.spec_from_file_location(
-        "golden_calibrated", ROOT / "tests" / "golden" / "make_programs.py"
-    )
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")

@@ -37,11 +37,6 @@ from matstd.twin.units import DEG, NM, UM, URAD
 
 
 @pytest.fixture(scope="module")
-def head(bench_chain, datum):
-    return header_of(bench_chain, "0123456789ab", datum, State())
-
-
-@pytest.fixture(scope="module")
 def written(known, datum, head, poses, tmp_path_factory):
     """Folders of all formats."""
     folder = tmp_path_factory.mktemp("tables")

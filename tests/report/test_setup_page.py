@@ -1,8 +1,6 @@
 """The set-up sheet: every alarm of the programs explained, every figure that of the plan."""
 
-import importlib.util
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,16 +17,6 @@ from matstd.report.pages.setup_page import PAGE, PICTURE, write_setup_page
 from matstd.twin.frames import apply, inverse, pose, turn
 from matstd.twin.machine.kinematics import linear_directions, tip
 from matstd.twin.units import DEG
-
-GOLDEN = Path(__file__).parents[1] / "golden" / "make_programs.py"
-
-
-@pytest.fixture(scope="module")
-def golden():
-    spec = importlib.util.spec_from_file_location("make_programs", GOLDEN)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
