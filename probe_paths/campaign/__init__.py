@@ -6,7 +6,7 @@ uses nothing that only the virtual machine knows. `visits` repeats the runs. `or
 `probing_time` estimate the cost of a plan.
 """
 
-from matstd.probe_paths.campaign.as_programmed import check_as_programmed
+from matstd.probe_paths.campaign.as_programmed import check_as_programmed, with_program_lines
 from matstd.probe_paths.campaign.ball_change import (
     BallChange,
     ball_changes,
@@ -57,4 +57,5 @@ __all__ = [
     "simulate",
     "simulate_search",
     "visits",
+    "with_program_lines",
 ]

@@ -1,12 +1,11 @@
 """Laws on the live page: their figures against the fits, their curves against the touches."""
 
 import json
-import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from browser import faults, opened, requests, run
+from browser import faults, opened, page_data, requests, run
 from simulator_case import read_back
 from simulator_experiment import MACHINES
 from simulator_laws import law_case
@@ -72,8 +71,7 @@ def test_a_diagnosis_shows_what_it_found_and_the_law_of_what_remains(learning):
     found = diagnose(learning.after.run)
     found = replace(found, laws=learn_remainder(found.start, found.fit))
     assert found.laws.laws
-    data = re.search(r'id="live-data">(.*?)</script>', diagnosis_view(found, "run.csv").script)
-    page = json.loads(data[1])
+    page = page_data(diagnosis_view(found, "run.csv").script)
     names = {s["name"] for s in page["switches"] if s["isFound"]}
     kept = {e.name for e in found.laws.after.model.effects}
     laws = {one.law.name for one in found.laws.laws}

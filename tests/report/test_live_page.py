@@ -68,7 +68,6 @@ def page(diagnosis, tmp_path_factory):
 def live(browser, page):
     """The page, newly opened; it may not complain and not ask for anything."""
     opened(browser, page)
-    assert run(browser, "return document.getElementById('live').dataset.isReady") == "true"
     yield browser
     assert faults(browser) == []
     assert requests(browser) == []
@@ -185,6 +184,42 @@ def test_touches_are_pointed_at_chosen_and_listed(live, diagnosis):
     assert run(live, "return document.getElementById('chosen').textContent") == ""
 
 
+def test_a_touch_has_the_line_of_its_program(browser, diagnosis, tmp_path):
+    """Rows of a program, of a program whose text was not at hand, and rows without a program."""
+    known = diagnosis.fit.run
+    count = len(known)
+    program = np.array(["MS_A_1", "MS_A_2", ""])[np.arange(count) % 3]
+    number = np.where(program == "", 0, np.arange(count) + 10)
+    line = np.where(program == "MS_A_1", 7 * number, 0)
+    stated = replace(known, program=program, touch=number, program_line=line)
+    board = diagnosed_board(replace(diagnosis, steps=(*diagnosis.steps[:1],), candidates=()))
+    board = replace(board, fit=replace(board.fit, run=stated))
+    opened(browser, written(tmp_path / "program.html", run_view(board, Findings("run.csv"))))
+    tip = "livePage.mark(ROW); return document.querySelector('.tip').textContent"
+    first, second, third = (run(browser, tip.replace("ROW", str(k))) for k in (3, 4, 5))
+    assert f"line {known.line[3]}, set-up" in first
+    assert "; MS_A_1 touch 13, line 91; " in first
+    assert "; MS_A_2 touch 14; " in second
+    assert "MS_A" not in third
+    run(browser, "livePage.choose([3, 4])")
+    column = "document.querySelectorAll('#chosen tr > :nth-child(2)')"
+    cells = f"return [...{column}].map(e => e.textContent)"
+    assert run(browser, cells) == ["program", "MS_A_1 touch 13, line 91", "MS_A_2 touch 14"]
+    assert faults(browser) == []
+
+
+def test_the_true_body_stands_behind_the_touches(diagnosis):
+    """With a body of the user it is that, to the grain of the page; without, what was touched."""
+    board, cube = diagnosed_board(diagnosis), np.arange(36.0).reshape(4, 3, 3) * 5.0
+    data = run_data(board, Findings("run.csv", body=cube))
+    body = data["body"]
+    assert data["isTrueBody"]
+    assert unpacked(body) * body["grain"] == pytest.approx(cube.reshape(-1), abs=body["grain"])
+    without = run_data(board, Findings("run.csv"))
+    assert not without["isTrueBody"]
+    assert without["body"]["shape"][0] > 36
+
+
 def test_keys_and_labels_suffice(live):
     from selenium.webdriver.common.keys import Keys
 
@@ -254,7 +289,6 @@ def test_odd_runs_are_shown_as_far_as_they_go(odd, browser, diagnosis, tmp_path)
     found = compare(odd(diagnosis.run[::5]), ordinary_model(diagnosis.run.touches.chain))
     view = run_view(compared_board(found), Findings("odd.csv"))
     opened(browser, written(tmp_path / "odd.html", view))
-    assert run(browser, "return document.getElementById('live').dataset.isReady") == "true"
     fitted, held, *_ = run(browser, FIGURES)
     assert [fitted, held] == pytest.approx([found.fit.rms / UM, found.fit.test_rms / UM])
     assert faults(browser) == []
@@ -335,9 +369,7 @@ def test_in_a_notebook_the_view_stands_in_a_frame(browser, diagnosis, tmp_path):
     framed = Framed("run.csv", "One effect is missing.", diagnosis_view(diagnosis, "run.csv"))
     path = tmp_path / "notebook.html"
     path.write_text(f"<!DOCTYPE html><title>n</title>{framed._repr_html_()}", encoding="utf-8")
-    opened(browser, path)
-    browser.switch_to.frame(0)
-    assert run(browser, "return document.getElementById('live').dataset.isReady") == "true"
+    opened(browser, path, frame=0)
     held_out = diagnosis.fit.test_rms / UM
     assert run(browser, FIGURES)[1] == pytest.approx(held_out)
     browser.switch_to.default_content()

@@ -11,7 +11,7 @@ import { VolumeCut } from "../parts/volume_cut.js";
 
 const DEG = Math.PI / 180, PACE = 4;  // touches in a second while they are played
 
-const data = pageData(), byId = id => document.getElementById(id);
+const data = await pageData(), byId = id => document.getElementById(id);
 byId("design").hidden = false;
 const standard = new StandardView(byId("standard"), data, choose);
 

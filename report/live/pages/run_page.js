@@ -10,7 +10,7 @@ import { EffectList } from "./run_effects.js";
 import { Residuals } from "./run_residuals.js";
 import { Touched } from "./run_touched.js";
 
-const data = pageData(), board = new EffectBoard(data);
+const data = await pageData(), board = new EffectBoard(data);
 const place = document.getElementById("live");
 const words = v => fixed(v, v < 10 ? 3 : 2);
 
@@ -126,5 +126,4 @@ addEventListener("keydown", e => { if (e.key === "Escape") choose(null); });
 addEventListener("beforeprint", () => {
   for (const still of document.querySelectorAll("details.still")) still.open = true;
 });
-place.dataset.isReady = "true";
 window.livePage = { board, data, shown, changed, choose, mark, touched, residuals, effects };
