@@ -273,7 +273,7 @@ def test_the_page_stands_alone(page):
     assert sources
     places = {f"#{name}" for name in re.findall(r'id="([^"]+)"', page)}
     assert all(s.startswith("data:image/png;base64,") or s in places for s in sources)
-    assert len(re.findall("<script", page)) == 2
+    assert len(re.findall("<script", page)) == 3
     assert "url(" not in page
 
 

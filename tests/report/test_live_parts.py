@@ -108,6 +108,33 @@ def test_shortened_doubles_keep_their_upper_digits(browser, page):
 
 
 @pytest.mark.browser
+def test_thousands_of_needles_have_their_own_colours(scene):
+    """Thin lines, each of its colour at both ends: a red needle among green ones beside it."""
+    run(
+        scene,
+        """const count = 4000, positions = new Float32Array(6 * count).fill(1e4);
+        const colours = new Uint8Array(3 * count);
+        for (let i = 0; i < count; i++) colours[3 * i + 1] = 200;
+        positions.set([-8, 6, 0, -8, 6, 9], 6 * 2345);
+        colours.set([250, 0, 0], 3 * 2345);
+        window.many = view.lines({ positions, colours });
+        view.draw();""",
+    )
+    for height in (1.0, 4.5, 8.0):
+        x, y, *_ = seen(scene, [-8, 6, height])
+        near = run(
+            scene,
+            f"""const copy = document.createElement("canvas"), c = copy.getContext("2d");
+            [copy.width, copy.height] = [view.canvas.width, view.canvas.height];
+            c.drawImage(view.canvas, 0, 0);
+            return [...c.getImageData({round(x)} - 2, {round(y)}, 5, 1).data];""",
+        )
+        reddest = max(np.reshape(near, (5, 4)), key=lambda pixel: int(pixel[0]) - int(pixel[1]))
+        assert reddest[0] > 100
+        assert reddest[1] < 0.6 * reddest[0]
+
+
+@pytest.mark.browser
 @pytest.mark.parametrize(("wide", "high"), [(600, 300), (200, 500)])
 def test_a_scene_fills_a_picture_of_any_shape_until_it_is_turned(scene, wide, high):
     run(scene, "view.fit(); view.draw()")

@@ -95,6 +95,6 @@ class Run(Displayed):
 
     def __getitem__(self, rows: NDArray[np.bool_] | IntArray | slice) -> "Run":
         """The measurements of some rows, as a new record."""
-        own: dict[str, Any] = {name: getattr(self, name) for name in PER_ROW}
-        picked = {name: None if v is None else v[rows] for name, v in own.items()}
+        own = {name: getattr(self, name) for name in PER_ROW}
+        picked: dict[str, Any] = {name: None if v is None else v[rows] for name, v in own.items()}
         return replace(self, touches=self.touches[rows], **picked)

@@ -5,6 +5,7 @@ import { EffectBoard } from "../parts/effect_board.js";
 import { element } from "../parts/elements.js";
 import { showLadder } from "../parts/ladder.js";
 import { fixed, quantile } from "../parts/numbers.js";
+import { foldStill } from "../parts/still.js";
 import { bytes, colour, signedColours, themeButton } from "../parts/theme.js";
 import { EffectList } from "./run_effects.js";
 import { Residuals } from "./run_residuals.js";
@@ -121,9 +122,6 @@ const residuals = new Residuals(place, board, { mark, choose });
 effects.refresh();
 changed();
 themeButton(parts.theme, () => { touched.recolour(); painted(); });
-for (const still of document.querySelectorAll("details.still")) still.open = false;
+foldStill();
 addEventListener("keydown", e => { if (e.key === "Escape") choose(null); });
-addEventListener("beforeprint", () => {
-  for (const still of document.querySelectorAll("details.still")) still.open = true;
-});
 window.livePage = { board, data, shown, changed, choose, mark, touched, residuals, effects };
