@@ -71,7 +71,8 @@ def error_field(
         to_table = believed.T_table_artefact[:3, :3]
         outside = ~workspace.in_volume(q)
         for vectors, into in ((proof.before, before), (proof.after, after)):
-            along = np.linalg.solve(linear_directions(chain, q), (vectors @ to_table.T)[..., None])
+            in_table = (vectors @ to_table.T)[..., None]
+            along: Array = np.linalg.solve(linear_directions(chain, q), in_table)[..., 0]
             along[outside] = np.nan
             into.append(along.reshape(*COUNTS, 3))
         rotary.append(stands)
