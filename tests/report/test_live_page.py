@@ -263,7 +263,13 @@ def without_poses(run_):
 
 def without_places(run_):
     n = len(run_)
-    return changed(run_, point=np.zeros((n, 3)), normal=np.tile([0.0, 0.0, 1.0], (n, 1)))
+    return changed(run_, point=np.ones((n, 3)), normal=np.tile([0.0, 0.0, 1.0], (n, 1)))
+
+
+def along_one_axis(run_):
+    """As of a laser: points on a line that does not pass the origin."""
+    point = np.column_stack([np.linspace(0.0, 400.0, len(run_)), *np.full((2, len(run_)), 300.0)])
+    return changed(run_, point=point, normal=np.tile([1.0, 0.0, 0.0], (len(run_), 1)))
 
 
 def with_an_empty_column(run_):
@@ -281,6 +287,7 @@ def held_out(run_):
         pytest.param(one_touch_a_feature, marks=pytest.mark.slow),
         pytest.param(without_poses, marks=pytest.mark.slow),
         pytest.param(without_places, marks=pytest.mark.slow),
+        pytest.param(along_one_axis, marks=pytest.mark.slow),
         pytest.param(held_out, marks=pytest.mark.slow),
     ],
     ids=lambda f: f.__name__,
@@ -291,6 +298,27 @@ def test_odd_runs_are_shown_as_far_as_they_go(odd, browser, diagnosis, tmp_path)
     opened(browser, written(tmp_path / "odd.html", view))
     fitted, held, *_ = run(browser, FIGURES)
     assert [fitted, held] == pytest.approx([found.fit.rms / UM, found.fit.test_rms / UM])
+    # what lies in space is in the middle of the picture; readings at one place have none
+    seen = run(
+        browser,
+        """const { view } = livePage.touched, { point, count } = livePage.data.touches, out = [];
+        for (let i = 0; i < count; i++) {
+          out.push(view.project([...point.values.subarray(3 * i, 3 * i + 3)]));
+        }
+        return [view.canvas.clientWidth, view.canvas.clientHeight, out];""",
+    )
+    assert (
+        bool(seen[0])
+        == run_data(compared_board(found), Findings("odd.csv"))["touches"]["isSpread"]
+        == (odd is not without_places)
+    )
+    if seen[0]:
+        places = np.array(seen[2])
+        assert (places.min(axis=0) > 0.0).all()
+        assert (places.max(axis=0) < seen[:2]).all()
+        assert (places.min(axis=0) + places.max(axis=0)) / 2.0 == pytest.approx(
+            np.array(seen[:2]) / 2.0, rel=0.25
+        )
     assert faults(browser) == []
 
 

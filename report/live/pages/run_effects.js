@@ -119,7 +119,7 @@ export class EffectList {
   amount(one, now) {
     const { board, data } = this, explained = rms(board.contribution(one, now));
     const share = `moves the residuals by ${digits(explained, 2)} ${data.unit} rms`;
-    if (one.size && now.isAsFound) return capital(`${one.size}; ${share}`);
+    if (one.size && now.isAsFound) return capital(`${one.size.replace(/-(?=\d)/g, "−")}; ${share}`);
     if (one.amounts.length > 2) return capital(share);
     const place = now.own.find(([other]) => other === one)?.[1];
     const parts = one.amounts.map(({ name, unit, sd }, k) => {

@@ -112,6 +112,7 @@ function choose(rows) {
 }
 
 place.hidden = false;
+place.classList.toggle("placeless", !data.touches.isSpread);  // readings at one place: no picture
 sized();
 addEventListener("resize", sized);
 const parts = laidOut();

@@ -59,7 +59,8 @@ export class Residuals {
     const y = seen.map(v => Math.max(-edge, Math.min(edge, v)));
     this.plot.show({ x: this.column.values, y, colours, xRange: this.xRange,
       yRange: [-edge, edge], band: this.law ? 0 : 2 * this.data.noise, curve });
-    this.hint.textContent = `drag to choose touches, click to choose none; ${this.law
+    const alone = this.data.touches.isSpread ? "" : "all readings at one place: no picture in space; ";
+    this.hint.textContent = `${alone}drag to choose touches, click to choose none; ${this.law
       ? `${curve ? "line: the law with ± 2 u; " : ""}dots: residuals${
         curve ? " with the law put back" : ""}, over their levers on ${this.law.carrier}`
       : "shaded: ± 2 u of the stated noise; gross errors stand at the edge"}`;

@@ -37,11 +37,11 @@ export class Touched {
     this.body = data.body && this.view.mesh({ corners: data.body.values });
     this.dots = this.view.points({ positions: t.point.values, colours: new Uint8Array(3 * n),
       size: n > 5000 ? 4 : 7 });
+    this.view.fit();
     this.arrows = this.view.lines({ positions: new Float32Array(6 * n), size: n > 5000 ? 1 : 2,
       colours: new Uint8Array(3 * n) });
     this.circle = this.view.points({ positions: new Float32Array(3), colours: new Uint8Array(3),
       size: 13, isVisible: false, isPickable: false });
-    this.view.fit();
     showTriad(this.view);
     this.recolour();
     this.canvas.addEventListener("pointermove", e => this.over(e));
