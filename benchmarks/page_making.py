@@ -4,8 +4,8 @@
 
 Every command runs twice in processes of its own: as it is, and with the view left out of the page,
 which then has the still report alone. Differences are of processor time (user and system) and of
-the largest memory. `matstd show` makes nothing else: its figures are those of the whole command, the
-libraries that it loads among them.
+the largest memory. `matstd show` makes nothing else: its figures are those of the whole command,
+the libraries that it loads among them.
 """
 
 import os
