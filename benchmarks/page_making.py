@@ -2,13 +2,13 @@
 
     python benchmarks/page_making.py RUN.csv [--project PROJECT.toml] [--machine MACHINE.toml]
 
-Every command runs twice in processes of its own: as it is, and with the view left out of the page,
-which then has the still report alone. Differences are of processor time (user and system) and of
-the largest memory. `matstd show` makes nothing else: its figures are those of the whole command,
-the libraries that it loads among them.
+Processor time is that of the function that makes the view, within the command. Memory is the
+largest of the command against that of a run with the view left out of the page, each in a process
+of its own. `matstd show` makes nothing else.
 """
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -21,22 +21,51 @@ VIEWS = {
     "diagnose": ("matstd.report.pages.diagnosis_page", "diagnosis_view"),
     "learn": ("matstd.api.learning", "learnt_view"),
     "design": ("matstd.report.pages.design_page", "design_live"),
+    "show": ("matstd.api.showing", "machine_html"),
 }
-CHILD = """import importlib, sys
-module, name = sys.argv[1:3]
-if name:
-    setattr(importlib.import_module(module), name, lambda *given, **named: None)
+CHILD = """import importlib, sys, time
 from matstd.cli import main
-sys.exit(main(sys.argv[3:]))"""
+module, name, how = sys.argv[1:4]
+place = importlib.import_module(module)
+made = getattr(place, name)
+def timed(*given, **named):
+    begun = time.process_time()
+    try:
+        return made(*given, **named)
+    finally:
+        print(f"VIEW {time.process_time() - begun}", file=sys.stderr)
+setattr(place, name, timed if how == "timed" else lambda *given, **named: None)
+sys.exit(main(sys.argv[4:]))"""
 
 
-def spent(words: list[str], module: str = "", name: str = "") -> tuple[float, float]:
-    """Processor time, s, and largest memory, MB, of a command, with one function left out."""
-    child = [sys.executable, "-c", CHILD, module, name, *words]
-    process = subprocess.Popen(child, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    _, status, usage = os.wait4(process.pid, 0)
-    assert status == 0, words
-    return usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1024
+def spent(command: str, words: list[str], how: str) -> tuple[float, float, float]:
+    """Processor time of a command, that of its view alone, s, and the largest memory, MB."""
+    child = [sys.executable, "-c", CHILD, *VIEWS[command], how, command, *words]
+    with subprocess.Popen(
+        child, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+    ) as process:
+        said = process.stderr.read() if process.stderr else ""
+        _, status, usage = os.wait4(process.pid, 0)
+        process.returncode = status
+    assert status == 0, said
+    view = re.search(r"VIEW (\S+)", said)
+    whole = usage.ru_utime + usage.ru_stime
+    return whole, float(view[1]) if view else 0.0, usage.ru_maxrss / 1024
+
+
+def one(command: str, words: list[str], page: Path) -> None:
+    """A line on one command."""
+    whole, view, memory = spent(command, [*words, "--force"], "timed")
+    size = page.stat().st_size / 1e6
+    more = ""
+    if command != "show":
+        less = spent(command, [*words, "--force"], "without")[2]
+        more = f", {memory - less:.0f} MB more than without it"
+    print(
+        f"{command}: the view takes {view:.2f} s of {whole:.1f} s of processor{more}; largest "
+        f"memory {memory:.0f} MB; page {size:.2f} MB",
+        flush=True,
+    )
 
 
 def main() -> None:
@@ -48,24 +77,15 @@ def main() -> None:
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder)
-        inputs = {"compare": given.run, "diagnose": given.run, "learn": given.run}
-        inputs |= {"design": given.project} if given.project else {}
-        for command, file in inputs.items():
-            whole = spent([command, file, "-o", str(out / command)])
-            still = spent([command, file, "-o", str(out / f"{command}-still")], *VIEWS[command])
-            size = (out / command / "report.html").stat().st_size / 1e6
-            print(
-                f"{command}: {whole[0]:.1f} s and {whole[1]:.0f} MB, {still[0]:.1f} s and "
-                f"{still[1]:.0f} MB without; the view adds {whole[0] - still[0]:.1f} s and "
-                f"{whole[1] - still[1]:.0f} MB; page {size:.2f} MB"
-            )
+        for command in ("compare", "diagnose", "learn"):
+            place = out / command
+            one(command, [given.run, "-o", str(place)], place / "report.html")
         if given.machine:
             page = out / "machine.html"
-            whole = spent(["show", given.machine, "-o", str(page)])
-            print(
-                f"show: the whole command {whole[0]:.1f} s and {whole[1]:.0f} MB; page "
-                f"{page.stat().st_size / 1e6:.2f} MB"
-            )
+            one("show", [given.machine, "-o", str(page)], page)
+        if given.project:
+            place = out / "design"
+            one("design", [given.project, "-o", str(place)], place / "report.html")
 
 
 if __name__ == "__main__":

@@ -40,6 +40,7 @@ class Findings:
         sizes: Of found effects by name.
         remains: What remains with everything that was found; empty for nothing to say.
         body: Triangles of what was probed, (T, 3, 3), mm; None where only its touches are known.
+        is_prediction: Whether a model predicts the machine, and the run places the standard alone.
     """
 
     title: str
@@ -47,6 +48,7 @@ class Findings:
     sizes: Mapping[str, str] = field(default_factory=dict)
     remains: str = ""
     body: Array | None = None
+    is_prediction: bool = False
 
 
 def run_data(
@@ -71,6 +73,7 @@ def run_data(
         "touches": _touches(fit),
         "columns": _columns(fit.run.touches),
         "curves": [_curve(law, c) for law, own in (curves or {}).items() for c in own],
+        "isPrediction": findings.is_prediction,
         "body": _body(fit.run.touches, findings.body),
         "isTrueBody": findings.body is not None,
         "switches": [_switch(s, findings.sizes.get(s.effect.name, "")) for s in board.switches],
@@ -217,7 +220,10 @@ def _switch(one: Switch, size: str) -> TREE:
         "size": in_own_unit(size),
         "isFound": one.is_found,
         "alike": list(one.alike),
-        "amounts": [
+        "isFixed": one.is_fixed,
+        "amounts": []
+        if one.is_fixed
+        else [
             _amount(p.name, p.unit, float(sd))
             for p, sd in zip(one.effect.parameters, one.sd, strict=True)
         ],

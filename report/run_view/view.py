@@ -92,6 +92,7 @@ def comparison_view(found: Comparison, title: str, body: Array | None = None) ->
         set_up_alone=_set_up_alone(found.geometry),
         remains=sentence(patterns) if patterns else "Nothing beyond chance.",
         body=body,
+        is_prediction=found.is_prediction,
     )
     return run_view(compared_board(found), findings)
 

@@ -30,7 +30,8 @@ function laidOut() {
   const theme = element("button", { type: "button", id: "theme" });
   const again = element("button", {
     type: "button", id: "again", title: "every effect as the command left it",
-    text: board.switches.some(s => s.isFound) ? "as found" : "all off",
+    text: !board.switches.some(s => s.isFound) ? "all off"
+      : data.isPrediction ? "as predicted" : "as found",
     onclick: () => { board.reset(); effects.refresh(); changed(); },
   });
   const figures = element("p", { class: "figures", role: "status", "aria-live": "polite" });
@@ -38,8 +39,10 @@ function laidOut() {
     element("div", { class: "panel effects" },
       element("div", { class: "bar-of-buttons" },
         element("h2", { text: "Effects" }), again, theme),
-      element("p", { class: "hint", text: "A switch fits the model again, geometry and "
-        + "set-ups with it. In grey: the held-out error that the switch leads to." }),
+      element("p", { class: "hint", text: `${data.isPrediction
+        ? "The geometry is predicted by the model; a switch fits the set-ups again."
+        : "A switch fits the model again, geometry and set-ups with it."} In grey: the held-out `
+        + "error that the switch leads to." }),
       element("div", { id: "effect-list" })),
     element("div", { class: "panel touched" }),
     element("div", { class: "panel residuals" }),
@@ -76,13 +79,16 @@ function painted() {
 
 function ladder() {
   const { now } = shown, unit = data.unit;
-  const rungs = [{ name: "starting model", ...start }], on = board.on;
+  const on = board.on, hasOwn = board.switches.some(s => s.isFound);
+  const first = !data.isPrediction ? "starting model" : hasOwn ? "model without its effects"
+    : "the model";
+  const rungs = [{ name: first, ...start }];
   for (let k = 1; k <= on.length; k++) {
     const last = k === on.length;
     rungs.push({ name: `+ ${on[k - 1].title}`, ...(last ? now : board.errors(on.slice(0, k))) });
   }
   rungs[rungs.length - 1].isNow = true;
-  if (!now.isAsFound) rungs.push({ name: "as found", ...board.asFound() });
+  if (!now.isAsFound) rungs.push({ name: data.isPrediction ? "as predicted" : "as found", ...board.asFound() });
   const most = 1.05 * Math.max(...rungs.map(r => Math.max(r.heldOut, r.fitted)), data.noise);
   showLadder(parts.ladder, { rungs, noise: data.noise, most, words, unit });
   const pinned = on.some(s => s.gain !== null);
