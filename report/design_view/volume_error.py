@@ -72,7 +72,7 @@ def error_field(
         outside = ~workspace.in_volume(q)
         for vectors, into in ((proof.before, before), (proof.after, after)):
             in_table = (vectors @ to_table.T)[..., None]
-            along: Array = np.linalg.solve(linear_directions(chain, q), in_table)[..., 0]
+            along = np.array(np.linalg.solve(linear_directions(chain, q), in_table), dtype=float)
             along[outside] = np.nan
             into.append(along.reshape(*COUNTS, 3))
         rotary.append(stands)
