@@ -18,7 +18,7 @@ from matstd.artefact.layout import Blank, Wave, wavy_face
 from matstd.artefact.place.body_choice import balls_beside
 from matstd.artefact.place.family import MOST_COST
 from matstd.artefact.place.identifying import Base, Identifying
-from matstd.artefact.place.wavy_proof import PLACES_PER_TOUCH, measurement_on, showing_on_face
+from matstd.artefact.place.wavy_proof import PLACES_PER_TOUCH, measurement_on, showing_on_body
 from matstd.artefact.reach import Requests, spread_poses
 from matstd.artefact.worth import (
     BallPlaces,
@@ -133,7 +133,7 @@ def _best_wave(
         tried = _some_touches(criterion, face, poses, count)
         given = single(balls, criterion.noise)
         try:
-            touches = showing_on_face(here, body, tried, given, effects_at, count)
+            touches = showing_on_body(here, body, tried, given, effects_at, count)
         except NotReachable as error:
             refused = str(error)
             continue

@@ -2,6 +2,7 @@
 
 from matstd.artefact.body import Standard
 from matstd.cad_out.making import FIRST_MODE, Making
+from matstd.report.numbers import plural
 from matstd.report.task.calibration_words import modulus_words
 from matstd.twin.units import UM
 
@@ -38,14 +39,15 @@ def fewer_lines(standard: Standard, balls: int, mass: float, limit: float) -> li
         mass: Of the finished body, kg.
         limit: Allowed mass, kg.
     """
-    count = len(standard.spheres)
+    count = sum(not ball.proves for ball in standard.spheres)
     if count >= balls:
         return []
     if mass > _NEAR * limit:
         why = f"more would exceed limits.max_mass_kg = {limit:g} ({mass:.1f} kg now)"
     else:
         why = (
-            f"beside {len(standard.patches)} faces and the screws no more keep the gaps for cutter "
-            "and probe; a larger blank.base_mm or fewer standard.patches make room"
+            f"beside {plural(len(standard.proving), 'feature')} that prove and the screws no more "
+            "keep the gaps for cutter and probe; a larger blank.base_mm or fewer standard.patches "
+            "make room"
         )
     return [f"compromise: {count} balls of standard.balls = {balls}: {why}"]
