@@ -15,6 +15,7 @@ from matstd.artefact.place.identifying import (
     Identifying,
     ball_bases,
     identifying_choice,
+    left_unknown,
     with_moved_balls,
     with_proof,
 )
@@ -24,7 +25,6 @@ from matstd.artefact.place.wavy_choice import PROOF_POSES, wavy_choice
 from matstd.artefact.place.wavy_proof import PLACES_PER_TOUCH, measurement_on, showing_on_body
 from matstd.artefact.reach import Requests, joined, spread_poses
 from matstd.artefact.worth import BallPlaces, Criterion
-from matstd.information.criteria import Posterior
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
@@ -169,6 +169,7 @@ def _wavy(site: Site) -> Identifying:
         site.all_poses,
         site.options,
         site.effects_at,
+        site.best_balls,
         np.random.default_rng(site.brief.seed),
     )
 
@@ -203,14 +204,12 @@ def _figures_of(
 ) -> FamilyFigures:
     """Figures of a body with touches that identify and touches that prove."""
     criterion = site.criterion
-    here = criterion.on(replace(body, patches=()))
-    after = Posterior(here.known_rows(requests), here.prior_sd, here.model.names)
     scan = site.options.scan if family is Family.WAVY else None
     touches = joined([requests, proof])
     measured = measurement_on(criterion, body, touches, scan)
     power = hidden_power(criterion.plain.on(body), measured, site.effects_at)
     least = power.effects[power.worst]
-    left = after.predicted_sd(here.tip_user)
+    left = left_unknown(criterion, body, requests)
     return FamilyFigures(
         family=family,
         rms_user=rms(left),
