@@ -37,7 +37,7 @@ _ROOM, _ROOM_OF_BALL = 2.0, 2.0 / 3.0
 """Largest gap round the probe, mm, and the gap as a share of the ball's radius."""
 
 
-Goal = Literal["prove", "identify", "worst"]
+Goal = Literal["prove", "identify", "worst", "minutes", "price"]
 """What decides between families of features."""
 
 

@@ -81,7 +81,9 @@ class StandardTable(Table):
     wins, see [design](../design.md#which-features)"""
     goal: Goal = "prove"
     """goal of `auto`: `prove` for the family that shows unmodelled effects best, `identify` for
-    the one that leaves least unknown in the workspace, `worst` for least at its worst pose"""
+    the one that leaves least unknown in the workspace, `worst` for least at its worst pose,
+    `minutes` for the best signal of unmodelled effects in the same time, `price` for the
+    cheapest"""
 
     def options(
         self, noise: float, calibration: Calibration, scan: Scan | None = None

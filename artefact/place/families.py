@@ -22,7 +22,13 @@ from matstd.artefact.place.identifying import (
 from matstd.artefact.place.proving import proving_touches, touches_on_faces
 from matstd.artefact.place.proving_balls import balls_alone, proving_on_balls
 from matstd.artefact.place.wavy_choice import PROOF_POSES, wavy_choice
-from matstd.artefact.place.wavy_proof import PLACES_PER_TOUCH, measurement_on, showing_on_body
+from matstd.artefact.place.wavy_proof import (
+    PLACES_PER_TOUCH,
+    measurement_on,
+    scan_poses,
+    showing_on_body,
+)
+from matstd.artefact.price import prices_of
 from matstd.artefact.reach import Requests, joined, spread_poses
 from matstd.artefact.worth import BallPlaces, Criterion
 from matstd.twin.errors import NotBuildable, NotReachable
@@ -210,6 +216,9 @@ def _figures_of(
     power = hidden_power(criterion.plain.on(body), measured, site.effects_at)
     least = power.effects[power.worst]
     left = left_unknown(criterion, body, requests)
+    poses = len(scan_poses(touches))
+    scanning = 0.0 if scan is None else poses * sum(scan.minutes(face) for face in body.patches)
+    prices = [one.total for one in prices_of(body)]
     return FamilyFigures(
         family=family,
         rms_user=rms(left),
@@ -218,5 +227,7 @@ def _figures_of(
         power=float(power.power[power.worst]),
         least=(least.is_bump, least.width, least.direction),
         touches=len(touches),
+        scan_minutes=scanning,
+        price=min(prices, key=lambda one: one.value, default=None),
         scan_points=0 if scan is None else sum(scan.points(face) for face in body.patches),
     )

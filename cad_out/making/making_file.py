@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from matstd.artefact.body import Material, Standard
+from matstd.artefact.price import Estimate, Price, prices_of
 from matstd.cad_out.details import details_of
 from matstd.cad_out.making.cutting import OVERHANG, RADIUS, Cutting, cutting_of
 from matstd.cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
@@ -25,18 +26,26 @@ class Making:
         cutting: Reach of cutters.
         stiffness: First mode and sag; None where the modulus of the material is not known.
         hints: How every face is milled.
+        prices: Estimates of both constructions; none for a material without rates.
     """
 
     cutting: Cutting
     stiffness: Stiffness | None
     hints: dict[str, FaceHint]
     material: Material
+    prices: tuple[Price, ...] = ()
 
 
 def making_of(standard: Standard, stiffness: Stiffness | None) -> Making:
     """Cutters of a standard, beside its stiffness."""
     cutting, hints = cutting_of(standard, details_of(standard)), hints_of(standard)
-    return Making(cutting, stiffness, hints, standard.material)
+    return Making(
+        cutting=cutting,
+        stiffness=stiffness,
+        hints=hints,
+        material=standard.material,
+        prices=prices_of(standard),
+    )
 
 
 def write_making(path: Path, making: Making) -> None:
@@ -59,6 +68,7 @@ def write_making(path: Path, making: Making) -> None:
             for face, radius in cutting.radius.items()
         },
         **_stiffness_table(making.stiffness, making.material),
+        "constructions": {price.construction: _price_table(price) for price in making.prices},
         "first_mode_limit_Hz": FIRST_MODE,
         "sag_limit_um": SAG / UM,
     }
@@ -82,6 +92,21 @@ def _stiffness_table(stiffness: Stiffness | None, material: Material) -> dict[st
         "sag_um": {feature: value / UM for feature, value in stiffness.sag.items()},
         "sag_worst": {"feature": name, "um": sag / UM},
     }
+
+
+def _price_table(price: Price) -> dict[str, Any]:
+    """Figures of a construction, each with its standard uncertainty."""
+    return {
+        "stock_kg": round(price.stock, 1),
+        "price_EUR": _with_u(price.total),
+        "weeks": _with_u(price.weeks),
+        "hours": {name: _with_u(one) for name, one in price.hours.items()},
+        "bought_EUR": {name: _with_u(one) for name, one in price.bought.items()},
+    }
+
+
+def _with_u(one: Estimate) -> list[float]:
+    return [round(float(one.value), 1), round(float(one.u), 1)]
 
 
 def _hint_table(hint: FaceHint) -> dict[str, Any]:

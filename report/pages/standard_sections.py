@@ -9,7 +9,7 @@ from matstd.cad_out.verify import Conformity
 from matstd.report.layout import Heading, Section, Table
 from matstd.report.numbers import digits, percent, um
 from matstd.report.pages.design_result import Design
-from matstd.report.task import modulus_words
+from matstd.report.task import modulus_words, price_lines
 from matstd.twin.units import DEG, UM
 
 _FLAT = 10_000.0  # mm: a ball of 3 mm cannot distinguish such a face from a plane
@@ -188,6 +188,10 @@ def making_rows(made: Making) -> list[tuple[str, str]]:
         ),
         ("largest ball-end mill of a face, mm", cutters),
         *_stiffness_rows(made),
+        *[
+            (words.partition(": ")[0], words.partition(": ")[2])
+            for words in price_lines(made.prices)
+        ],
         *((f"milling {face} with 6 mm", _milling(hint)) for face, hint in made.hints.items()),
     ]
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from matstd.artefact.body import Standard
 from matstd.artefact.hidden import SIZE
 from matstd.artefact.place import CLEAR_LEAD, Family, FamilyFigures, Placement, score_of
-from matstd.report.numbers import digits, percent, plural, um
+from matstd.report.numbers import digits, euros, percent, plural, um
 
 NAMES = {
     Family.BALLS: "balls alone",
@@ -18,6 +18,8 @@ _GOALS = {
     "prove": "showing unmodelled effects",
     "identify": "the error that remains unknown in the workspace",
     "worst": "the error that remains unknown at the worst pose",
+    "minutes": "showing unmodelled effects in equal time",
+    "price": "the price",
 }
 
 
@@ -83,12 +85,17 @@ def _lead(placement: Placement, own: FamilyFigures, others: Sequence[FamilyFigur
 def _left(one: FamilyFigures) -> str:
     return (
         f"{um(one.rms_user)} rms, {um(one.worst_user)} at the worst pose, remain unknown in the "
-        "workspace"
+        f"workspace{_price(one)}"
     )
 
 
+def _price(one: FamilyFigures) -> str:
+    return "" if one.price is None else f", {euros(one.price.value, one.price.u)}"
+
+
 def _effort(one: FamilyFigures) -> str:
-    scan = f" and {one.scan_points} points of a scan" if one.scan_points else ""
+    scan = f" and {one.scan_points} points of a scan ({one.scan_minutes:.0f} min)"
+    scan = scan if one.scan_points else ""
     return f"{one.touches} touches{scan}"
 
 
