@@ -61,7 +61,8 @@ def write_making(path: Path, making: Making) -> None:
         "overhang_for_all_mm": cutting.overhang if cutting.overhang < 1e6 else None,
         "faces": {
             face: {
-                "least_concave_radius_mm": radius if radius < 1e6 else None,
+                "least_concave_radius_mm": _finite(radius),
+                "least_concave_radius_with_overhang_mm": _finite(cutting.whole_radius[face]),
                 "ball_end_mill_mm": cutting.cutter[face],
                 **_hint_table(making.hints[face]),
             }
@@ -94,6 +95,11 @@ def _stiffness_table(stiffness: Stiffness | None, material: Material) -> dict[st
     }
 
 
+def _finite(radius: float) -> float | None:
+    """A radius; None of a face that is convex everywhere."""
+    return radius if radius < 1e6 else None
+
+
 def _price_table(price: Price) -> dict[str, Any]:
     """Figures of a construction, each with its standard uncertainty."""
     return {
@@ -112,7 +118,7 @@ def _with_u(one: Estimate) -> list[float]:
 def _hint_table(hint: FaceHint) -> dict[str, Any]:
     """Figures of one face for the finishing cutter; angles in degrees, null where no axis suits."""
     return {
-        "least_convex_radius_mm": hint.convex if hint.convex < 1e6 else None,
+        "least_convex_radius_mm": _finite(hint.convex),
         "slope_deg": [_degrees(angle) for angle in hint.slope],
         "step_over_mm": {
             f"Ra {ra / UM:g} um": width for ra, width in zip(ROUGHNESS, hint.step_over, strict=True)
