@@ -55,7 +55,7 @@ def odds_against_drift(state: SearchState) -> dict[str, float]:
     drifts = signatures(complement, [Grid(one, (one,), 1) for one in rivals], 1)
     out = {}
     for member in led:
-        others = state.search.evaluate(m for m in members if m is not member).effects
+        others = state.search.evaluate(state.chosen.others(member)).effects
         best = float(score_all(others, drifts).evidence.max())
         out[member.effect.name] = state.chosen.effects.evidence - best
     return out

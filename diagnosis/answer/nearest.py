@@ -10,11 +10,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from matstd.diagnosis.accuracy import Repeatability
+from matstd.diagnosis.answer.steps import named_probability
 from matstd.diagnosis.answer.verdict import Candidate, Dependence, Offer
 from matstd.diagnosis.evidence import ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression import GrossErrors, f_probability
+from matstd.diagnosis.regression import GrossErrors
 from matstd.diagnosis.search import DiagnosisTask, follows_driver, refined_named, tables_along
 from matstd.twin.library import parse_effect
 from matstd.twin.record import IntArray
@@ -62,14 +63,6 @@ def nearest(
     offers.sort(key=lambda offer: offer.test_rms)
     likely = [o for o in offers if o.p_value < POLICY.false_alarm and o.test_rms < last.test_rms]
     return tuple((likely or [o for o in offers if o.effect in certain])[:MAX_NAMED])
-
-
-def named_probability(before: Fit, after: Fit) -> float:
-    """Probability by chance of the fall that a named effect brings: no scan is paid for."""
-    k = max(after.solution.effective_parameters - before.solution.effective_parameters, 0.5)
-    scale = (before.noise.factor / after.noise.factor) ** 2
-    drop = before.solution.objective * scale - after.solution.objective
-    return float(f_probability(drop, k, after.solution.objective, after.solution.dof))
 
 
 def to_repeat(fit: Fit, repeats: Repeatability) -> IntArray:

@@ -5,7 +5,7 @@ are known, a run that shows no change since the last one shares its geometry wit
 the diagnosis is made anew: with fewer numbers to learn, what is common is known better.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -24,33 +24,13 @@ from matstd.diagnosis.search import FREEDOM, DiagnosisTask
 from matstd.twin.model import Model
 
 
-def with_trend(task: DiagnosisTask, diagnosed: Callable[[DiagnosisTask], Diagnosis]) -> Diagnosis:
-    """The diagnosis with those changes of the geometry that the runs show.
-
-    Args:
-        task: Run or joined runs, with a starting model.
-        diagnosed: Makes a diagnosis of a task.
-    """
-    touches = task.run.touches
-    fitted = [int(i) for i in np.unique(touches.run[task.run.split != "test"])]
-    possible = [0] * task.is_known + fitted[1:]
-    free = diagnosed(_with(task, possible))
-    shown, alone = _shown(task, free, possible)
-    result = free if shown == possible else diagnosed(_with(task, shown))
-    if len(touches.runs) == 1:
-        return result
-    apart = geometry_rows(_apart(result.fit, fitted[1:]))
-    trend = Trend(
-        runs=run_errors(result.fit),
-        changed=tuple(shown),
-        rows=apart,
-        pooled=geometry_rows(result.fit),
-        alone=alone,
-    )
-    return replace(result, trend=trend)
+def possible_changes(task: DiagnosisTask) -> list[int]:
+    """Runs from which on the geometry may be another; 0 of the first beside an earlier model."""
+    fitted = [int(i) for i in np.unique(task.run.touches.run[task.run.split != "test"])]
+    return [0] * task.is_known + fitted[1:]
 
 
-def _with(task: DiagnosisTask, since: Sequence[int]) -> DiagnosisTask:
+def changing_since(task: DiagnosisTask, since: Sequence[int]) -> DiagnosisTask:
     """The task with a geometry that may be another from some runs on."""
     if not since:
         return task
@@ -58,7 +38,23 @@ def _with(task: DiagnosisTask, since: Sequence[int]) -> DiagnosisTask:
     return replace(task, model=model, prior=with_changes(task.prior, model))
 
 
-def _shown(
+def trend(fit: Fit, shown: Sequence[int], alone: Mapping[int, SingleChange]) -> Trend | None:
+    """The course of a machine over several runs; None for a single one."""
+    touches = fit.run.touches
+    if len(touches.runs) == 1:
+        return None
+    fitted = [int(i) for i in np.unique(touches.run[fit.run.split != "test"])]
+    rows = geometry_rows(_apart(fit, fitted[1:]))
+    return Trend(
+        runs=run_errors(fit),
+        changed=tuple(shown),
+        rows=rows,
+        pooled=geometry_rows(fit),
+        alone=alone,
+    )
+
+
+def shown_changes(
     task: DiagnosisTask, free: Diagnosis, possible: Sequence[int]
 ) -> tuple[list[int], dict[int, SingleChange]]:
     """Runs from which on the geometry is another, and what changed into them if only one thing did.
@@ -84,7 +80,7 @@ def _shown(
 
 def _fit(task: DiagnosisTask, free: Diagnosis, since: Iterable[int]) -> Fit:
     """The runs beside the effects that were found, with changes of the geometry since some."""
-    changes = _with(task, sorted(since))
+    changes = changing_since(task, sorted(since))
     model = Model(task.model.chain, (*changes.model.effects, *free.found))
     prior = changes.prior.joined(Prior.of_effects(free.found).widened(FREEDOM))
     return fit_run(task.run, model, prior, gross=free.fit.gross, memory=free.fit.memory)
