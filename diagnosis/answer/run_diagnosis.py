@@ -8,9 +8,7 @@ import numpy as np
 from matstd.diagnosis.accuracy import promise, repeatability
 from matstd.diagnosis.answer.alike import period_value
 from matstd.diagnosis.answer.ambiguity import ConfusionClass
-from matstd.diagnosis.answer.dependences import dependences, odds_against_drift, structures
 from matstd.diagnosis.answer.detectable import detectable
-from matstd.diagnosis.answer.nearest import nearest, to_repeat
 from matstd.diagnosis.answer.next_measurement import (
     Plan,
     candidate_targets,
@@ -18,17 +16,24 @@ from matstd.diagnosis.answer.next_measurement import (
     plan,
 )
 from matstd.diagnosis.answer.parts import VerdictParts, verdict_parts
-from matstd.diagnosis.answer.several import (
-    changing_since,
-    possible_changes,
-    shown_changes,
-    trend,
+from matstd.diagnosis.answer.remainder import (
+    dependences,
+    nearest,
+    odds_against_drift,
+    structures,
+    to_repeat,
 )
 from matstd.diagnosis.answer.steps import (
     Step,
     check_distinct,
     not_significant,
     significant_effects,
+)
+from matstd.diagnosis.answer.trend import (
+    changing_since,
+    possible_changes,
+    shown_changes,
+    trend,
 )
 from matstd.diagnosis.answer.verdict import Candidate, Diagnosis, Verdict
 from matstd.diagnosis.choice import (

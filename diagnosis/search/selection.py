@@ -257,11 +257,14 @@ class Search:
         best = self.backward(self.polished(self.evaluate(start)))
         for _ in range(MAX_TURNS):
             grown = self.backward(self.against_refined_laws(self.grown(best)))
-            best = self.backward(self.refined(grown))
+            best = self.backward(self.needed(self.refined(grown)))
             other = self.reopened(best)
             if other.evidence > best.evidence + POLICY.log_evidence_gain and self.stands(other):
                 best = self.refined(other)
-            elif best.evidence <= grown.evidence + POLICY.log_evidence_gain:
+            elif (
+                best.names == grown.names
+                and not best.evidence > grown.evidence + POLICY.log_evidence_gain
+            ):
                 break
         return best
 
@@ -321,6 +324,15 @@ class Search:
         moved = refined_set(self.complement, chosen.sized, fixed=self.fixed)
         better = self.evaluate(map(self.placed, moved))
         return better if better.evidence > chosen.evidence else chosen
+
+    def needed(self, chosen: EffectSubset) -> EffectSubset:
+        """The set without a member that the others, refined without it, make superfluous."""
+        for member in reversed(chosen.members):
+            others = self.refined(self.evaluate(chosen.others(member)))
+            whole = self.evaluate((*others.members, member))
+            if others.members and not self.verified(whole, member).stands:
+                return others
+        return chosen
 
     def against_refined_laws(self, chosen: EffectSubset) -> EffectSubset:
         """The set with refined laws of recorded drivers for those of drivers that were not.
