@@ -181,6 +181,12 @@ class Standard(Displayed):
         return DatumPlane(DATUM_PLANE, base.thickness, base.half_size, base.corner_radius)
 
     @cached_property
+    def proving(self) -> tuple[str, ...]:
+        """Features whose touches prove the model instead of identifying it."""
+        balls = tuple(ball.name for ball in self.spheres if ball.proves)
+        return tuple(patch.name for patch in self.patches) + balls
+
+    @cached_property
     def features(self) -> dict[str, Surface]:
         """Every touchable surface by name: patches, spheres, datum plane."""
         surfaces: tuple[Surface, ...] = (*self.patches, *self.spheres, self.plane)

@@ -9,7 +9,7 @@ from itertools import product
 
 import numpy as np
 
-from matstd.artefact.body import BLEND, FreeformPatch, Standard
+from matstd.artefact.body import BLEND, FreeformPatch, Standard, min_concave_radius
 from matstd.artefact.brief import FINISHING_RADIUS
 from matstd.cad_out.details import Details
 from matstd.twin.frames import Array
@@ -45,8 +45,10 @@ class Cutting:
         tilted: Share that it reaches with its axis tilted by 45 degrees at most.
         out_of_reach: Features with a point that it does not reach at all.
         overhang: The least with which it reaches everything, mm; infinite if none of `LONGER` does.
-        cutter: Largest ball-end mill for every face, its diameter, mm; 0 where none fits.
-        radius: Least concave radius of every face, the untrimmed spline included, mm.
+        cutter: Largest ball-end mill for every face, its diameter, mm; 0 where none fits. It stays
+            within `_SHARE` of the concave radius between the edges, and fits beyond them.
+        radius: Least concave radius of every face between its edges, mm.
+        whole_radius: The same of the untrimmed spline, over which a cutter may leave, mm.
     """
 
     points: dict[str, int]
@@ -56,6 +58,7 @@ class Cutting:
     overhang: float
     cutter: dict[str, float]
     radius: dict[str, float]
+    whole_radius: dict[str, float]
 
 
 def cutting_of(standard: Standard, details: Details) -> Cutting:
@@ -73,7 +76,8 @@ def cutting_of(standard: Standard, details: Details) -> Cutting:
         if left.any():
             overhang = longer
             left &= ~_reached_when_tilted(standard, centre, left, overhang)
-    radius = {patch.name: untrimmed_radius(patch) for patch in standard.patches}
+    radius = {patch.name: min_concave_radius(patch) for patch in standard.patches}
+    whole = {patch.name: untrimmed_radius(patch) for patch in standard.patches}
     kinds = [n.split()[-1] if " " in n else n[:2] for n in name]
     return Cutting(
         points={kind: kinds.count(kind) for kind in sorted(set(kinds))},
@@ -81,10 +85,9 @@ def cutting_of(standard: Standard, details: Details) -> Cutting:
         tilted=float(reached.mean()),
         out_of_reach=tuple(sorted(set(name[~reached].tolist()))),
         overhang=float("inf") if left.any() else overhang,
-        cutter={
-            n: next((d for d in CUTTERS if d <= 2 * _SHARE * r), 0.0) for n, r in radius.items()
-        },
+        cutter={n: _largest_cutter(radius[n], whole[n]) for n in radius},
         radius=radius,
+        whole_radius=whole,
     )
 
 
@@ -102,6 +105,12 @@ def _reached_when_tilted(
             axis = np.array([across * np.cos(turn), across * np.sin(turn), np.cos(tilt)])
             reached[left] = is_free(standard, centre[left], axis, overhang)
     return reached
+
+
+def _largest_cutter(radius: float, whole: float) -> float:
+    """Diameter of the largest ball-end mill for concave radii, mm; 0 where none fits."""
+    most = min(2.0 * _SHARE * radius, 2.0 * whole)
+    return next((d for d in CUTTERS if d <= most), 0.0)
 
 
 def untrimmed_radius(patch: FreeformPatch) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 
 from matstd.artefact.body import Standard, write_standard
 from matstd.artefact.brief import Brief
-from matstd.artefact.certify import like_task
+from matstd.artefact.certify import like_task, that_prove
 from matstd.artefact.compare import WorstRegions, identifiability_report, worst_regions
 from matstd.artefact.feasibility import check_beside, check_seat, feasibility
 from matstd.artefact.hidden import write_scan_path
@@ -308,7 +308,7 @@ def _twin(brief: Brief, errors: list[tuple[Effect, Array]]) -> VirtualMachine:
 
 
 def _with_split(campaign: Campaign, standard: Standard) -> Campaign:
-    """A campaign whose touches on freeform faces prove and do not identify."""
-    on_face = np.isin(campaign.run.touches.feature, [p.name for p in standard.patches])
-    run = replace(campaign.run, split=np.where(on_face, "test", "train"))
+    """A campaign whose touches on features that prove do not identify."""
+    proves = that_prove(standard, campaign.run.touches)
+    run = replace(campaign.run, split=np.where(proves, "test", "train"))
     return replace(campaign, run=run)

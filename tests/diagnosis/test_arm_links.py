@@ -6,7 +6,7 @@ import pytest
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.geometry.arm_machine import found_arm
 from matstd.diagnosis.geometry.learnt import geometry_rows
-from matstd.diagnosis.remarks.run_remarks import JointsStood, remarks
+from matstd.diagnosis.remarks import What, noticed, remarks
 from matstd.importers.arms import arm_from_dh, read_arm, tracker_run
 from matstd.importers.sheets import read_sheet
 from matstd.report.geometry.geometry_words import quantity_name
@@ -106,7 +106,7 @@ def test_lines_to_copy_hold_no_share_of_what_a_machine_file_cannot_hold(learnt) 
     fit = learnt(sag=2e-3)
     arm = found_arm(fit)
     assert arm is not None
-    assert JointsStood(("B1", "A", "B2", "A1")) in remarks(fit)
+    assert noticed(What.JOINTS_STOOD, names=("B1", "A", "B2", "A1")) in remarks(fit)
     again = fit_run(learnt(sag=2e-3, chain=arm.chain).run, Model(arm.chain, ())).rms
     assert max(again, arm.after) < 0.9 * arm.before
 

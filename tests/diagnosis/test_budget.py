@@ -2,8 +2,8 @@
 
 import matstd.diagnosis.search.search_loop as rounds
 from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.remarks.run_remarks import SearchEnded
-from matstd.diagnosis.search.budget import MOST_SETS, Budget
+from matstd.diagnosis.remarks import What, noticed
+from matstd.diagnosis.search.screening import MOST_SETS, Budget
 from matstd.twin.library.catalogue import parse_effect
 
 KEY = (8, "hmc1995", ("thermal-expansion(Y,scaleY)",))
@@ -13,7 +13,7 @@ LIBRARY = ("thermal-expansion(Y,scaleY)", "backlash(X)", "drift", "probe-radius"
 def found_in(run):
     library = [parse_effect(name, run.touches.chain) for name in LIBRARY]
     d = diagnose(run, candidates=library)
-    return [e.name for e in d.found], SearchEnded(MOST_SETS) in d.remarks
+    return [e.name for e in d.found], noticed(What.SEARCH_ENDED, sets=MOST_SETS) in d.remarks
 
 
 def test_a_usual_search_is_far_from_its_limit(case, monkeypatch) -> None:

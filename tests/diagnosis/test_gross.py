@@ -8,7 +8,8 @@ from made_up import arm_poses
 
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.regression.gross import find_gross, shots
-from matstd.diagnosis.remarks.run_remarks import ManyStoodOut, remarks
+from matstd.diagnosis.remarks import What
+from matstd.diagnosis.remarks.run_remarks import remarks
 from matstd.diagnosis.residual.crowds import crowds
 from matstd.report.words.remark_words import remark_sentence
 from matstd.twin.library.ordinary import ordinary_model
@@ -152,7 +153,7 @@ def test_the_error_is_reported_both_ways_where_many_stand_out() -> None:
     bad = np.isin(seen.pose, rng.choice(60, 6, replace=False))
     off = rng.normal(0.0, 0.02, len(seen)) + bad * rng.normal(0.0, 1.0, len(seen))
     fit = fit_run(Run(seen, off, np.full(len(seen), 0.02)), ordinary_model(seen.chain))
-    (remark,) = [r for r in remarks(fit) if isinstance(r, ManyStoodOut)]
+    (remark,) = [r for r in remarks(fit) if getattr(r, "what", None) is What.MANY_STOOD_OUT]
     assert remark.left_out
     assert remark.touches == bad.sum() == fit.gross.rows.sum()
     assert 5.0 * remark.without < remark.whole

@@ -12,7 +12,7 @@ from simulator_experiment import random_experiment, random_noise
 
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.verdict import Verdict
-from matstd.diagnosis.remarks.run_remarks import OutliersLeftOut
+from matstd.diagnosis.remarks import What
 from matstd.report.words.verdict_words import verdict_sentence
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.model.model import columns
@@ -204,4 +204,4 @@ def test_chips_and_wrong_noise_do_not_make_an_effect(case, diagnosed) -> None:
     d = diagnosed(3, "hsm600u", (), True)
     assert d.verdict is Verdict.NONE
     assert np.flatnonzero(d.fit.gross.rows).tolist() == case(3, "hsm600u", (), True).truth["chips"]
-    assert any(isinstance(r, OutliersLeftOut) for r in d.remarks)
+    assert any(getattr(r, "what", None) is What.OUTLIERS_LEFT_OUT for r in d.remarks)

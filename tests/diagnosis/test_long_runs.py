@@ -5,10 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.answer.collinear import weakest
 from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.answer.verdict import Step, Verdict
-from matstd.diagnosis.choice.long_runs import CHOSEN_ROWS, chosen_rows
+from matstd.diagnosis.answer.steps import Step, weakest
+from matstd.diagnosis.answer.verdict import Verdict
+from matstd.diagnosis.choice.noise_memory import CHOSEN_ROWS, chosen_rows
 from matstd.diagnosis.fit.describe import Reported, Role
 from matstd.twin.frames import Array
 from matstd.twin.machine import Axis, make_chain

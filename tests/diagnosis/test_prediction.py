@@ -13,18 +13,17 @@ from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.sizes import sizes
 from matstd.diagnosis.answer.verdict import Diagnosis
 from matstd.diagnosis.choice import prediction
-from matstd.diagnosis.choice.blocks import blocks
+from matstd.diagnosis.choice.blocks import blocks, prune_by_held_out_error
 from matstd.diagnosis.choice.bodies import bodies
 from matstd.diagnosis.choice.chosen_set import with_chosen_set
 from matstd.diagnosis.choice.field import PRIOR_SIZES, sized_field
 from matstd.diagnosis.choice.prediction import Choice, candidate_effects, without
-from matstd.diagnosis.choice.prune import prune_by_held_out_error
 from matstd.diagnosis.evidence.effect_signatures import ResidualSpace, ScaledEffect, projected
 from matstd.diagnosis.evidence.evidence import EffectSet
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.regression.memory import Memory
-from matstd.diagnosis.search.search_loop import search_until_stable
+from matstd.diagnosis.search.search_loop import searched
 from matstd.diagnosis.search.task import DiagnosisTask
 from matstd.report.words.diagnosis_words import named_value, promise_sentence
 from matstd.twin.errors import DesignError
@@ -250,7 +249,7 @@ def test_a_way_that_is_followed_counts_independent_observations(chosen) -> None:
     single = single_of(task.run)
     way = next(w for w in choice.rules if w.name == "two time constants")
     other = Choice(choice.rules, way, choice.blocks, Memory(0.9))
-    slow, final = with_chosen_set(task, (), search_until_stable(task, (), single), other, single)
+    slow, final = with_chosen_set(task, (), searched(task, (), single), other, single)
     assert slow.memory is not None
     assert not slow.memory.is_filtered
     complement = final.search.complement

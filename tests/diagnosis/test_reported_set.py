@@ -10,8 +10,8 @@ from simulator_case import simulate_case
 from matstd.cli import main
 from matstd.diagnosis.answer import reported_set as reporting
 from matstd.diagnosis.answer.ambiguity import ConfusionClass, Rival
-from matstd.diagnosis.answer.collinear import left_by
-from matstd.diagnosis.answer.reported_set import reported_set, with_members
+from matstd.diagnosis.answer.reported_set import reported_set
+from matstd.diagnosis.answer.steps import left_by
 from matstd.diagnosis.choice.chosen_set import choice_remarks
 from matstd.diagnosis.choice.prediction import MAX_SETS_PER_BLOCK, Choice, ChoiceRule
 from matstd.diagnosis.files.diagnosis_file import choice_table
@@ -21,8 +21,8 @@ from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.learnt_fit import Learnt
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.regression.memory import Memory
-from matstd.diagnosis.remarks.run_remarks import SearchEnded
-from matstd.diagnosis.search.search_loop import search_until_stable
+from matstd.diagnosis.remarks import What, noticed
+from matstd.diagnosis.search import search_loop
 from matstd.diagnosis.search.task import DiagnosisTask
 from matstd.report.words.diagnosis_words import figures, number_words
 from matstd.twin.library.catalogue import parse_effect
@@ -42,7 +42,7 @@ def searched(case, key, names):
     start = ordinary_model(run.touches.chain)
     task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
     library = [parse_effect(name, run.touches.chain) for name in names]
-    return task, search_until_stable(task, (), library)
+    return task, search_loop.searched(task, (), library)
 
 
 # --- the set that is reported is the set that was tested ------------------------------------------
@@ -68,7 +68,7 @@ def test_a_name_that_does_not_stand_is_not_reported(case, monkeypatch) -> None:
     _, final = searched(case, LAG, ["thermal-lag(EXC)", "backlash(X)"])
     other = replace(final.effects[0], effect=parse_effect("backlash(X)", final.base.model.chain))
 
-    def headed(pool, found, others, fixed=None):
+    def headed(pool, found, base, others):
         return ConfusionClass(other, (), ())
 
     monkeypatch.setattr(reporting, "confusion_class", headed)
@@ -85,8 +85,8 @@ def test_no_effect_stands_twice_when_two_classes_want_one_head(case, monkeypatch
     assert len(final.effects) == 2
     wanted = final.effects[0]
 
-    def headed(pool, found, others, fixed=None):
-        assert found.effect.name not in {o.effect.name for o in others}
+    def headed(pool, found, base, others):
+        assert found.effect.name not in others
         return ConfusionClass(found, (Rival(wanted, 0.0, 1.0),), ())
 
     monkeypatch.setattr(reporting, "confusion_class", headed)
@@ -95,19 +95,6 @@ def test_no_effect_stands_twice_when_two_classes_want_one_head(case, monkeypatch
     assert sorted(stated) == sorted(set(stated)) == ["backlash(Y)", "stylus-bending"]
     rivals = {r.effect.name for c in tested.classes for r in c.rivals}
     assert not rivals & set(stated)
-
-
-def test_a_set_put_back_is_what_it_was(case) -> None:
-    _, final = searched(case, LAG, ["thermal-lag(EXC)", "backlash(X)"])
-    before = final.search.pool.C.copy()
-    grid = tuple(
-        replace(s, effect=m.effect)
-        for s, m in zip(final.effects, final.chosen.members, strict=True)
-    )
-    moved = with_members(final, final.effects)
-    assert np.abs(moved.search.pool.C - before).max() > 0.0
-    again = with_members(moved, grid)
-    assert pytest.approx(before) == again.search.pool.C
 
 
 # --- figures made again from what is kept -----------------------------------------------------
@@ -252,7 +239,7 @@ def test_ways_of_a_choice_are_reported_with_the_limit_that_was_met() -> None:
     remark, ended = choice_remarks(choice, [])
     plain = np.sqrt((10 * 3.0**2 + 30 * 4.0**2) / 40)
     assert [error / UM for _, error in remark.tried] == pytest.approx([plain, 1.0])
-    assert ended == SearchEnded(MAX_SETS_PER_BLOCK)
+    assert ended == noticed(What.SEARCH_ENDED, sets=MAX_SETS_PER_BLOCK)
     assert len(choice_remarks(replace(choice, is_ended=False), [])) == 1
     table = choice_table(choice)
     assert (table["chosen"], table["blocks"]) == ("single effects", 2)
@@ -269,6 +256,6 @@ def test_rivals_of_a_large_effect_are_reported(case) -> None:
     task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
     alike = [f"thermal-lag(EZ{axis})" for axis in "XYZ"]
     library = [parse_effect(n, start.chain) for n in [*alike, "thermal-lag(EXC)", "backlash(X)"]]
-    tested = reported_set(search_until_stable(task, (), library))
+    tested = reported_set(search_loop.searched(task, (), library))
     growth = next(c for c in tested.classes if c.effect.name in alike)
     assert {growth.effect.name, *(r.effect.name for r in growth.rivals)} == set(alike)

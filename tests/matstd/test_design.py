@@ -188,8 +188,31 @@ def test_the_report_moves(made: Path, browser: Any) -> None:
     actual = apply(inverse(stands), exact_tip(chain, q, length, errors))
     moved = actual - apply(inverse(believed), tip(chain, q, length))
     counts = [len(places) for places in field["at"]]
-    shown = np.reshape(field["before"], (-1, *counts))[1, 2, 2, 2]
-    assert shown * UM == pytest.approx(float(np.linalg.norm(moved)), abs=0.01 * UM)
+    # axes that read as much more would stand where the machine really does
+    shown = np.reshape(field["before"], (-1, *counts, 3))[1, 2, 2, 2]
+    there = q.copy()
+    there[0, [chain.axis_index(axis) for axis in field["axes"]]] += shown * UM
+    moved_so = apply(inverse(believed), tip(chain, there, length) - tip(chain, q, length))
+    moved_so -= apply(inverse(believed), np.zeros(3))
+    assert moved_so == pytest.approx(moved, abs=0.01 * UM)
+    # the same as an arrow on the plane
+    drawn = do(
+        """const { field, data } = designPage, cut = designPage.cut(), at = data.field.at;
+        Object.assign(field, { axis: 2, rotary: 1, place: at[2][2], isAfter: false, stretch: 3 });
+        document.getElementById("stretch").value = Math.log10(3);
+        document.getElementById("stretch").dispatchEvent(new Event("input"));
+        const from = at.map(a => a[2]), { positions } = cut.arrows;
+        for (let i = 0; i < positions.length; i += 6) {
+          if (from.every((v, k) => Math.abs(v - positions[i + k]) < 1e-3)) {
+            return [...positions.subarray(i, i + 6), cut.view.camera.size];
+          }
+        }"""
+    )
+    arrow = np.array(drawn[3:6]) - drawn[:3]
+    assert arrow / np.linalg.norm(arrow) == pytest.approx(shown / np.linalg.norm(shown), abs=1e-3)
+    most = np.nanquantile(np.linalg.norm(np.reshape(field["before"], (-1, 3)), axis=1), 0.98)
+    share = np.linalg.norm(shown) / most
+    assert np.linalg.norm(arrow) == pytest.approx(3.0 * 0.11 * share * drawn[6], rel=0.02)
     # another artefact in place of the standard, then the standard again
     do("document.querySelectorAll('#rivals input')[1].click()")
     assert not do("return designPage.standard.own[0].isVisible")

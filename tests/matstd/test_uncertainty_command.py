@@ -191,7 +191,7 @@ def test_where_hardly_anything_was_touched(
     assert "10 places on 1 face at 5 table poses in 2 visits" in said
     assert "only one face: U holds for workpieces at its place" in said
     assert main(["uncertainty", files[2], files[0], *more, "--force"]) == 2
-    assert "no touch on a freeform face of standard" in capsys.readouterr().err
+    assert "no touch on a feature of standard" in capsys.readouterr().err
 
 
 def test_a_run_of_another_standard(place: Path) -> None:

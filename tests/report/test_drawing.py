@@ -9,7 +9,7 @@ import pytest
 from matstd.cad_out.details.detail_list import details_of
 from matstd.report.drawing.drawing import Issuer, draw_sheet, write_drawing
 from matstd.report.drawing.sections import draw_screw
-from matstd.report.drawing.sheet import HEIGHT, WIDTH, Sheet, View
+from matstd.report.drawing.sheet import A2, Sheet, View
 from matstd.report.drawing.views import draw_from
 
 ISSUER = Issuer("A. Müller", "Workshop & Co", 6.2)
@@ -140,7 +140,7 @@ def test_files_are_one_a2_page_and_the_same_bytes_again(upright, tmp_path):
     pdf = (tmp_path / "one" / "drawing.pdf").read_bytes()
     assert pdf == (tmp_path / "two" / "drawing.pdf").read_bytes()
     box = re.search(rb"/MediaBox \[ ?0 0 ([\d.]+) ([\d.]+)", pdf)
-    assert [float(v) * 25.4 / 72.0 for v in box.groups()] == pytest.approx([WIDTH, HEIGHT], abs=0.1)
+    assert [float(v) * 25.4 / 72.0 for v in box.groups()] == pytest.approx(A2.size, abs=0.1)
     svg = (tmp_path / "one" / "drawing.svg").read_text()
     assert svg == (tmp_path / "two" / "drawing.svg").read_text()
     assert "<svg" in svg

@@ -20,6 +20,7 @@ def made(mode, sag, out_of_reach=()):
         overhang=80.0 if out_of_reach else 60.0,
         cutter={"FF1": 16.0},
         radius={"FF1": 12.0},
+        whole_radius={"FF1": 11.0},
     )
     soft = {name: np.diag([size, size, 0.0]) for name, size in sag.items()}
     hints = {
