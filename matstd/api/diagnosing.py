@@ -23,12 +23,11 @@ from matstd.diagnosis.choice import candidate_effects
 from matstd.diagnosis.evidence import Progress, quiet
 from matstd.diagnosis.files import (
     SavedModel,
+    comparison_table,
+    diagnosis_table,
     model_text,
     parsed_model,
     plan_text,
-    write_comparison,
-    write_diagnosis,
-    write_residuals,
 )
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry import learnt_geometry
@@ -43,6 +42,7 @@ from matstd.report.words import (
 )
 from matstd.twin.errors import BadArgument
 from matstd.twin.files import write_whole
+from matstd.twin.files.whole import write_json
 from matstd.twin.frames import Array
 from matstd.twin.library import is_visible, kinds, parse_effect, try_effect, users_files
 from matstd.twin.model import Effect
@@ -124,7 +124,7 @@ class Diagnosis(Saveable, answer.Diagnosis):
         """Write diagnosis.json, model.toml and plans of touches; as of `Saveable`."""
         with deviations_in(self.run.touches.deviation_unit):
             sentences = [remark_sentence(r) for r in self.remarks]
-            write_diagnosis(folder / "diagnosis.json", self, sentences)
+            write_json(folder / "diagnosis.json", diagnosis_table(self, sentences))
             write_whole(folder / "model.toml", self.model_text)
             for i, plan in enumerate(self.plans, start=1):
                 write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
@@ -311,13 +311,10 @@ class Comparison(Saveable, answer.Comparison):
     def write(self, folder: Path) -> str:
         """Write comparison.json and residuals.csv into an existing folder; as of `Saveable`."""
         with deviations_in(self.run.touches.deviation_unit):
-            write_comparison(
-                folder / "comparison.json",
-                self,
-                [structure_words(s) for s in self.structure],
-                [remark_sentence(r) for r in self.remarks],
-            )
-            write_residuals(folder / "residuals.csv", self)
+            structure = [structure_words(s) for s in self.structure]
+            remarks = [remark_sentence(r) for r in self.remarks]
+            write_json(folder / "comparison.json", comparison_table(self, structure, remarks))
+            write_whole(folder / "residuals.csv", self.to_csv())
             return "" if self.saved else write_found_arm(folder, self.fit, self.title)
 
     def live(self) -> Framed:

@@ -19,6 +19,7 @@ from matstd.probe_paths.campaign import (
     check_changes,
     effective_radii,
     read_heights,
+    sag_remarks,
     with_program_lines,
 )
 from matstd.probe_paths.campaign import evaluate as evaluate_parts
@@ -203,7 +204,7 @@ def evaluate_scan_log(
     points = _points(read, chain, length, stands, frame)
     run, noise = evaluate_scan(points, piece, face, chain, radius, length, stands, u)
     run = with_body(run, stated_body(piece, body_temperature, body_u))
-    return Evaluation(run, chain, (), (_worth(noise, len(run)), *run.remarks))
+    return Evaluation(run, chain, (), (_worth(noise, len(run)), *sag_remarks(piece), *run.remarks))
 
 
 def _points(read: ScanLog, chain: Chain, length: float, stands: Setup, frame: str) -> ScanPoints:

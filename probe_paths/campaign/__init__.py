@@ -19,11 +19,10 @@ from matstd.probe_paths.campaign.contact_points import foot_points
 from matstd.probe_paths.campaign.contact_solver import FIRST_MORNING, ContactSolver, VirtualMachine
 from matstd.probe_paths.campaign.disturbances import effects_over_record, in_campaign
 from matstd.probe_paths.campaign.duration import probing_time
-from matstd.probe_paths.campaign.evaluation import ball_centres, evaluate
+from matstd.probe_paths.campaign.evaluation import ball_centres, evaluate, sag_remarks
 from matstd.probe_paths.campaign.log_parts import checked_parts
 from matstd.probe_paths.campaign.order_study import Ordering, orders
 from matstd.probe_paths.campaign.simulation import (
-    SMALLEST_U,
     Campaign,
     simulate,
     simulate_search,
@@ -33,7 +32,6 @@ from matstd.probe_paths.campaign.tolerance import setup_tolerance
 
 __all__ = [
     "FIRST_MORNING",
-    "SMALLEST_U",
     "BallChange",
     "Campaign",
     "ContactSolver",
@@ -53,6 +51,7 @@ __all__ = [
     "orders",
     "probing_time",
     "read_heights",
+    "sag_remarks",
     "setup_tolerance",
     "simulate",
     "simulate_search",

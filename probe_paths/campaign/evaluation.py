@@ -85,7 +85,7 @@ def evaluate(
         if not far:
             break
     u_touch = _uncertainty(standard, touches, u)
-    remarks += [*standard.remarks, *_sag_remarks(standard)]
+    remarks += [*standard.remarks, *sag_remarks(standard)]
     remarks += logged_temperatures(parts)[1]
     begin = min(part.begin for part in parts)
     run = Run(
@@ -102,7 +102,7 @@ def evaluate(
     return at_true_contacts(run, standard)
 
 
-def _sag_remarks(standard: Standard) -> list[str]:
+def sag_remarks(standard: Standard) -> list[str]:
     """How the sag of the standard is corrected, or why it is not."""
     sag, made_of = standard.usable_sag, standard.material
     if sag is not None:

@@ -12,6 +12,7 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import linear_directions
 from matstd.twin.model import Effect
 from matstd.twin.record import Setup, at_poses
+from matstd.twin.sampling import grid_points
 
 COUNTS = (11, 11, 9)
 """Places along the three linear axes."""
@@ -53,7 +54,7 @@ def error_field(
     if len(axes) != len(COUNTS):
         return None
     at = tuple(np.linspace(*workspace.limit(a), n) for a, n in zip(axes, COUNTS, strict=True))
-    grid = np.stack(np.meshgrid(*at, indexing="ij"), axis=-1).reshape(-1, 3)
+    grid = grid_points(*at)
     rotary = []
     before: list[Array] = []
     after: list[Array] = []

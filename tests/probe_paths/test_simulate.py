@@ -77,12 +77,6 @@ def test_a_run_file_of_all_programs(folder, plan, capsys):
     assert not list((folder / "out").glob(".*"))
 
 
-@pytest.fixture(autouse=True)
-def no_progress(monkeypatch):
-    """On a busy computer a line of progress would come between."""
-    monkeypatch.setattr("matstd.progress.PERIOD", 1e6)
-
-
 def test_errors_of_a_file_and_drawn_ones(folder):
     (folder / "errors.toml").write_text(
         'format = "errors/1"\n[EXX]\nshape = "linear"\namplitude = 100.0\n', encoding="utf-8"

@@ -168,7 +168,9 @@ def test_partial_residual_of_a_lag_is_its_formula_over_time(warm):
     t = fit.run.touches
     by_hand = amplitude * (1.0 - np.exp(-t.time[found.rows] / effect.tau)) / UM
     assert variable == "time in h"
-    assert quantity in {f"EZ{axis}, µm" for axis in "XYZBC"}  # which body carries it cannot be told
+    assert quantity in {
+        f"EZ{axis}, µm" for axis in "XYZBC"
+    }  # the run does not say which body carries it
     np.testing.assert_allclose(found.x, t.time[found.rows] / HOUR)
     np.testing.assert_allclose(found.explained, by_hand, atol=ROUNDING)
     # the lag acts along Z between table and tool; its deviation along the normal is c . explained

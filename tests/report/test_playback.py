@@ -1,6 +1,5 @@
 """The playback: bodies where they stand, and at every touch a ball that touches."""
 
-import importlib.util
 import re
 from pathlib import Path
 
@@ -21,15 +20,6 @@ from matstd.twin.machine import tip
 from matstd.twin.units import DEG
 
 ROOT = Path(__file__).parents[2]
-
-
-@pytest.fixture(scope="module")
-def golden():
-    path = ROOT / "tests" / "golden" / "make_programs.py"
-    spec = importlib.util.spec_from_file_location("make_programs", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
