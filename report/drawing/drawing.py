@@ -26,6 +26,7 @@ from matstd.report.drawing.sections import (
     draw_screw,
     draw_seat,
     engraving_words,
+    joint_words,
     section_of,
 )
 from matstd.report.drawing.sheet import A1, A2, Paper, Sheet, View
@@ -329,6 +330,7 @@ def _notes(sheet: Sheet, top: float, standard: Standard, details: Details) -> No
     sheet.text(x, top, "Notes", size=3.0)
     words = [*notes_of(standard, details), engraving_words()]
     words += [f"Omitted for lack of space: {what}." for what in details.missing]
+    words += joint_words(standard, details)
     faces = ", ".join(f"{letter} = {face}" for letter, face in DATUMS.items())
     words.append(f"Names of faces as in standard.step: {faces}; that model is the definition.")
     for number, note in enumerate(words, 1):
