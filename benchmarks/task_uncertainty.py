@@ -53,7 +53,7 @@ class Measured:
 
 
 def workpieces(run: Run, standard: Standard, rng: np.random.Generator) -> Touches:
-    """Touches on surfaces that nobody calibrated, in the volume of the faces, at new poses."""
+    """Touches on surfaces without a calibration, in the volume of the faces, at new poses."""
     t = run.touches
     chain, setup = t.chain, t.setups[0]
     like = t[like_task(Task(), standard, t)]

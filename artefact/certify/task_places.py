@@ -63,6 +63,7 @@ def like_task(task: Task, standard: Standard, touches: Touches) -> Mask:
         asked.append((f"poses.{letter}_deg", DEG, readings, limits))
     like, per_range = proof.copy(), []
     for key, unit, values, (low, high) in asked:
+        # counted range by range, so that a refusal names the range that leaves no touch
         met = (values >= low - _EDGE) & (values <= high + _EDGE)
         like &= met
         there = values[proof] / unit

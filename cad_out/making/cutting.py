@@ -13,6 +13,7 @@ from matstd.artefact.body import BLEND, FreeformPatch, Standard, min_concave_rad
 from matstd.artefact.brief import FINISHING_RADIUS
 from matstd.cad_out.details import Details
 from matstd.twin.frames import Array
+from matstd.twin.sampling import grid_points
 from matstd.twin.units import DEG
 
 RADIUS, OVERHANG = FINISHING_RADIUS, 60.0
@@ -116,7 +117,7 @@ def untrimmed_radius(patch: FreeformPatch) -> float:
     """Least concave radius over the whole spline, its overhang included, mm."""
     low, high = patch.domain
     axes = [np.linspace(a, b, 61) for a, b in zip(low, high, strict=True)]
-    uv = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    uv = grid_points(*axes)
     largest = float(patch.curvature(uv)[:, 0].max())
     return 1.0 / largest if largest > 1e-9 else float("inf")
 
@@ -142,7 +143,7 @@ def _surface(standard: Standard, details: Details) -> tuple[np.ndarray, Array, A
                 lots.append((f"{ball.name} post", place[None], (out / np.linalg.norm(out))[None]))
     a, b = (half - 5.0 for half in standard.base.half_size)
     axes = [np.linspace(-h, h, int(2 * h // 12) + 1) for h in (a, b)]
-    plate = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    plate = grid_points(*axes)
     on_top = np.column_stack([plate, np.full(len(plate), top)])
     others = [body for name, body in standard.bodies.items() if name != "BASE"]
     # 0.1 mm above and below decide whether a place is bare and on the plate

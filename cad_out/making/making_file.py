@@ -10,8 +10,7 @@ from matstd.cad_out.details import details_of
 from matstd.cad_out.making.cutting import OVERHANG, RADIUS, Cutting, cutting_of
 from matstd.cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
 from matstd.cad_out.making.stiffness import Stiffness
-from matstd.twin.files import write_whole
-from matstd.twin.text import json_text
+from matstd.twin.files.whole import write_json
 from matstd.twin.units import DEG, UM
 
 FIRST_MODE, SAG = 500.0, 0.1 * UM
@@ -73,7 +72,7 @@ def write_making(path: Path, making: Making) -> None:
         "first_mode_limit_Hz": FIRST_MODE,
         "sag_limit_um": SAG / UM,
     }
-    write_whole(path, json_text(table))
+    write_json(path, table)
 
 
 def _stiffness_table(stiffness: Stiffness | None, material: Material) -> dict[str, Any]:

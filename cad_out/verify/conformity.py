@@ -31,9 +31,8 @@ from matstd.cad_out.verify.part21 import (
     read_instances,
 )
 from matstd.twin.errors import NotBuildable
-from matstd.twin.files import write_whole
+from matstd.twin.files.whole import write_json
 from matstd.twin.frames import Array
-from matstd.twin.text import json_text
 from matstd.twin.units import NM, UM
 
 FACE_LIMIT = 0.01 * UM
@@ -338,7 +337,7 @@ def write_conformity(path: Path, conformity: Conformity) -> None:
         "faults": conformity.faults(),
         "measured": asdict(conformity),
     }
-    write_whole(path, json_text(table, sort_keys=True))
+    write_json(path, table, sort_keys=True)
 
 
 def refuse_faults(name: str, conformity: Conformity) -> None:

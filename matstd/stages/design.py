@@ -39,7 +39,7 @@ from matstd.probe_paths.stations import (
     plan_options_of,
 )
 from matstd.report.drawing import Issuer, write_drawing
-from matstd.report.identifiability import write_identifiability, write_identification
+from matstd.report.identifiability import identifiability_table, write_identification
 from matstd.report.pages import Design, Proven
 from matstd.report.plots import draw_reach, draw_room
 from matstd.report.style import save
@@ -57,6 +57,7 @@ from matstd.twin.beside import beside
 from matstd.twin.compute import Progress, silent
 from matstd.twin.errors import BadFile
 from matstd.twin.files import errors_toml, write_run, write_whole
+from matstd.twin.files.whole import write_json
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, contribution
 from matstd.twin.record import at_poses
@@ -111,7 +112,7 @@ def _made(
         _write_standard(folder, placement.standard)
         progress("identifiability", 0, 1)
         known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
-        write_identifiability(folder / "identifiability.json", known)
+        write_json(folder / "identifiability.json", identifiability_table(known))
         making = making_of(placement.standard, stiffness)
         write_making(folder / "making.json", making)
         progress("probing programs", 0, 1)

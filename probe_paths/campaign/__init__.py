@@ -6,7 +6,7 @@ uses nothing that only the virtual machine knows. `visits` repeats the runs. `or
 `probing_time` estimate the cost of a plan.
 """
 
-from matstd.probe_paths.campaign.as_programmed import check_as_programmed
+from matstd.probe_paths.campaign.as_programmed import check_as_programmed, with_program_lines
 from matstd.probe_paths.campaign.ball_change import (
     BallChange,
     ball_changes,
@@ -23,7 +23,6 @@ from matstd.probe_paths.campaign.evaluation import ball_centres, evaluate, sag_r
 from matstd.probe_paths.campaign.log_parts import checked_parts
 from matstd.probe_paths.campaign.order_study import Ordering, orders
 from matstd.probe_paths.campaign.simulation import (
-    SMALLEST_U,
     Campaign,
     simulate,
     simulate_search,
@@ -33,7 +32,6 @@ from matstd.probe_paths.campaign.tolerance import setup_tolerance
 
 __all__ = [
     "FIRST_MORNING",
-    "SMALLEST_U",
     "BallChange",
     "Campaign",
     "ContactSolver",
@@ -58,4 +56,5 @@ __all__ = [
     "simulate",
     "simulate_search",
     "visits",
+    "with_program_lines",
 ]

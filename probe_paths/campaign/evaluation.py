@@ -95,6 +95,8 @@ def evaluate(
         remarks=tuple(remarks),
         date=None if begin.year == UNDATED.year else begin,
         standard=standard.stamp,
+        program=np.concatenate([np.repeat(part.program, len(part.number)) for part in parts]),
+        touch=np.concatenate([part.number for part in parts]),
     )
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be
     return at_true_contacts(run, standard)

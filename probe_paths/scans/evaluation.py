@@ -188,6 +188,7 @@ def _averaged(points: ScanPoints, place: Array) -> tuple[ScanPoints, Array]:
             f"a gap of {step[at]:.1f} mm in line {points.line[at]} of the scan",
             f"points every {usual:.2f} mm, or another number for what follows",
         )
+    # a log without line numbers begins a new line at a gap: the probe was lifted there
     line = np.cumsum([1, *(~same | wide).astype(int)])
     along = np.concatenate([[0.0], np.cumsum(step)])
     begins = along[np.searchsorted(line, line)]

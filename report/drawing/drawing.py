@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -337,15 +338,9 @@ def _notes(sheet: Sheet, top: float, standard: Standard, details: Details) -> No
         top -= 5.2
         for plain, sign in ((" degC", " °C"), (" um", " µm"), ("+-", "±")):  # of the STEP file
             note = note.replace(plain, sign)
-        for k, part in enumerate(_wrapped(f"{number}  {note}")):
+        for k, part in enumerate(wrap(f"{number}  {note}", 90, subsequent_indent="    ")):
             top -= 4.2 if k else 0.0
             sheet.text(x, top, part)
-
-
-def _wrapped(words: str, most: int = 90) -> list[str]:
-    import textwrap
-
-    return textwrap.wrap(words, most, subsequent_indent="    ")
 
 
 def _title(sheet: Sheet, standard: Standard, issuer: Issuer, scale: float) -> None:

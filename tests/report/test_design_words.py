@@ -70,7 +70,7 @@ def test_the_verdict_is_on_the_workspace(own: float, spheres: float, said: str) 
     assert said in words
 
 
-def test_scatter_that_nobody_can_build_is_no_rival() -> None:
+def test_scatter_that_cannot_be_built_is_no_rival() -> None:
     assert best_rival(placement(1.0, 2.0)).name == "four spheres"
     alone = placement(1.0, 2.0)
     alone.rivals = (alone.own, alone.rivals[-1])
@@ -152,7 +152,7 @@ def test_what_the_proof_does_not_find_is_named_with_the_cause(exact, blame) -> N
     assert blind_spots(made) == ""
 
 
-def test_a_workspace_beyond_the_touches_is_told_by_axis(chain: Chain) -> None:
+def test_a_workspace_beyond_the_touches_is_reported_by_axis(chain: Chain) -> None:
     made = placement(1.0, 2.0)
     read = np.zeros((2, len(chain.axes)))
     read[:, [chain.axis_index(axis) for axis in "XYB"]] = [

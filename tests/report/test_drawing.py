@@ -57,8 +57,8 @@ def test_the_title_block_and_the_notes_leave_no_question(upright):
     assert {"B. Approver", "2026-11-23", "part drawing", "edges ISO 13715"} <= set(words)
     text = " ".join(words)
     assert "ISO 2768" not in text
-    for told in ("ISO 22081", "hardness 50 to 54 HRC", "epoxy", "stress-relieve", "No coating"):
-        assert told in text
+    for stated in ("ISO 22081", "hardness 50 to 54 HRC", "epoxy", "stress-relieve", "No coating"):
+        assert stated in text
     assert {"D-D", "E-E"} <= {w.split(" ")[0] for w in words}
     assert words.count("D") == words.count("E") == 2
     hatched = [p for p in sheet.axes.patches if p.get_hatch()]
@@ -78,7 +78,7 @@ def test_a_frame_points_at_what_it_holds_for(upright):
     assert any(np.allclose(end, top, atol=0.1) for end in leaders for top in tops)
 
 
-def test_pads_of_two_sizes_are_not_told_to_be_alike(upright):
+def test_pads_of_two_sizes_are_not_said_to_be_alike(upright):
     """The outline leaves less relief beside the last."""
     near = replace(upright.holes[2], y=upright.base.half_size[1] - 15.0)
     moved = replace(upright, holes=(*upright.holes[:2], near))
