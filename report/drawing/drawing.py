@@ -217,7 +217,8 @@ def _of_features(
         edge = top.at([[0.0, standard.base.half_size[1]]])[0]
         # above the frame of datum C, which stands 22 to 28 mm above three quarters of the side
         above = max(6.0, 30.0 - 0.25 * top.scale * standard.base.half_size[1])
-        words = f"{len(standard.patches)} x FF"
+        count = len(standard.patches)
+        words = f"{count} x FF" if count > 1 else patch.name
         _attached(sheet, (tip[0] - 18.0, edge[1] + above), tolerances[patch.name], tip, words)
     if standard.spheres:
         ball = max(standard.spheres, key=lambda one: float(one.centre[2]))
