@@ -10,10 +10,8 @@ from matstd.diagnosis.answer.reported_set import ReportedSet, reported_set, with
 from matstd.diagnosis.answer.sizes import sizes
 from matstd.diagnosis.evidence import (
     MIN_OWN_SHARE,
-    EffectSet,
     ResidualSpace,
     ScaledEffect,
-    projected,
 )
 from matstd.diagnosis.fit import Fit, Reported, Role
 from matstd.diagnosis.policy import POLICY
@@ -81,41 +79,19 @@ def _steps(
     gross: GrossErrors,
 ) -> tuple[Step, ...]:
     """The error falling: the starting model, named effects, found effects by their worth."""
-    final, classes = tested.state, tested.classes
-    names = [s.effect.name for s in final.effects]
-    p_values = [final.chances.get(n, tested.tests[n].p_value) for n in names]
-    order = _by_worth(final)
-    effects: Sequence[ScaledEffect] = [*added, *(final.effects[i] for i in order)]
-    first = task.fit((), gross)
+    state, first = tested.state, task.fit((), gross)
     # the reported inner parameters are those that are drawn and saved
-    numbers, effects = sizes(task, effects, gross, ResidualSpace.of(first))
+    numbers, effects = sizes(task, (*added, *state.effects), gross, ResidualSpace.of(first))
+    classes = (*(None for _ in added), *tested.classes)
     out = [Step(effect=None, fit=first, p_value=1.0, reported=(), confusion=None)]
-    for k, sized in enumerate(effects):
-        fit = task.fit(effects[: k + 1], gross)
-        i = order[k - len(added)] if k >= len(added) else -1
-        p = p_values[i] if i >= 0 else named_probability(out[-1].fit, fit)
-        confusion = classes[i] if i >= 0 else None
-        out.append(
-            Step(effect=sized.effect, fit=fit, p_value=p, reported=numbers[k], confusion=confusion)
-        )
+    for k, (confusion, reported) in enumerate(zip(classes, numbers, strict=True)):
+        effect, fit = effects[k].effect, task.fit(effects[: k + 1], gross)
+        if confusion is None:
+            p = named_probability(out[-1].fit, fit)
+        else:
+            p = state.chances.get(effect.name, tested.tests[effect.name].p_value)
+        out.append(Step(effect=effect, fit=fit, p_value=p, reported=reported, confusion=confusion))
     return tuple(out)
-
-
-def _by_worth(final: SearchState) -> list[int]:
-    """Order in which the found effects explain most, one after the other."""
-    complement = final.pool.complement
-    left = list(range(len(final.effects)))
-    order: list[int] = []
-    while left:
-
-        def worth(i: int) -> float:
-            A = projected(complement, [final.effects[j] for j in (*order, i)])
-            return EffectSet(complement, A).evidence
-
-        best = max(left, key=worth)
-        order.append(best)
-        left.remove(best)
-    return order
 
 
 def named_probability(before: Fit, after: Fit) -> float:

@@ -18,6 +18,7 @@ from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.search.refine import refined
 from matstd.diagnosis.search.screening import MOST_SETS, Library, joined_shortlists
+from matstd.diagnosis.search.search_loop import clearly_best
 from matstd.diagnosis.search.selection import Search
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.library.ordinary import ordinary_model
@@ -150,6 +151,25 @@ def test_what_a_coarse_grid_leaves_is_no_second_effect(planted) -> None:
     (member,) = found.members
     assert all(abs(member.effect.tuning["tau"] / g - 1.0) > 1e-6 for g in grid)
     assert next(iter(member.effect.tuning.values())) == pytest.approx(tau, abs=MINUTE)
+
+
+def test_a_member_that_only_mops_up_falls_once_the_other_is_refined(planted) -> None:
+    """A lag at the wrong time constant leaves what a second lag of the same component takes up."""
+    space = planted({"thermal-lag(EZZ)": ((1500.0,), 5.0)})
+    search = search_in(space, ("thermal-lag(EZZ)", "thermal-lag(EZX)", "backlash(X)"))
+    lag, other = library(space, ("thermal-lag(EZZ)", "thermal-lag(EZX)"))
+    wrong, mop = ScaledEffect(lag.tuned(1100.0), 4.0), ScaledEffect(other.tuned(4000.0), 1.0)
+    both = search.evaluate([search.placed(wrong), search.placed(mop)])
+    alone = search.evaluate([search.placed(wrong)])
+    assert both.evidence > alone.evidence + POLICY.log_evidence_gain
+    assert names_of(search.needed(both)) == {"thermal-lag(EZZ)"}
+
+
+def test_a_later_way_must_predict_clearly_better() -> None:
+    share = POLICY.error_share
+    assert clearly_best([1.0, share + 1e-6], float) == 1.0
+    assert clearly_best([1.0, share - 1e-6], float) == share - 1e-6
+    assert clearly_best([1.0, 0.9, 0.89, 0.8], float) == 0.8
 
 
 def test_a_shortlist_of_a_long_run_is_a_value(planted, monkeypatch) -> None:
