@@ -73,7 +73,7 @@ def learnt(tmp_path_factory):
 
 
 @pytest.mark.parametrize("name", PLANTED)
-def test_what_is_wrong_with_an_arm_is_told_in_its_terms(learnt, name) -> None:
+def test_what_is_wrong_with_an_arm_is_reported_in_its_terms(learnt, name) -> None:
     array, index, step, symbol = PLANTED[name]
     rows = {r.symbol: r for r in geometry_rows(learnt(array, index, step))}
     found = rows[symbol]
@@ -91,7 +91,7 @@ def test_what_is_wrong_with_an_arm_is_told_in_its_terms(learnt, name) -> None:
 def test_all_lines_together_make_the_machine_file_of_the_arm_that_was_measured(
     learnt, name
 ) -> None:
-    """Ten times the error, planted in the table: with the file alone 5 % of it is left, as told."""
+    """Ten times the error, planted in the table: 5 % of it is left with the file alone."""
     array, index, step, _ = PLANTED[name]
     arm = found_arm(learnt(array, index, 10.0 * step))
     assert arm is not None

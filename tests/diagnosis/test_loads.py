@@ -53,7 +53,7 @@ def test_known_loads_do():
     assert np.diag(fit.covariance)[rows][0] < (0.5 * theta[1]) ** 2
 
 
-def test_a_compliance_is_told_by_what_it_explains():
+def test_a_compliance_is_reported_by_what_it_explains():
     """Some of its entries are known by belief alone; its size is known all the same."""
     fit, theta = fitted(300.0, ["tool-point-stiffness(X,Y)"])
     effect = next(e for e in fit.effects if e.kind == "tool-point-stiffness")
@@ -63,7 +63,7 @@ def test_a_compliance_is_told_by_what_it_explains():
     assert abs(size.value - np.sqrt(np.mean(bent**2)) / UM) < 3.0 * size.u < 1.0
 
 
-def test_a_beam_that_is_too_short_is_told():
+def test_a_beam_that_is_too_short_is_reported():
     fit, _ = fitted(1.0, ["beam(Z,cantilever,300x300,at:500)"])
     (remark,) = said(fit, What.SHORT_BEAM)
     assert "times as long as deep" in remark_sentence(remark)

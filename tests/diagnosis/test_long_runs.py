@@ -1,4 +1,4 @@
-"""Long runs are searched in a choice of their rows first; what is told stands beyond chance."""
+"""Long runs are searched in a choice of their rows first; what is reported stands beyond chance."""
 
 from types import SimpleNamespace
 
@@ -55,7 +55,7 @@ def test_a_choice_takes_one_row_of_every_stretch() -> None:
 
 
 @pytest.mark.slow
-def test_a_long_log_is_told_its_wave_and_no_more() -> None:
+def test_a_long_log_is_reported_its_wave_and_no_more() -> None:
     """The memory of 0.8 is found beside a wave of thirty times the noise."""
     x = log_of(8000).touches.q[:, 0]
     found = diagnose(log_of(8000, 8.2 * UM * np.sin(2.0 * np.pi * x / 2.5 + 1.1)))

@@ -16,14 +16,14 @@ def test_every_remark_has_its_sentence() -> None:
 
 @pytest.mark.parametrize("what", MistakenUnit)
 def test_every_mistaken_unit_has_its_sentence(what) -> None:
-    told = remark_sentence(UnitMistake(what, 0.012 * UM, 12.0 * UM, 0.6 * UM, 0.5 * UM))
-    assert "µm" in told
-    assert "look like" in told or "looks like" in told
+    message = remark_sentence(UnitMistake(what, 0.012 * UM, 12.0 * UM, 0.6 * UM, 0.5 * UM))
+    assert "µm" in message
+    assert "look like" in message or "looks like" in message
 
 
 def test_lengths_are_in_micrometres() -> None:
-    told = remark_sentence(noticed(What.NOISE_MISSTATED, found=0.45 * UM, stated=0.6 * UM))
-    assert told == "touches scatter by 0.45 µm about the model; the stated noise is 0.60 µm"
+    remark = remark_sentence(noticed(What.NOISE_MISSTATED, found=0.45 * UM, stated=0.6 * UM))
+    assert remark == "touches scatter by 0.45 µm about the model; the stated noise is 0.60 µm"
 
 
 def outliers(lines, largest, runs=()):
