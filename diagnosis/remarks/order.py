@@ -22,7 +22,7 @@ COMPONENTS = 3
 PRIOR_SD = 10.0
 """What is believed of it, mm."""
 
-NOISE_PASSES = 4
+SETTLING_PASSES = 4
 """Times that the noise is found anew with it; three settle it."""
 
 
@@ -82,7 +82,7 @@ def _size(X: Array, y: Array, N: Array, independent: int) -> tuple[float, float]
     With the displacement the noise is smaller: it is found anew, and so is the rest.
     """
     factor = 1.0
-    for _ in range(NOISE_PASSES):
+    for _ in range(SETTLING_PASSES):
         found = solve(np.column_stack([X, PRIOR_SD * N]) / factor, y / factor)
         factor *= float(np.sqrt(found.objective / max(found.dof, 1.0)))
     step = PRIOR_SD * found.phi[-COMPONENTS:]
