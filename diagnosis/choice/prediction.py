@@ -37,9 +37,6 @@ from matstd.twin.numbers import rms
 from matstd.twin.record import IntArray, Touches
 from matstd.twin.thermal import drives, field
 
-MIN_ROWS_PER_INDEPENDENT = 4.0
-"""Touches for one independent observation from which a residual is no longer nearly white."""
-
 MAX_SETS_PER_BLOCK = 300.0
 """Sets that the search of one block may try: a fifth of what a whole diagnosis may."""
 
@@ -193,7 +190,7 @@ def chosen_by_prediction(
     task = replace(task, memory=None)
     fit = task.fit((*added, *final.effects), gross)
     memory, gain = memory_of(fit)
-    if gain < POLICY.memory_gain or memory.per_independent < MIN_ROWS_PER_INDEPENDENT:
+    if gain < POLICY.memory_gain or memory.per_independent < POLICY.memory_touches:
         return None
     task = thinned(task, fit)
     fit = task.fit((*added, *final.effects), gross)
