@@ -82,6 +82,12 @@ def add_measured(parser: argparse.ArgumentParser, without: str) -> None:
     add_pitch(parser)
     add_effects(parser)
     parser.add_argument(
+        "--standard",
+        metavar="FILE",
+        help="what was probed, drawn on the page: STANDARD.toml, or a drawing in the frame of the "
+        "standard (.stl, .obj, .ply, .step). Default: standard.toml beside the run, if it is its",
+    )
+    parser.add_argument(
         "--no-report", action="store_true", help="do not write the report page and its figures"
     )
     add_pdf(parser)

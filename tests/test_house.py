@@ -430,7 +430,7 @@ def test_every_command_has_its_file() -> None:
 
 
 MAX_PLACES = 4
-"""Fields of a record that may be given by place: of more, nobody can tell which is which."""
+"""Fields of a record that may be given by place: of more, a reader cannot see which is which."""
 
 
 def records(tree: ast.AST) -> dict[str, int]:

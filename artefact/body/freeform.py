@@ -12,6 +12,7 @@ from matstd.artefact.body.patch import Hit, Mask, read_only, rows, sphere_entry
 from matstd.artefact.body.spline import Jet, check_knots, clamped_knots, greville, height, jet
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array, apply, inverse, turn, unit
+from matstd.twin.sampling import grid_points
 
 OVERHANG = 6.0
 """Extension of the spline beyond the trimmed rectangle on every side, mm."""
@@ -150,7 +151,7 @@ class FreeformPatch:
         """Parameters of a regular grid over the face, extended by `beyond` mm, (N, 2)."""
         half = [a + beyond for a in self.half_size]
         axes = [np.linspace(-a, a, int(np.ceil(2 * a / pitch)) + 1) for a in half]
-        return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+        return grid_points(*axes)
 
     def project(self, points: Array) -> Array:
         """Foot points on the (untrimmed) spline: ``(S - p) . S_u = (S - p) . S_v = 0``.

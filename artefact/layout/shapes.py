@@ -4,6 +4,7 @@ A shape is a paraboloid plus one wave; it is scaled until its slope, height or c
 reaches a limit, because larger differences of normals and heights carry more information.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -73,8 +74,7 @@ def _strength(
 ) -> float:
     """Factor that brings a shape on a plane to its limits.
 
-    The triangle inequality bounds slope and height. Curvature is not linear in the factor, so it
-    is bisected on a grid of derivatives that is evaluated once.
+    The triangle inequality bounds slope and height.
     """
     patch = graph_patch("trial", np.eye(4), half_size, heights)
     j = patch.jet(patch.grid(_PITCH))
@@ -82,11 +82,19 @@ def _strength(
     flat = replace(j.plus(j, -1.0), hu=plane[0] + 0.0 * j.hu, hv=plane[1] + 0.0 * j.hv)
     left = steepest_slope(limits) - float(np.hypot(*plane))
     high = min(left / float(np.hypot(j.hu, j.hv).max()), tallest / float(np.abs(j.h).max()))
+    radius = _MARGIN * limits.min_concave_radius
+    return bent_to(lambda f: flat.plus(j, f).curvature, high, radius)
+
+
+def bent_to(curvature: Callable[[float], Array], high: float, radius: float) -> float:
+    """Largest factor of a shape, from 0 to `high`, with which it keeps a concave radius, mm.
+
+    Curvature (N, 2) is not linear in the factor, so the factor is bisected.
+    """
     low = 0.0
     for _ in range(20):
         middle = 0.5 * (low + high)
-        largest = float(flat.plus(j, middle).curvature[:, 0].max())
-        if largest * _MARGIN * limits.min_concave_radius > 1.0:
+        if radius * float(curvature(middle)[:, 0].max()) > 1.0:
             high = middle
         else:
             low = middle

@@ -26,6 +26,7 @@ from matstd.artefact.layout.post import post_foot
 from matstd.artefact.layout.shapes import smooth_heights, steepest_slope
 from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array, pose
+from matstd.twin.sampling import grid_points
 from matstd.twin.units import UM
 
 Pairs = NDArray[np.bool_]
@@ -214,7 +215,7 @@ def holes_on(
     pitch = limits.slot_pitch or _STEP
     ys = np.arange(-(base.half_size[1] // pitch), base.half_size[1] // pitch + 1) * pitch
     xs = np.arange(-(base.half_size[0] // _STEP), base.half_size[0] // _STEP + 1) * _STEP
-    places = np.round(np.stack(np.meshgrid(xs, ys, indexing="ij"), axis=-1).reshape(-1, 2), 1)
+    places = np.round(grid_points(xs, ys), 1)
     inset = -outline_distance(places, base.half_size, base.corner_radius)
     good = inset >= fit.bore_radius + _WALL
     good &= np.hypot(*places.T) <= limits.table_radius - TABLE_RIM - fit.hole_radius

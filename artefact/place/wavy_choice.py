@@ -17,8 +17,8 @@ from matstd.artefact.hidden import touched as single
 from matstd.artefact.layout import Blank, Wave, wavy_face
 from matstd.artefact.place.body_choice import balls_beside
 from matstd.artefact.place.family import MOST_COST
-from matstd.artefact.place.identifying import Base, Identifying
-from matstd.artefact.place.wavy_proof import PLACES_PER_TOUCH, measurement_on, showing_on_face
+from matstd.artefact.place.identifying import Base, Identifying, left_unknown
+from matstd.artefact.place.wavy_proof import PLACES_PER_TOUCH, measurement_on, showing_on_body
 from matstd.artefact.reach import Requests, spread_poses
 from matstd.artefact.worth import (
     BallPlaces,
@@ -32,10 +32,11 @@ from matstd.artefact.worth import (
 )
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
 
-_RIMS = (42.0, 46.0, 50.0, 55.0, 60.0, 70.0)
+_RIMS = (42.0, 46.0, 50.0, 55.0, 60.0, 65.0, 70.0, 80.0, 90.0, 100.0, 110.0)
 """Mm between the sides of face and base, the largest face first: a post with its fillet and room
-for a cutter needs 42 mm."""
+for a cutter needs 42 mm. Half as many are tried: the smaller a face, the less it costs."""
 
 _ASKED_COST = 1.05
 """Largest error over the workspace of a wavy face that is asked for by name, relative to the best
@@ -56,6 +57,7 @@ def wavy_choice(
     all_poses: Array,
     options: PlacementOptions,
     effects_at: Array,
+    best_balls: float,
     rng: np.random.Generator,
 ) -> Identifying:
     """The wavy face that shows most, and the balls and touches that identify beside it.
@@ -63,6 +65,7 @@ def wavy_choice(
     Args:
         base: The best balls alone.
         effects_at: Where bumps may be, readings of the linear axes, (K, 3), mm.
+        best_balls: Error that they leave over the workspace, mm; infinite where there are none.
 
     Where every size costs more than it may the cheapest is returned; where families are compared
     it is left aside.
@@ -72,24 +75,26 @@ def wavy_choice(
     """
     wave = _best_wave(criterion, places.blank, base, all_poses, options, effects_at)
     most = MOST_COST if options.family == "auto" else _ASKED_COST
-    refused, best, least = "no balls fit beside it", None, np.inf
-    for size in _sizes(places.blank):
-        face = wavy_face("FF1", places.blank, replace(wave, half_size=size))
+    sizes, best, least, refused = list(_sizes(places.blank)), None, np.inf, "no balls fit"
+    first, last = 0, len(sizes)  # the largest that costs no more than it may is within
+    while first < last:
+        middle = (first + last) // 2
+        face = wavy_face("FF1", places.blank, replace(wave, half_size=sizes[middle]))
         ring = ball_places(criterion.plain, places.blank, all_poses, rng, [face])
         made = balls_beside([face], options.balls, ring, options.choice.touches)
-        if made is None:
-            continue
-        made = replace(made, name=options.name, serial=options.serial)
-        try:
-            found = _identifying(criterion, made, all_poses, options)
-        except NotReachable as error:
-            refused = str(error)
-            continue
-        cost = np.sqrt(found.nearness.value / base.value) if base.value else 1.0
-        if cost <= most:
-            return found
-        if cost < least:
+        cost = np.inf
+        if made is not None:
+            made = replace(made, name=options.name, serial=options.serial)
+            try:
+                found = _identifying(criterion, made, all_poses, options)
+            except NotReachable as error:
+                refused = str(error)
+            else:
+                left = left_unknown(criterion, made, found.tried[found.chosen])
+                cost = rms(left) / best_balls if np.isfinite(best_balls) else 1.0
+        if cost <= most or cost < least:
             best, least = found, cost
+        first, last = (first, middle) if cost <= most else (middle + 1, last)
     if best is None:
         raise NotBuildable(f"no wavy face beside {len(base.balls)} balls: {refused}")
     return best
@@ -133,7 +138,7 @@ def _best_wave(
         tried = _some_touches(criterion, face, poses, count)
         given = single(balls, criterion.noise)
         try:
-            touches = showing_on_face(here, body, tried, given, effects_at, count)
+            touches = showing_on_body(here, body, tried, given, effects_at, count)
         except NotReachable as error:
             refused = str(error)
             continue

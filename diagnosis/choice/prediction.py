@@ -13,11 +13,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from matstd.diagnosis.choice.blocks import blocks
+from matstd.diagnosis.choice.blocks import blocks, prune_by_held_out_error
 from matstd.diagnosis.choice.bodies import bodies
 from matstd.diagnosis.choice.field import sized_field
 from matstd.diagnosis.choice.noise_memory import memory_of
-from matstd.diagnosis.choice.prune import prune_by_held_out_error
 from matstd.diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
@@ -28,8 +27,7 @@ from matstd.diagnosis.search import (
     Library,
     SearchState,
     best_set,
-    refined_set,
-    scaled,
+    clearly_best,
 )
 from matstd.twin.effects import repeat
 from matstd.twin.frames import Array
@@ -109,7 +107,7 @@ def chosen_by_prediction(
     is slow, and the run recorded something that may drive it.
     """
     remembers = task.memory is not None
-    is_open = bool(final.left or final.nameless)
+    is_open = bool(final.remains)
     if remembers:
         is_open = (
             task.fit((*added, *final.effects), final.base.gross).noise.factor
@@ -136,11 +134,7 @@ def chosen_by_prediction(
         counts = np.array([len(g) for g in groups])
         # the choice is made anew without each block, so that its error pays for the choice
         rules.append(ChoiceRule(name, chooser(task, gross), errors, counts))
-    best = rules[0]
-    # the simplest way comes first, and a later one must be clearly better
-    for rule in rules[1:]:
-        if rule.error < POLICY.error_share * best.error:
-            best = rule
+    best = clearly_best(rules, lambda rule: rule.error)
     if best.name == UNRECORDED:
         return None
     if remembers:
@@ -241,8 +235,7 @@ def single_effects(
     for _ in range(2):
         library = Library.of(complement, [*candidates, *more])
         budgets.append(Budget(MAX_SETS_PER_BLOCK))
-        chosen = scaled(best_set(library, found, budgets[-1])[1])
-        found = list(refined_set(complement, chosen))
+        found = list(best_set(library, found, budgets[-1])[1].sized)
         more = [a for s in found if (a := repeat(s.effect)) is not None]
         if not more:
             break

@@ -28,8 +28,6 @@ class Policy:
             simpler, below which it replaces it. Blocks are few, and 3 % are within their scatter.
         error_share_beside_memory: The same where the simpler one is noise with memory, found from
             all rows in sight of them.
-        log_odds_without_name: Log odds by which a pattern without a name must beat all named
-            effects together to say that they only imitate it.
         log_odds_unrecorded: Log odds before any measurement that what a run follows was not
             recorded, against any one recorded driver with any lag; the grid comes on top.
         log_odds_alike: Log odds below which two explanations are not distinguished: 100 to 1.
@@ -43,8 +41,8 @@ class Policy:
         certain_p: Probability by chance below which an effect stands although none of its numbers
             is significant.
         close_p: The same of an effect with more than two numbers (six of a slip that three touches
-            saw, the form of a face), and that below which the effect nearest to a remainder is
-            named however little it leaves better.
+            saw, the form of a face), that of a jump in a run without times, and that below which
+            the effect nearest to a remainder is named however little it leaves better.
         credible_noise: Noise over the stated one that is not believed unless repeats show it.
             Statements are wrong by a factor of two, not more, on public records of known noise.
         repeat_dof: Degrees of freedom of repeated touches that show the noise within a third.
@@ -73,7 +71,6 @@ class Policy:
     material_share: float = 0.01
     error_share: float = 0.97
     error_share_beside_memory: float = 0.85
-    log_odds_without_name: float = 15.0
     log_odds_unrecorded: float = 1.5
     log_odds_alike: float = 4.605170185988092  # log 100
     log_odds_ruled_out: float = 15.0

@@ -5,12 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.diagnosis.fit import Fit, fit_run
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import f_probability, solve
 from matstd.twin.frames import Array
 from matstd.twin.record import Instrument, IntArray
-
-FALSE_ALARM = 1e-6
-"""Probability, over all rows at which it may be, below which a jump is reported."""
 
 MIN_SHARE = 0.2
 """Share of the squared residual that it must hold: half of the standard deviation or so."""
@@ -70,7 +68,7 @@ def jump_in_order(fit: Fit) -> JumpInOrder | None:
     k = int(np.argmax(fall))
     share, dof = min(fall[k] / fit.solution.objective, 1.0), len(first) - 2 * COMPONENTS
     p = float(f_probability(share, COMPONENTS, 1.0 - share, dof)) * len(fall)
-    if p > FALSE_ALARM or share < MIN_SHARE:
+    if p > POLICY.close_p or share < MIN_SHARE:
         return None
     after = np.arange(len(line)) >= first[k + 1]
     X, y = fit.X[fit.used][order], fit.y[fit.used][order]

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import Standard
+from matstd.probe_paths.campaign.as_programmed import with_program_lines
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.evaluation import evaluate
@@ -145,5 +146,6 @@ def _campaign(
     ]
     u = max(machine.noise, SMALLEST_U)
     run = evaluate(parts, believed, machine.chain, u, machine.dialect)
+    run = with_program_lines(run, {program.name: program for program in texts})
     begin = min(part.begin for part in parts if part.is_measuring)
     return Campaign(run, tuple(runs), tuple(parts), begin)

@@ -12,7 +12,7 @@ from matstd.report.machine.machine_page import (
     machine_html,
     shown_lines,
 )
-from matstd.report.machine.meshes import body_meshes
+from matstd.report.machine.meshes import body_meshes, drawing_triangles, thinned
 from matstd.report.machine.played import Played, played_part, played_probing
 from matstd.report.machine.probing_page import PLAYBACK, write_playback
 from matstd.report.machine.set_up import (
@@ -32,6 +32,7 @@ __all__ = [
     "SetUp",
     "ShownMachine",
     "body_meshes",
+    "drawing_triangles",
     "error_functions",
     "machine_data",
     "machine_html",
@@ -41,6 +42,7 @@ __all__ = [
     "set_up_bodies",
     "shown_lines",
     "standard_bodies",
+    "thinned",
     "with_clearance",
     "write_playback",
 ]

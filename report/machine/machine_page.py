@@ -29,7 +29,7 @@ _HELP = (
 )
 _ASSUMED = (
     "No errors are given. Listed are those that this machine can have, each linear over its travel "
-    "in the size expected of its class; all are switched off."
+    "in the size expected of its class; switch them on."
 )
 _OWN_BODIES = "Bodies of {} are from your files."
 

@@ -85,22 +85,25 @@ def test_the_mean_plane_of_a_wave_is_level(upright):
     [
         ("prove", (10.0, 8.0, 8.0, 16.0), (1.0, 1.01, 1.01, 1.01), Family.WAVY),
         ("prove", (10.0, 9.7, 9.0, 9.0), (1.0, 1.01, 1.01, 1.01), Family.FACES),
-        ("prove", (10.0, 9.0, 9.5, 16.0), (1.0, 1.01, 1.01, 1.03), Family.FLAT),
+        ("prove", (10.0, 9.0, 9.6, 16.0), (1.0, 1.01, 1.01, 1.03), Family.FLAT),
+        ("prove", (10.0, 9.0, 9.5, 16.0), (1.0, 1.01, 1.01, 1.03), Family.BALLS),
+        ("prove", (10.0, 9.0, 9.5, 16.0), (1.0, 1.03, 1.03, 1.03), Family.BALLS),
         ("identify", (10.0, 8.0, 8.0, 16.0), (1.0, 1.01, 1.02, 0.99), Family.WAVY),
         ("identify", (10.0, 8.0, 8.0, 16.0), (1.0, 1.01, 1.02, 1.02), Family.FACES),
+        ("worst", (10.0, 8.0, 8.0, 16.0), (1.0, 1.01, 1.02, 1.02), Family.FACES),
     ],
 )
 def test_the_family_that_wins(goal, signals, lefts, wins):
     figures = tuple(
-        FamilyFigures(family, rms_user=left * UM, signal=signal)
+        FamilyFigures(family, rms_user=left * UM, worst_user=2.0 * left * UM, signal=signal)
         for family, signal, left in zip(Family, signals, lefts, strict=True)
     )
-    assert chosen_family(figures[1:], goal, 1.0 * UM) is wins
+    assert chosen_family(figures, goal, 1.0 * UM) is wins
 
 
 def test_a_family_that_cannot_be_built_does_not_win():
     figures = (
-        FamilyFigures(Family.FACES, 1.0 * UM, 5.0),
+        FamilyFigures(Family.FACES, 1.0 * UM, signal=5.0),
         FamilyFigures(Family.WAVY, refused="no room"),
     )
     assert chosen_family(figures, "prove", 1.0 * UM) is Family.FACES

@@ -177,7 +177,7 @@ def test_stl_is_closed_for_both_libraries_and_knows_its_faces(upright, built):
     assert manifold_volume(corners, triangles) == pytest.approx(
         mesh_volume(corners, triangles), rel=1e-6
     )
-    # what the kernel knew and what the surfaces tell agree
+    # what the kernel knew and what the surfaces say agree
     found = owners(upright, corners, triangles)
     named = np.isin(
         mesh.owner, [*(p.name for p in upright.patches), *(s.name for s in upright.spheres)]

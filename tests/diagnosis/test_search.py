@@ -9,16 +9,15 @@ from matstd.diagnosis.answer.ambiguity import confusion_class, plausibility
 from matstd.diagnosis.evidence.effect_signatures import (
     Grid,
     ResidualSpace,
+    ScaledEffect,
     signatures,
     tuned_variants,
 )
 from matstd.diagnosis.evidence.evidence import EffectSet, addition
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.search.budget import MOST_SETS
-from matstd.diagnosis.search.refine import refined, with_moved_points
-from matstd.diagnosis.search.regrid import regridded
-from matstd.diagnosis.search.screening import Library, joined_shortlists
+from matstd.diagnosis.search.refine import refined
+from matstd.diagnosis.search.screening import MOST_SETS, Library, joined_shortlists
 from matstd.diagnosis.search.selection import Search
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.library.ordinary import ordinary_model
@@ -126,15 +125,17 @@ def test_refinement_leaves_the_grid_for_the_true_time_constant(planted) -> None:
     assert abs(tau - 1234.0) < 4.0 / np.sqrt(-curvature)
 
 
-def test_moved_points_take_the_place_of_the_grid(planted) -> None:
+def test_a_member_between_the_points_of_its_grid_pays_for_the_grid(planted) -> None:
     space = planted({})
     search = search_in(space, ("thermal-lag(EZZ)", "backlash(X)"))
     effect = search.pool.variants[0].tuned(777.0)
-    pool = with_moved_points(search.pool, {0: effect})
+    member = search.placed(ScaledEffect(effect, 2.0))
     raw = space.columns([effect])
-    np.testing.assert_allclose(pool.columns_of(0), space.project(raw))
-    assert pool.size[0] == pytest.approx(np.linalg.norm(raw[:, 0]))
-    assert pool.variants[0] is effect
+    np.testing.assert_allclose(member.signature.C, space.project(raw))
+    assert member.signature.size[0] == pytest.approx(np.linalg.norm(raw[:, 0]))
+    assert (member.effect, member.scale) == (effect, 2.0)
+    assert member.signature.tries[0] == search.pool.tries[0] > 1
+    assert search.corrected(member, 1e-9) == pytest.approx(1e-9 * search.pool.tries[0] * 2)
 
 
 def test_what_a_coarse_grid_leaves_is_no_second_effect(planted) -> None:
@@ -143,14 +144,12 @@ def test_what_a_coarse_grid_leaves_is_no_second_effect(planted) -> None:
     grid = np.sort(np.asarray(effect.inner(planted({}).touches)[0].grid))
     tau = float(np.sqrt(grid[len(grid) // 2] * grid[len(grid) // 2 + 1]))
     space = planted({"thermal-lag(EZZ)": ((tau,), 10.0)})
-    coarse = search_in(space)
-    found = coarse.run()
-    search, settled = regridded(coarse, found)
-    assert names_of(settled) == {"thermal-lag(EZZ)"}
-    assert settled.effects.evidence > found.effects.evidence
-    (member,) = settled.members
+    search = search_in(space)
+    found = search.run()
+    assert names_of(found) == {"thermal-lag(EZZ)"}
+    (member,) = found.members
+    assert all(abs(member.effect.tuning["tau"] / g - 1.0) > 1e-6 for g in grid)
     assert next(iter(member.effect.tuning.values())) == pytest.approx(tau, abs=MINUTE)
-    assert search.pool.variants[member.variant] is member.effect
 
 
 def test_a_shortlist_of_a_long_run_is_a_value(planted, monkeypatch) -> None:
@@ -176,7 +175,7 @@ def test_look_alikes_are_a_class(planted) -> None:
     pool = search_in(space, names).pool
     empty = EffectSet(space, np.zeros((len(space.residual), 0)))
     found, _ = refined(empty, library(space, names[:1])[0].tuned(1500.0))
-    made = confusion_class(pool, found, ())
+    made = confusion_class(pool, found, empty, ())
     everything = {made.effect.name, *(r.effect.name for r in made.rivals)}
     assert {"thermal-lag(EZZ)", "thermal-lag(EZX)"} <= everything
     assert all(r.log_odds < POLICY.log_odds_alike for r in made.rivals)

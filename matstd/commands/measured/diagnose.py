@@ -75,6 +75,7 @@ def run(args: argparse.Namespace) -> int:
             hold_out=args.hold_out,
             pitch=pitch,
             learn=not args.no_learn,
+            standard=args.standard,
             progress=turns(show),
         )
         arm = found.write(folder)

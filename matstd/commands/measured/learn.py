@@ -47,7 +47,14 @@ def run(args: argparse.Namespace) -> int:
     model, pitch, printed_by = starting_model(args), pitches(args), asked_printer(args)
     with results_folder(args.output, args.force, LearntLaws.sometimes) as folder, stages() as show:
         show("law", 0, 1)
-        found = learn(args.run_files, model, add=args.add, second=args.second_run, pitch=pitch)
+        found = learn(
+            args.run_files,
+            model,
+            add=args.add,
+            second=args.second_run,
+            pitch=pitch,
+            standard=args.standard,
+        )
         found.write(folder)
         if not args.no_report:
             show("report", 0, 1)

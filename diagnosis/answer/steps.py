@@ -1,0 +1,232 @@
+"""The error falling, effect by effect: sizes beside uncertainties, and what falls for them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from matstd.diagnosis.answer.ambiguity import ConfusionClass
+from matstd.diagnosis.answer.reported_set import ReportedSet, reported_set, without
+from matstd.diagnosis.answer.sizes import sizes
+from matstd.diagnosis.evidence import (
+    MIN_OWN_SHARE,
+    EffectSet,
+    ResidualSpace,
+    ScaledEffect,
+    projected,
+)
+from matstd.diagnosis.fit import Fit, Reported, Role
+from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.regression import GrossErrors, f_probability
+from matstd.diagnosis.remarks import Noticed, What, noticed
+from matstd.diagnosis.search import DiagnosisTask, SearchState
+from matstd.twin.errors import DesignError
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect
+
+EXPANSION = "um_per_m_K"
+"""Unit of a coefficient of expansion, as it is reported."""
+
+MAX_SIZED_PARAMETERS = 2
+"""Most parameters of an effect, a sine and a cosine, whose size tests the effect. The size of more
+parameters may be uncertain although the effect is not: the form of a face of 1.9 µm with a chance
+of 1e-8 is reported as 3.0 ± 1.6 µm."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Step:
+    """The model with one effect more than the step before; the first has none.
+
+    Attributes:
+        effect: What was added, with its inner parameters; None for the starting model.
+        p_value: Probability by chance, grid and number of candidates paid for; 1 for the first.
+        reported: Its parameters as a user reads them, from the last fit.
+        confusion: What it cannot be distinguished from; None for the first, and for effects that
+            were named by the user.
+    """
+
+    effect: Effect | None
+    fit: Fit
+    p_value: float
+    reported: tuple[Reported, ...]
+    confusion: ConfusionClass | None
+
+    @property
+    def is_named(self) -> bool:
+        """Whether the user named the effect; else the diagnosis found it."""
+        return self.effect is not None and self.confusion is None
+
+
+def significant_effects(
+    task: DiagnosisTask, added: tuple[ScaledEffect, ...], final: SearchState
+) -> tuple[ReportedSet, tuple[Step, ...]]:
+    """The reported set: every member beyond chance and its size beyond its uncertainty.
+
+    A search weighs an effect beside a machine as it is expected to be; a size that rests on the
+    touches alone may be nothing, and such an effect is not reported. The weakest goes first.
+    """
+    while True:
+        tested = reported_set(final)
+        steps = _steps(task, added, tested, final.base.gross)
+        weak = weakest(steps[1 + len(added) :], final.is_weighed)
+        if weak is None:
+            return tested, steps
+        final = without(tested.state, weak)
+
+
+def _steps(
+    task: DiagnosisTask,
+    added: tuple[ScaledEffect, ...],
+    tested: ReportedSet,
+    gross: GrossErrors,
+) -> tuple[Step, ...]:
+    """The error falling: the starting model, named effects, found effects by their worth."""
+    final, classes = tested.state, tested.classes
+    names = [s.effect.name for s in final.effects]
+    p_values = [final.chances.get(n, tested.tests[n].p_value) for n in names]
+    order = _by_worth(final)
+    effects: Sequence[ScaledEffect] = [*added, *(final.effects[i] for i in order)]
+    first = task.fit((), gross)
+    # the reported inner parameters are those that are drawn and saved
+    numbers, effects = sizes(task, effects, gross, ResidualSpace.of(first))
+    out = [Step(effect=None, fit=first, p_value=1.0, reported=(), confusion=None)]
+    for k, sized in enumerate(effects):
+        fit = task.fit(effects[: k + 1], gross)
+        i = order[k - len(added)] if k >= len(added) else -1
+        p = p_values[i] if i >= 0 else named_probability(out[-1].fit, fit)
+        confusion = classes[i] if i >= 0 else None
+        out.append(
+            Step(effect=sized.effect, fit=fit, p_value=p, reported=numbers[k], confusion=confusion)
+        )
+    return tuple(out)
+
+
+def _by_worth(final: SearchState) -> list[int]:
+    """Order in which the found effects explain most, one after the other."""
+    complement = final.pool.complement
+    left = list(range(len(final.effects)))
+    order: list[int] = []
+    while left:
+
+        def worth(i: int) -> float:
+            A = projected(complement, [final.effects[j] for j in (*order, i)])
+            return EffectSet(complement, A).evidence
+
+        best = max(left, key=worth)
+        order.append(best)
+        left.remove(best)
+    return order
+
+
+def named_probability(before: Fit, after: Fit) -> float:
+    """Probability by chance of the fall that a named effect brings: no scan is paid for."""
+    k = max(after.solution.effective_parameters - before.solution.effective_parameters, 0.5)
+    scale = (before.noise.factor / after.noise.factor) ** 2
+    drop = before.solution.objective * scale - after.solution.objective
+    return float(f_probability(drop, k, after.solution.objective, after.solution.dof))
+
+
+def left_by(C: Array, others: Array) -> float:
+    """Share of the square of some columns (N, K) that other columns (N, L) cannot imitate."""
+    whole = float((C**2).sum())
+    if not others.shape[1] or whole == 0.0:
+        return 1.0
+    fitted = others @ np.linalg.lstsq(others, C, rcond=None)[0]
+    return float(((C - fitted) ** 2).sum()) / whole
+
+
+def check_distinct(complement: ResidualSpace, added: Sequence[ScaledEffect]) -> None:
+    """Refuse effects of which a run determines only a sum.
+
+    Raises:
+        DesignError: Two names, and how much of the one the other imitates; or one name and the
+            others, where only several together imitate it.
+    """
+    columns = [complement.project(complement.columns([s.effect])) for s in added]
+    for i, C in enumerate(columns):
+        earlier = columns[:i]
+        alone = [left_by(C, other) for other in earlier]
+        if min(alone, default=1.0) < MIN_OWN_SHARE:
+            _refuse(added[i], [added[int(np.argmin(alone))]], min(alone))
+        if earlier and (left := left_by(C, np.hstack(earlier))) < MIN_OWN_SHARE:
+            _refuse(added[i], added[:i], left)
+
+
+def _refuse(one: ScaledEffect, others: Sequence[ScaledEffect], left: float) -> None:
+    names = " and ".join(s.effect.name for s in others)
+    verb = "imitates" if len(others) == 1 else "together imitate"
+    raise DesignError(
+        f"{one.effect.name} beside {names}: at these touches the latter {verb} all but "
+        f"{100.0 * left:.2g} % of it, so that only a sum of their sizes is known; expected the one "
+        "without the other"
+    )
+
+
+def not_significant(steps: Sequence[Step]) -> tuple[Noticed, ...]:
+    """Effects added by name whose size is within its own uncertainty."""
+    out = []
+    for step in steps:
+        size = _size(step.reported)
+        if step.effect is None or not step.is_named or size is None or size.u is None:
+            continue
+        if abs(size.value) < POLICY.significant_ratio * size.u:
+            name = step.effect.name
+            numbers = {"value": size.value, "u": size.u, "unit": size.unit}
+            what = What.NOT_SIGNIFICANT
+            out.append(noticed(what, effect=name, quantity=size.quantity, **numbers))
+    return tuple(out)
+
+
+def weakest(steps: Sequence[Step], is_weighed: bool) -> str | None:
+    """Name of the found effect with the least support, if chance or its uncertainty explains it.
+
+    Args:
+        is_weighed: Whether the set was chosen by what it predicts: then its members stand together,
+            and one falls only if neither its size nor its probability speaks for it.
+    """
+    out, least = None, POLICY.significant_ratio
+    for step in steps:
+        size = _size(step.reported)
+        if step.effect is None:
+            continue
+        worth = np.inf if size is None or not size.u else abs(size.value) / size.u
+        if not _is_possible(step):
+            worth = 0.0
+        elif is_weighed:
+            worth = worth if step.p_value > POLICY.chance_of_member else np.inf
+        elif step.p_value >= POLICY.false_alarm:
+            worth = 0.0
+        elif step.p_value < _certain(step.effect):
+            continue
+        if worth < least:
+            out, least = step.effect.name, worth
+    return out
+
+
+def _is_possible(step: Step) -> bool:
+    """Whether no coefficient of expansion is of a body that shrinks when it warms."""
+    for n in step.reported:
+        if n.unit == EXPANSION:
+            margin = POLICY.impossible_ratio * (n.u or 0.0)
+            if n.value < POLICY.expansion_least / n.factor - margin:
+                return False
+    return True
+
+
+def is_significant(step: Step) -> bool:
+    """Whether an effect exceeds its own uncertainty, or needs not to."""
+    size = _size(step.reported)
+    if size is None or not size.u or step.effect is None or step.p_value < _certain(step.effect):
+        return True
+    return abs(size.value) >= POLICY.significant_ratio * size.u
+
+
+def _certain(effect: Effect) -> float:
+    """Probability by chance below which an effect stands whatever the uncertainty of its size."""
+    is_sized = len(effect.parameters) <= MAX_SIZED_PARAMETERS
+    return POLICY.certain_p if is_sized else POLICY.close_p
+
+
+def _size(numbers: Sequence[Reported]) -> Reported | None:
+    """The number that says how large an effect is."""
+    return next((n for n in numbers if n.role is Role.SIZE), None)
