@@ -23,7 +23,6 @@ from matstd.probe_paths.campaign.evaluation import ball_centres, evaluate, sag_r
 from matstd.probe_paths.campaign.log_parts import checked_parts
 from matstd.probe_paths.campaign.order_study import Ordering, orders
 from matstd.probe_paths.campaign.simulation import (
-    SMALLEST_U,
     Campaign,
     simulate,
     simulate_search,
@@ -33,7 +32,6 @@ from matstd.probe_paths.campaign.tolerance import setup_tolerance
 
 __all__ = [
     "FIRST_MORNING",
-    "SMALLEST_U",
     "BallChange",
     "Campaign",
     "ContactSolver",

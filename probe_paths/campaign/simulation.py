@@ -19,9 +19,6 @@ from matstd.probe_paths.plan import Probe
 from matstd.twin.compute import Progress, silent
 from matstd.twin.record import Run
 
-SMALLEST_U = 1e-5
-"""Uncertainty stated where no noise is simulated, mm: a run file cannot state none."""
-
 
 @dataclass(frozen=True, eq=False)
 class Campaign:
@@ -144,7 +141,7 @@ def _campaign(
         for name, text in one.log.items()
         for part in read_log(name, machine.chain.rotary_axes, text)
     ]
-    u = max(machine.noise, SMALLEST_U)
+    u = machine.stated_u
     run = evaluate(parts, believed, machine.chain, u, machine.dialect)
     run = with_program_lines(run, {program.name: program for program in texts})
     begin = min(part.begin for part in parts if part.is_measuring)
