@@ -22,6 +22,7 @@ probe into `reach`, a new check of the position on the table into `seat`, a crit
 
 PARTS = (
     "body",
+    "price",
     "layout",
     "reach",
     "tool",

@@ -157,7 +157,7 @@ def read_texts(run: str, machine: str) -> Run:
 
 
 def named(run: str, machine: str) -> tuple[list[tuple[Fault, tuple[str, ...]]], str]:
-    """Mistakes that are named, those not told apart included, and a refusal of the reader."""
+    """Mistakes that are named, those not distinguished included, and a refusal of the reader."""
     refusal = ""
     try:
         read = read_texts(run, machine)
@@ -177,10 +177,10 @@ def planted_one(k: int, seed: int) -> str:
     found, refusal = named(*one.edit(run, machine))
     wanted = (one.fault, tuple(sorted(one.axes)))
     outcome = "right" if wanted in found else "misnamed" if found else "missed"
-    told = "; ".join(f"{f.value} {'/'.join(axes)}".strip() for f, axes in found)
+    stated = "; ".join(f"{f.value} {'/'.join(axes)}".strip() for f, axes in found)
     seconds = time.perf_counter() - start
     print(
-        f"{one.machine:8s} {one.fault.value} {'/'.join(one.axes)}: {outcome} ({told})"
+        f"{one.machine:8s} {one.fault.value} {'/'.join(one.axes)}: {outcome} ({stated})"
         f"{' refused' if refusal else ''} {seconds:.1f} s",
         flush=True,
     )

@@ -93,14 +93,14 @@ def score(folder: Path) -> Score:
     run = read_run(folder / "run.csv")
     result = diagnosing.diagnose(run, rng=np.random.default_rng(0))
     seconds = time.perf_counter() - began
-    told = ", ".join(
+    stated = ", ".join(
         f"{h['effect']}[{h['signal_to_noise']:.0f}]" + ("" if h["detectable"] else "(below)")
         for h in hidden
     )
     ratio = result.fit.standardised_test_rms / UM / truth["noise_um"]
     return Score(
         folder.name,
-        told or "-",
+        stated or "-",
         result.verdict.value,
         listed(named_steps(result)) or "-",
         is_right(result, hidden),

@@ -3,7 +3,7 @@
     python benchmarks/diagnosis_scale.py [--touches 800 20000]
 
 Each run comes from the independent exact simulator and is diagnosed, full library, in a process of
-its own. As a measure of the machine at hand the time is also told in QR factorisations of the
+its own. As a measure of the machine at hand the time is also given in QR factorisations of the
 ordinary model's columns at the same touches.
 """
 

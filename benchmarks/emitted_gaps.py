@@ -4,7 +4,7 @@
 
 OUT is a folder of `matstd design` for a machine with the kinematics of examples/hsm600u.toml. Its
 programs are read; with `--wide` their touches are first planned anew for a probe with a stem of
-3 x 40 mm, a body of 62 mm and a nose of 100 mm, and what is refused is told. Then every touch is
+3 x 40 mm, a body of 62 mm and a nose of 100 mm, and what is refused is printed. Then every touch is
 looked at from its start to its contact: surfaces as points every 0.5 mm, the tool above its ball as
 exact cylinders, kinematics by hand (`planted_collisions`). A place of a surface is up to 0.36 mm
 beside the nearest point, which is taken off the gap; where that leaves less than 1 mm, points every
@@ -39,7 +39,7 @@ PITCH = 0.5  # mm between points of a surface
 FINER = 0.15  # mm: the same where the first look leaves less than is wanted
 _PLACES = 3  # of the way in that are looked at
 _NEAR = 2.0  # mm: what is farther away is not looked at closely
-_COARSE = 3.0  # mm between the points that tell what is near
+_COARSE = 3.0  # mm between the points that say what is near
 WIDE = Probe(stack=((40.0, 1.5), (160.0, 31.0)), nose_radius=50.0)
 WANTED = 1.0  # mm
 

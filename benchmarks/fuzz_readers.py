@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "fixtures")]
+sys.path[:0] = [str(ROOT / part) for part in (".", "tests/fixtures", "tests/golden")]
 
 from border_cases import border_readers  # noqa: E402  (found through the path above)
 from foreign_cases import foreign_readers  # noqa: E402
@@ -58,7 +58,7 @@ def outcome(reader: Reader, data: bytes) -> tuple[str, str]:
             return "not what it says", f"{type(error).__name__} in the naive reading: {error}"
         if not is_said:
             return "not what it says", ""
-        found = "read, told" if getattr(result, "remarks", ()) else "read"
+        found = "read, with remarks" if getattr(result, "remarks", ()) else "read"
     spent = time.process_time() - begin
     return ("slow", f"{spent:.1f} s") if spent > SLOW else (found, "")
 
@@ -72,7 +72,7 @@ def main() -> int:
     args = parser.parse_args()
     warnings.simplefilter("error")
     with tempfile.TemporaryDirectory() as folder:
-        place, made = Path(folder), golden()
+        place, made = Path(folder), golden
         every = [*readers(place), *foreign_readers(place, made), *border_readers(place, made)]
         chosen = [r for r in every if args.only in ("", r.name)]
         faults: Counter[tuple[str, str, str]] = Counter()
@@ -89,8 +89,8 @@ def main() -> int:
                     faults[reader.name, what, why] += 1
                     if faults[reader.name, what, why] == 1 and len(faults) <= KEPT:
                         print(f"  {reader.name} input {k}: {what}: {why}", flush=True)
-            told = ", ".join(f"{n} {what}" for what, n in sorted(counts.items()))
-            print(f"{reader.name:9} {told} ({time.perf_counter() - begin:.0f} s)", flush=True)
+            stated = ", ".join(f"{n} {what}" for what, n in sorted(counts.items()))
+            print(f"{reader.name:9} {stated} ({time.perf_counter() - begin:.0f} s)", flush=True)
     print(f"{sum(faults.values())} faults of {len(faults)} sorts")
     for (name, what, why), count in faults.most_common():
         print(f"  {count:5} {name}: {what}: {why}")

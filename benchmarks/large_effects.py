@@ -4,8 +4,8 @@
 
 Each run hides one effect in the independent exact simulator, by its own formula there, so many
 times as large as the library expects it; every other run has chips, a noise that is not as stated
-and a spindle that runs besides. Right is the effect, or one that the same touches cannot tell from
-it, and nothing beside it.
+and a spindle that runs besides. Right is the effect, or one that the same touches cannot
+distinguish from it, and nothing beside it.
 """
 
 import time

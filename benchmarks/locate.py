@@ -4,11 +4,11 @@
 
 OUT is a folder of `matstd design`. Every placement is drawn evenly within the spread in all six
 directions, the widest that the probe has room for. The machine has no errors but 10 µm of
-noise at a touch; with `--errors` every placement
-has a machine of its own, whose errors (0.1 to 0.3 mm of displacement by the default distributions)
-nobody can tell from a displaced standard, and which are in the figures then. The search is
-run from the text of its program on the exact twin, its log is read and evaluated as a control's.
-Where the standard then really stands the whole tool is swept along every touch and every move.
+noise at a touch; with `--errors` every placement has a machine of its own, whose errors (0.1 to
+0.3 mm of displacement by the default distributions) look like a displaced standard and are in the
+figures then. The search is run from the text of its program on the exact twin, its log is read and
+evaluated as a control's. Where the standard really stands, the whole tool is swept along every
+touch and every move.
 """
 
 import argparse

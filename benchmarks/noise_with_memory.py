@@ -55,8 +55,8 @@ def one(job: tuple[int, bool]):
     right = right and result.verdict is (Verdict.MISSING if alike else Verdict.NONE)
     memory = result.fit.memory
     found = None if memory is None else memory.correlation
-    told = ", ".join(s.effect.name for s in steps) or "-"
-    return job[0], correlation, found, result.verdict.value, told, right, seconds
+    stated = ", ".join(s.effect.name for s in steps) or "-"
+    return job[0], correlation, found, result.verdict.value, stated, right, seconds
 
 
 def main() -> None:
@@ -65,11 +65,11 @@ def main() -> None:
     args = parser.parse_args()
     jobs = [(seed, args.hidden) for seed in range(args.first, args.first + args.runs)]
     results = in_processes(one, jobs, args.jobs)
-    for seed, true, found, verdict, told, right, seconds in results:
+    for seed, true, found, verdict, stated, right, seconds in results:
         shown = "none" if found is None else f"{found:.2f}"
         print(
             f"{mark(right)} {seed:3} correlation {true:.2f} found {shown} "
-            f"{verdict:17} {told}  {seconds:.1f} s"
+            f"{verdict:17} {stated}  {seconds:.1f} s"
         )
     named = sum(r[4] != "-" for r in results)
     print(

@@ -5,7 +5,7 @@
 Both runs come from the independent exact simulator and share the machine with its errors and its
 hidden effects (none, one or two). The second run has the same programme, but the standard stands
 elsewhere by chance, the temperatures are others, and so is the noise. A third has other poses and
-other touches in the same set-ups: how far it can be foretold depends on how far it leaves what was
+other touches in the same set-ups: how far it can be predicted depends on how far it leaves what was
 probed, so it is held against what the comparison expects at its own touches.
 """
 

@@ -83,7 +83,7 @@ def project(seed: int) -> str:
 
 
 def outcome(file: Path, folder: str) -> tuple[str, str]:
-    """What became of a project, and the last line it was told with."""
+    """What became of a project, and the last line it printed."""
     command = [sys.executable, "-m", "matstd", "design", str(file), "-o", folder]
     try:
         done = run(command, capture_output=True, text=True, timeout=LONGEST, check=False)
@@ -115,8 +115,8 @@ def main() -> None:
             name = MACHINES[seed % len(MACHINES)]
             print(f"{seed:3d} {name}: {end}, {wall:.0f} s ({used:.0f} s user); {last}", flush=True)
     most = getrusage(RUSAGE_CHILDREN).ru_maxrss / 2**20
-    told = ", ".join(f"{number} {end}" for end, number in ends.items())
-    print(f"{told}; at most {most:.2f} GiB in one process")
+    stated = ", ".join(f"{number} {end}" for end, number in ends.items())
+    print(f"{stated}; at most {most:.2f} GiB in one process")
     if ends["FAILED"]:
         sys.exit(1)
 

@@ -80,7 +80,7 @@ def plain(fit) -> float:
     return float(np.sqrt(np.mean(fit.residual[rows] ** 2))) / UM
 
 
-def told(name: str, run):
+def report(name: str, run):
     """Diagnose a record and say what came out."""
     from matstd.diagnosis.answer import diagnose
     from matstd.report.words import sizes
@@ -118,12 +118,12 @@ def main() -> None:
     if args.only != "frames":
         from make_run import spindle_run
 
-        told("spindle", spindle_run())
+        report("spindle", spindle_run())
     if args.only == "spindle" or not args.frames.is_dir():
         return
     for name in "ABCD":
-        told(name, frame_run(args.frames / f"{name}.csv"))
-    whole = told("C whole", frame_run(args.frames / "C.csv", whole=True))
+        report(name, frame_run(args.frames / f"{name}.csv"))
+    whole = report("C whole", frame_run(args.frames / "C.csv", whole=True))
     error, promised = transfer(whole, args.frames / "D.csv")
     print(f"C predicts D: {error:.2f} µm, promised were {promised:.2f} µm")
 

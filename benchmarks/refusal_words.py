@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
-sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "fixtures")]
+sys.path[:0] = [str(ROOT / part) for part in (".", "tests/fixtures", "tests/golden")]
 
 from formats import examples  # noqa: E402  (found through the path above)
 

@@ -1,11 +1,11 @@
-"""A serial arm under a tracker: what is told of it, beside a Gauss-Newton that shares no code.
+"""The diagnosis of a serial arm under a tracker, beside a Gauss-Newton that shares no code.
 
     python benchmarks/serial_arm.py [--poses 60] [--runs 3]
 
 The arm, its errors, the sag of its second joint and the tracker are simulated here by products of
 exponentials. The other one is least squares without a prior over every number that such poses may
-tell: points, tilts and zeros of all lines, two weights, tracker and reflector; what they cannot
-tell is left at zero. Held out are poses, one after the other.
+determine: points, tilts and zeros of all lines, two weights, tracker and reflector; the rest is
+left at zero. Held out are poses, one after the other.
 """
 
 import argparse
@@ -86,7 +86,7 @@ def least_squares(q, places):
     return float(np.sqrt(np.mean(np.square(errors)))), float(np.sqrt(left @ left / dof)), rank
 
 
-def told(folder, q, places):
+def diagnosed(folder, q, places):
     """The diagnosis of the same poses, by a run file."""
     from matstd.diagnosis.answer import diagnose
     from matstd.twin.files import read_run
@@ -122,7 +122,7 @@ def main():
         places = seen(q, truth()) + rng.normal(0.0, NOISE, (args.poses, 3))
         found, _, rank = least_squares(q, places)
         with tempfile.TemporaryDirectory() as folder:
-            result = told(Path(folder), q, places)
+            result = diagnosed(Path(folder), q, places)
         plain = float(np.sqrt(np.mean(result.fit.held_out_errors**2)))
         names = ", ".join(e.name for e in result.found) or "nothing"
         print(

@@ -23,7 +23,7 @@ import numpy as np
 
 from matstd.artefact.body import Standard, read_standard
 from matstd.artefact.brief import Brief, Task, read_project
-from matstd.artefact.certify import displaced_features, like_task, on_faces
+from matstd.artefact.certify import displaced_features, like_task, that_prove
 from matstd.artefact.worth import Calibration
 from matstd.diagnosis.fit import Prior, fit_run
 from matstd.diagnosis.task import Visits, task_uncertainty
@@ -53,7 +53,7 @@ class Measured:
 
 
 def workpieces(run: Run, standard: Standard, rng: np.random.Generator) -> Touches:
-    """Touches on surfaces that nobody calibrated, in the volume of the faces, at new poses."""
+    """Touches on surfaces without a calibration, in the volume of the faces, at new poses."""
     t = run.touches
     chain, setup = t.chain, t.setups[0]
     like = t[like_task(Task(), standard, t)]
@@ -95,7 +95,7 @@ def errors_of(
 ) -> dict[str, Array]:
     """Errors of results on workpieces that stand on the standard's datum balls, mm."""
     t = run.touches
-    datum = t[~on_faces(standard, t)]
+    datum = t[~that_prove(standard, t)]
     real = Model(t.chain, tuple(e for e, _ in truth))
     theta = np.concatenate([np.atleast_1d(x) for _, x in truth])
     free = setup_errors(t)
@@ -128,7 +128,7 @@ def machine(
         for a, b in [CLAMPING_SCATTER] * number
     ]
     runs = [c.run for c in visits(programs, true, stands, rng, calibrated=standard)]
-    held_back = np.where(on_faces(standard, runs[0].touches), "test", "train")
+    held_back = np.where(that_prove(standard, runs[0].touches), "test", "train")
     fit = fit_run(replace(runs[0], split=held_back), brief.population.expected())
     count = len(fit.model.parameters)
     models = {

@@ -40,6 +40,8 @@ class Tracer:
 
     def pytest_sessionfinish(self) -> None:
         self.coverage.stop()
+        if not self.seconds:  # the process that distributes the tests runs none itself
+            return
         self.coverage.save()
         (FOLDER / f"seconds-{os.getpid()}.json").write_text(json.dumps(self.seconds))
 

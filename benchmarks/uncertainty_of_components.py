@@ -8,7 +8,7 @@ the machine and by place, whose sizes are given; every feature's calibration is 
 number; visits repeat within 1 µm, of which 0.2 µm moves all places alike. U is evaluated from that
 alone, and the probability that it covers a result at a new feature, pose, region and place in a new
 visit is known exactly. Wanted: 93 to 97 %, averaged over machines. Where the calibration is as
-uncertain as the error that is looked for, faces cannot tell one from the other: too much is covered
+uncertain as the error that is looked for, faces cannot distinguish the two: too much is covered
 where there is no such error, too little where there is.
 """
 

@@ -144,10 +144,13 @@ def step_file() -> dict[str, str]:
     with tempfile.TemporaryDirectory() as folder:
         ours = export_standard(made, folder, chord=0.05)
         code = (
-            "import sys; from build123d import export_step\n"
+            "import sys; from build123d import Solid, export_step\n"
             "from matstd.artefact.body import read_standard\n"
-            "from matstd.cad_out.kernel import as_part\n"
-            "export_step(as_part(read_standard(sys.argv[1]))[0], sys.argv[2])\n"
+            "from matstd.cad_out.details import details_of\n"
+            "from matstd.cad_out.kernel.solid import build_solid\n"
+            "standard = read_standard(sys.argv[1])\n"
+            "built = build_solid(standard, details_of(standard))\n"
+            "export_step(Solid(built.shape), sys.argv[2])\n"
         )
         from matstd.artefact.body import write_standard
 

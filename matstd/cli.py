@@ -79,7 +79,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except DesignError as error:
         print(f"matstd {args.command}: {error}", file=sys.stderr)
         return EXIT_BAD_INPUT
-    except BrokenPipeError:  # whoever read our words has heard enough
+    except BrokenPipeError:  # the reader of our output has gone
         sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
         return 0
     except OSError as error:

@@ -102,13 +102,13 @@ def turns(show: Progress) -> Callable[[float, str], None]:
     begun: Counter[str] = Counter()
     last = ""
 
-    def tell(_share: float, doing: str) -> None:
+    def report(_share: float, doing: str) -> None:
         nonlocal last
         begun[doing] += doing != last
         last = doing
         show(doing, begun[doing], 0)
 
-    return tell
+    return report
 
 
 @contextmanager
@@ -243,15 +243,15 @@ def _told(out: TextIO, period: float, words: Callable[[float], str]) -> Iterator
     """A line by the clock while the block works."""
     begun, over = time.monotonic(), threading.Event()
 
-    def tell() -> None:
+    def repeat() -> None:
         while not over.wait(period):
             now = time.monotonic()
             print(f"[{now - begun:3.0f} s] {words(now)}", file=out, flush=True)
 
-    teller = threading.Thread(target=tell, daemon=True)
-    teller.start()
+    reporter = threading.Thread(target=repeat, daemon=True)
+    reporter.start()
     try:
         yield
     finally:
         over.set()
-        teller.join()
+        reporter.join()

@@ -212,6 +212,11 @@ def p_value(value: float) -> str:
     return "< 1e-12" if value < 1e-12 else f"{value:.2g}"
 
 
+def euros(value: float, u: float) -> str:
+    """A price with its standard uncertainty, in hundreds of euros."""
+    return f"{round(value, -2):.0f} ± {max(round(u, -2), 100.0):.0f} EUR"
+
+
 def plural(number: int, word: str) -> str:
     """A number of things: `1 touch`, `2 touches`."""
     ending = "" if number == 1 else "es" if word.endswith("ch") else "s"

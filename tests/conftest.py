@@ -3,10 +3,11 @@
 import gc
 import os
 import sys
-from base64 import b64decode
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -22,31 +23,35 @@ sys.dont_write_bytecode = False
 # otherwise: a third of the time of the collection, a quarter of that of the tests
 gc.set_threshold(50_000, 20, 20)
 
-pytest_plugins = ["bench", "browser", "machines", "standards", "runs"]
+pytest_plugins = ["bench", "browser", "firefox", "machines", "standards", "runs"]
 """Fixtures that the tests of several rooms share, in `tests/fixtures`."""
 
 
 LONGEST = (
     "matstd/test_design.py",
+    "test_door.py",
     "diagnosis/test_hidden_effects.py",
-    "diagnosis/test_several_runs.py",
     "report/test_diagnosis_pictures.py",
-    "test_examples_diagnosis.py",
-    "diagnosis/test_one_set.py",
     "diagnosis/test_files_and_commands.py",
+    "diagnosis/test_several_runs.py",
+    "diagnosis/test_laws.py",
+    "probe_paths/test_simulate.py",
     "matstd/test_measure_commands.py",
-    "matstd/test_sensitivity_command.py",
-    "test_examples_runs.py",
-    "diagnosis/test_prediction.py",
-    "report/test_scenes.py",
+    "test_examples.py",
     "cad_out/test_export.py",
     "diagnosis/test_periods.py",
-    "probe_paths/test_simulate.py",
-    "test_formats.py",
-    "test_examples.py",
-    "matstd/test_design_machines.py",
+    "report/test_scenes.py",
+    "test_examples_diagnosis.py",
+    "diagnosis/test_prediction.py",
+    "diagnosis/test_other_run.py",
+    "report/test_live_page.py",
+    "matstd/test_seat.py",
+    "diagnosis/test_description_faults.py",
+    "test_examples_runs.py",
+    "matstd/test_reach.py",
+    "diagnosis/test_rivals.py",
 )
-"""Files of more than ten seconds: begun first, so that no worker waits for one of them at the end;
+"""Files of more than five seconds: begun first, so that no worker waits for one of them at the end;
 left to itself, xdist begins with the files of most tests."""
 
 
@@ -74,55 +79,42 @@ def pytest_report_header() -> str:
     return "pages are driven in Chromium" if is_here() else MISSING
 
 
-DOT = b64decode(
-    "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAAAAAA6fptVAAAACklEQVR4nGP4DwABAQEAsTj2FAAAAABJRU5ErkJggg=="
-)
-"""A PNG of one white pixel."""
-
-
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """The longest files first, the others in their order."""
     rank = {Path(__file__).parent / name: k for k, name in enumerate(LONGEST)}
+    assert all(path.exists() for path in rank), "LONGEST names a file that is gone"
     items.sort(key=lambda item: rank.get(item.path, len(rank)))
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _no_lines_of_progress():
-    """A slow machine is told every ten seconds how far it is: nothing a test can count on."""
+def _as_in_a_test():
+    """What the commands do otherwise, in a test.
+
+    A slow machine prints its progress every ten seconds: nothing a test can count on. The workers
+    share the cores: nothing is done in a further process, where what a test has patched would not
+    be. Pictures have a third of the dots, which is a quarter of their time.
+    """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("matstd.progress.PERIOD", 1e6)
-        yield
-
-
-@pytest.fixture(scope="session", autouse=True)
-def _one_core():
-    """The workers of the tests share the cores: nothing is done in a further process, where what
-    a test has patched would not be."""
-    with pytest.MonkeyPatch.context() as patch:
         patch.setattr("matstd.twin.beside.CORES", 1)
+        patch.setattr("matstd.report.style.sheet.DPI", 80)
         yield
+
+
+@pytest.fixture(scope="session")
+def golden() -> ModuleType:
+    """The module that makes the golden programs."""
+    import make_programs
+
+    return make_programs
 
 
 @pytest.fixture
 def rendered_alone(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     """A function (first words of names): from now on figures are rendered to these files alone."""
+    from figures import render_alone
 
-    def only(*names: str) -> None:
-        from matplotlib.figure import Figure
-
-        render, texts = Figure.savefig, Figure.findobj
-
-        def save(figure: Figure, path: Path, **options: Any) -> None:
-            if path.name.removeprefix(".").startswith(names):
-                render(figure, path, **options)
-            else:
-                path.write_bytes(DOT)
-
-        monkeypatch.setattr(Figure, "savefig", save)
-        # to look for texts is to make every tick
-        monkeypatch.setattr(Figure, "findobj", texts if names else lambda *_: [])
-
-    return only
+    return partial(render_alone, monkeypatch)
 
 
 @pytest.fixture

@@ -119,7 +119,7 @@ def test_importing_the_door_loads_nothing() -> None:
 
 
 @pytest.mark.parametrize("path", API, ids=lambda p: p.stem)
-def test_examples_of_the_docstrings_run(path, there) -> None:
+def test_examples_of_the_docstrings_run(path, there, unrendered) -> None:
     module = importlib.import_module(f"matstd.api.{path.stem}")
     found = doctest.DocTestFinder(recurse=True).find(module)
     runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
@@ -169,7 +169,7 @@ def test_a_run_can_be_given_as_a_path_a_run_or_several(there) -> None:
     assert len(later.run) == len(run) + 33
 
 
-def test_machine_errors_of_a_fit_are_those_of_its_file(there) -> None:
+def test_machine_errors_of_a_fit_are_those_of_its_file(there, unrendered) -> None:
     run = matstd.read_run("run.csv")
     found = matstd.diagnose(run, only=["thermal-lag"], auto=True)
     found.save("out")
@@ -184,15 +184,16 @@ def test_machine_errors_of_a_fit_are_those_of_its_file(there) -> None:
     assert len(by_file.errors.touches(q, 160.0)) == 1
 
 
-def test_commands_write_what_the_door_writes(there) -> None:
+def test_commands_write_what_the_door_writes(there, unrendered) -> None:
     assert main(["diagnose", "run.csv", "--only", "thermal-lag", "-o", "command"]) == 0
-    matstd.diagnose("run.csv", only=["thermal-lag"]).save("door")
+    found = matstd.diagnose("run.csv", only=["thermal-lag"])
+    found.save("door")
     names = {p.relative_to("command") for p in Path("command").rglob("*") if p.is_file()}
     assert names == {p.relative_to("door") for p in Path("door").rglob("*") if p.is_file()}
     for name in ("diagnosis.json", "model.toml"):
         assert Path("command", name).read_bytes() == Path("door", name).read_bytes()
     with pytest.raises(matstd.DesignError, match="already exists"):
-        matstd.diagnose("run.csv", only=["thermal-lag"]).page("door")
+        found.page("door")
 
 
 def test_an_argument_is_named_as_it_was_given(there, capsys) -> None:

@@ -160,7 +160,7 @@ def test_08_the_residual_is_the_noise_less_what_the_fit_took() -> None:
     n, k = len(fit.run), fit.solution.effective_parameters
     expected = np.sqrt(1.0 - k / n)
     assert fit.rms * 1e3 == pytest.approx(expected, rel=3.0 / np.sqrt(2.0 * (n - k)))
-    # The design's own promise: at least ten times less is left unpredicted at poses nobody probed.
+    # The design's own promise: at least ten times less is unpredicted at poses without a touch.
     assert proof.factor > 10.0
     # And no better than the noise allows: touches that represented the volume ideally would leave
     # sqrt(3 k/N) um, as in example 5; less would mean that the truth leaked into the fit.
@@ -193,9 +193,9 @@ def test_10_an_effect_of_ones_own_turns_unexplained_into_found(
     assert [effect.name for effect in after.found] == ["clamp-lift"]
     (lift,) = after.steps[-1].reported
     assert abs(lift.value - 5.0) < 3.0 * lift.u  # 5 um were hidden
-    # The lift is told from the mean by half the touches with it and half without: each shows it by
-    # the cosine n_z between its normal and the axis of C, so u is at least 2 um / sqrt(sum n_z^2),
-    # and little more, since no other error knows the side.
+    # Half the touches have the lift and half have not, which distinguishes it from the mean: each
+    # shows it by the cosine n_z between its normal and the axis of C, so u is at least
+    # 2 um / sqrt(sum n_z^2), and little more, since no other error knows the side.
     least = 2.0 / np.sqrt(np.sum(after.run.touches.normal[:, 2] ** 2))
     assert 0.95 * least < lift.u < 1.5 * least
 

@@ -87,13 +87,13 @@ def test_the_warm_up_is_named_and_the_error_falls_to_the_noise(warm_up):
     assert re.search(re.escape(row).replace(r"\ \.\*\ ", ".*"), words)
 
 
-def test_all_chips_of_the_warm_up_are_told_by_line(warm_up):
+def test_all_chips_of_the_warm_up_are_reported_by_line(warm_up):
     words, _, _ = warm_up
     text = (HIDDEN / "warm_up.csv").read_text(encoding="utf-8").splitlines()
     head = next(i for i, line in enumerate(text) if not line.startswith("#"))
     chips = {head + 2 + row for row in truth("warm_up")["chips"]}  # lines count from 1
-    told = re.search(r"gross errors were left out.*?lines ([\d, \n]+)", words, re.DOTALL)
-    assert {int(n) for n in told.group(1).replace("\n", " ").split(",")} == chips
+    stated = re.search(r"gross errors were left out.*?lines ([\d, \n]+)", words, re.DOTALL)
+    assert {int(n) for n in stated.group(1).replace("\n", " ").split(",")} == chips
 
 
 def test_the_model_with_the_effect_leaves_noise(warm_up, tmp_path):

@@ -1,4 +1,4 @@
-"""Examples with runs of the exact simulator: what was planted is told, and the READMEs quote it."""
+"""Examples with runs of the exact simulator: what was planted is found, and READMEs quote it."""
 
 import importlib.util
 import json
@@ -65,7 +65,7 @@ def crash(tmp_path_factory):
 
 
 @pytest.mark.slow
-def test_the_crash_is_told_and_nothing_before_it(crash):
+def test_the_crash_is_reported_and_nothing_before_it(crash):
     planted = module(CRASH / "make_runs.py")
     trend = result(crash)["trend"]
     assert [run["has_changed"] for run in trend["runs"]] == [False, False, True]
@@ -92,7 +92,7 @@ def test_the_growth_is_one_for_all_runs(crash):
 
 
 @pytest.mark.slow  # tests/diagnosis/test_several_runs.py begins with a model as well
-def test_the_model_of_the_spring_tells_the_crash_as_well(tmp_path):
+def test_the_model_of_the_spring_predicts_the_crash_as_well(tmp_path):
     model, since = tmp_path / "spring", tmp_path / "since"
     first = ["diagnose", str(CRASH / "spring.csv"), "--auto", "--no-report", "-o", str(model)]
     assert main(first) == 0
@@ -117,14 +117,14 @@ NUMBERS = {"pivot": "-419.9903", "ball": "3.0006"}
 def test_a_wrong_number_is_named_with_what_to_write(name, mistake, true, tmp_path, capsys):
     out = tmp_path / "out"
     assert main(["compare", str(WRONG / f"{name}.csv"), "--no-report", "-o", str(out)]) == 0
-    told = " ".join(capsys.readouterr().out.split())
+    message = " ".join(capsys.readouterr().out.split())
     table = json.loads((out / "comparison.json").read_text(encoding="utf-8"))
     (first,) = table["description_faults"]
     every = {f["mistake"]: f for f in (first, *first["cannot_be_told_from"])}
     (number,) = every[mistake]["numbers"]
     assert abs(number["change"] - true) < COVERED * number["uncertainty"]
     start = "this run cannot distinguish these" if name == "pivot" else "to copy: "
-    (line,) = [t for t in told.split(" - ") if t.startswith(start) and NUMBERS[name] in t]
+    (line,) = [t for t in message.split(" - ") if t.startswith(start) and NUMBERS[name] in t]
     assert line.strip() in quoted(WRONG)
 
 

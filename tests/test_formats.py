@@ -132,19 +132,19 @@ def test_every_key_is_described_with_its_default(name):
     assert sorted(described) == sorted(fields)
     for key, field in fields.items():
         default = field.get_default(call_default_factory=True, validated_data={})
-        told = described[key]
+        stated = described[key]
         default = default.value if isinstance(default, Enum) else default
         if isinstance(default, Table):
-            assert told == "its defaults", key
+            assert stated == "its defaults", key
         elif isinstance(default, dict) and default:
-            assert told == "one, `[setup.a]`", key
+            assert stated == "one, `[setup.a]`", key
         elif default in ({}, []) or default == ():
-            assert told == "none", key
+            assert stated == "none", key
         elif isinstance(default, list | tuple) or default not in UNSTATED:
-            value = tomllib.loads("x = " + told.strip("`"))["x"]
+            value = tomllib.loads("x = " + stated.strip("`"))["x"]
             assert value == (list(default) if isinstance(default, tuple) else default), key
         else:
-            assert told == UNSTATED[default], key
+            assert stated == UNSTATED[default], key
 
 
 MADE = runpy.run_path(str(ROOT / "docs" / "make_formats.py"))
@@ -190,10 +190,10 @@ def test_other_columns_are_those_of_their_readers(folder):
 def test_classes_of_errors_are_described_with_their_amplitudes():
     described = tables()["classes of errors"]
     assert set(described) == set(DEFAULT_RANGES)
-    for name, told in described.items():
+    for name, stated in described.items():
         is_angle = name.endswith(("_rotation", "_tilt", "ry_zero", "arm_zero", "squareness"))
         shown = np.array(DEFAULT_RANGES[name]) / (URAD if is_angle else UM)
-        assert json.loads(told.strip("`")) == pytest.approx(shown.tolist())
+        assert json.loads(stated.strip("`")) == pytest.approx(shown.tolist())
 
 
 # --- the keys of results --------------------------------------------------------------------

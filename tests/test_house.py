@@ -52,7 +52,18 @@ DRAWING = {"matplotlib", "pyvista", "vtk"}
 KERNEL = {
     f"cad_out/kernel/{name}.py"
     for name in (
-        ["assembly", "exchange", "faces", "letters", "pmi", "primitives", "reader", "solid", "xcaf"]
+        [
+            "assembly",
+            "exchange",
+            "faces",
+            "letters",
+            "parts",
+            "pmi",
+            "primitives",
+            "reader",
+            "solid",
+            "xcaf",
+        ]
     )
 }
 MAX_FILES = 16
@@ -430,7 +441,7 @@ def test_every_command_has_its_file() -> None:
 
 
 MAX_PLACES = 4
-"""Fields of a record that may be given by place: of more, nobody can tell which is which."""
+"""Fields of a record that may be given by place: of more, a reader cannot see which is which."""
 
 
 def records(tree: ast.AST) -> dict[str, int]:

@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from notebook import cells, stored, told
+from notebook import answers, cells, stored
 
 ROOT = Path(__file__).parents[1]
 NOTEBOOKS = sorted((ROOT / "examples").glob("*.ipynb"))
@@ -27,7 +27,7 @@ FEW = 3
 def test_cells_say_what_stands_under_them(path, most):
     notebook = json.loads(path.read_text(encoding="utf-8"))
     anew = f"python tests/fixtures/notebook.py {path.relative_to(ROOT)} writes it anew"
-    for cell, found in zip(cells(notebook)[:most], told(path, most), strict=True):
+    for cell, found in zip(cells(notebook)[:most], answers(path, most), strict=True):
         for said, says in zip(stored(cell), found, strict=True):
             assert NUMBER.split(said) == NUMBER.split(says), anew
             numbers = [float(n) for n in NUMBER.findall(said)]

@@ -30,7 +30,7 @@ to drift, to tasks and calibrations, to parts."""
 
 
 class Cases(dict):
-    """Readers by name; its words are short, because hypothesis tells them with every example."""
+    """Readers by name; its words are short, because hypothesis prints them with every example."""
 
     def __repr__(self) -> str:
         return "cases"
@@ -40,8 +40,7 @@ class Cases(dict):
 def cases(tmp_path_factory):
     """Every reader with its valid text."""
     folder = tmp_path_factory.mktemp("files")
-    own = golden()
-    made = [*readers(folder), *foreign_readers(folder, own), *border_readers(folder, own)]
+    made = [*readers(folder), *foreign_readers(folder, golden), *border_readers(folder, golden)]
     return Cases({r.name: (r, r.path.read_text(encoding="utf-8")) for r in made})
 
 

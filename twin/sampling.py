@@ -1,8 +1,10 @@
-"""Points that fill a cube evenly, for readings over the travels of a machine.
+"""Points that fill a cube evenly, for readings over the travels of a machine and grids over faces.
 
 The quasi-Monte Carlo module of scipy is not used: its import takes two seconds, longer than most
 commands that need a few hundred poses, and its sequences are even only at powers of two.
 """
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,6 +39,11 @@ def spread_rows(count: int, most: int) -> NDArray[np.int64]:
         most: Rows that are wanted; all where there are fewer.
     """
     return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.int64))
+
+
+def grid_points(*axes: NDArray[Any]) -> Array:
+    """All points of a grid with these values along its axes, the last fastest, (points, axes)."""
+    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, len(axes))
 
 
 def latin_points(low: Array, high: Array, count: int, rng: np.random.Generator) -> Array:

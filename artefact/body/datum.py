@@ -25,6 +25,7 @@ class DatumSphere:
         stem_radius: Of the stem's cone at the height of the ball's centre, mm.
         foot_radius: Of the stem at its foot, mm.
         foot: Height of the foot (the base's top face) in the artefact frame, mm.
+        proves: Whether its touches are held out from the identification, to prove the model.
     """
 
     name: str
@@ -33,6 +34,7 @@ class DatumSphere:
     stem_radius: float
     foot_radius: float
     foot: float
+    proves: bool = False
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "centre", read_only(self.centre, (3,), f"{self.name}: centre"))

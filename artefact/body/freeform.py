@@ -12,6 +12,7 @@ from matstd.artefact.body.patch import Hit, Mask, read_only, rows, sphere_entry
 from matstd.artefact.body.spline import Jet, check_knots, clamped_knots, greville, height, jet
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array, apply, inverse, turn, unit
+from matstd.twin.sampling import grid_points
 
 OVERHANG = 6.0
 """Extension of the spline beyond the trimmed rectangle on every side, mm."""
@@ -20,7 +21,7 @@ LEAST_OVERHANG = 1.0
 """Smallest extension of a patch that is read from a file, mm."""
 
 _GRID_PITCH = 2.0  # of the start grid, mm; finer than half the smallest concave radius allowed
-_BLOCK = 4_000_000  # numbers in memory at once during the search of start points
+_NUMBERS_A_BLOCK = 4_000_000  # numbers in memory at once during the search of start points
 
 
 class ErrorShare(NamedTuple):
@@ -150,7 +151,7 @@ class FreeformPatch:
         """Parameters of a regular grid over the face, extended by `beyond` mm, (N, 2)."""
         half = [a + beyond for a in self.half_size]
         axes = [np.linspace(-a, a, int(np.ceil(2 * a / pitch)) + 1) for a in half]
-        return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+        return grid_points(*axes)
 
     def project(self, points: Array) -> Array:
         """Foot points on the (untrimmed) spline: ``(S - p) . S_u = (S - p) . S_v = 0``.
@@ -204,7 +205,7 @@ class FreeformPatch:
         near = np.flatnonzero(np.isfinite(sphere_entry(centre, start, d, reach + radius)))
         # steep faces leave gaps between nodes: a node counts when the ball nearly touches it
         fat, offset = np.hypot(radius, 2.0 * _GRID_PITCH), nodes - centre
-        for some in np.array_split(near, len(near) * len(nodes) // _BLOCK + 1):
+        for some in np.array_split(near, len(near) * len(nodes) // _NUMBERS_A_BLOCK + 1):
             to_centre = np.einsum("ni,ni->n", centre - start[some], d[some])
             foot = start[some] + to_centre[:, None] * d[some] - centre
             # relative to the foot of the centre on the ball's line, so that squares lose no digits

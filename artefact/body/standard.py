@@ -19,6 +19,7 @@ from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import Labels
+from matstd.twin.sampling import grid_points
 from matstd.twin.units import T_REF
 
 DATUM_PLANE = "DATUM_A"
@@ -180,6 +181,12 @@ class Standard(Displayed):
         return DatumPlane(DATUM_PLANE, base.thickness, base.half_size, base.corner_radius)
 
     @cached_property
+    def proving(self) -> tuple[str, ...]:
+        """Features whose touches prove the model instead of identifying it."""
+        balls = tuple(ball.name for ball in self.spheres if ball.proves)
+        return tuple(patch.name for patch in self.patches) + balls
+
+    @cached_property
     def features(self) -> dict[str, Surface]:
         """Every touchable surface by name: patches, spheres, datum plane."""
         surfaces: tuple[Surface, ...] = (*self.patches, *self.spheres, self.plane)
@@ -275,7 +282,7 @@ class Standard(Displayed):
         low = [-self.base.half_size[0], -self.base.half_size[1], 0.0]
         high = [self.base.half_size[0], self.base.half_size[1], self.blank_height]
         axes = [np.arange(a + 0.5 * step, b + step, step) for a, b in zip(low, high, strict=True)]
-        cells = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+        cells = grid_points(*axes)
         filled = np.clip(0.5 - self.distance(cells) / step, 0.0, 1.0).sum() * step**3
         bored = sum(
             np.pi * (h.radius**2 * (self.base.thickness - h.bore_depth))

@@ -81,6 +81,7 @@ class _Sphere(Table):
     stem_radius_mm: Positive
     foot_radius_mm: Positive
     foot_mm: float
+    proves: bool = False
 
 
 class _Hole(Table):
@@ -108,7 +109,7 @@ class _File(Table):
     material: _Material
     base: _Base
     core: _Core | None = None
-    patch: Annotated[list[_Patch], Field(min_length=1)]
+    patch: list[_Patch] = Field(default_factory=list)
     sphere: list[_Sphere] = Field(default_factory=list)
     hole: list[_Hole] = Field(default_factory=list)
     calibration: KnownTable | None = None
@@ -251,6 +252,7 @@ def _sphere(path: Path, number: int, sphere: _Sphere) -> DatumSphere:
             stem_radius=sphere.stem_radius_mm,
             foot_radius=sphere.foot_radius_mm,
             foot=sphere.foot_mm,
+            proves=sphere.proves,
         )
     except ShapeMismatch as error:
         raise BadFile(path, f"sphere.{number}", str(error), "a ball on a stem") from error
@@ -306,7 +308,8 @@ def _table(standard: Standard) -> dict[str, Any]:
             "high_radius_mm": float(core.high_radius),
             "height_mm": float(core.height),
         }
-    table["patch"] = [_patch_table(patch) for patch in standard.patches]
+    if standard.patches:
+        table["patch"] = [_patch_table(patch) for patch in standard.patches]
     table["sphere"] = [_sphere_table(sphere) for sphere in standard.spheres]
     table["hole"] = [_hole_table(hole) for hole in standard.holes]
     if standard.known is not None:
@@ -349,6 +352,7 @@ def _sphere_table(sphere: DatumSphere) -> dict[str, Any]:
         "stem_radius_mm": float(sphere.stem_radius),
         "foot_radius_mm": float(sphere.foot_radius),
         "foot_mm": float(sphere.foot),
+        **({"proves": True} if sphere.proves else {}),
     }
 
 

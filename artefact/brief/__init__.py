@@ -5,7 +5,13 @@ base units; no table of a file leaves this part. A new key is a field of one of 
 of the `Brief`, and a check beside it if it can contradict another.
 """
 
-from matstd.artefact.brief.brief import Brief, PlacementOptions, ProgramSettings, StudySettings
+from matstd.artefact.brief.brief import (
+    Brief,
+    Goal,
+    PlacementOptions,
+    ProgramSettings,
+    StudySettings,
+)
 from matstd.artefact.brief.project_file import read_project
 from matstd.artefact.brief.project_writer import project_text
 from matstd.artefact.brief.standard_tables import (
@@ -22,6 +28,7 @@ __all__ = [
     "FINISHING_RADIUS",
     "LEAST_SIDE",
     "Brief",
+    "Goal",
     "PlacementOptions",
     "ProgramSettings",
     "StudySettings",

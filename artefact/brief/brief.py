@@ -37,6 +37,10 @@ _ROOM, _ROOM_OF_BALL = 2.0, 2.0 / 3.0
 """Largest gap round the probe, mm, and the gap as a share of the ball's radius."""
 
 
+Goal = Literal["prove", "identify", "worst", "minutes", "price"]
+"""What decides between families of features."""
+
+
 @dataclass(frozen=True)
 class PlacementOptions:
     """Size of the standard, number of candidates, and design criterion.
@@ -46,8 +50,8 @@ class PlacementOptions:
         sites: Number of random faces to choose from.
         noise: Standard deviation of one touch, mm.
         criterion: By which faces, balls, poses and touches are chosen.
-        family: Features beside the balls: `faces`, `flat`, `wavy`, or `auto` for those that win.
-        goal: What decides between the families: `prove` or `identify`.
+        family: Features that prove: `faces`, `flat`, `wavy`, `balls`, or `auto` for those that win.
+        goal: What decides between the families.
         scan: How a control scans faces; None where it touches only.
     """
 
@@ -60,7 +64,7 @@ class PlacementOptions:
     criterion: CriterionOptions = field(default_factory=lambda: CriterionOptions(potential=0.3))
     choice: TouchOptions = field(default_factory=TouchOptions)
     family: str = "faces"
-    goal: Literal["prove", "identify"] = "prove"
+    goal: Goal = "prove"
     scan: Scan | None = None
 
 

@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import Field
 
 from matstd.artefact.body import Base, Limits, Material
-from matstd.artefact.brief.brief import PlacementOptions
+from matstd.artefact.brief.brief import Goal, PlacementOptions
 from matstd.artefact.hidden import Scan
 from matstd.artefact.layout import Blank, Fittings
 from matstd.artefact.worth import Calibration, CriterionOptions, TouchOptions
@@ -75,12 +75,15 @@ class StandardTable(Table):
     down: Literal["+X", "-X", "+Y", "-Y", "+Z", "-Z"] = "-Z"
     """direction of weight in machine coordinates, `-Y` for a horizontal machine; the sag of the
     standard depends on it"""
-    family: Literal["auto", "faces", "flat", "wavy"] = "faces"
-    """features beside the balls: `faces` (small freeform faces), `flat` (flat pads in their
-    places), `wavy` (one large wavy face) or `auto`: the one that shows unmodelled effects
-    best, see [design](../design.md#which-features)"""
-    goal: Literal["prove", "identify"] = "prove"
-    """goal of `auto`: `prove`, or `identify` for the family that leaves least unknown"""
+    family: Literal["auto", "balls", "faces", "flat", "wavy"] = "faces"
+    """features that prove the model: `faces` (small freeform faces), `flat` (flat pads in their
+    places), `wavy` (one large wavy face), `balls` (as many further balls) or `auto`: the one that
+    wins, see [design](../design.md#which-features)"""
+    goal: Goal = "prove"
+    """goal of `auto`: `prove` for the family that shows unmodelled effects best, `identify` for
+    the one that leaves least unknown in the workspace, `worst` for least at its worst pose,
+    `minutes` for the best signal of unmodelled effects in the same time, `price` for the
+    cheapest"""
 
     def options(
         self, noise: float, calibration: Calibration, scan: Scan | None = None

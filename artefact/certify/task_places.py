@@ -19,8 +19,8 @@ _MAX_OFFSET = 2.0 * UM  # rms of touches off the standard that evaluated them: i
 _EDGE = 1e-6  # rad and 1/mm: ranges include their ends in spite of rounding
 
 
-def on_faces(standard: Standard, touches: Touches) -> Mask:
-    """Touches on freeform faces, (N,).
+def that_prove(standard: Standard, touches: Touches) -> Mask:
+    """Touches that are held out from the identification: on faces, and balls that prove, (N,).
 
     Raises:
         DesignError: A feature that the standard does not have.
@@ -31,11 +31,11 @@ def on_faces(standard: Standard, touches: Touches) -> Mask:
             f"feature '{unknown[0]}' is not on standard '{standard.name}', which has "
             f"{', '.join(standard.features)}"
         )
-    return np.isin(touches.feature, [patch.name for patch in standard.patches])
+    return np.isin(touches.feature, standard.proving)
 
 
 def like_task(task: Task, standard: Standard, touches: Touches) -> Mask:
-    """Touches on freeform faces within all ranges of a task, (N,).
+    """Touches that prove within all ranges of a task, (N,).
 
     Raises:
         DesignError: None; the message states the number and the range within each condition.
@@ -47,12 +47,12 @@ def like_task(task: Task, standard: Standard, touches: Touches) -> Mask:
                 f"task '{task.name}': poses.{letter}_deg, expected rotary axes of {chain.name}: "
                 f"{', '.join(chain.rotary_axes) or 'none'}"
             )
-    face = on_faces(standard, touches)
-    if not face.any():
+    proof = that_prove(standard, touches)
+    if not proof.any():
         raise DesignError(
-            f"no touch on a freeform face of standard '{standard.name}', which has "
-            f"{', '.join(patch.name for patch in standard.patches) or 'none'}: task "
-            f"'{task.name}' cannot be evaluated"
+            f"no touch on a feature of standard '{standard.name}' that proves the model "
+            f"({', '.join(standard.proving) or 'it has none'}): task '{task.name}' cannot be "
+            "evaluated"
         )
     asked = [
         ("slope_deg", DEG, np.arccos(np.clip(touches.normal[:, 2], -1.0, 1.0)), task.slope),
@@ -61,17 +61,18 @@ def like_task(task: Task, standard: Standard, touches: Touches) -> Mask:
     for letter, limits in task.rotary.items():
         readings = touches.q[:, chain.axis_index(letter)]
         asked.append((f"poses.{letter}_deg", DEG, readings, limits))
-    like, per_range = face.copy(), []
+    like, per_range = proof.copy(), []
     for key, unit, values, (low, high) in asked:
+        # counted range by range, so that a refusal names the range that leaves no touch
         met = (values >= low - _EDGE) & (values <= high + _EDGE)
         like &= met
-        there = values[face] / unit
+        there = values[proof] / unit
         per_range.append(
-            f"{key} {int((met & face).sum())} (they have {there.min():.3g} to {there.max():.3g})"
+            f"{key} {int((met & proof).sum())} (they have {there.min():.3g} to {there.max():.3g})"
         )
     if not like.any():
         raise DesignError(
-            f"task '{task.name}': none of {int(face.sum())} touches on freeform faces is within "
+            f"task '{task.name}': none of {int(proof.sum())} touches that prove is within "
             f"all its ranges; within each: {', '.join(per_range)}"
         )
     return like
@@ -85,7 +86,7 @@ def check_places(standard: Standard, touches: Touches, path: str | Path) -> None
     Raises:
         BadFile: The touches lie off its surfaces.
     """
-    on_faces(standard, touches)
+    that_prove(standard, touches)
     square: list[float] = []
     for name in dict.fromkeys(touches.feature.tolist()):
         surface, points = standard.features[name], touches.point[touches.feature == name]
@@ -104,11 +105,11 @@ def check_places(standard: Standard, touches: Touches, path: str | Path) -> None
 
 
 def curvature(standard: Standard, touches: Touches) -> Array:
-    """Larger principal curvature at every touch on a freeform face, 0 elsewhere, (N,), 1/mm."""
+    """Larger principal curvature at every touch that proves, 0 elsewhere, (N,), 1/mm."""
     out = np.zeros(len(touches))
-    for patch in standard.patches:
-        rows = np.flatnonzero(touches.feature == patch.name)
-        uv = patch.project(touches.point[rows])
+    for name in standard.proving:
+        surface, rows = standard.features[name], np.flatnonzero(touches.feature == name)
+        uv = surface.project(touches.point[rows])
         there = np.all(np.isfinite(uv), axis=1)
-        out[rows[there]] = np.abs(patch.curvature(uv[there])).max(axis=1)
+        out[rows[there]] = np.abs(surface.curvature(uv[there])).max(axis=1)
     return out

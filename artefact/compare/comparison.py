@@ -144,6 +144,7 @@ def compare(
     options: TouchOptions,
     library: Visibility,
     rng: np.random.Generator,
+    balls: int = COUNTS[-1],
 ) -> tuple[tuple[Rival, ...], tuple[str, ...]]:
     """Other artefacts at as many touches: bodies in use, and ideal scatter.
 
@@ -154,13 +155,14 @@ def compare(
     Args:
         places: Candidate balls; None where the machine touches none.
         all_poses: Candidate table poses, (K, R), rad.
+        balls: Number of balls that the standard may have, one more of the `COUNTS`.
 
     Returns:
         The artefacts, and the names of those without room on the blank or with too few possible
         touches.
     """
     jobs, unreachable = list[_Job](), list[str]()
-    for name, body in _bodies(criterion, places, blank, options, rng).items():
+    for name, body in _bodies(criterion, places, blank, options, rng, balls).items():
         try:
             if body is None:
                 raise NotReachable("no room")
@@ -241,10 +243,11 @@ def _bodies(
     blank: Blank,
     options: TouchOptions,
     rng: np.random.Generator,
+    most: int,
 ) -> dict[str, Standard | None]:
     """Artefacts by name; None where the blank has no room."""
     named: dict[str, Standard | None] = {}
-    for count in COUNTS:
+    for count in sorted({*COUNTS, most}):
         balls = places.best(count, options.touches) if places is not None else []
         there = len(balls) == count
         centres = [ball.centre for ball in balls]

@@ -57,7 +57,7 @@ def feasibility(brief: Brief) -> Feasibility:
         nearest = " or ".join(wishes) or f"no other {TRIED_CHANGES} alone"
         beyond = NotReachable(f"{brief.path}: {found.against}; {nearest} would do")
         return Feasibility(found.tried, found.poses, refusal=beyond)
-    if brief.options.family in ("auto", "wavy"):  # no small face is a condition
+    if brief.options.family in ("auto", "wavy", "balls"):  # no small face is a condition
         return Feasibility(found.tried, found.poses)
     room = room_of(brief, found.poses)
     try:

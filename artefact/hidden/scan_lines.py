@@ -18,6 +18,7 @@ from matstd.artefact.hidden.smooth_effects import Measurement
 from matstd.artefact.reach import ProbeReach, Requests, joined
 from matstd.artefact.worth import each_at
 from matstd.twin.frames import Array
+from matstd.twin.sampling import grid_points
 from matstd.twin.units import UM
 
 _STRETCH = 8.0  # mm of line in one mean: less than half of the narrowest effect that is asked for
@@ -78,7 +79,7 @@ def scanned(
     across = max(1, round(_STRETCH / scan.between))
     u = np.arange(-a, a + 1e-9, across * scan.between)
     v = np.arange(-b, b + 1e-9, _STRETCH)
-    grid = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    grid = grid_points(u, v)
     lots = [each_at(face, grid, pose[None]) for pose in poses]
     wanted: Requests = joined(lots)
     if clear:

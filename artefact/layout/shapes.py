@@ -4,6 +4,7 @@ A shape is a paraboloid plus one wave; it is scaled until its slope, height or c
 reaches a limit, because larger differences of normals and heights carry more information.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +16,7 @@ from matstd.twin.units import DEG
 CONTROL = 8
 """Control heights of a patch in u and v: enough for one wave, too few for ripples."""
 
-_MARGIN = 1.15
+_LIMIT_MARGIN = 1.15
 """Safety factor on the limits of curvature and slope, which are evaluated on grids."""
 
 _MAX_SLOPE = 60.0 * DEG  # of any face: a ball-end cutter can still finish it
@@ -25,7 +26,7 @@ _PITCH = 2.5  # mm, of the grid on which shapes are scaled
 
 def steepest_slope(limits: Limits) -> float:
     """Largest slope dh/du of a face, with a margin."""
-    return float(np.tan(min(limits.max_slope, _MAX_SLOPE) / _MARGIN))
+    return float(np.tan(min(limits.max_slope, _MAX_SLOPE) / _LIMIT_MARGIN))
 
 
 def smooth_heights(
@@ -73,8 +74,7 @@ def _strength(
 ) -> float:
     """Factor that brings a shape on a plane to its limits.
 
-    The triangle inequality bounds slope and height. Curvature is not linear in the factor, so it
-    is bisected on a grid of derivatives that is evaluated once.
+    The triangle inequality bounds slope and height.
     """
     patch = graph_patch("trial", np.eye(4), half_size, heights)
     j = patch.jet(patch.grid(_PITCH))
@@ -82,11 +82,19 @@ def _strength(
     flat = replace(j.plus(j, -1.0), hu=plane[0] + 0.0 * j.hu, hv=plane[1] + 0.0 * j.hv)
     left = steepest_slope(limits) - float(np.hypot(*plane))
     high = min(left / float(np.hypot(j.hu, j.hv).max()), tallest / float(np.abs(j.h).max()))
+    radius = _LIMIT_MARGIN * limits.min_concave_radius
+    return bent_to(lambda f: flat.plus(j, f).curvature, high, radius)
+
+
+def bent_to(curvature: Callable[[float], Array], high: float, radius: float) -> float:
+    """Largest factor of a shape, from 0 to `high`, with which it keeps a concave radius, mm.
+
+    Curvature (N, 2) is not linear in the factor, so the factor is bisected.
+    """
     low = 0.0
     for _ in range(20):
         middle = 0.5 * (low + high)
-        largest = float(flat.plus(j, middle).curvature[:, 0].max())
-        if largest * _MARGIN * limits.min_concave_radius > 1.0:
+        if radius * float(curvature(middle)[:, 0].max()) > 1.0:
             high = middle
         else:
             low = middle

@@ -15,12 +15,13 @@ import numpy as np
 
 from matstd.artefact.body import FreeformPatch, Limits, graph_patch
 from matstd.artefact.layout.blank import Blank
+from matstd.artefact.layout.shapes import bent_to
 from matstd.twin.errors import NotBuildable
 from matstd.twin.frames import Array, pose
 from matstd.twin.units import DEG
 
 _POLES_PER_WAVE = 9.0  # of the control net: straight flanks need more than a sine
-_MARGIN = 1.03  # on slope and radius: evaluated on a grid of a twentieth of the wave
+_GRID_MARGIN = 1.03  # on slope and radius: evaluated on a grid of a twentieth of the wave
 _GRID = 20.0  # points of that grid in a wave
 _LOWEST = 10.0  # mm between base and the lowest valley: fillet, and room for the ball
 
@@ -79,18 +80,14 @@ def _wave_heights(wave: Wave, limits: Limits) -> Array:
         flat.jet(one.grid(wave.wavelength / _GRID)),
         one.jet(one.grid(wave.wavelength / _GRID)),
     )
-    steepest = np.tan(min(wave.slope, limits.max_slope) / _MARGIN)
-    low, high = 0.0, float(steepest / np.hypot(j.hu, j.hv).max())
-    if _MARGIN * limits.min_concave_radius * plane.plus(j, high).curvature[:, 0].max() <= 1.0:
+    steepest = np.tan(min(wave.slope, limits.max_slope) / _GRID_MARGIN)
+    high, radius = (
+        float(steepest / np.hypot(j.hu, j.hv).max()),
+        _GRID_MARGIN * limits.min_concave_radius,
+    )
+    if radius * plane.plus(j, high).curvature[:, 0].max() <= 1.0:
         return h * high
-    for _ in range(20):
-        middle = 0.5 * (low + high)
-        largest = float(plane.plus(j, middle).curvature[:, 0].max())
-        if _MARGIN * limits.min_concave_radius * largest > 1.0:
-            high = middle
-        else:
-            low = middle
-    return h * low
+    return h * bent_to(lambda f: plane.plus(j, f).curvature, high, radius)
 
 
 def _profile(x: Array, flatness: float) -> Array:

@@ -4,7 +4,7 @@ In: a `Brief`. Out: a `Placement`: the standard checked against every limit, its
 criterion, its rivals, and a certificate.
 """
 
-from matstd.artefact.place.family import CLEAR_LEAD, Family, FamilyFigures
+from matstd.artefact.place.family import CLEAR_LEAD, Family, FamilyFigures, score_of
 from matstd.artefact.place.placement import Placement, design_standard
 from matstd.artefact.place.proving import proving_touches
 from matstd.artefact.place.wavy_proof import scan_poses
@@ -17,4 +17,5 @@ __all__ = [
     "design_standard",
     "proving_touches",
     "scan_poses",
+    "score_of",
 ]

@@ -162,7 +162,7 @@ class BodyChoice:
                     fitting=len(chosen),
                 )
             faces = sorted((there.faces[k] for k in chosen), key=_azimuth_of_face)
-            made = _assembled(self.blank, name, serial, faces, standing, holes)
+            made = assembled(self.blank, name, serial, faces, standing, holes)
             broken = [c for c in constraints(made, limits) if c.slack < 0.0]
             blamed = [c.features for c in broken]
             blamed = blamed or [
@@ -304,12 +304,12 @@ def balls_beside(
         holes = holes_on(blank, balls, pillars if len(pillars) == 1 else ())
     except NotBuildable:
         return None
-    made = _assembled(blank, "", "", pillars, balls, holes)
+    made = assembled(blank, "", "", pillars, balls, holes)
     broken = any(c.slack < 0.0 for c in constraints(made, blank.limits))
     return None if len(balls) < count or broken else made
 
 
-def _assembled(
+def assembled(
     blank: Blank,
     name: str,
     serial: str,
@@ -317,8 +317,8 @@ def _assembled(
     balls: list[DatumSphere],
     holes: tuple[MountingHole, ...],
 ) -> Standard:
-    """A standard of faces and balls, numbered by their azimuth."""
-    balls = sorted(balls, key=lambda b: _azimuth(b.centre))
+    """A standard of faces and balls, numbered by their azimuth; those that prove come last."""
+    balls = sorted(balls, key=lambda b: (b.proves, _azimuth(b.centre)))
     return Standard(
         name=name,
         serial=serial,

@@ -8,7 +8,6 @@ from matstd.artefact.body import Standard, check
 from matstd.artefact.brief import Brief, PlacementOptions
 from matstd.artefact.compare import Rival
 from matstd.artefact.hidden import hidden_power, possible_places
-from matstd.artefact.layout import with_spheres
 from matstd.artefact.place.body_choice import BodyChoice
 from matstd.artefact.place.family import Family, FamilyFigures, chosen_family, flat_pads
 from matstd.artefact.place.identifying import (
@@ -16,15 +15,22 @@ from matstd.artefact.place.identifying import (
     Identifying,
     ball_bases,
     identifying_choice,
+    left_unknown,
     with_moved_balls,
     with_proof,
 )
-from matstd.artefact.place.proving import informative_touches, proving_touches, touches_on_faces
+from matstd.artefact.place.proving import proving_touches, touches_on_faces
+from matstd.artefact.place.proving_balls import balls_alone, proving_on_balls
 from matstd.artefact.place.wavy_choice import PROOF_POSES, wavy_choice
-from matstd.artefact.place.wavy_proof import PLACES_PER_TOUCH, measurement_on, showing_on_face
+from matstd.artefact.place.wavy_proof import (
+    PLACES_PER_TOUCH,
+    measurement_on,
+    scan_poses,
+    showing_on_body,
+)
+from matstd.artefact.price import prices_of
 from matstd.artefact.reach import Requests, joined, spread_poses
-from matstd.artefact.worth import BallPlaces, Criterion, touches_to_choose_from
-from matstd.information.criteria import Posterior
+from matstd.artefact.worth import BallPlaces, Criterion
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
@@ -114,8 +120,8 @@ def built_family(site: Site) -> tuple[Built, tuple[FamilyFigures, ...]]:
     if wanted != "auto":
         one = _built(site, Family(wanted))
         return one, (_figures(site, one),)
-    made, figures, refusals = dict[Family, Built](), [_of_balls(site)], []
-    for family in (Family.FACES, Family.FLAT, Family.WAVY):
+    made, figures, refusals = dict[Family, Built](), list[FamilyFigures](), []
+    for family in Family:
         try:
             made[family] = _built(site, family, made.get(Family.FACES))
         except (NotBuildable, NotReachable) as error:
@@ -125,25 +131,14 @@ def built_family(site: Site) -> tuple[Built, tuple[FamilyFigures, ...]]:
         figures.append(_figures(site, made[family]))
     if not made:
         raise refusals[0]
-    others = tuple(one for one in figures if one.family in made)
-    return made[chosen_family(others, site.options.goal, site.best_balls)], tuple(figures)
-
-
-def _of_balls(site: Site) -> FamilyFigures:
-    """What the best balls alone would give, with the touches of the proof on them too."""
-    base, criterion, choice = site.bases[0], site.criterion, site.options.choice
-    body = with_spheres(site.places.blank, [ball.centre for ball in base.balls])
-    here, poses = criterion.on(body), np.unique(base.touches.rotary, axis=0)
-    tried = touches_to_choose_from(criterion.reach, body, body.spheres, poses, choice.touches)
-    count = min(choice.proof, len(tried))
-    more = informative_touches(here, tried, base.touches, count)
-    return _figures_of(site, Family.BALLS, body, base.touches, more)
+    chosen = chosen_family(tuple(figures), site.options.goal, site.best_balls)
+    return made[chosen], tuple(figures)
 
 
 def _built(site: Site, family: Family, like: Built | None = None) -> Built:
     """One family designed; flat pads stand where `like` has faces."""
-    if family is Family.WAVY:
-        return _with_wavy(site)
+    if family in (Family.WAVY, Family.BALLS):
+        return _showing(site, family)
     count, reach = site.options.choice.proof, site.criterion.reach
     if family is Family.FACES:
         found, on_faces = _with_faces(site)
@@ -155,16 +150,20 @@ def _built(site: Site, family: Family, like: Built | None = None) -> Built:
     return Built(family, found, proving_touches(here, found.standard, on_faces, chosen, count))
 
 
-def _with_wavy(site: Site) -> Built:
-    """Balls round one wavy face, which is touched where that shows most."""
-    found, criterion, count = _wavy(site), site.criterion, site.options.choice.proof
-    body, poses = found.standard, spread_poses(found.poses, PROOF_POSES)
-    tried = touches_on_faces(criterion.reach, body, poses, count, PLACES_PER_TOUCH)
+def _showing(site: Site, family: Family) -> Built:
+    """Balls alone, or round one wavy face: touched where that shows most."""
+    criterion, count = site.criterion, site.options.choice.proof
+    if family is Family.WAVY:
+        found = _wavy(site)
+        body, poses = found.standard, spread_poses(found.poses, PROOF_POSES)
+        tried = touches_on_faces(criterion.reach, body, poses, count, PLACES_PER_TOUCH)
+    else:
+        found = balls_alone(criterion, site.places, site.bases, site.options)
+        body, poses = found.standard, spread_poses(found.poses, PROOF_POSES)
+        tried = proving_on_balls(criterion, body, poses, count)
     given = measurement_on(criterion, body, found.tried[found.chosen], None)
     here = criterion.plain.on(body)
-    return Built(
-        Family.WAVY, found, showing_on_face(here, body, tried, given, site.effects_at, count)
-    )
+    return Built(family, found, showing_on_body(here, body, tried, given, site.effects_at, count))
 
 
 def _wavy(site: Site) -> Identifying:
@@ -176,6 +175,7 @@ def _wavy(site: Site) -> Identifying:
         site.all_poses,
         site.options,
         site.effects_at,
+        site.best_balls,
         np.random.default_rng(site.brief.seed),
     )
 
@@ -210,19 +210,24 @@ def _figures_of(
 ) -> FamilyFigures:
     """Figures of a body with touches that identify and touches that prove."""
     criterion = site.criterion
-    here = criterion.on(replace(body, patches=()))
-    after = Posterior(here.known_rows(requests), here.prior_sd, here.model.names)
     scan = site.options.scan if family is Family.WAVY else None
     touches = joined([requests, proof])
     measured = measurement_on(criterion, body, touches, scan)
     power = hidden_power(criterion.plain.on(body), measured, site.effects_at)
     least = power.effects[power.worst]
+    left = left_unknown(criterion, body, requests)
+    poses = len(scan_poses(touches))
+    scanning = 0.0 if scan is None else poses * sum(scan.minutes(face) for face in body.patches)
+    prices = [one.total for one in prices_of(body)]
     return FamilyFigures(
         family=family,
-        rms_user=rms(after.predicted_sd(here.tip_user)),
+        rms_user=rms(left),
+        worst_user=float(left.max()),
         signal=power.least_signal,
         power=float(power.power[power.worst]),
         least=(least.is_bump, least.width, least.direction),
         touches=len(touches),
+        scan_minutes=scanning,
+        price=min(prices, key=lambda one: one.value, default=None),
         scan_points=0 if scan is None else sum(scan.points(face) for face in body.patches),
     )

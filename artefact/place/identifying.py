@@ -25,6 +25,7 @@ from matstd.artefact.worth import (
     repaired_touches,
     touches_to_choose_from,
 )
+from matstd.information.criteria import Posterior
 from matstd.information.selection import Certificate
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
@@ -193,6 +194,13 @@ def with_moved_balls(
     return Identifying(
         standard=standard, poses=poses, tried=tried, chosen=chosen, nearness=nearness
     )
+
+
+def left_unknown(criterion: Criterion, standard: Standard, touches: Requests) -> Array:
+    """Error of the tool point at poses of the workspace after touches on balls, (M,), mm."""
+    here = criterion.on(replace(standard, patches=()))
+    after = Posterior(here.known_rows(touches), here.prior_sd, here.model.names)
+    return after.predicted_sd(here.tip_user)
 
 
 def with_proof(

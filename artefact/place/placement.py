@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.artefact.body import Standard
-from matstd.artefact.brief import Brief
+from matstd.artefact.brief import Brief, Goal
 from matstd.artefact.compare import (
     Power,
     Rival,
@@ -63,7 +63,7 @@ class Placement:
     Attributes:
         standard: Checked against every limit; every patch names the errors that it reveals.
         requests: The touches that identify, all on balls.
-        proof: The touches that prove, all on freeform faces, at the same table poses.
+        proof: The touches that prove, on faces or on balls of their own, at the same table poses.
         criterion: That chose them, on no body.
         prior_rms: Expected deviation of the tool point before any touch, rms, mm: over the probed
             volume, over the user's workspace.
@@ -76,8 +76,9 @@ class Placement:
         power_of_balls: Of as many further touches on the balls, which are no proof: errors of a
             ball went into the model.
         power_exact: As `power`, with exactly known positions of the faces.
-        family: Features that the standard has beside its balls.
+        family: Features that prove.
         families: Figures of every family that was tried.
+        goal: What decided between them.
         unreachable: Artefacts that are not compared: too few touches are possible on them.
     """
 
@@ -94,6 +95,7 @@ class Placement:
     power_exact: Power
     family: Family = Family.FACES
     families: tuple[FamilyFigures, ...] = ()
+    goal: Goal = "prove"
     unreachable: tuple[str, ...] = ()
 
     @property
@@ -147,7 +149,9 @@ def design_standard(
     bodies = _small_faces(brief, places, all_poses, rng)
     progress("placement", _PLACES, 100)
     library = _visible_effects(criterion, max(choice.touches, _MIN_FREE_TOUCHES), rng)
-    rivals, unreachable = compare(criterion, places, all_poses, blank, choice, library, rng)
+    rivals, unreachable = compare(
+        criterion, places, all_poses, blank, choice, library, rng, options.balls
+    )
     progress("placement", _RIVALS, 100)
     site = site_of(brief, criterion, places, bodies, rivals, all_poses)
     built, families = built_family(site)
@@ -175,6 +179,7 @@ def design_standard(
         power_exact=powers[3],
         family=built.family,
         families=families,
+        goal=options.goal,
         unreachable=unreachable,
     )
 
@@ -184,7 +189,7 @@ def _small_faces(
 ) -> BodyChoice | None:
     """Candidate small faces; None where the project wants none, or where none of `auto` fit."""
     options = brief.options
-    if options.family == Family.WAVY:
+    if options.family in (Family.WAVY, Family.BALLS):
         return None
     try:
         return body_choice(places, all_poses, options.patches, options.sites, rng)
@@ -204,6 +209,8 @@ def _powers(
     more = informative_touches(criterion, others, requests, min(count, len(others)))
     effects, normals = library.effects, task_normals(criterion, proof, rng)
     known = replace(criterion.calibration, patch=0.0, patch_tilt=0.0)
+    if not built.standard.patches:  # the balls that prove are as those that identify
+        known = replace(known, ball=0.0)
     exact = replace(criterion, calibration=known)
     return (
         proof_power(criterion, requests, proof, effects, rng, normals),

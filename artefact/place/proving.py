@@ -15,6 +15,7 @@ from matstd.information.selection import Selection, fill
 from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
+from matstd.twin.sampling import grid_points
 
 _PLACES_PER_TOUCH = 1.8  # candidate places per wanted touch
 _EDGE = 3.0  # mm a touch stays away from the trimmed edge, at least
@@ -131,7 +132,7 @@ def _middles_of_cells(face: FreeformPatch, pitch: int) -> Array:
         np.linspace(-1.0, 1.0, pitch) * min(half * (1.0 - 1.0 / pitch), half - _EDGE)
         for half in face.half_size
     ]
-    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    return grid_points(*axes)
 
 
 def _check_enough(tried: Requests, count: int) -> None:

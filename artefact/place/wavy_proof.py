@@ -1,4 +1,4 @@
-"""Touches on a wavy face where they show unmodelled effects best, spread over its squares."""
+"""Touches that prove where they show unmodelled effects best, spread over squares or balls."""
 
 from dataclasses import replace
 
@@ -45,7 +45,7 @@ def scan_poses(touches: Requests) -> Array:
     return spread_poses(np.unique(touches.rotary, axis=0), _SCAN_POSES)
 
 
-def showing_on_face(
+def showing_on_body(
     criterion: Criterion,
     standard: Standard,
     tried: Requests,
@@ -53,11 +53,12 @@ def showing_on_face(
     effects_at: Array,
     count: int,
 ) -> Requests:
-    """The touches on the one face of a standard that show most beside given measurements.
+    """The touches on the one face of a standard, or its balls, that show most beside others.
 
     Args:
         criterion: On the standard.
-        tried: Touches on the face that can be made.
+        tried: Touches that can be made on the face, or on the balls.
+        given: Measurements that will be made whatever is chosen.
         effects_at: Where bumps may be, readings of the linear axes, (K, 3), mm.
 
     Raises:
@@ -66,13 +67,19 @@ def showing_on_face(
     if len(tried) > _MOST_TRIED:
         some = np.random.default_rng(0).permutation(len(tried))[:_MOST_TRIED]
         tried = tried[np.sort(some)]
-    point, at = np.unique(tried.point, axis=0, return_inverse=True)
-    if len(point) < count:
-        raise NotReachable(f"{len(point)} places of the wavy face can be touched, {count} wanted")
-    u = np.hypot(criterion.noise, criterion.calibration.form)
-    may = replace(single(tried, criterion.noise), u=np.full(len(tried), u))
-    area = square_of(standard.patches[0], point)
-    return tried[showing_touches(criterion, given, may, effects_at, count, at.reshape(-1), area)]
+    may = single(tried, criterion.noise)
+    if standard.patches:
+        point, at = np.unique(tried.point, axis=0, return_inverse=True)
+        if len(point) < count:
+            raise NotReachable(
+                f"{len(point)} places of the wavy face can be touched, {count} wanted"
+            )
+        u = np.hypot(criterion.noise, criterion.calibration.form)
+        may = replace(may, u=np.full(len(tried), u))
+        at, area = at.reshape(-1), square_of(standard.patches[0], point)
+    else:
+        at, area = np.arange(len(tried)), np.unique(tried.feature, return_inverse=True)[1]
+    return tried[showing_touches(criterion, given, may, effects_at, count, at, area)]
 
 
 def square_of(face: FreeformPatch, point: Array) -> IntArray:

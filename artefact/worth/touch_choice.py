@@ -32,6 +32,7 @@ from matstd.twin.compute import blocks
 from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
+from matstd.twin.sampling import grid_points
 from matstd.twin.units import DEG
 
 Surfaces = Sequence[FreeformPatch | DatumSphere]
@@ -109,7 +110,7 @@ def poses_within(chain: Chain, rotary: Array, wanted: int) -> Array:
 def face_grid(half_size: tuple[float, float], count: int) -> Array:
     """Parameters of a regular grid over a face, away from its edges, (count^2, 2)."""
     axes = [np.linspace(-(half - _EDGE), half - _EDGE, count) for half in half_size]
-    return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    return grid_points(*axes)
 
 
 def sphere_grid(count: int) -> Array:

@@ -205,6 +205,7 @@ def criterion_for(
     at = _poses_to_judge(reach, volume, workspace, rng)
     tips = [model.tip_columns(poses) for poses in at]
     prior_sd = _with_free_setup(model)
+    # touches all over the probed volume stand for those of a standard that does not exist yet
     scatter = random_touches(reach, volume, rotary, _SCATTER, rng)
     free = reach.touches(scatter)
     W = whitened(model.columns(free), prior_sd, noise)

@@ -6,6 +6,7 @@ import numpy as np
 
 from matstd.artefact.body import BLEND, FreeformPatch, Standard, outline_distance
 from matstd.twin.frames import Array, apply
+from matstd.twin.sampling import grid_points
 
 HEAVY = 25.0
 """Mass above which a standard is lifted by a crane, kg."""
@@ -133,7 +134,7 @@ def lifting_holes(standard: Standard, mass: float) -> tuple[Bore, ...]:
         return ()
     a, b = standard.base.half_size
     axes = [np.arange(-(h // _GRID), h // _GRID + 1) * _GRID for h in (a, b)]
-    xy = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    xy = grid_points(*axes)
     xy = xy[plan_room(standard, xy) >= _LIFT_COLLAR]
     if len(xy) < 2:
         return ()

@@ -9,10 +9,11 @@ from itertools import product
 
 import numpy as np
 
-from matstd.artefact.body import BLEND, FreeformPatch, Standard
+from matstd.artefact.body import BLEND, FreeformPatch, Standard, min_concave_radius
 from matstd.artefact.brief import FINISHING_RADIUS
 from matstd.cad_out.details import Details
 from matstd.twin.frames import Array
+from matstd.twin.sampling import grid_points
 from matstd.twin.units import DEG
 
 RADIUS, OVERHANG = FINISHING_RADIUS, 60.0
@@ -44,8 +45,10 @@ class Cutting:
         tilted: Share that it reaches with its axis tilted by 45 degrees at most.
         out_of_reach: Features with a point that it does not reach at all.
         overhang: The least with which it reaches everything, mm; infinite if none of `LONGER` does.
-        cutter: Largest ball-end mill for every face, its diameter, mm; 0 where none fits.
-        radius: Least concave radius of every face, the untrimmed spline included, mm.
+        cutter: Largest ball-end mill for every face, its diameter, mm; 0 where none fits. It stays
+            within `_SHARE` of the concave radius between the edges, and fits beyond them.
+        radius: Least concave radius of every face between its edges, mm.
+        whole_radius: The same of the untrimmed spline, over which a cutter may leave, mm.
     """
 
     points: dict[str, int]
@@ -55,6 +58,7 @@ class Cutting:
     overhang: float
     cutter: dict[str, float]
     radius: dict[str, float]
+    whole_radius: dict[str, float]
 
 
 def cutting_of(standard: Standard, details: Details) -> Cutting:
@@ -72,7 +76,8 @@ def cutting_of(standard: Standard, details: Details) -> Cutting:
         if left.any():
             overhang = longer
             left &= ~_reached_when_tilted(standard, centre, left, overhang)
-    radius = {patch.name: untrimmed_radius(patch) for patch in standard.patches}
+    radius = {patch.name: min_concave_radius(patch) for patch in standard.patches}
+    whole = {patch.name: untrimmed_radius(patch) for patch in standard.patches}
     kinds = [n.split()[-1] if " " in n else n[:2] for n in name]
     return Cutting(
         points={kind: kinds.count(kind) for kind in sorted(set(kinds))},
@@ -80,10 +85,9 @@ def cutting_of(standard: Standard, details: Details) -> Cutting:
         tilted=float(reached.mean()),
         out_of_reach=tuple(sorted(set(name[~reached].tolist()))),
         overhang=float("inf") if left.any() else overhang,
-        cutter={
-            n: next((d for d in CUTTERS if d <= 2 * _SHARE * r), 0.0) for n, r in radius.items()
-        },
+        cutter={n: _largest_cutter(radius[n], whole[n]) for n in radius},
         radius=radius,
+        whole_radius=whole,
     )
 
 
@@ -103,11 +107,17 @@ def _reached_when_tilted(
     return reached
 
 
+def _largest_cutter(radius: float, whole: float) -> float:
+    """Diameter of the largest ball-end mill for concave radii, mm; 0 where none fits."""
+    most = min(2.0 * _SHARE * radius, 2.0 * whole)
+    return next((d for d in CUTTERS if d <= most), 0.0)
+
+
 def untrimmed_radius(patch: FreeformPatch) -> float:
     """Least concave radius over the whole spline, its overhang included, mm."""
     low, high = patch.domain
     axes = [np.linspace(a, b, 61) for a, b in zip(low, high, strict=True)]
-    uv = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    uv = grid_points(*axes)
     largest = float(patch.curvature(uv)[:, 0].max())
     return 1.0 / largest if largest > 1e-9 else float("inf")
 
@@ -133,7 +143,7 @@ def _surface(standard: Standard, details: Details) -> tuple[np.ndarray, Array, A
                 lots.append((f"{ball.name} post", place[None], (out / np.linalg.norm(out))[None]))
     a, b = (half - 5.0 for half in standard.base.half_size)
     axes = [np.linspace(-h, h, int(2 * h // 12) + 1) for h in (a, b)]
-    plate = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    plate = grid_points(*axes)
     on_top = np.column_stack([plate, np.full(len(plate), top)])
     others = [body for name, body in standard.bodies.items() if name != "BASE"]
     # 0.1 mm above and below decide whether a place is bare and on the plate

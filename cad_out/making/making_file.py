@@ -5,12 +5,12 @@ from pathlib import Path
 from typing import Any
 
 from matstd.artefact.body import Material, Standard
+from matstd.artefact.price import Estimate, Price, prices_of
 from matstd.cad_out.details import details_of
 from matstd.cad_out.making.cutting import OVERHANG, RADIUS, Cutting, cutting_of
 from matstd.cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
 from matstd.cad_out.making.stiffness import Stiffness
-from matstd.twin.files import write_whole
-from matstd.twin.text import json_text
+from matstd.twin.files.whole import write_json
 from matstd.twin.units import DEG, UM
 
 FIRST_MODE, SAG = 500.0, 0.1 * UM
@@ -25,18 +25,26 @@ class Making:
         cutting: Reach of cutters.
         stiffness: First mode and sag; None where the modulus of the material is not known.
         hints: How every face is milled.
+        prices: Estimates of both constructions; none for a material without rates.
     """
 
     cutting: Cutting
     stiffness: Stiffness | None
     hints: dict[str, FaceHint]
     material: Material
+    prices: tuple[Price, ...] = ()
 
 
 def making_of(standard: Standard, stiffness: Stiffness | None) -> Making:
     """Cutters of a standard, beside its stiffness."""
     cutting, hints = cutting_of(standard, details_of(standard)), hints_of(standard)
-    return Making(cutting, stiffness, hints, standard.material)
+    return Making(
+        cutting=cutting,
+        stiffness=stiffness,
+        hints=hints,
+        material=standard.material,
+        prices=prices_of(standard),
+    )
 
 
 def write_making(path: Path, making: Making) -> None:
@@ -52,17 +60,19 @@ def write_making(path: Path, making: Making) -> None:
         "overhang_for_all_mm": cutting.overhang if cutting.overhang < 1e6 else None,
         "faces": {
             face: {
-                "least_concave_radius_mm": radius if radius < 1e6 else None,
+                "least_concave_radius_mm": _finite(radius),
+                "least_concave_radius_with_overhang_mm": _finite(cutting.whole_radius[face]),
                 "ball_end_mill_mm": cutting.cutter[face],
                 **_hint_table(making.hints[face]),
             }
             for face, radius in cutting.radius.items()
         },
         **_stiffness_table(making.stiffness, making.material),
+        "constructions": {price.construction: _price_table(price) for price in making.prices},
         "first_mode_limit_Hz": FIRST_MODE,
         "sag_limit_um": SAG / UM,
     }
-    write_whole(path, json_text(table))
+    write_json(path, table)
 
 
 def _stiffness_table(stiffness: Stiffness | None, material: Material) -> dict[str, Any]:
@@ -84,10 +94,30 @@ def _stiffness_table(stiffness: Stiffness | None, material: Material) -> dict[st
     }
 
 
+def _finite(radius: float) -> float | None:
+    """A radius; None of a face that is convex everywhere."""
+    return radius if radius < 1e6 else None
+
+
+def _price_table(price: Price) -> dict[str, Any]:
+    """Figures of a construction, each with its standard uncertainty."""
+    return {
+        "stock_kg": round(price.stock, 1),
+        "price_EUR": _with_u(price.total),
+        "weeks": _with_u(price.weeks),
+        "hours": {name: _with_u(one) for name, one in price.hours.items()},
+        "bought_EUR": {name: _with_u(one) for name, one in price.bought.items()},
+    }
+
+
+def _with_u(one: Estimate) -> list[float]:
+    return [round(float(one.value), 1), round(float(one.u), 1)]
+
+
 def _hint_table(hint: FaceHint) -> dict[str, Any]:
     """Figures of one face for the finishing cutter; angles in degrees, null where no axis suits."""
     return {
-        "least_convex_radius_mm": hint.convex if hint.convex < 1e6 else None,
+        "least_convex_radius_mm": _finite(hint.convex),
         "slope_deg": [_degrees(angle) for angle in hint.slope],
         "step_over_mm": {
             f"Ra {ra / UM:g} um": width for ra, width in zip(ROUGHNESS, hint.step_over, strict=True)

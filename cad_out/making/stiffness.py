@@ -17,6 +17,7 @@ from matstd.artefact.layout import cantilever_stiffness
 from matstd.cad_out.details import BALL, Details
 from matstd.cad_out.making.hexahedron import CORNERS, cube
 from matstd.twin.frames import Array
+from matstd.twin.sampling import grid_points
 
 GRAVITY = 9.81e3
 """In mm/s^2."""
@@ -159,7 +160,7 @@ def _cells(standard: Standard, side: float) -> tuple[Array, Array]:
     tops = [float(p.point(p.grid(4.0))[:, 2].max()) for p in standard.patches]
     high = np.array([*standard.base.half_size, max([standard.base.thickness, *tops])])
     counts = np.ceil((high - low) / side - 1e-6).astype(int)
-    cells = np.stack(np.meshgrid(*(np.arange(n) for n in counts), indexing="ij"), -1).reshape(-1, 3)
+    cells = grid_points(*(np.arange(n) for n in counts))
     middle = low + (cells + 0.5) * side
     parts = [standard.base.body.distance(middle)]
     parts += [column.distance(middle) for column in standard.columns.values()]

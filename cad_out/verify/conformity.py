@@ -31,9 +31,8 @@ from matstd.cad_out.verify.part21 import (
     read_instances,
 )
 from matstd.twin.errors import NotBuildable
-from matstd.twin.files import write_whole
+from matstd.twin.files.whole import write_json
 from matstd.twin.frames import Array
-from matstd.twin.text import json_text
 from matstd.twin.units import NM, UM
 
 FACE_LIMIT = 0.01 * UM
@@ -80,6 +79,7 @@ class Conformity:
         names: Faces that carry a name in the file.
         missing: Faces that should and do not, or are not parts in the file of single faces.
         missing_details: Workshop details that found no room, in words.
+        parts: How often each part of `standard-parts.step` is there; none where a face leans.
         untold: Tolerances, notes and drawn signs that a reader does not find as designed.
         face_deviation: Largest distance from the design by face, in both STEP files, without any
             CAD kernel.
@@ -111,6 +111,7 @@ class Conformity:
     names: tuple[str, ...]
     missing: tuple[str, ...]
     missing_details: tuple[str, ...]
+    parts: dict[str, int]
     untold: tuple[str, ...]
     face_deviation: dict[str, float]
     area_error: dict[str, float]
@@ -128,22 +129,19 @@ class Conformity:
 
     @property
     def worst_face(self) -> tuple[str, float]:
-        """The face farthest from its design and its deviation, mm."""
-        name = max(self.face_deviation, key=self.face_deviation.__getitem__)
-        return name, self.face_deviation[name]
+        """The face farthest from its design and its deviation, mm; none on balls alone."""
+        return _largest(self.face_deviation)
 
     @property
     def worst_chord(self) -> tuple[str, float]:
         """The feature whose mesh is farthest from its surface and that distance, mm."""
-        name = max(self.chord_error, key=self.chord_error.__getitem__)
-        return name, self.chord_error[name]
+        return _largest(self.chord_error)
 
     def faults(self) -> list[str]:
         """Every figure that misses its limit, in words; empty for a standard that conforms."""
         face, deviation = self.worst_face
         feature, chord = self.worst_chord
-        patch = max(self.area_error, key=self.area_error.__getitem__)
-        cut = self.area_error[patch]
+        patch, cut = _largest(self.area_error)
         drift = abs(self.volume / self.volume_built - 1.0)
         bulge = abs(self.mesh_volume / self.volume - 1.0)
         split = abs(self.manifold_volume / self.mesh_volume - 1.0)
@@ -201,6 +199,11 @@ class Conformity:
         return [words for good, words in checks if not good]
 
 
+def _largest(figures: dict[str, float]) -> tuple[str, float]:
+    """Name and value of the largest figure; no name and 0 where there is none."""
+    return max(figures.items(), key=lambda one: one[1], default=("", 0.0))
+
+
 def measure(
     standard: Standard,
     folder: Path,
@@ -254,6 +257,7 @@ def measure(
             *(f"{name} by itself" for name in wanted if name not in {*alone, *balls}),
         ),
         missing_details=details.missing,
+        parts=built["parts"],
         untold=missing_annotations(standard, details, entities, found),
         face_deviation={name: max(one[name] for one in apart) for name in apart[0]},
         area_error=area_errors(standard, face_areas(corners, triangles, owner)),
@@ -333,7 +337,7 @@ def write_conformity(path: Path, conformity: Conformity) -> None:
         "faults": conformity.faults(),
         "measured": asdict(conformity),
     }
-    write_whole(path, json_text(table, sort_keys=True))
+    write_json(path, table, sort_keys=True)
 
 
 def refuse_faults(name: str, conformity: Conformity) -> None:

@@ -4,6 +4,7 @@ import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.cad_out.verify.part21 import SphereFace, SplineFace
+from matstd.twin.sampling import grid_points
 
 _SAMPLES = 61  # points along each side of a face that is compared
 
@@ -23,7 +24,7 @@ def face_deviations(
             deviations[patch.name] = np.inf
             continue
         axes = np.linspace(-a, a, _SAMPLES), np.linspace(-b, b, _SAMPLES)
-        uv = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+        uv = grid_points(*axes)
         apart = np.linalg.norm(face.points(uv) - patch.point(uv), axis=1)
         deviations[patch.name] = float(apart.max())
     for sphere in standard.spheres:

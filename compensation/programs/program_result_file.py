@@ -5,9 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from matstd.compensation.programs.compensation import Compensated
-from matstd.twin.files import write_whole
+from matstd.twin.files.whole import write_json
 from matstd.twin.numbers import in_um, rms, rms_length
-from matstd.twin.text import json_text
 
 FORMAT = "compensated-program/1"
 
@@ -34,4 +33,4 @@ def write_program_result(path: str | Path, done: Compensated) -> None:
         "largest_correction_um": in_um(np.abs(done.added[:, done.program.frame.linear]).max()),
         "lines_left_as_they_are": list(done.unmoved),
     }
-    write_whole(path, json_text(data))
+    write_json(path, data)

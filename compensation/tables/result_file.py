@@ -9,11 +9,10 @@ import numpy as np
 from matstd.compensation.field import MachineErrors, Result
 from matstd.compensation.tables.formats import VerifiedTables
 from matstd.compensation.tables.header import Header
-from matstd.twin.files import write_whole
+from matstd.twin.files.whole import write_json
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.numbers import in_um, rms_length
-from matstd.twin.text import json_text
 
 FORMAT = "compensation/1"
 
@@ -31,7 +30,7 @@ def write_table_results(
         "not_of_the_machine": list(errors.left_out),
         "tables": [_table(p, errors.chain) for p in verified],
     }
-    write_whole(path, json_text(data))
+    write_json(path, data)
 
 
 def _table(verified: VerifiedTables, chain: Chain) -> dict[str, Any]:

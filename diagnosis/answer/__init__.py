@@ -16,8 +16,9 @@ from matstd.diagnosis.answer.parts import (
     VerdictParts,
 )
 from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.answer.steps import Step
 from matstd.diagnosis.answer.trend import RunErrors, Trend
-from matstd.diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
+from matstd.diagnosis.answer.verdict import Candidate, Diagnosis, Verdict
 
 __all__ = [
     "Candidate",

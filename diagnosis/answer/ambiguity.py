@@ -17,9 +17,9 @@ from matstd.diagnosis.evidence import (
     signatures,
 )
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.search import follows_driver, refined
+from matstd.diagnosis.search import explained, follows_driver, refined
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect
+from matstd.twin.model import Effect, original_of, traits
 from matstd.twin.record import Touches
 from matstd.twin.thermal import drives
 
@@ -29,9 +29,6 @@ the class is, and a second, since the first may be the effect itself."""
 
 MAX_RIVALS = 40
 """Most rivals that are refined, the most likely first; a larger class would not help a reader."""
-
-OWN_SENSOR_BONUS = 2.0
-"""Log odds in favour of a sensor that bears the letter of the axis on which it acts."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -86,14 +83,7 @@ class ConfusionClass:
         if sized.effect.name == self.effect.name:
             return replace(self, sized=sized)
         own = (Rival(self.sized, 0.0, 1.0), *self.rivals)
-        return replace(
-            self,
-            sized=sized,
-            rivals=tuple(r for r in own if r.effect.name != sized.effect.name),
-            distinguished=tuple(
-                r for r in self.distinguished if r.effect.name != sized.effect.name
-            ),
-        )
+        return replace(self, sized=sized, rivals=own).beside({sized.effect.name})
 
     def beside(self, names: Collection[str]) -> "ConfusionClass":
         """The class without effects that are in the set already, under these names."""
@@ -112,50 +102,40 @@ def plausibility(effects: Sequence[Effect], touches: Touches) -> dict[str, float
     letter it bears, and what follows no sensor supposes less.
     """
     chosen = POLICY.log_odds_unrecorded + float(np.log(max(len(drives(touches)), 1)))
-    family = {e.name: _family(e, touches) for e in effects}
-    labels = list(family.values())
+    drivers = [traits(original_of(e)).driver for e in effects]
+    labels = [(e.kind, d in touches.temperature) for e, d in zip(effects, drivers, strict=True)]
     return {
-        e.name: _own_sensor(e, touches)
+        e.name: POLICY.log_odds_own_sensor * (is_sensor and driver.endswith(_axis(e)))
         - chosen * follows_driver(e)
-        - float(np.log(labels.count(family[e.name])))
-        for e in effects
+        - float(np.log(labels.count((kind, is_sensor))))
+        for e, driver, (kind, is_sensor) in zip(effects, drivers, labels, strict=True)
     }
 
 
-def arguments(effect: Effect) -> list[str]:
-    """Words in the brackets of an effect's name."""
-    inside = effect.name.partition("(")[2].removesuffix(")")
-    return [a for a in inside.split(",") if a]
-
-
-def _family(effect: Effect, touches: Touches) -> tuple[str, bool]:
-    return effect.kind, any(a in touches.temperature for a in arguments(effect))
-
-
-def _own_sensor(effect: Effect, touches: Touches) -> float:
-    """Bonus of a sensor that is named after the axis that it explains."""
-    words = arguments(effect)
-    sensors = [w for w in words if w in touches.temperature]
-    axes = {w if w in touches.chain.axes else w[-1:] for w in words if w not in sensors}
-    own = any(sensor.endswith(axis) for sensor in sensors for axis in axes if axis)
-    return OWN_SENSOR_BONUS if own else 0.0
+def _axis(effect: Effect) -> str:
+    """Axis on which an effect acts; of the standard a word in which no sensor's name ends."""
+    own = traits(original_of(effect))
+    return (own.symbol.link if own.symbol else own.axis) or " "
 
 
 def confusion_class(
     pool: Signatures,
     found: ScaledEffect,
-    others: Sequence[ScaledEffect],
-    fixed: Array | None = None,
+    base: EffectSet,
+    others: Collection[str],
 ) -> ConfusionClass:
-    """Everything that explains what a found effect explains, with the other effects in place."""
+    """Everything that explains what a found effect explains, with the other effects in place.
+
+    Args:
+        base: The set without the effect.
+        others: Names of the effects in it.
+    """
     complement = pool.complement
-    A = projected(complement, others)
-    base = EffectSet(complement, A if fixed is None else np.hstack([fixed, A]))
     scores = score_all(base, pool)
     top, _ = addition(base, found.effect)
-    names = {found.effect.name} | {o.effect.name for o in others}
+    names = {found.effect.name, *others}
     rivals = [Rival(found, 0.0, 1.0)]
-    explained = _explained(base, found)
+    own = explained(base, projected(complement, [found]))
     for variant in _ranked(
         pool, scores.evidence, min(top, _on_grid(base, found)) - POLICY.log_odds_ruled_out
     ):
@@ -163,7 +143,7 @@ def confusion_class(
         if candidate.name in names:
             continue
         sized, evidence = refined(base, candidate, levels=2)
-        overlap = float(abs(explained @ _explained(base, sized)))
+        overlap = float(abs(own @ explained(base, projected(complement, [sized]))))
         rivals.append(Rival(sized, float(top - evidence), overlap))
     return _ordered(rivals, plausibility([r.effect for r in rivals], complement.touches))
 
@@ -185,14 +165,6 @@ def _ranked(pool: Signatures, evidence: Array, least: float) -> list[int]:
     close = int(np.count_nonzero(evidence[ranked] > least))
     near = ranked[: min(close, MAX_RIVALS)]
     return [int(v) for v in (*near, *ranked[close : close + LISTED_FAR])]
-
-
-def _explained(without: EffectSet, sized: ScaledEffect) -> Array:
-    """Direction of what an effect explains beyond a set, (N + P,), of length 1."""
-    C = projected(without.complement, [sized])
-    whole = EffectSet(without.complement, np.hstack([without.A, C]))
-    difference = without.residual - whole.residual
-    return np.asarray(difference / max(float(np.linalg.norm(difference)), 1e-300))
 
 
 def _ordered(found: Sequence[Rival], prior: dict[str, float]) -> ConfusionClass:

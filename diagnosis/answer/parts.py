@@ -5,13 +5,14 @@ take theirs, and the remainder has its own size, beside which the noise is what 
 good name and an open question stand beside one another, and neither hides the other.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from matstd.diagnosis.accuracy import Repeatability
 from matstd.diagnosis.answer.ambiguity import Rival
+from matstd.diagnosis.answer.steps import Step
 from matstd.diagnosis.faults import DescriptionFault
 from matstd.diagnosis.geometry import GeometryRow, LearntGeometry
 from matstd.diagnosis.policy import POLICY
@@ -106,26 +107,13 @@ class VerdictParts:
         return self.remains.is_real and (not self.headline or self.remains.size > self.explained)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Weighed:
-    """A step of the diagnosis as the parts need it: scatter is of what it leaves, mm."""
-
-    effect: Effect
-    p_value: float
-    scatter: float
-    runner_up: Rival | None
-    is_significant: bool
-    against_drift: float | None = None
-
-
 def verdict_parts(
-    start: float,
-    dof: float,
-    steps: Sequence[Weighed],
+    steps: Sequence[Step],
     left: Sequence[Structure],
     geometry: LearntGeometry,
     faults: Sequence[DescriptionFault],
     repeats: Repeatability,
+    against_drift: Mapping[str, float],
 ) -> VerdictParts:
     """The three parts of a verdict.
 
@@ -133,44 +121,40 @@ def verdict_parts(
     beyond what is left apart from its strongest pattern.
 
     Args:
-        start: Scatter of the residual of the starting model, mm.
-        dof: Degrees of freedom of the last residual.
         left: Patterns that count in the last residual, beyond doubt and beyond what is stated.
+        against_drift: Log odds against a driver that was not recorded, by name.
     """
-    scatter = steps[-1].scatter if steps else start
-    chance = repeats.lack_of_fit(scatter, dof)
-    known = repeats.known
+    scatters = [repeats.stated * step.fit.noise.factor for step in steps]
+    scatter, known = scatters[-1], repeats.known
+    chance = repeats.lack_of_fit(scatter, steps[-1].fit.noise.dof)
     is_beyond = known is not None and scatter > POLICY.repeat_ratio * known.size
     structured = scatter * float(np.sqrt(min(max((s.share for s in left), default=0.0), 1.0)))
     size = structured if known is None else max(repeats.excess(scatter), structured)
-    is_real = bool(left) or (is_beyond and chance < POLICY.false_alarm)
-    whole = max(start**2 - scatter**2 + size**2, 1e-300)
-    named, before = [], start
-    for step in steps:
-        fall = max(before**2 - step.scatter**2, 0.0)
+    whole = max(scatters[0] ** 2 - scatter**2 + size**2, 1e-300)
+    named, before = [], scatters[0]
+    for step, own in zip(steps[1:], scatters[1:], strict=True):
+        assert step.effect is not None
+        explained = float(np.sqrt(max(before**2 - own**2, 0.0)))
+        is_large = explained > POLICY.headline_noise_share * repeats.stated
+        is_certain = step.is_significant and step.p_value < POLICY.false_alarm
         named.append(
             NamedEffect(
                 effect=step.effect,
                 p_value=step.p_value,
-                explained=float(np.sqrt(fall)),
-                share=min(fall / whole, 1.0),
-                runner_up=step.runner_up,
-                against_drift=step.against_drift,
-                is_headline=bool(
-                    step.is_significant
-                    and step.p_value < POLICY.false_alarm
-                    and np.sqrt(fall) > POLICY.headline_noise_share * repeats.stated
-                ),
+                explained=explained,
+                share=min(explained**2 / whole, 1.0),
+                runner_up=step.confusion.runner_up if step.confusion else None,
+                is_headline=bool(is_certain and is_large),
+                against_drift=against_drift.get(step.effect.name),
             )
         )
-        before = min(before, step.scatter)
-    rows = geometry.rows
+        before = min(before, own)
     return VerdictParts(
         geometry=GeometryPart(
-            changed=tuple(r for r in rows if r.has_changed),
-            beyond=tuple(r for r in rows if r.is_beyond_expected or r.is_far),
+            changed=tuple(r for r in geometry.rows if r.has_changed),
+            beyond=tuple(r for r in geometry.rows if r.is_beyond_expected or r.is_far),
             hints=tuple(faults),
-            left=start,
+            left=scatters[0],
         ),
         named=tuple(named),
         remains=Remainder(
@@ -179,7 +163,7 @@ def verdict_parts(
             share=min(size**2 / whole, 1.0),
             lack_of_fit=chance,
             patterns=tuple(left),
-            is_real=is_real,
+            is_real=bool(left) or (is_beyond and chance < POLICY.false_alarm),
         ),
         repeatability=repeats,
     )

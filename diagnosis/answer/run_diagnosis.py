@@ -1,33 +1,41 @@
 """The diagnosis of a run: which effect the model lacks, how sure that is, what stays open."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from matstd.diagnosis.accuracy import Repeatability, promise, repeatability
+from matstd.diagnosis.accuracy import promise, repeatability
 from matstd.diagnosis.answer.alike import period_value
 from matstd.diagnosis.answer.ambiguity import ConfusionClass
-from matstd.diagnosis.answer.collinear import (
-    check_distinct,
-    is_significant,
-    not_significant,
-    weakest,
-)
-from matstd.diagnosis.answer.dependences import dependences, odds_against_drift, structures
 from matstd.diagnosis.answer.detectable import detectable
-from matstd.diagnosis.answer.nearest import named_probability, nearest, to_repeat
 from matstd.diagnosis.answer.next_measurement import (
     Plan,
     candidate_targets,
     candidate_touches,
     plan,
 )
-from matstd.diagnosis.answer.parts import VerdictParts, Weighed, verdict_parts
-from matstd.diagnosis.answer.reported_set import ReportedSet, reported_set, without
-from matstd.diagnosis.answer.several import with_trend
-from matstd.diagnosis.answer.sizes import sizes
-from matstd.diagnosis.answer.verdict import Candidate, Diagnosis, Step, Verdict
+from matstd.diagnosis.answer.parts import VerdictParts, verdict_parts
+from matstd.diagnosis.answer.remainder import (
+    dependences,
+    nearest,
+    odds_against_drift,
+    structures,
+    to_repeat,
+)
+from matstd.diagnosis.answer.steps import (
+    Step,
+    check_distinct,
+    not_significant,
+    significant_effects,
+)
+from matstd.diagnosis.answer.trend import (
+    changing_since,
+    possible_changes,
+    shown_changes,
+    trend,
+)
+from matstd.diagnosis.answer.verdict import Candidate, Diagnosis, Verdict
 from matstd.diagnosis.choice import (
     candidate_effects,
     choice_remarks,
@@ -36,23 +44,15 @@ from matstd.diagnosis.choice import (
     search_with_memory,
     with_chosen_set,
 )
-from matstd.diagnosis.evidence import (
-    EffectSet,
-    Progress,
-    ResidualSpace,
-    ScaledEffect,
-    projected,
-    quiet,
-)
-from matstd.diagnosis.faults import DescriptionFault, description_faults
+from matstd.diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
+from matstd.diagnosis.faults import description_faults
 from matstd.diagnosis.fit import Fit, Prior, prior_for
-from matstd.diagnosis.geometry import LearntGeometry, learnt_geometry
+from matstd.diagnosis.geometry import learnt_geometry
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors
-from matstd.diagnosis.remarks import Remark, SearchEnded, remarks
+from matstd.diagnosis.remarks import Remark, What, noticed, remarks
 from matstd.diagnosis.residual import Region, Structure, regions
 from matstd.diagnosis.search import (
-    MAX_LISTED,
     MOST_SETS,
     DiagnosisTask,
     Search,
@@ -65,6 +65,9 @@ from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.model import Effect, Model, traits
 from matstd.twin.numbers import rms
 from matstd.twin.record import Run, Touches, with_commanded, without_copies
+
+MAX_LISTED = 25
+"""Most candidates that are listed, best first."""
 
 MAX_PERIODS_PLANNED = 8
 """Most periods that a plan of touches distinguishes, the longest ones."""
@@ -101,7 +104,13 @@ def diagnose(
     start = model or ordinary_model(run.touches.chain)
     belief = prior_for(run, start) if prior is None else prior
     task = DiagnosisTask(run, start, belief, is_known=prior is not None)
-    return with_trend(task, lambda one: _diagnosed(one, named, candidates, progress, rng))
+    possible = possible_changes(task)
+    free = _diagnosed(changing_since(task, possible), named, candidates, progress, rng)
+    shown, alone = shown_changes(task, free, possible)
+    if shown != possible:  # what does not change is learnt from all runs
+        task = changing_since(task, shown)
+        free = _diagnosed(task, named, candidates, progress, rng)
+    return replace(free, trend=trend(free.fit, shown, alone))
 
 
 def plain_curves(touches: Touches) -> list[Effect]:
@@ -157,9 +166,9 @@ def _result(
 ) -> Diagnosis:
     """The full report of the last round."""
     progress(0.5, "what cannot be distinguished")
-    tested, steps = _significant_effects(task, added, final)
+    tested, steps = significant_effects(task, added, final)
     final, classes, gross = tested.state, tested.classes, final.base.gross
-    left = _beyond_doubt((*final.nameless, *final.left), steps[-1].fit)
+    left = _beyond_doubt(final.remains, steps[-1].fit)
     # a residual well below the stated uncertainty is allowed for, whatever pattern it has
     counted = () if _is_covered(steps[-1].fit) else left
     last = steps[-1].fit
@@ -171,7 +180,7 @@ def _result(
         last, task.prior if task.is_known else None, steps[0].fit if len(steps) > 1 else None
     )
     odds = odds_against_drift(final)
-    parts = _parts(steps, counted, geometry, faults, repeats, odds)
+    parts = verdict_parts(steps, counted, geometry, faults, repeats, odds)
     verdict = _verdict(parts, len(steps) > 1 + len(added), len(repeat) > 0)
     start = structures(final, progress)
     candidates, depends_on = (
@@ -205,35 +214,6 @@ def _result(
     )
 
 
-def _parts(
-    steps: Sequence[Step],
-    left: Sequence[Structure],
-    geometry: LearntGeometry,
-    faults: Sequence[DescriptionFault],
-    repeats: Repeatability,
-    against_drift: Mapping[str, float],
-) -> VerdictParts:
-    """The three parts of the verdict."""
-
-    def scatter(step: Step) -> float:
-        return repeats.stated * step.fit.noise.factor
-
-    weighed = [
-        Weighed(
-            effect=step.effect,
-            p_value=step.p_value,
-            scatter=scatter(step),
-            runner_up=step.confusion.runner_up if step.confusion else None,
-            is_significant=is_significant(step),
-            against_drift=against_drift.get(step.effect.name),
-        )
-        for step in steps
-        if step.effect is not None
-    ]
-    dof = steps[-1].fit.noise.dof
-    return verdict_parts(scatter(steps[0]), dof, weighed, left, geometry, faults, repeats)
-
-
 def _verdict(parts: VerdictParts, is_found: bool, is_doubtful: bool) -> Verdict:
     """The word of the file.
 
@@ -259,29 +239,12 @@ def _is_covered(fit: Fit) -> bool:
     return float(np.std(fit.residual[fit.used] / fit.run.u[fit.used])) < POLICY.noise_ratio_covered
 
 
-def _significant_effects(
-    task: DiagnosisTask, added: tuple[ScaledEffect, ...], final: SearchState
-) -> tuple[ReportedSet, tuple[Step, ...]]:
-    """The reported set: every member beyond chance and its size beyond its uncertainty.
-
-    A search weighs an effect beside a machine as it is expected to be; a size that rests on the
-    touches alone may be nothing, and such an effect is not reported. The weakest goes first.
-    """
-    while True:
-        tested = reported_set(final)
-        steps = _steps(task, added, tested, final.base.gross)
-        weak = weakest(steps[1 + len(added) :], final.is_weighed)
-        if weak is None:
-            return tested, steps
-        final = without(tested.state, weak)
-
-
 def _remarks(steps: Sequence[Step], final: SearchState) -> tuple[Remark, ...]:
     """What else a user should know, the search's own limit included."""
     out = remarks(steps[-1].fit, steps[0].fit)
     if not final.is_ended:
         return out
-    return (*out, SearchEnded(MOST_SETS))
+    return (*out, noticed(What.SEARCH_ENDED, sets=MOST_SETS))
 
 
 def _where(steps: Sequence[Step], verdict: Verdict) -> tuple[Region, ...]:
@@ -290,50 +253,6 @@ def _where(steps: Sequence[Step], verdict: Verdict) -> tuple[Region, ...]:
     if verdict is Verdict.UNEXPLAINED:
         return regions(last)
     return regions(first, last if len(steps) > 1 else None)
-
-
-def _steps(
-    task: DiagnosisTask,
-    added: tuple[ScaledEffect, ...],
-    tested: ReportedSet,
-    gross: GrossErrors,
-) -> tuple[Step, ...]:
-    """The error falling: the starting model, named effects, found effects by their worth."""
-    final, classes = tested.state, tested.classes
-    names = [s.effect.name for s in final.effects]
-    p_values = [final.chances.get(n, tested.tests[n].p_value) for n in names]
-    order = _by_worth(final)
-    effects: Sequence[ScaledEffect] = [*added, *(final.effects[i] for i in order)]
-    first = task.fit((), gross)
-    # the reported inner parameters are those that are drawn and saved
-    numbers, effects = sizes(task, effects, gross, ResidualSpace.of(first))
-    out = [Step(effect=None, fit=first, p_value=1.0, reported=(), confusion=None)]
-    for k, sized in enumerate(effects):
-        fit = task.fit(effects[: k + 1], gross)
-        i = order[k - len(added)] if k >= len(added) else -1
-        p = p_values[i] if i >= 0 else named_probability(out[-1].fit, fit)
-        confusion = classes[i] if i >= 0 else None
-        out.append(
-            Step(effect=sized.effect, fit=fit, p_value=p, reported=numbers[k], confusion=confusion)
-        )
-    return tuple(out)
-
-
-def _by_worth(final: SearchState) -> list[int]:
-    """Order in which the found effects explain most, one after the other."""
-    complement = final.pool.complement
-    left = list(range(len(final.effects)))
-    order: list[int] = []
-    while left:
-
-        def worth(i: int) -> float:
-            A = projected(complement, [final.effects[j] for j in (*order, i)])
-            return EffectSet(complement, A).evidence
-
-        best = max(left, key=worth)
-        order.append(best)
-        left.remove(best)
-    return order
 
 
 def _candidates(final: SearchState) -> tuple[Candidate, ...]:
@@ -351,7 +270,7 @@ def _candidates(final: SearchState) -> tuple[Candidate, ...]:
             Candidate(
                 effect=member.effect.name,
                 kind=member.effect.kind,
-                p_value=search.corrected(member.candidate, float(scores.p[variant])),
+                p_value=search.corrected(member, float(scores.p[variant])),
                 rms=rms(effects.residual[:n] * u),
                 test_rms=rms(effects.held_out.error * u),
                 log_odds=float(effects.evidence - nothing.effects.evidence),

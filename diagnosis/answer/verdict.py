@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 
 from matstd.diagnosis.accuracy import Promise
-from matstd.diagnosis.answer.ambiguity import ConfusionClass
 from matstd.diagnosis.answer.detectable import Detectable
 from matstd.diagnosis.answer.next_measurement import Plan
 from matstd.diagnosis.answer.parts import VerdictParts
+from matstd.diagnosis.answer.steps import Step
 from matstd.diagnosis.answer.trend import Trend
 from matstd.diagnosis.choice import Choice
 from matstd.diagnosis.faults import DescriptionFault
-from matstd.diagnosis.fit import Fit, Reported
+from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry import LearntGeometry
 from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.remarks import Remark
@@ -32,30 +32,6 @@ class Verdict(Enum):
     MISSING = "missing effect"
     UNEXPLAINED = "unexplained"
     UNDECIDED = "undecided"
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Step:
-    """The model with one effect more than the step before; the first has none.
-
-    Attributes:
-        effect: What was added, with its inner parameters; None for the starting model.
-        p_value: Probability by chance, grid and number of candidates paid for; 1 for the first.
-        reported: Its parameters as a user reads them, from the last fit.
-        confusion: What it cannot be distinguished from; None for the first, and for effects that
-            were named by the user.
-    """
-
-    effect: Effect | None
-    fit: Fit
-    p_value: float
-    reported: tuple[Reported, ...]
-    confusion: ConfusionClass | None
-
-    @property
-    def is_named(self) -> bool:
-        """Whether the user named the effect; else the diagnosis found it."""
-        return self.effect is not None and self.confusion is None
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ come from, steps with their date, or a drift with its rate.
 
 from matstd.diagnosis.charts.chart import ControlChart, LimitSource, Segment
 from matstd.diagnosis.charts.course import ALPHA, Drift, Step
-from matstd.diagnosis.charts.history_file import history_csv, write_history
+from matstd.diagnosis.charts.history_file import history_csv, history_table
 from matstd.diagnosis.charts.machine_history import FEWEST, History, history
 from matstd.diagnosis.charts.occasion import (
     Charted,
@@ -31,7 +31,7 @@ __all__ = [
     "Step",
     "history",
     "history_csv",
+    "history_table",
     "occasions_of_models",
     "occasions_of_runs",
-    "write_history",
 ]

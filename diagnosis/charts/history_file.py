@@ -1,16 +1,14 @@
 """trend.json ("trend/1") and trend.csv: a machine over several occasions, for other programs."""
 
 from datetime import timedelta
-from pathlib import Path
 from typing import Any
 
 from matstd.diagnosis.charts.chart import ControlChart
 from matstd.diagnosis.charts.course import ALPHA
 from matstd.diagnosis.charts.machine_history import History
 from matstd.diagnosis.geometry import Estimate
-from matstd.twin.files import write_whole
 from matstd.twin.numbers import significant
-from matstd.twin.text import csv_text, json_text
+from matstd.twin.text import csv_text
 from matstd.twin.units import UM, URAD
 
 FORMAT = "trend/1"
@@ -40,11 +38,6 @@ def history_table(found: History) -> dict[str, Any]:
         ],
         "charts": [_chart(found, chart) for chart in found.charts],
     }
-
-
-def write_history(path: str | Path, found: History) -> None:
-    """Write `trend.json`, whole or not at all."""
-    write_whole(path, json_text(history_table(found)))
 
 
 def history_csv(found: History) -> str:

@@ -7,7 +7,7 @@ data are correlated: poses, set-ups, stretches of time longer than the memory of
 """
 
 from matstd.diagnosis.choice.chosen_set import choice_remarks, field_shares, with_chosen_set
-from matstd.diagnosis.choice.long_runs import search_with_memory
+from matstd.diagnosis.choice.noise_memory import search_with_memory
 from matstd.diagnosis.choice.prediction import Choice, candidate_effects, chosen_by_prediction
 
 __all__ = [

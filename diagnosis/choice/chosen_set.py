@@ -8,19 +8,18 @@ import numpy as np
 from matstd.diagnosis.choice.noise_memory import max_noise
 from matstd.diagnosis.choice.prediction import MAX_SETS_PER_BLOCK, Choice, ChoiceRule
 from matstd.diagnosis.evidence import (
-    Grid,
+    EffectSet,
     Progress,
     ResidualSpace,
     ScaledEffect,
-    Signatures,
+    projected,
     quiet,
-    signatures,
 )
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.regression import Memory
-from matstd.diagnosis.remarks import ChosenByPrediction, FieldShares, Remark, SearchEnded
+from matstd.diagnosis.remarks import Noticed, Remark, What, noticed
 from matstd.diagnosis.residual import PatternTests, find_structure
-from matstd.diagnosis.search import DiagnosisTask, Library, Member, Search, SearchState
+from matstd.diagnosis.search import DiagnosisTask, Library, Search, SearchState
 from matstd.twin.model import Effect, columns, traits
 
 MAX_LISTED_DRIVES = 6
@@ -47,11 +46,12 @@ def with_chosen_set(
     base = task.fit(added, gross)
     # rows count for less, so a prior that was chosen beside whole rows must be wider by as much
     effects = tuple(_wider(s, base.weight) for s in best.effects)
-    library = Library.of(ResidualSpace.of(base), candidates, progress)
-    search = Search(_pool(library, effects), None, progress)
-    members = [Member(*_place(search.pool, s), s.effect, s.scale) for s in effects]
-    chosen = search.evaluate(members)
-    smooth = PatternTests(chosen.effects.complement)
+    complement = ResidualSpace.of(base)
+    library = Library.of(complement, candidates, progress)
+    shortlist = library.shortlist(effects, EffectSet(complement, projected(complement, effects)))
+    search = Search(library.pool(shortlist), None, progress)
+    chosen = search.evaluate(map(search.placed, effects))
+    smooth = PatternTests(complement)
     left = find_structure(chosen.effects, progress, smooth)
     if not left and plain.noise.factor > max_noise(best.effects):
         left = list(final.left or final.nameless)
@@ -62,7 +62,6 @@ def with_chosen_set(
         library=library,
         search=search,
         chosen=chosen,
-        effects=effects,
         smooth=smooth,
         at_start=tuple(nothing) or final.at_start,
         left=tuple(left),
@@ -90,21 +89,6 @@ def _wider(sized: ScaledEffect, weight: float) -> ScaledEffect:
     return replace(sized, scale=sized.scale * weight) if _is_shrunk(sized) else sized
 
 
-def _pool(library: Library, effects: Sequence[ScaledEffect]) -> Signatures:
-    """Signatures of the chosen effects as they are, and of all other candidates of a usual run."""
-    names = {s.effect.name for s in effects}
-    tries = {g.effect.name: g.tries for g in library.grids}
-    own = [Grid(s.effect, (s.effect,), tries.get(s.effect.name, 1)) for s in effects]
-    others = [g for g in library.grids if g.effect.name not in names] if library.is_whole else []
-    return signatures(library.complement, [*own, *others], len(library.grids))
-
-
-def _place(pool: Signatures, sized: ScaledEffect) -> tuple[int, int]:
-    """Variant and candidate of an effect in a pool."""
-    variant = next(i for i, e in enumerate(pool.variants) if e.name == sized.effect.name)
-    return variant, int(pool.owner[variant])
-
-
 def _chance(choice: Choice) -> float:
     """Probability by chance that left-out blocks are predicted so much better than by nothing.
 
@@ -118,7 +102,7 @@ def _chance(choice: Choice) -> float:
     return float(ttest_1samp(gain, 0.0, alternative="greater").pvalue)
 
 
-def field_shares(fit: Fit, effect: Effect) -> FieldShares:
+def field_shares(fit: Fit, effect: Effect) -> Noticed:
     """What every drive of a field explains of the deviations, the most first."""
     theta = fit.theta[fit.of_effect(effect.name)]
     C = columns([effect], fit.run.touches)[fit.used] * theta
@@ -127,11 +111,14 @@ def field_shares(fit: Fit, effect: Effect) -> FieldShares:
     drives = dict.fromkeys(own.parameter_drives)
     sizes = {d: float(np.std(C[:, places == d].sum(axis=1))) for d in drives}
     ranked = sorted(sizes.items(), key=lambda item: -item[1])
-    return FieldShares(own.axis, tuple(ranked[:MAX_LISTED_DRIVES]))
+    return noticed(What.FIELD_SHARES, axis=own.axis, sizes=tuple(ranked[:MAX_LISTED_DRIVES]))
 
 
 def choice_remarks(choice: Choice, found: Sequence[Effect]) -> tuple[Remark, ...]:
     """Every way of a choice with its plain error of blocks left out, and a limit that was met."""
     tried = tuple((rule.name, rule.error) for rule in choice.rules)
-    chosen = ChosenByPrediction(choice.best.name, choice.blocks, tried, is_empty=not found)
-    return (chosen, SearchEnded(MAX_SETS_PER_BLOCK)) if choice.is_ended else (chosen,)
+    way, blocks = choice.best.name, choice.blocks
+    what = What.CHOSEN_BY_PREDICTION
+    chosen = noticed(what, chosen=way, blocks=blocks, tried=tried, is_empty=not found)
+    ended = noticed(What.SEARCH_ENDED, sets=MAX_SETS_PER_BLOCK)
+    return (chosen, ended) if choice.is_ended else (chosen,)

@@ -15,13 +15,12 @@ from matstd.diagnosis.evidence import Progress, ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors, Memory, likely_memory
-from matstd.diagnosis.search import DiagnosisTask, SearchState, search_until_stable
+from matstd.diagnosis.search import WHOLE_BELOW, DiagnosisTask, SearchState, searched
 from matstd.twin.model import Effect
+from matstd.twin.record import Run
 
-MIN_INDEPENDENT = 15.0
-"""Independent observations that a run must hold for its memory to be known: the length of a memory
-is uncertain by about the root of two over their number, 37 % here."""
-
+CHOSEN_ROWS = 3000
+"""Rows of the choice: a wave of an eighth of the noise is found in so many."""
 
 MAX_TURNS = 3
 """Searches in which effects and memory settle beside one another."""
@@ -38,7 +37,7 @@ def memory_of(fit: Fit) -> tuple[Memory, float]:
 
 def is_noise(memory: Memory, rows: int) -> bool:
     """Whether a run of so many rows holds enough of a memory to call it one of the noise."""
-    return rows >= MIN_INDEPENDENT * memory.per_independent
+    return rows >= POLICY.memory_independent * memory.per_independent
 
 
 def with_noise_memory(
@@ -64,7 +63,7 @@ def with_noise_memory(
                 break
             tried.append(at)
             other = replace(task, memory=memory)
-            found = search_until_stable(other, added, candidates, progress)
+            found = searched(other, added, candidates, progress)
             if found.base.noise.factor > max_noise(found.effects):
                 break
             best = max(best, (_evidence(found), other, found), key=lambda b: b[0])
@@ -74,10 +73,7 @@ def with_noise_memory(
 
 def _beside(final: SearchState) -> list[tuple[ScaledEffect, ...]]:
     """Sets beside which a memory is looked for: what was found, and where much is left, nothing."""
-    sets = [final.effects]
-    if final.effects and (final.left or final.nameless):
-        sets.append(())
-    return sets
+    return [final.effects, ()] if final.effects and final.remains else [final.effects]
 
 
 def memory_beside(
@@ -102,3 +98,28 @@ def _evidence(final: SearchState) -> float:
     whole = chosen.evidence - rows * float(np.log(base.noise.factor))
     whole -= float(np.log(np.abs(np.diag(base.solution.R))).sum())
     return whole + (0.0 if base.whitener is None else base.whitener.log_det)
+
+
+def search_with_memory(
+    task: DiagnosisTask,
+    added: tuple[ScaledEffect, ...],
+    candidates: Sequence[Effect],
+    progress: Progress = quiet,
+) -> tuple[DiagnosisTask, SearchState]:
+    """The search's result, and the task with the memory found in the noise."""
+    if len(task.run) <= WHOLE_BELOW:
+        final = searched(task, added, candidates, progress)
+        return with_noise_memory(task, added, final, candidates, progress)
+    small = replace(task, run=chosen_rows(task.run))
+    start = search_with_memory(small, added, candidates, progress)[1].effects
+    whole = replace(task, memory=memory_beside(task, (*added, *start)))
+    final = searched(whole, added, candidates, progress, start)
+    return whole, final
+
+
+def chosen_rows(run: Run) -> Run:
+    """`CHOSEN_ROWS` rows of a run, one at random of every stretch: even steps alias short waves."""
+    edges = np.linspace(0, len(run), CHOSEN_ROWS + 1).astype(np.int64)
+    rows = np.random.default_rng(0).integers(edges[:-1], edges[1:])
+    order = np.argsort(run.touches.time, kind="stable")
+    return run[np.sort(order[rows])]

@@ -15,8 +15,9 @@ from matstd.diagnosis.drift.linear import LinearLaw
 from matstd.diagnosis.drift.record import DriftRecord
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_text, write_whole
+from matstd.twin.files.whole import write_json
 from matstd.twin.frames import Array
-from matstd.twin.text import csv_text, json_text
+from matstd.twin.text import csv_text
 from matstd.twin.versions import versions
 
 FORMAT = "matstd-thermal/1"
@@ -60,7 +61,7 @@ def write_drift(
         "law": _stated(best.law),
         "versions": versions(),
     }
-    write_whole(path, json_text(data))
+    write_json(path, data)
 
 
 def _named(names: Sequence[str], values: Array) -> dict[str, float] | None:

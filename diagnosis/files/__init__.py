@@ -5,34 +5,27 @@
 sentences from the caller: prose is made in `report`.
 """
 
-from matstd.diagnosis.files.diagnosis_file import (
-    plan_text,
-    write_comparison,
-    write_diagnosis,
-    write_residuals,
-)
-from matstd.diagnosis.files.law_file import write_laws
+from matstd.diagnosis.files.diagnosis_file import comparison_table, diagnosis_table, plan_text
+from matstd.diagnosis.files.law_file import law_table
 from matstd.diagnosis.files.model_file import (
     SavedModel,
     check_machine,
     parsed_model,
     read_model,
 )
-from matstd.diagnosis.files.model_writer import model_of, model_text, write_model
+from matstd.diagnosis.files.model_writer import model_of, model_text
 from matstd.diagnosis.files.uncertainty_file import write_uncertainty
 
 __all__ = [
     "SavedModel",
     "check_machine",
+    "comparison_table",
+    "diagnosis_table",
+    "law_table",
     "model_of",
     "model_text",
     "parsed_model",
     "plan_text",
     "read_model",
-    "write_comparison",
-    "write_diagnosis",
-    "write_laws",
-    "write_model",
-    "write_residuals",
     "write_uncertainty",
 ]

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from itertools import zip_longest
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -17,10 +16,10 @@ from matstd.diagnosis.files.trend_table import trend_table
 from matstd.diagnosis.fit import Fit, file_unit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import Condition, Region, Side
-from matstd.twin.files import reading_columns, write_whole
+from matstd.twin.files import reading_columns
 from matstd.twin.numbers import significant
 from matstd.twin.record import Touches
-from matstd.twin.text import csv_text, json_text
+from matstd.twin.text import csv_text
 from matstd.twin.units import UM
 
 FORMAT = "diagnosis/1"
@@ -71,11 +70,6 @@ def diagnosis_table(result: Diagnosis, remarks: Sequence[str] = ()) -> dict[str,
     }
 
 
-def write_diagnosis(path: str | Path, result: Diagnosis, remarks: Sequence[str] = ()) -> None:
-    """Write `diagnosis.json`, whole or not at all; arguments as of `diagnosis_table`."""
-    write_whole(path, json_text(diagnosis_table(result, remarks)))
-
-
 def comparison_table(
     found: Comparison, structure: Sequence[str] = (), remarks: Sequence[str] = ()
 ) -> dict[str, Any]:
@@ -121,21 +115,6 @@ def comparison_table(
         "remarks": list(remarks),
         **learnt,
     }
-
-
-def write_comparison(
-    path: str | Path,
-    found: Comparison,
-    structure: Sequence[str] = (),
-    remarks: Sequence[str] = (),
-) -> None:
-    """Write `comparison.json`, whole or not at all; arguments as of `comparison_table`."""
-    write_whole(path, json_text(comparison_table(found, structure, remarks)))
-
-
-def write_residuals(path: str | Path, found: Comparison) -> None:
-    """Write a table of every touch: measured, predicted, residual, in µm and normalised."""
-    write_whole(path, found.to_csv())
 
 
 def _um(value: float) -> float:

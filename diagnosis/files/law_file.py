@@ -1,15 +1,12 @@
 """law.json ("law/1"): laws that were learnt, for other programs."""
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from matstd.diagnosis.fit import file_unit
 from matstd.diagnosis.laws import Estimate, Learning, LearntLaw, SecondRun, amplitudes, places
-from matstd.twin.files import write_whole
 from matstd.twin.laws import Law
-from matstd.twin.text import json_text
 from matstd.twin.units import DEG, UM
 
 FORMAT = "law/1"
@@ -83,13 +80,6 @@ def _instead(learning: Learning) -> dict[str, Any]:
         "effects": [effect.name for effect in learning.instead_of],
         "log_odds_against": learning.instead_odds,
     }
-
-
-def write_laws(
-    path: str | Path, learning: Learning, run_name: str, second: SecondRun | None = None
-) -> None:
-    """Write `law.json`, whole or not at all."""
-    write_whole(path, json_text(law_table(learning, run_name, second)))
 
 
 def _law(learning: Learning, one: LearntLaw, effect: str) -> dict[str, Any]:

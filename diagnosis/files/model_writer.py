@@ -1,7 +1,6 @@
 """Writer of model files ("model/2"): what a fit has learnt, for another day and another run."""
 
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,36 +17,12 @@ from matstd.diagnosis.files.model_file import (
 from matstd.diagnosis.fit import Fit, Learnt, Reported, inner_unit
 from matstd.diagnosis.geometry import GeometryRow, standing, state_of_standing
 from matstd.diagnosis.regression import Memory
-from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
 from matstd.twin.library import owner_of
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, columns, inner_values
 from matstd.twin.numbers import rms
 from matstd.twin.units import UM
-
-
-def write_model(
-    path: str | Path,
-    fit: Fit,
-    run_name: str,
-    before: SavedModel | None = None,
-    made_with: str = "",
-    held_out: float | None = None,
-    reported: Mapping[str, Sequence[Reported]] | None = None,
-) -> None:
-    """Write the model of a fit, whole or not at all; set-ups of the standard stay with their run.
-
-    Of several runs the machine is written as it is in the last one.
-
-    Args:
-        run_name: Name of the run file, for a later reader of the model.
-        before: Model whose estimates the fit began with; None if it began with none.
-        made_with: Name and version of the program, for the same reader.
-        held_out: Plain error that is promised for rows not seen, mm; None for that of the fit.
-        reported: Sizes of effects as reported, by name.
-    """
-    write_whole(path, model_text(fit, run_name, before, made_with, held_out, reported))
 
 
 def model_text(
@@ -59,9 +34,17 @@ def model_text(
     reported: Mapping[str, Sequence[Reported]] | None = None,
     determined: Sequence[GeometryRow | Determined] = (),
 ) -> str:
-    """Text of a model file.
+    """Text of a model file; set-ups of the standard stay with their run.
 
-    Arguments as of `write_model`; `determined` are the quantities that the run determines.
+    Of several runs the machine is written as it is in the last one.
+
+    Args:
+        run_name: Name of the run file, for a later reader of the model.
+        before: Model whose estimates the fit began with; None if it began with none.
+        made_with: Name and version of the program, for the same reader.
+        held_out: Plain error that is promised for rows not seen, mm; None for that of the fit.
+        reported: Sizes of effects as reported, by name.
+        determined: Quantities that the run determines.
     """
     import tomli_w
 

@@ -5,9 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from matstd.diagnosis.task import LEVEL, TaskUncertainty, guarded
-from matstd.twin.files import write_whole
+from matstd.twin.files.whole import write_json
 from matstd.twin.numbers import in_um
-from matstd.twin.text import json_text
 
 FORMAT = "uncertainty/1"
 
@@ -38,7 +37,7 @@ def write_uncertainty(
 ) -> None:
     """Write `uncertainty.json`, whole or not at all; arguments as of `uncertainty_table`."""
     table = uncertainty_table(task, budgets, tolerance)
-    write_whole(path, json_text(table))
+    write_json(path, table)
 
 
 def _budget(name: str, one: TaskUncertainty, tolerance: float | None) -> dict[str, Any]:

@@ -28,13 +28,15 @@ class Policy:
             simpler, below which it replaces it. Blocks are few, and 3 % are within their scatter.
         error_share_beside_memory: The same where the simpler one is noise with memory, found from
             all rows in sight of them.
-        log_odds_without_name: Log odds by which a pattern without a name must beat all named
-            effects together to say that they only imitate it.
         log_odds_unrecorded: Log odds before any measurement that what a run follows was not
             recorded, against any one recorded driver with any lag; the grid comes on top.
         log_odds_alike: Log odds below which two explanations are not distinguished: 100 to 1.
         log_odds_ruled_out: Log odds by which a rival on a coarse grid is behind beyond what a finer
             one could mend.
+        log_odds_own_sensor: Log odds in favour of a sensor that bears the letter of the axis on
+            which it acts, for ties.
+        location_lead: Standard uncertainties by which a location error may be less clear than
+            another single change and is named all the same: odds of the root of e.
         significant_ratio: Standard uncertainties from which a size is significant (GUM, k = 2).
         headline_noise_share: Size of an effect over the stated noise below which no headline names
             it: a tenth of the noise is not worth a compensation.
@@ -43,8 +45,8 @@ class Policy:
         certain_p: Probability by chance below which an effect stands although none of its numbers
             is significant.
         close_p: The same of an effect with more than two numbers (six of a slip that three touches
-            saw, the form of a face), and that below which the effect nearest to a remainder is
-            named however little it leaves better.
+            saw, the form of a face), that of a jump in a run without times, and that below which
+            the effect nearest to a remainder is named however little it leaves better.
         credible_noise: Noise over the stated one that is not believed unless repeats show it.
             Statements are wrong by a factor of two, not more, on public records of known noise.
         repeat_dof: Degrees of freedom of repeated touches that show the noise within a third.
@@ -55,12 +57,18 @@ class Policy:
             stated. Scatter of a hundred touches does not reach so low.
         memory_gain: Gain of log likelihood by which noise with memory must beat white noise: a
             chance of 6e-5, since twice the gain is chi-squared with one degree of freedom.
+        memory_independent: Independent observations that a run must hold for its memory to be
+            known: its length is uncertain by about the root of two over their number, 37 % here.
+        memory_touches: Touches for one independent observation from which a residual is no longer
+            nearly white.
         memory_noise: Noise over the stated one above which a wandering residual is no noise.
         memory_noise_alone: The same if no effect is beside it: users misjudge their noise by less,
             and an error that follows the order of probing looks the same.
         memory_loud_noise: Noise with memory over the stated one from which it may have a cause.
         p_beside_memory: Probability by chance below which a pattern is reported beside noise with
             memory, since a residual of real parts never follows a memory exactly.
+        jump_share: Share of the squared residual that a jump in a run without times must hold: half
+            of the standard deviation or so.
         detection_power: Standard deviations of the test's statistic above its threshold at the size
             that is called detectable: four of five runs.
     """
@@ -73,10 +81,11 @@ class Policy:
     material_share: float = 0.01
     error_share: float = 0.97
     error_share_beside_memory: float = 0.85
-    log_odds_without_name: float = 15.0
     log_odds_unrecorded: float = 1.5
     log_odds_alike: float = 4.605170185988092  # log 100
     log_odds_ruled_out: float = 15.0
+    log_odds_own_sensor: float = 2.0
+    location_lead: float = 1.0
     significant_ratio: float = 2.0
     headline_noise_share: float = 0.1
     chance_of_member: float = 0.05
@@ -88,10 +97,13 @@ class Policy:
     noise_ratio_open: float = 1.5
     noise_ratio_covered: float = 0.7
     memory_gain: float = 8.0
+    memory_independent: float = 15.0
+    memory_touches: float = 4.0
     memory_noise: float = 3.0
     memory_noise_alone: float = 2.0
     memory_loud_noise: float = 1.3
     p_beside_memory: float = 1e-4
+    jump_share: float = 0.2
     detection_power: float = 0.84
 
     @property

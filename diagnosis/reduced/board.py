@@ -20,10 +20,11 @@ from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.reduced.base import Base
 from matstd.diagnosis.reduced.matrices import Errors, Reduced, reduced
-from matstd.diagnosis.reduced.switches import Switch, switch
+from matstd.diagnosis.reduced.switches import Switch, fixed, switch
 from matstd.diagnosis.search import FREEDOM
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.frames import Array
+from matstd.twin.library import ordinary_model
 from matstd.twin.model import Effect, traits
 
 MOST_SWITCHES = 15
@@ -93,12 +94,16 @@ class Board:
 
 def mix(switches: Sequence[Switch], estimate: Array, on: Collection[str]) -> Array:
     """A set of effects as `Reduced.errors` takes it, (K + 1, k + 1)."""
-    columns = np.eye(len(estimate) + 1)
+    columns, last = np.eye(len(estimate) + 1), np.append(estimate, 1.0)
     first, places = 0, []
     for one in switches:
-        places += [first + k for k in range(len(one.sd)) if one.effect.name in on]
+        own = [first + k for k in range(len(one.sd)) if one.effect.name in on]
+        if one.is_fixed:
+            last[own] -= 1.0
+        else:
+            places += own
         first += one.columns.shape[1]
-    return np.column_stack([columns[:, places], np.append(estimate, 1.0)])
+    return np.column_stack([columns[:, places], last])
 
 
 @one_blas_thread()
@@ -142,11 +147,17 @@ def learnt_board(learning: Learning, found: Sequence[Effect] = ()) -> Board:
 
 @one_blas_thread()
 def compared_board(found: Comparison) -> Board:
-    """The board of a comparison: nothing was found; the effects that suit the residual best."""
+    """The board of a comparison: effects of the model on; those that suit the residual best.
+
+    What a model predicts is no unknown of the run: such an effect is there, whole, or not.
+    """
     fit = found.fit
     names = {e.name for e in fit.model.effects}
+    geometry = {e.name for e in ordinary_model(fit.model.chain).effects}
+    own = [e for e in fit.model.effects if e.name not in geometry]
     library = [e for e in candidate_effects(found.run.touches) if e.name not in names]
-    return _board(fit, [], {}, library, fit, {frozenset(): (fit.rms, fit.test_rms)})
+    known = {frozenset(e.name for e in own): (fit.rms, fit.test_rms)}
+    return _board(fit, own, {}, library, fit, known, found.is_prediction)
 
 
 def _board(
@@ -156,15 +167,21 @@ def _board(
     library: Sequence[Effect],
     start: Fit,
     known: Mapping[frozenset[str], tuple[float, float]],
+    is_prediction: bool = False,
 ) -> Board:
     """Switches and matrices; `library` are other effects that may be offered, best first."""
     base = Base.of(fit, frozenset(e.name for e in found))
     switches: list[Switch] = []
     for effect in found:
         place = fit.of_effect(effect.name)
+        if is_prediction:
+            switches.append(fixed(base, effect, fit.prior.mean[place]))
+            continue
         sd = np.sqrt(np.diag(fit.prior.root[place, place] @ fit.prior.root[place, place].T))
         names = [s.effect.name for s in alike.get(effect.name, ())]
         switches.append(switch(base, effect, sd, is_found=True, alike=names))
+    if is_prediction:  # the base has nothing of them
+        base = replace(base, y=base.y + sum(one.columns[:, 0] for one in switches))
     is_short = len(fit.run) <= MOST_TOUCHES
     others = [
         (s, (name, *(o.effect.name for o in group if o is not s)))
@@ -198,7 +215,9 @@ def _board(
 def _estimate(fit: Fit, one: Switch) -> Array:
     """Of the stored columns of a switch, in units of the prior."""
     out = np.zeros(one.columns.shape[1])
-    if one.is_found:
+    if one.is_fixed:
+        out[0] = 1.0
+    elif one.is_found:
         place = fit.of_effect(one.effect.name)
         out[: len(one.sd)] = fit.theta[place] / one.sd
     return out

@@ -49,6 +49,7 @@ class Switch:
         inner: Its inner parameter that can be moved; None where there is none.
         values: Of it, ascending, (V,), base units; its present one among them.
         mixes: Weights of the stored columns in those at the values, (V, K, M).
+        is_fixed: Whether its one column is what a model predicts, whose amount no run determines.
     """
 
     effect: Effect
@@ -59,6 +60,7 @@ class Switch:
     inner: Inner | None
     values: Array
     mixes: Array
+    is_fixed: bool = False
 
     @property
     def present(self) -> int:
@@ -99,6 +101,21 @@ def switch(
         inner=found,
         values=values,
         mixes=mixes,
+    )
+
+
+def fixed(base: Base, effect: Effect, theta: Array) -> Switch:
+    """An effect of which a model predicts the amounts: it is there, whole, or not."""
+    return Switch(
+        effect=effect,
+        sd=np.ones(1),
+        is_found=True,
+        alike=(),
+        columns=(base.columns([effect]) @ theta)[:, None],
+        inner=None,
+        values=np.zeros(0),
+        mixes=np.ones((1, 1, 1)),
+        is_fixed=True,
     )
 
 

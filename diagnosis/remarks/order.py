@@ -5,15 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.diagnosis.fit import Fit, fit_run
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import f_probability, solve
 from matstd.twin.frames import Array
 from matstd.twin.record import Instrument, IntArray
-
-FALSE_ALARM = 1e-6
-"""Probability, over all rows at which it may be, below which a jump is reported."""
-
-MIN_SHARE = 0.2
-"""Share of the squared residual that it must hold: half of the standard deviation or so."""
 
 MIN_MOMENTS = 20
 """Moments (rows of the file, or poses) from which a run has a before and an after."""
@@ -24,7 +19,7 @@ COMPONENTS = 3
 PRIOR_SD = 10.0
 """What is believed of it, mm."""
 
-NOISE_PASSES = 4
+SETTLING_PASSES = 4
 """Times that the noise is found anew with it; three settle it."""
 
 
@@ -70,7 +65,7 @@ def jump_in_order(fit: Fit) -> JumpInOrder | None:
     k = int(np.argmax(fall))
     share, dof = min(fall[k] / fit.solution.objective, 1.0), len(first) - 2 * COMPONENTS
     p = float(f_probability(share, COMPONENTS, 1.0 - share, dof)) * len(fall)
-    if p > FALSE_ALARM or share < MIN_SHARE:
+    if p > POLICY.close_p or share < POLICY.jump_share:
         return None
     after = np.arange(len(line)) >= first[k + 1]
     X, y = fit.X[fit.used][order], fit.y[fit.used][order]
@@ -84,7 +79,7 @@ def _size(X: Array, y: Array, N: Array, independent: int) -> tuple[float, float]
     With the displacement the noise is smaller: it is found anew, and so is the rest.
     """
     factor = 1.0
-    for _ in range(NOISE_PASSES):
+    for _ in range(SETTLING_PASSES):
         found = solve(np.column_stack([X, PRIOR_SD * N]) / factor, y / factor)
         factor *= float(np.sqrt(found.objective / max(found.dof, 1.0)))
     step = PRIOR_SD * found.phi[-COMPONENTS:]

@@ -25,7 +25,7 @@ from matstd.twin.numbers import rms
 MAX_CONDITIONS = 3
 """Most conditions that are joined."""
 
-MIN_TOUCHES = 12
+MIN_TOUCHES_OF_REGION = 12
 """Fewest touches of a region in either half of the poses."""
 
 MAX_CUTS = 16
@@ -138,7 +138,7 @@ def _size_worth(sums: Array, counts: Array, values: Array) -> Array:
     here = np.maximum(sums / np.maximum(counts, 1.0), 1e-12)
     there = np.maximum((total - sums) / others, 1e-12)
     gained = count * np.log(total / count) - counts * np.log(here) - others * np.log(there)
-    return np.where((here > there) & (count - counts >= MIN_TOUCHES), 0.5 * gained, 0.0)
+    return np.where((here > there) & (count - counts >= MIN_TOUCHES_OF_REGION), 0.5 * gained, 0.0)
 
 
 def _mean_chance(z: Array, others: Array) -> float:
@@ -258,7 +258,7 @@ def _best_box(
         return None
 
     def worth(sums: Array, counts: Array, others: Array) -> Array:
-        enough = (counts >= MIN_TOUCHES) & (others >= MIN_TOUCHES)
+        enough = (counts >= MIN_TOUCHES_OF_REGION) & (others >= MIN_TOUCHES_OF_REGION)
         return np.where(enough, kind.worth(sums, counts, here), 0.0)
 
     both = worth((drawn * here) @ drawn.T, drawn @ drawn.T, judged @ judged.T)

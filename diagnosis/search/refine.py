@@ -8,8 +8,7 @@ are scanned in turn until the evidence stays; several effects in the same way, e
 others in place.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -17,11 +16,11 @@ from matstd.diagnosis.evidence import (
     EffectSet,
     ResidualSpace,
     ScaledEffect,
-    Signatures,
     addition,
     projected,
 )
 from matstd.diagnosis.fit import continuous_inner, spacing
+from matstd.twin.frames import Array
 from matstd.twin.model import Effect, Tunable, is_tunable
 
 SCAN_POINTS = 9
@@ -81,28 +80,20 @@ def _moved(effect: Tunable, index: int, value: float) -> Tunable:
 
 
 def refined_set(
-    complement: ResidualSpace, chosen: Sequence[ScaledEffect], rounds: int = 2
+    complement: ResidualSpace,
+    chosen: Sequence[ScaledEffect],
+    rounds: int = 2,
+    fixed: Array | None = None,
 ) -> list[ScaledEffect]:
-    """Effects of a set with all inner parameters refined, in turn, the others in place."""
-    out = list(chosen)
-    for _ in range(rounds if len(out) > 1 else 1):
-        for i in range(len(out)):
-            others = EffectSet(complement, projected(complement, out[:i] + out[i + 1 :]))
-            out[i] = refined(others, out[i].effect)[0]
-    return out
-
-
-def with_moved_points(pool: Signatures, to: Mapping[int, Effect]) -> Signatures:
-    """A pool with points of its grids moved, in the place of the old ones, which are lost.
+    """Effects of a set with all inner parameters refined, in turn, the others in place.
 
     Args:
-        to: New effect by the number of the variant.
+        fixed: Further columns beside them.
     """
-    variants = list(pool.variants)
-    for variant, effect in to.items():
-        raw = pool.complement.columns([effect])
-        place = slice(pool.start[variant], pool.start[variant + 1])
-        pool.C[:, place] = pool.complement.project(raw)
-        pool.size[place] = np.linalg.norm(raw, axis=0)
-        variants[variant] = effect
-    return replace(pool, variants=tuple(variants))
+    out = list(chosen)
+    beside = [] if fixed is None else [fixed]
+    for _ in range(rounds if len(out) > 1 else 1):
+        for i in range(len(out)):
+            others = projected(complement, out[:i] + out[i + 1 :])
+            out[i] = refined(EffectSet(complement, np.hstack([*beside, others])), out[i].effect)[0]
+    return out

@@ -5,7 +5,8 @@ in full. In a long run the library is first scored against an even choice of the
 signature has in common with the residual is counted over all touches, which is one product, and
 only its length after the projection, which is the work, over the choice. A shortlist names the
 points of grids that may matter beside a set of effects; the search then has exact signatures of
-those points alone, and a search asks for another shortlist once it knows more effects.
+those points alone, and a search asks for another shortlist once it knows more effects. How many
+sets all searches of one diagnosis may try is limited as well.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -42,6 +43,42 @@ MAX_CANDIDATES = 40
 
 MAX_POINTS = 12
 """Best points of a candidate's grid that it lets through."""
+
+
+MOST_SETS = 1500.0
+"""Sets of effects that all searches of one diagnosis may try. A usual run needs a hundred, an
+unexplained one three hundred; long records of many related sensors need more, and a remark says so
+when the limit ended the search."""
+
+UNIT_CHARGE_SIZE = 5e7
+"""Touches times squared columns from which a set counts for more than one."""
+
+USUAL_POOL = 1.3e6
+"""Touches times columns of all candidates in a usual run; a set of a small one counts for less."""
+
+MIN_CHARGE = 0.1
+"""Least charge of a set."""
+
+
+@dataclass(slots=True)
+class Budget:
+    """Number of sets that searches may still try, shared; once spent, they return what they have.
+
+    Attributes:
+        left: Number of sets of ordinary size.
+    """
+
+    left: float = MOST_SETS
+
+    def spend(self, touches: int, columns: int, pool: int) -> None:
+        """Charge for one set, and for all columns of the pool beside it."""
+        beside = min(MIN_CHARGE + float(touches) * pool / USUAL_POOL, 1.0)
+        self.left -= beside + float(touches) * columns * columns / UNIT_CHARGE_SIZE
+
+    @property
+    def is_spent(self) -> bool:
+        """Whether some search was ended before its end."""
+        return self.left <= 0.0
 
 
 Shortlist = Mapping[int, frozenset[int]]

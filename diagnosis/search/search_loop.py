@@ -1,20 +1,35 @@
-"""Gross errors, effects and structure in turn, until nothing changes.
+"""One search for the parts that a run asks for beside the geometry of its machine.
 
-Three findings depend on one another: a touch is a gross error only beside the right effects, an
-effect is found only among touches that are none, and a pattern without a name counts only for what
-no effect explains. So they are looked for in turn:
+**Parts.** Whatever may explain a run stands in one list: every effect of the library at every point
+of the grid of its inner parameters; tables of positions, further periods and periods of several
+sines, once a finding asks for them (`further_parts`); laws of drivers that were not recorded;
+patterns without a name; and touches that are set aside as gross errors.
 
-1. the starting model is fitted, and gross errors are set aside;
-2. the library is searched for the set of effects that the touches in use ask for;
-3. the model is fitted again with that set, and gross errors are looked for anew; if they have
-   changed, or lie at an edge in time where a slip may explain them, or if the set leaves far less
-   noise, it begins again with what the set left;
-4. once they stay, what the set leaves is tested for structure. Structure joins the set as a pattern
-   without a name, and the effects must stand beside it: what only imitated it falls.
+**Score.** All are weighed in one projection: what the geometric model could do as well is taken out
+of them, and the evidence of a set, with what was believed before, charges it for its freedom
+(`evidence`). A set stands only if every member passes the same tests with all the others in place:
+chance, evidence, the prediction of poses, of hours and of set-ups that were left out, and what a
+body can physically do (`members`).
+
+**Moves.** Add, exchange, remove, move inner parameters between the points of their grids, take two
+out for two others (`selection`). They end where none improves a set that stands.
+
+**Turns.** A touch is a gross error only beside the right effects, and an effect is found only among
+touches that are none. So the model is fitted again with the set, and while that changes the gross
+errors, or leaves far less noise, the moves continue from there.
+
+**Patterns.** What a set leaves is tested for structure. A pattern without a name joins as fixed
+columns, and the names must stand beside it: several names imitate an unexplained pattern.
+
+**One rule.** Between explanations that were each searched to their end - names alone, patterns with
+the names that stand beside them, both; a set with and without what was offered - the simpler comes
+first, and a later one replaces it only if it predicts what was held out clearly better
+(`clearly_best`, `Policy.error_share`).
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 
@@ -24,7 +39,6 @@ from matstd.diagnosis.evidence import (
     ResidualSpace,
     ScaledEffect,
     Signatures,
-    period_of,
     projected,
     quiet,
     scanned_grids,
@@ -33,38 +47,33 @@ from matstd.diagnosis.evidence import (
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import PatternTests, Shape, Structure, find_structure
-from matstd.diagnosis.search.budget import Budget
-from matstd.diagnosis.search.domains import by_time
 from matstd.diagnosis.search.edges import (
     restore_predicted_outliers,
     unexplained_near_slip,
     without,
 )
-from matstd.diagnosis.search.members import EffectSubset, Member
+from matstd.diagnosis.search.further_parts import WiderSearch, further_periods, one_period, tables
+from matstd.diagnosis.search.members import EffectSubset, Member, by_blocks, by_time
 from matstd.diagnosis.search.missing_driver import is_unrecorded, unrecorded
-from matstd.diagnosis.search.overtones import with_overtones
-from matstd.diagnosis.search.refine import refined_set
-from matstd.diagnosis.search.screened import best_set, scaled
-from matstd.diagnosis.search.screening import Library
+from matstd.diagnosis.search.screening import Budget, Library, joined_shortlists
 from matstd.diagnosis.search.selection import Search
-from matstd.diagnosis.search.tables import tables_along
 from matstd.diagnosis.search.task import DiagnosisTask
-from matstd.twin.effects import repeat
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, traits
 from matstd.twin.numbers import rms
 
+Way = TypeVar("Way")
+
 MAX_ROUNDS = 4
 """Most rounds of looking for gross errors and effects in turn; a usual run needs two."""
+
+MAX_SCREENINGS = 3
+"""Most screenings of the library in one round of a long run."""
 
 MAX_NOISE_SHARE = 0.7
 """Share of the noise, or of the widening of the prior, below which the search is repeated beside
 the found effects. A large effect passes for noise and for a machine worse than stated, and the
 model then imitates half of everything."""
-
-MAX_PERIODS = 4
-"""Most periods of one component error of one axis."""
-
 
 MAX_NAMELESS = 3
 """Most patterns without a name that are put beside the effects of an unexplained run."""
@@ -76,9 +85,8 @@ class SearchState:
 
     Attributes:
         base: The starting model, and what the user added, fitted.
-        effects: The same effects with their inner parameters refined.
         smooth: Tests for patterns in what the starting model leaves.
-        nameless: Patterns without a name that had to be put beside them.
+        nameless: Patterns without a name that had to be put beside the set.
         drifts: Laws of drivers that were not recorded, whose patterns are among these.
         chances: Probabilities by chance that rest on blocks left out, by the name of the effect.
         is_weighed: Whether the set was chosen by prediction, and no other may stand in for it.
@@ -89,7 +97,6 @@ class SearchState:
     library: Library
     search: Search
     chosen: EffectSubset
-    effects: tuple[ScaledEffect, ...]
     smooth: PatternTests
     at_start: tuple[Structure, ...]
     left: tuple[Structure, ...]
@@ -100,14 +107,46 @@ class SearchState:
     is_ended: bool = False
 
     @property
+    def effects(self) -> tuple[ScaledEffect, ...]:
+        """The set."""
+        return self.chosen.sized
+
+    @property
     def pool(self) -> Signatures:
         """Signatures that were searched."""
         return self.search.pool
 
     @property
-    def fixed(self) -> Array | None:
-        """Columns of the patterns without a name."""
-        return self.search.fixed
+    def remains(self) -> tuple[Structure, ...]:
+        """Patterns beside the set, and what is left then."""
+        return (*self.nameless, *self.left)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether a pattern remains, or more noise than a user may misstate.
+
+        No smooth pattern follows a wave that is short beside the travel.
+        """
+        chosen = self.chosen.effects
+        noise = self.base.noise.factor * float(np.sqrt(chosen.objective / max(chosen.dof, 1.0)))
+        return bool(self.remains) or noise > POLICY.noise_ratio_open
+
+    @property
+    def held_out(self) -> float:
+        """Error of poses left out by what was found, without patterns that have no name, mm."""
+        complement = self.library.complement
+        effects = EffectSet(complement, projected(complement, self.effects))
+        return rms(effects.held_out.error * complement.u)
+
+
+def clearly_best(ways: Sequence[Way], error: Callable[[Way], float]) -> Way:
+    """The first of some ways, the simplest, unless a later one predicts clearly better."""
+    best, least = ways[0], error(ways[0])
+    for way in ways[1:]:
+        own = error(way)
+        if own < POLICY.error_share * least:
+            best, least = way, own
+    return best
 
 
 def refined_named(
@@ -123,119 +162,65 @@ def refined_named(
     for _ in named:
         best = search.ranking(chosen)[0]
         chosen = search.evaluate((*chosen.members, search.member(chosen, best)))
-    ordered = sorted(search.polished(chosen).members, key=lambda m: m.candidate)
-    return tuple(refined_set(complement, [ScaledEffect(m.effect, m.scale) for m in ordered]))
+    order = [effect.name for effect in named]
+    found = search.refined(search.polished(chosen)).sized
+    return tuple(sorted(found, key=lambda s: order.index(s.effect.name)))
 
 
-def search_until_stable(
+def searched(
     task: DiagnosisTask,
     added: Sequence[ScaledEffect],
     candidates: Sequence[Effect],
     progress: Progress = quiet,
     start: Sequence[ScaledEffect] = (),
 ) -> SearchState:
-    """Search among laws, then with tables, which say where an axis is wrong and not why.
-
-    A table is followed only where it predicts plainly better than what the laws came to: it can
-    imitate any of them. Where a remainder depends on an axis, the tables of its components are
-    offered too, and one of them is followed only if nothing remains beside it: several together
-    imitate any function of several axes.
+    """The set that a run asks for, with what a finding asks for besides.
 
     Args:
         start: A set to begin with, inner parameters refined, as a choice of the rows gave it: what
             tables there are, it holds.
     """
-    begun = {s.effect.name for s in start}
-    laws = [e for e in candidates if not traits(e).is_table or e.name in begun]
-    state = _with_further_periods(task, added, laws, progress, start)
-    if start:
-        return state
-    if len(laws) < len(candidates):
-        other = _with_further_periods(task, added, candidates, progress, ())
-        state = other if _held_out(other) < POLICY.error_share * _held_out(state) else state
     known = {e.name for e in candidates}
-    depends_on = [v for s in (*state.nameless, *state.left) for v in s.variables]
-    tables = [e for e in tables_along(task.run.touches, depends_on) if e.name not in known]
-    if not tables:
-        return state
-    other = _with_further_periods(task, added, [*laws, *tables], progress, ())
-    followed = sum(traits(s.effect).is_table for s in other.effects)
-    is_whole = followed == 1 and not other.left and not other.nameless
-    return other if is_whole and _held_out(other) < POLICY.error_share * _held_out(state) else state
+    begun = {s.effect.name for s in start}
+    is_stated = [traits(e).is_table and e.name not in begun for e in candidates]
+    stated = [e for e, table in zip(candidates, is_stated, strict=True) if table]
+    offered = [e for e, table in zip(candidates, is_stated, strict=True) if not table]
+    offered += [s.effect for s in start if s.effect.name not in known]
+    state = _settled(task, added, offered, progress, start)
+    tried: set[frozenset[str]] = set()
+    while True:
+        for wider in _wider(state, offered, stated if not start else None):
+            if wider.new in tried:
+                continue
+            tried.add(wider.new)
+            other = _settled(task, added, wider.candidates, progress, wider.start or start)
+            if _is_taken(wider, other) and other.held_out < wider.share * state.held_out:
+                state, offered = other, [*wider.candidates]
+                break
+        else:
+            return state
 
 
-def _held_out(state: SearchState) -> float:
-    """Error of poses left out by what was found, without patterns that have no name, mm."""
+def _wider(
+    state: SearchState, offered: Sequence[Effect], stated: Sequence[Effect] | None
+) -> Iterator[WiderSearch]:
+    """What a finding asks for, the simplest first; no tables in the whole of a long run."""
     complement = state.library.complement
-    effects = EffectSet(complement, projected(complement, state.effects))
-    return rms(effects.held_out.error * complement.u)
+    yield from one_period(complement, state.effects, offered)
+    if state.is_open:
+        yield from further_periods(complement, state.effects, offered)
+    if stated is not None:
+        depends_on = [v for s in state.remains for v in s.variables]
+        yield from tables(complement.touches, depends_on, stated, offered)
 
 
-def _with_further_periods(
-    task: DiagnosisTask,
-    added: Sequence[ScaledEffect],
-    candidates: Sequence[Effect],
-    progress: Progress,
-    start: Sequence[ScaledEffect],
-) -> SearchState:
-    """Search, and again with further periods of what repeats where structure is left.
-
-    A screw and its encoder repeat with two periods. A second one is offered only beside a first,
-    and only where something is left.
-    """
-    names = {e.name for e in candidates}
-    offered = [*candidates, *(s.effect for s in start if s.effect.name not in names)]
-    state = _until_gross_errors_stay(task, added, offered, progress, start)
-    for number in range(2, MAX_PERIODS + 1):
-        state, offered = _as_one_period(task, added, offered, progress, state)
-        before = {s.effect.name for s in state.effects}
-        found = [e for e in offered if e.name in before and period_of(e, state.library.complement)]
-        first = [e for e in found if traits(e).repetition == 1]
-        further = [a for e in first if (a := repeat(e, number)) is not None]
-        if not further or not _is_open(state):
-            break
-        offered += further
-        other = _until_gross_errors_stay(task, added, offered, progress, start)
-        is_taken = {a.name for a in further} & {s.effect.name for s in other.effects}
-        if not is_taken or _held_out(other) >= _held_out(state):
-            break
-        state = other
-    return state
+def _is_taken(wider: WiderSearch, state: SearchState) -> bool:
+    """Whether a set has what was offered, and as it may."""
+    taken = len(wider.new & state.chosen.names)
+    return taken == 1 and not state.remains if wider.is_alone else taken > 0
 
 
-def _is_open(state: SearchState) -> bool:
-    """Whether a pattern remains, or more noise than a user may misstate.
-
-    No smooth pattern follows a wave that is short beside the travel.
-    """
-    chosen = state.chosen.effects
-    noise = state.base.noise.factor * float(np.sqrt(chosen.objective / max(chosen.dof, 1.0)))
-    return bool(state.left or state.nameless) or noise > POLICY.noise_ratio_open
-
-
-def _as_one_period(
-    task: DiagnosisTask,
-    added: Sequence[ScaledEffect],
-    offered: list[Effect],
-    progress: Progress,
-    state: SearchState,
-) -> tuple[SearchState, list[Effect]]:
-    """Waves that are whole fractions of one period searched as one, where that predicts better."""
-    start = with_overtones(state.library.complement, state.effects)
-    if start is None:
-        return state, offered
-    kept = {s.effect.name for s in start} - {start[-1].effect.name}
-    gone = {s.effect.name for s in state.effects} - kept
-    others = [e for e in offered if e.name not in gone or traits(e).repetition == 1]
-    others.append(start[-1].effect)
-    other = _until_gross_errors_stay(task, added, others, progress, start)
-    is_taken = start[-1].effect.name in {s.effect.name for s in other.effects}
-    if is_taken and _held_out(other) < _held_out(state):
-        return other, others
-    return state, offered
-
-
-def _until_gross_errors_stay(
+def _settled(
     task: DiagnosisTask,
     added: Sequence[ScaledEffect],
     candidates: Sequence[Effect],
@@ -259,16 +244,15 @@ def _until_gross_errors_stay(
     for remaining in reversed(range(MAX_ROUNDS)):
         library = Library.of(ResidualSpace.of(base), [*candidates, *nameless], progress)
         search, chosen = best_set(library, found, budget, progress)
-        effects = refined_set(library.complement, scaled(chosen))
-        whole = restore_predicted_outliers(task, (*added, *effects), base.gross)
-        further = unexplained_near_slip(touches, whole.gross, effects) & ~tried & (remaining > 1)
+        found = chosen.sized
+        whole = restore_predicted_outliers(task, (*added, *found), base.gross)
+        further = unexplained_near_slip(touches, whole.gross, found) & ~tried & (remaining > 1)
         is_same = np.array_equal(whole.gross.rows, base.gross.rows) and not further.any()
         if (is_same and not _is_quieter(whole, base)) or not remaining:
             break
         tried |= further
         base = task.fit(added, without(whole.gross, further), whole)
-        found = effects
-    return _with_structure(base, library, search, chosen, progress)
+    return _beside_patterns(base, library, search, chosen)
 
 
 def _is_quieter(whole: Fit, base: Fit) -> bool:
@@ -277,67 +261,83 @@ def _is_quieter(whole: Fit, base: Fit) -> bool:
     return noise < MAX_NOISE_SHARE * base.noise.factor or odd < MAX_NOISE_SHARE * base.widened
 
 
-def _with_structure(
-    base: Fit, library: Library, search: Search, chosen: EffectSubset, progress: Progress
+def best_set(
+    library: Library, found: Sequence[ScaledEffect], budget: Budget, progress: Progress = quiet
+) -> tuple[Search, EffectSubset]:
+    """The best set of effects, with its search; of a long run among those that screenings pass.
+
+    Args:
+        found: A set to begin with.
+    """
+    complement = library.complement
+    shortlist = library.shortlist(found, EffectSet(complement, projected(complement, found)))
+    for _ in range(MAX_SCREENINGS):
+        search = Search(library.pool(shortlist), None, progress, budget)
+        known = [s for s in found if s.effect.name in search.pool.names]
+        chosen = search.run([search.placed(s) for s in known])
+        if library.is_whole or chosen.names == {s.effect.name for s in found} != set():
+            break
+        found = chosen.sized
+        further = joined_shortlists(shortlist, library.shortlist(found, chosen.effects))
+        if further == dict(shortlist):
+            break
+        shortlist = further
+    return search, chosen
+
+
+def _beside_patterns(
+    base: Fit, library: Library, search: Search, chosen: EffectSubset
 ) -> SearchState:
-    """The search's result with the structure that it leaves, which may bring it down."""
+    """The search's result with the structure that it leaves, beside which the names must stand."""
+    progress = search.progress
     nothing = search.evaluate(())
     smooth = PatternTests(nothing.effects.complement)
     at_start = find_structure(nothing.effects, progress, smooth)
     left = find_structure(chosen.effects, progress, smooth) if chosen.members else at_start
-    nameless: list[Structure] = []
-    if not left:
-        left = _patterns_that_win(at_start, nothing, chosen)
     named = (search, chosen, left)
-    # an unexplained pattern would otherwise be imitated by several named effects
+    nameless: list[Structure] = []
     while any(s.columns is not None for s in left) and len(nameless) < MAX_NAMELESS:
         nameless.append(most_evident(left))
-        fixed = np.hstack([s.columns for s in nameless if s.columns is not None])
-        search = Search(search.pool, fixed, progress, search.budget)
+        search = Search(search.pool, _joined(nameless), progress, search.budget)
         chosen = search.run(chosen.members)
         left = find_structure(chosen.effects, progress, smooth)
-    if _evicted(named[1], chosen):
-        (search, chosen, left), nameless = named, []
-    elif nameless:
-        chosen = _both(search, named[1], chosen)
-    drifts = tuple(
-        ScaledEffect(m.effect, m.scale) for m in chosen.members if is_unrecorded(m.effect)
-    )
-    library, search, chosen, unnamed = _without_drivers(library, search, chosen)
+    fallen = {m.effect.name for m in named[1].members if not is_unrecorded(m.effect)} - chosen.names
+    if fallen:
+        both = search.evaluate(named[1].members)
+        # between neighbours a pattern of time always predicts well: long stretches decide
+        ways = [named, (search, chosen, left), (search, both, left)]
+        search, chosen, left = clearly_best(ways, lambda way: _by_stretches(way[1].effects))
+        nameless = [] if search is named[0] else nameless
+    drifts = [m for m in chosen.members if is_unrecorded(m.effect)]
+    found = [_as_pattern(search, chosen, m) for m in drifts]
+    # from here on a driver that was not recorded is a pattern without a name
+    pool, library = search.pool, library.without(is_unrecorded)
+    pool = library.sample if library.is_whole else pool.without(is_unrecorded)
+    last = Search(pool, _joined([*found, *nameless]), progress, search.budget)
     return SearchState(
         base=base,
         library=library,
-        search=search,
-        chosen=chosen,
-        effects=tuple(refined_set(library.complement, scaled(chosen))),
+        search=last,
+        chosen=last.evaluate(chosen.others(*drifts)),
         smooth=smooth,
         at_start=tuple(at_start),
         left=tuple(left),
-        nameless=(*unnamed, *nameless),
-        drifts=drifts,
+        nameless=(*found, *nameless),
+        drifts=tuple(m.sized for m in drifts),
         is_ended=search.budget.is_spent,
     )
 
 
-def _without_drivers(
-    library: Library, search: Search, chosen: EffectSubset
-) -> tuple[Library, Search, EffectSubset, list[Structure]]:
-    """A result in which unrecorded drivers are patterns without a name."""
-    drifts = [m for m in chosen.members if is_unrecorded(m.effect)]
-    found = [_as_pattern(search, chosen, m) for m in drifts]
-    library = library.without(is_unrecorded)
-    pool = library.sample if library.is_whole else search.pool.without(is_unrecorded)
-    blocks = [] if search.fixed is None else [search.fixed]
-    blocks += [s.columns for s in found if s.columns is not None]
-    fixed = np.hstack(blocks) if blocks else None
-    search = Search(pool, fixed, search.progress, search.budget)
-    return library, search, search.evaluate(m for m in chosen.members if m not in drifts), found
+def _joined(patterns: Sequence[Structure]) -> Array | None:
+    """Columns of some patterns side by side; None where there are none."""
+    blocks = [s.columns for s in patterns if s.columns is not None]
+    return np.hstack(blocks) if blocks else None
 
 
 def _as_pattern(search: Search, chosen: EffectSubset, member: Member) -> Structure:
     """A member of a set as a pattern."""
-    others = search.evaluate(m for m in chosen.members if m is not member)
-    tested = search.verified(others, chosen, member)
+    others = search.evaluate(chosen.others(member))
+    tested = search.verified(chosen, member)
     fall = others.effects.objective - chosen.effects.objective
     return Structure(
         shape=Shape.DRIVER,
@@ -346,55 +346,16 @@ def _as_pattern(search: Search, chosen: EffectSubset, member: Member) -> Structu
         p_value=tested.p_value,
         share=min(fall / others.effects.objective, 1.0),
         evidence=tested.evidence,
-        columns=member.scale * search.pool.columns_of(member.variant),
+        columns=member.scale * member.signature.C,
         law=member.effect.name.partition(": ")[2],
     )
 
 
-def _evicted(before: EffectSubset, after: EffectSubset) -> bool:
-    """Whether nameless patterns replaced named effects without a better prediction.
-
-    They are judged by long stretches of time left out: between neighbours a pattern of time always
-    runs well.
-    """
-    kept = {m.effect.name for m in after.members}
-    if all(m.effect.name in kept or is_unrecorded(m.effect) for m in before.members):
-        return False
-    return _by_stretches(after.effects) > POLICY.error_share * _by_stretches(before.effects)
-
-
-def _both(search: Search, before: EffectSubset, after: EffectSubset) -> EffectSubset:
-    """Names beside the patterns that replaced them, where both predict better than patterns alone.
-
-    Args:
-        search: With the patterns in every set.
-    """
-    kept = {m.effect.name for m in after.members}
-    if all(m.effect.name in kept or is_unrecorded(m.effect) for m in before.members):
-        return after
-    both = search.evaluate(before.members)
-    is_better = _by_stretches(both.effects) < POLICY.error_share * _by_stretches(after.effects)
-    return both if is_better else after
-
-
 def _by_stretches(effects: EffectSet) -> float:
     """Held-out error of a set when long stretches of time are left out."""
-    complement = effects.complement
-    return EffectSet(replace(complement, groups=by_time(complement)), effects.A).held_out.rms
+    return by_blocks(effects, by_time(effects.complement)).held_out.rms
 
 
 def most_evident(found: Sequence[Structure]) -> Structure:
     """The pattern with most evidence among those that have columns."""
     return max((s for s in found if s.columns is not None), key=lambda s: s.evidence)
-
-
-def _patterns_that_win(
-    at_start: Sequence[Structure], nothing: EffectSubset, chosen: EffectSubset
-) -> list[Structure]:
-    """Patterns that explain the run clearly better than all found effects together."""
-    gained = chosen.effects.evidence - nothing.effects.evidence
-    return [
-        s
-        for s in at_start
-        if s.columns is not None and s.evidence > gained + POLICY.log_odds_without_name
-    ]

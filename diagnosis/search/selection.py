@@ -1,41 +1,52 @@
-"""Choice of the effects that a model lacks: forward with alternatives, swaps, a backward look.
+"""The moves of the search among sets of effects of one pool: add, exchange, remove, refine.
 
 A first step that is merely the best single one may be a compromise between two real effects; so a
 few different sets are carried along, and in each every member is offered for exchange whenever
-another has joined. A set stands only if every member passes three tests with the others in place:
-its probability by chance, corrected for the grid of its inner parameters and for the number of
-candidates; the evidence, which charges it for its freedom; and the error of table poses that were
-left out of the fit.
+another has joined. Grids of inner parameters are coarse: between two points lies an effect that
+neither fits, and what the better one leaves looks like a further effect. So members are moved to
+where the run wants them, and the search continues from there. A set stands only if every member
+passes its tests (`members`) with the others in place.
 """
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import combinations, count
+from itertools import combinations, count, islice
 
 import numpy as np
 
 from matstd.diagnosis.evidence import (
+    Grid,
     Progress,
+    ScaledEffect,
     Scores,
     Signatures,
     quiet,
     score_all,
+    signatures,
 )
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import BoolArray
-from matstd.diagnosis.search.budget import Budget
-from matstd.diagnosis.search.domains import domain_gain
-from matstd.diagnosis.search.instants import p_by_instants
-from matstd.diagnosis.search.members import EffectSubset, Member, Verified, effect_set
+from matstd.diagnosis.search.members import (
+    EffectSubset,
+    Member,
+    Verified,
+    explained,
+    p_by_instants,
+    set_of,
+    single,
+    tested,
+)
 from matstd.diagnosis.search.missing_driver import (
     follows_driver,
     is_own_sensor,
     is_unrecorded,
     moves_alike,
 )
-from matstd.diagnosis.search.tables import contains
+from matstd.diagnosis.search.refine import refined, refined_set
+from matstd.diagnosis.search.screening import Budget
 from matstd.twin.frames import Array
+from matstd.twin.model import Effect, traits
 from matstd.twin.thermal import drives
 
 MIN_CORRELATION_ALIKE = 0.95
@@ -47,14 +58,14 @@ MAX_CARRIED_SETS = 4
 MAX_REOPENED_SETS = 8
 """Most pairs of members that are taken out for a new start."""
 
-MAX_REOPENINGS = 3
-"""Most turns of growing a set and of taking two members out of it."""
+MAX_TURNS = 3
+"""Most turns of growing a set, of refining it, and of taking two members out of it."""
+
+MAX_REFINED_DRIVERS = 4
+"""Most laws of recorded drivers that are refined beside one that was not recorded."""
 
 USUAL_SET_SIZE = 6
 """Effects at which a search is reported as nearly done; it continues while more pass."""
-
-MAX_LISTED = 25
-"""Most candidates that are listed, best first."""
 
 
 class Search:
@@ -77,26 +88,31 @@ class Search:
         self.complement = pool.complement
         self.fixed = fixed
         self.progress = progress
-        self._known: dict[tuple[tuple[int, float], ...], tuple[Scores, list[int]]] = {}
-        self._products: dict[int, Array] = {}
+        self._known: dict[tuple[object, ...], tuple[Scores, list[int]]] = {}
+        self._products: dict[tuple[object, ...], Array] = {}
+        self._candidate = {name: i for i, name in enumerate(pool.names)}
+
+    # --- sets and their scores --------------------------------------------------------------------
 
     def evaluate(self, members: Iterable[Member]) -> EffectSubset:
         """Put a set into the projection; the budget is charged for it."""
         members = tuple(members)
-        effects = effect_set(self.complement, self.pool, members, self.fixed)
+        effects = set_of(self.complement, members, self.fixed)
         rows, own = effects.A.shape
         self.budget.spend(rows, own, self.pool.C.shape[1])
-        prior = float(sum(self._prior[m.variant] for m in members))
-        return EffectSubset(members, effects, prior)
+        prior = sum(self._log_prior(m.effect, int(m.signature.tries[0])) for m in members)
+        return EffectSubset(members, effects, float(prior))
 
     def member(self, chosen: EffectSubset, variant: int) -> Member:
         """A variant as an addition to a set, at its likeliest scale there."""
-        scale, owner = float(self.scores(chosen).scale[variant]), int(self.pool.owner[variant])
-        return Member(variant, owner, self.pool.variants[variant], scale)
+        return Member(single(self.pool, variant), float(self.scores(chosen).scale[variant]))
 
-    def name_of(self, variant: int) -> str:
-        """Name of the candidate of a variant."""
-        return self.pool.names[self.pool.owner[variant]]
+    def placed(self, sized: ScaledEffect) -> Member:
+        """Any effect as a member, between the points of its grid or beyond the pool."""
+        index = self._candidate.get(sized.effect.name)
+        tries = 1 if index is None else int(self.pool.tries[index])
+        grid = Grid(sized.effect, (sized.effect,), tries)
+        return Member(signatures(self.complement, [grid], self.pool.tried), sized.scale)
 
     def scores(self, chosen: EffectSubset) -> Scores:
         """Scores of all variants as additions to a set."""
@@ -104,7 +120,7 @@ class Search:
 
     def _scored(self, chosen: EffectSubset) -> tuple[Scores, list[int]]:
         """The same, with the best variant of every candidate, most evidence first; made once."""
-        key = tuple(sorted((m.variant, m.scale) for m in chosen.members))
+        key = tuple(sorted(m.key for m in chosen.members))
         if key not in self._known:
             scores = score_all(chosen.effects, self.pool, self._inside(chosen))
             scores = replace(scores, evidence=scores.evidence + self._prior + chosen.prior)
@@ -116,15 +132,15 @@ class Search:
         return self._known[key]
 
     def _inside(self, chosen: EffectSubset) -> Array:
-        """Inner products of a set's columns with all signatures, (K, M).
+        """Inner products of a set's columns with all signatures, (K, M); a member's are made once.
 
-        Those of a variant are made once: a long run has few variants that are ever members.
+        A long run has few effects that are ever members.
         """
         rows = [self._fixed_product]
         for m in chosen.members:
-            if m.variant not in self._products:
-                self._products[m.variant] = self.pool.columns_of(m.variant).T @ self.pool.C
-            rows.append(m.scale * self._products[m.variant])
+            if m.key[:-1] not in self._products:
+                self._products[m.key[:-1]] = m.signature.C.T @ self.pool.C
+            rows.append(m.scale * self._products[m.key[:-1]])
         return np.vstack(rows)
 
     @cached_property
@@ -135,96 +151,70 @@ class Search:
 
     def ranking(self, chosen: EffectSubset) -> list[int]:
         """Best variant of every candidate that is not in a set, most evidence first."""
-        taken = {m.candidate for m in chosen.members}
-        return [v for v in self._scored(chosen)[1] if int(self.pool.owner[v]) not in taken]
+        pool, taken = self.pool, chosen.names
+        return [v for v in self._scored(chosen)[1] if pool.names[pool.owner[v]] not in taken]
 
     def additions(self, chosen: EffectSubset) -> list[int]:
-        """The same without candidates that would contain a member."""
-        members, variants = [m.effect for m in chosen.members], self.pool.variants
-        return [v for v in self.ranking(chosen) if not contains(variants[v], members)]
+        """The same without tables by direction whose plain table is a member."""
+        plain = {t.symbol for m in chosen.members if (t := traits(m.effect)).is_table}
+        own = ((v, traits(self.pool.variants[v])) for v in self.ranking(chosen))
+        return [
+            v for v, t in own if not (t.is_table and t.reversal is not None and t.symbol in plain)
+        ]
 
-    def extensions(self, chosen: EffectSubset, most: int) -> list[EffectSubset]:
-        """The best sets of one member more, no two alike in what they explain."""
-        out: list[EffectSubset] = []
-        directions: list[Array] = []
-        scores = self.scores(chosen)
-        for variant in self.additions(chosen)[: 12 * most]:
-            if len(out) >= most or scores.evidence[variant] <= chosen.evidence:
-                break
-            direction = self.explained(chosen, variant)
-            if all(abs(direction @ d) < MIN_CORRELATION_ALIKE for d in directions):
-                directions.append(direction)
-                out.append(self.evaluate((*chosen.members, self.member(chosen, variant))))
-        return out
+    @cached_property
+    def _is_unrecorded(self) -> BoolArray:
+        """Which variants follow a driver that was not recorded, (V,)."""
+        return np.array([is_unrecorded(v) for v in self.pool.variants], dtype=bool)
 
-    def explained(self, chosen: EffectSubset, variant: int) -> Array:
-        """Direction of what a variant would explain beyond a set, (N + P,), of length 1."""
-        effects = chosen.effects
-        C = self.scores(chosen).scale[variant] * self.pool.columns_of(variant)
-        E = effects.whiten(C)
-        S = C.T @ C - E.T @ E
-        g = C.T @ self.complement.residual - E.T @ effects.along
-        phi = np.linalg.solve(S + np.eye(len(S)), g)
-        direction = C @ phi - effects.A @ effects.coefficients(C @ phi)
-        return np.asarray(direction / max(float(np.linalg.norm(direction)), 1e-300))
+    @cached_property
+    def _prior(self) -> Array:
+        """Log prior of every variant, (V,)."""
+        pool = self.pool
+        _, first = np.unique(pool.owner, return_index=True)
+        own = [
+            self._log_prior(pool.variants[v], int(n))
+            for v, n in zip(first, pool.tries, strict=True)
+        ]
+        return np.asarray(own)[pool.owner] if own else np.zeros(0)
 
-    def polished(self, chosen: EffectSubset) -> EffectSubset:
-        """Exchange members for better ones, one at a time, until none is better."""
-        improved = True
-        while improved and chosen.members and not self.budget.is_spent:
-            improved = False
-            for i in range(len(chosen.members)):
-                others = self.evaluate(chosen.members[:i] + chosen.members[i + 1 :])
-                ranked = self.additions(others)
-                best = ranked[0] if ranked else chosen.members[i].variant
-                gain = self.scores(others).evidence[best] - chosen.evidence
-                if gain > 1e-6:
-                    members = list(chosen.members)
-                    members[i] = self.member(others, best)
-                    chosen, improved = self.evaluate(members), True
-        return chosen
+    def _log_prior(self, effect: Effect, tries: int) -> float:
+        """What was believed of an effect before the run.
+
+        A law of a recorded driver was chosen among many drivers and lags, and one that was not
+        recorded may stand behind it, unless the sensor is that of the body itself.
+        """
+        if not follows_driver(effect):
+            return 0.0
+        chosen = POLICY.log_odds_unrecorded + np.log(max(len(drives(self.complement.touches)), 1))
+        return float(-np.log(tries) - chosen * (not is_own_sensor(effect)))
+
+    # --- tests ------------------------------------------------------------------------------------
 
     def stands(self, chosen: EffectSubset) -> bool:
-        """Whether every member of a set passes its tests, the quick ones first."""
-        for i, member in enumerate(chosen.members):
-            others = self.evaluate(chosen.members[:i] + chosen.members[i + 1 :])
-            p = float(self.scores(others).p[member.variant])
-            gained = chosen.effects.evidence - others.effects.evidence
-            if (
-                self.corrected(member.candidate, p) >= POLICY.false_alarm
-                or gained <= POLICY.log_evidence_gain
-            ):
-                return False
-        return all(v.stands for v in self.verify(chosen))
+        """Whether every member of a set passes its tests."""
+        return all(self.verified(chosen, member).stands for member in chosen.members)
 
     def verify(self, chosen: EffectSubset) -> list[Verified]:
         """Tests of every member of a set with the others in place."""
-        out = []
-        for i, member in enumerate(chosen.members):
-            others = self.evaluate(chosen.members[:i] + chosen.members[i + 1 :])
-            out.append(self.verified(others, chosen, member))
-        return out
+        return [self.verified(chosen, member) for member in chosen.members]
 
-    def verified(self, others: EffectSubset, whole: EffectSubset, member: Member) -> Verified:
-        """Tests of one member, given the set without it and the set with it."""
-        density = whole.effects.held_out_log_density - others.effects.held_out_log_density
-        count = len(self.complement.u)
-        changed = (others.effects.residual - whole.effects.residual)[:count] ** 2
-        touches = float(changed.sum()) ** 2 / max(float(changed @ changed), 1e-300)
-        p = max(self.scores(others).p[member.variant], p_by_instants(others.effects, whole.effects))
-        found = Verified(
+    def verified(self, whole: EffectSubset, member: Member) -> Verified:
+        """Tests of one member with the others in place."""
+        others = self.evaluate(whole.others(member))
+        p = float(score_all(others.effects, member.signature).p[0])
+        quick = Verified(
             member=member,
-            p_value=self.corrected(member.candidate, p),
+            p_value=self.corrected(member, max(p, p_by_instants(others.effects, whole.effects))),
             evidence=float(whole.effects.evidence - others.effects.evidence),
-            held_out=whole.effects.held_out.rms / max(others.effects.held_out.rms, 1e-300),
-            density=float(density),
-            touches=touches,
             is_possible=self._is_possible(whole, member)
             and self._is_preferred(others, whole, member),
         )
-        if not found.stands_by_poses:
-            return found
-        return replace(found, domain_density=domain_gain(others.effects, whole.effects))
+        return tested(others.effects, whole.effects, quick) if quick.is_beyond_chance else quick
+
+    def corrected(self, member: Member, p: float) -> float:
+        """Probability with the scan of the grid and the number of candidates paid for."""
+        return float(min(1.0, p * float(member.signature.tries[0]) * self.pool.tried))
 
     def _is_preferred(self, others: EffectSubset, whole: EffectSubset, member: Member) -> bool:
         """Whether a recorded driver is more likely than one that was not recorded.
@@ -237,29 +227,6 @@ class Search:
             return False
         rivals = self.scores(others).evidence[self._is_unrecorded]
         return bool(np.all(whole.evidence > rivals))
-
-    @cached_property
-    def _is_unrecorded(self) -> BoolArray:
-        """Which variants follow a driver that was not recorded, (V,)."""
-        return np.array([is_unrecorded(v) for v in self.pool.variants], dtype=bool)
-
-    @cached_property
-    def _prior(self) -> Array:
-        """Log prior of every variant, (V,).
-
-        A law of a recorded driver was chosen among many drivers and lags, and one that was not
-        recorded may stand behind it, unless the sensor is that of the body itself.
-        """
-        touches, pool = self.complement.touches, self.pool
-        _, first = np.unique(pool.owner, return_index=True)
-        chosen = POLICY.log_odds_unrecorded + np.log(max(len(drives(touches)), 1))
-        prior = [
-            -np.log(tries) - chosen * (not is_own_sensor(pool.variants[v]))
-            if follows_driver(pool.variants[v])
-            else 0.0
-            for v, tries in zip(first, pool.tries, strict=True)
-        ]
-        return np.asarray(prior)[pool.owner] if prior else np.zeros(0)
 
     def _is_possible(self, whole: EffectSubset, member: Member) -> bool:
         """Whether a body may expand as a member says, within its uncertainty.
@@ -279,23 +246,26 @@ class Search:
                     return False
         return True
 
-    def corrected(self, candidate: int, p: float) -> float:
-        """Probability with the scan of the grid and the number of candidates paid for."""
-        return float(min(1.0, p * self.pool.tries[candidate] * self.pool.tried))
+    # --- moves ------------------------------------------------------------------------------------
 
     def run(self, start: Sequence[Member] = ()) -> EffectSubset:
-        """The best set of which every member stands; empty where nothing does.
+        """The best set of which every member stands, refined; empty where nothing does.
 
         Args:
             start: Members of a set to begin with, as from an earlier round.
         """
         best = self.backward(self.polished(self.evaluate(start)))
-        for _ in range(MAX_REOPENINGS):
-            best = self.backward(self.grown(best))
+        for _ in range(MAX_TURNS):
+            grown = self.backward(self.against_refined_laws(self.grown(best)))
+            best = self.backward(self.needed(self.refined(grown)))
             other = self.reopened(best)
-            if other.evidence <= best.evidence + POLICY.log_evidence_gain or not self.stands(other):
+            if other.evidence > best.evidence + POLICY.log_evidence_gain and self.stands(other):
+                best = self.refined(other)
+            elif (
+                best.names == grown.names
+                and not best.evidence > grown.evidence + POLICY.log_evidence_gain
+            ):
                 break
-            best = other
         return best
 
     def grown(self, best: EffectSubset) -> EffectSubset:
@@ -305,9 +275,7 @@ class Search:
             if self.budget.is_spent:
                 break
             grown = [s for c in carried for s in self.extensions(c, MAX_CARRIED_SETS)]
-            carried = self.kept(
-                self.polished(s) for s in grown[: MAX_CARRIED_SETS * MAX_CARRIED_SETS]
-            )
+            carried = self.kept(self.polished(s) for s in grown)
             self.progress(min(size / USUAL_SET_SIZE, 1.0), "sets of effects")
             better = [c for c in carried if c.evidence > best.evidence + POLICY.log_evidence_gain]
             standing = next((c for c in better if self.stands(c)), None)
@@ -315,6 +283,70 @@ class Search:
                 break
             best = standing
         return best
+
+    def extensions(self, chosen: EffectSubset, most: int) -> list[EffectSubset]:
+        """The best sets of one member more, no two alike in what they explain."""
+        out: list[EffectSubset] = []
+        directions: list[Array] = []
+        scores = self.scores(chosen)
+        for variant in self.additions(chosen)[: 12 * most]:
+            if len(out) >= most or scores.evidence[variant] <= chosen.evidence:
+                break
+            member = self.member(chosen, variant)
+            direction = explained(chosen.effects, member.scale * member.signature.C)
+            if all(abs(direction @ d) < MIN_CORRELATION_ALIKE for d in directions):
+                directions.append(direction)
+                out.append(self.evaluate((*chosen.members, member)))
+        return out
+
+    def kept(self, sets: Iterable[EffectSubset]) -> list[EffectSubset]:
+        """The few best of some sets, each once."""
+        unique = {tuple(sorted(m.key[:-1] for m in s.members)): s for s in sets}
+        return sorted(unique.values(), key=lambda s: -s.evidence)[:MAX_CARRIED_SETS]
+
+    def polished(self, chosen: EffectSubset) -> EffectSubset:
+        """Exchange members for better ones, one at a time, until none is better."""
+        improved = True
+        while improved and chosen.members and not self.budget.is_spent:
+            improved = False
+            for i in range(len(chosen.members)):
+                others = self.evaluate(chosen.members[:i] + chosen.members[i + 1 :])
+                best = next(iter(self.additions(others)), None)
+                if best is None or self.scores(others).evidence[best] - chosen.evidence <= 1e-6:
+                    continue
+                members = list(chosen.members)
+                members[i] = self.member(others, best)
+                chosen, improved = self.evaluate(members), True
+        return chosen
+
+    def refined(self, chosen: EffectSubset) -> EffectSubset:
+        """The set with its inner parameters where the run wants them, the others in place."""
+        moved = refined_set(self.complement, chosen.sized, fixed=self.fixed)
+        better = self.evaluate(map(self.placed, moved))
+        return better if better.evidence > chosen.evidence else chosen
+
+    def needed(self, chosen: EffectSubset) -> EffectSubset:
+        """The set without a member that the others, refined without it, make superfluous."""
+        for member in reversed(chosen.members):
+            others = self.refined(self.evaluate(chosen.others(member)))
+            whole = self.evaluate((*others.members, member))
+            if others.members and not self.verified(whole, member).stands:
+                return others
+        return chosen
+
+    def against_refined_laws(self, chosen: EffectSubset) -> EffectSubset:
+        """The set with refined laws of recorded drivers for those of drivers that were not.
+
+        A driver that was not recorded has no grid, and would win by what the grid of a lag loses.
+        """
+        for drift in (m for m in chosen.members if is_unrecorded(m.effect)):
+            others = self.evaluate(chosen.others(drift))
+            laws = (v for v in self.ranking(others) if follows_driver(self.pool.variants[v]))
+            for variant in islice(laws, MAX_REFINED_DRIVERS):
+                law = refined(others.effects, self.pool.variants[variant])[0]
+                other = self.evaluate((*others.members, self.placed(law)))
+                chosen = max(chosen, other, key=lambda s: s.evidence)
+        return chosen
 
     def reopened(self, chosen: EffectSubset) -> EffectSubset:
         """The best set with two of its members out and two others in, or the set itself.
@@ -326,28 +358,14 @@ class Search:
         for pair in combinations(chosen.members, 2):
             if self.budget.is_spent:
                 break
-            rest = self.evaluate(m for m in chosen.members if m not in pair)
-            for first in self.extensions(rest, MAX_REOPENED_SETS):
+            for first in self.extensions(self.evaluate(chosen.others(*pair)), MAX_REOPENED_SETS):
                 for second in self.extensions(first, 1):
-                    found = self.polished(second)
-                    if found.evidence > best.evidence:
-                        best = found
+                    best = max(best, self.polished(second), key=lambda s: s.evidence)
         return best
-
-    def kept(self, sets: Iterable[EffectSubset]) -> list[EffectSubset]:
-        """The few best of some sets, each once."""
-        unique = {tuple(sorted(m.variant for m in s.members)): s for s in sets}
-        return sorted(unique.values(), key=lambda s: -s.evidence)[:MAX_CARRIED_SETS]
 
     def backward(self, chosen: EffectSubset) -> EffectSubset:
         """Take out members that a better one made superfluous, the weakest first."""
-        while chosen.members:
-            verified = self.verify(chosen)
-            fallen = [v for v in verified if not v.stands]
-            if not fallen:
-                break
+        while fallen := [v for v in self.verify(chosen) if not v.stands]:
             weakest = min(fallen, key=lambda v: v.evidence)
-            chosen = self.polished(
-                self.evaluate(m for m in chosen.members if m is not weakest.member)
-            )
+            chosen = self.polished(self.evaluate(chosen.others(weakest.member)))
         return chosen

@@ -29,7 +29,7 @@ PUBLISHED = {"EXX": 45.0 * UM, "EZZ": 109.0 * UM, "EAZ": 133.8 * URAD}
 # ASSUMED: the pitch of X is 58 urad over its travel at Z 0, as published, and -62 at Z -500. Fig. 6
 # shows a few arcsec of this 25; nothing else in the paper makes 30 um of over-compensation. Of the
 # 90 um between the two lines along Z, pitch makes 71. X rides on Z, so no rigid error of Z depends
-# on x: 16 um of the rest are a positioning of Z that does, which nobody measures here.
+# on x: 16 um of the rest are a positioning of Z that does, which is not measured here.
 ASSUMED = {"ECX": 7.0 * URAD, "coupling(ECX,Z)": -36.0 * URAD, "coupling(EZZ,X)": 6.0 * UM}
 # ASSUMED: after 8 h the screws have grown by 298 ppm along Y (so that holes are 92 um off, as in
 # Fig. 22) and by -33 ppm along X. The models know this growth exactly: nothing here measures it.

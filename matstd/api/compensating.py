@@ -35,7 +35,7 @@ from matstd.compensation.tables import (
 from matstd.diagnosis.drift import DriftLaw
 from matstd.diagnosis.files import SavedModel
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.remarks import Remark, ShortBeam
+from matstd.diagnosis.remarks import Remark, short_beam
 from matstd.effect_kinds import register_effects
 from matstd.report.compensation import draw_program, draw_shares_along, write_compensation_page
 from matstd.report.style import save
@@ -311,7 +311,7 @@ def compensate(
     if not any(theta.any() for theta in known.theta):
         raise DesignError(f"{name}: no error of an axis is known and switched on")
     chain = known.chain
-    beams = tuple(ShortBeam(*found) for found in short_beams(chain, known.effects))
+    beams = tuple(short_beam(*found) for found in short_beams(chain, known.effects))
     laws = [Path(e.path).read_bytes() for e in known.effects if isinstance(e, DriftLaw)]
     title = model.title if isinstance(model, Diagnosis) else Path(name).name
     out = Compensation(

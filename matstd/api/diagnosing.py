@@ -17,17 +17,17 @@ from matstd.api.saved import (
     write_found_arm,
     write_learnt,
 )
+from matstd.api.standards import Probed, probed_body
 from matstd.diagnosis import answer
 from matstd.diagnosis.choice import candidate_effects
 from matstd.diagnosis.evidence import Progress, quiet
 from matstd.diagnosis.files import (
     SavedModel,
+    comparison_table,
+    diagnosis_table,
     model_text,
     parsed_model,
     plan_text,
-    write_comparison,
-    write_diagnosis,
-    write_residuals,
 )
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry import learnt_geometry
@@ -42,6 +42,8 @@ from matstd.report.words import (
 )
 from matstd.twin.errors import BadArgument
 from matstd.twin.files import write_whole
+from matstd.twin.files.whole import write_json
+from matstd.twin.frames import Array
 from matstd.twin.library import is_visible, kinds, parse_effect, try_effect, users_files
 from matstd.twin.model import Effect
 from matstd.twin.record import Run, without_copies
@@ -62,6 +64,7 @@ class Diagnosis(Saveable, answer.Diagnosis):
         named: Number of effects that the user named.
         auto: Whether the model that is learnt has what the diagnosis found; else only effects that
             the user named. Of an unexplained run it has what was found and the law in any case.
+        body: Triangles of what was probed, where it is known.
 
     Example:
         >>> found = diagnose("run.csv", only=["thermal-lag"])
@@ -76,6 +79,7 @@ class Diagnosis(Saveable, answer.Diagnosis):
     title: str = ""
     named: int = 0
     auto: bool = False
+    body: Array | None = None
 
     @property
     def learnt(self) -> Fit:
@@ -120,7 +124,7 @@ class Diagnosis(Saveable, answer.Diagnosis):
         """Write diagnosis.json, model.toml and plans of touches; as of `Saveable`."""
         with deviations_in(self.run.touches.deviation_unit):
             sentences = [remark_sentence(r) for r in self.remarks]
-            write_diagnosis(folder / "diagnosis.json", self, sentences)
+            write_json(folder / "diagnosis.json", diagnosis_table(self, sentences))
             write_whole(folder / "model.toml", self.model_text)
             for i, plan in enumerate(self.plans, start=1):
                 write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
@@ -131,15 +135,14 @@ class Diagnosis(Saveable, answer.Diagnosis):
     def live(self) -> Framed:
         """The live view: in a notebook effects are switched where it is shown."""
         with deviations_in(self.run.touches.deviation_unit):
-            view = diagnosis_view(self, self.title)
+            view = diagnosis_view(self, self.title, self.body)
             return Framed(f"Diagnosis of {self.title}", verdict_sentence(self), view)
 
     def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
         """Write the page into an existing folder."""
         with deviations_in(self.run.touches.deviation_unit):
-            write_diagnosis_page(
-                self, folder, self.title, np.random.default_rng(0), is_saved=self.auto
-            )
+            rng = np.random.default_rng(0)
+            write_diagnosis_page(self, folder, self.title, rng, self.auto, self.body)
             if printed_by is not None:
                 write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 
@@ -155,6 +158,7 @@ def diagnose(
     hold_out: Sequence[str] = (),
     pitch: Mapping[str, float] | None = None,
     learn: bool = True,
+    standard: Probed = None,
     progress: Progress = quiet,
 ) -> Diagnosis:
     """Find which effects a model lacks, and how far the error falls with each.
@@ -170,6 +174,8 @@ def diagnose(
             result says how well the others predict them.
         pitch: Pitches of screws or scales by axis, mm.
         learn: Learn a law of what remains, as `matstd.learn` does, where something remains.
+        standard: What was probed, for the page: a standard, or the path of its file or of a drawing
+            (STL, OBJ, PLY, STEP; mm, artefact frame). `standard.toml` beside the run without it.
         progress: Called with the share done and what is being done.
 
     Raises:
@@ -184,6 +190,7 @@ def diagnose(
     """
     same = "so that its estimates are made anew: no touch counts twice"
     run, start, saved, title = starting_run(runs, model, same, hold_out, pitch)
+    body = probed_body(standard, runs, run)
     # a model of this very run would count its touches twice as a prior
     before = saved if saved and not is_learnt_from(saved, run) else None
     added = named_effects(add, start.effects, run)
@@ -202,7 +209,14 @@ def diagnose(
         laws = learn_remainder(found.steps[len(added)].fit, found.fit, estimates)
         found = replace(found, laws=laws)
     known = {f.name: getattr(found, f.name) for f in fields(found)}
-    return Diagnosis(**known, before=before, title=title, named=len(added), auto=auto)
+    made: dict[str, Any] = {
+        "before": before,
+        "title": title,
+        "named": len(added),
+        "auto": auto,
+        "body": body,
+    }
+    return Diagnosis(**known, **made)
 
 
 def named_effects(names: Iterable[str], known: Iterable[Effect], run: Run) -> list[Effect]:
@@ -281,6 +295,7 @@ class Comparison(Saveable, answer.Comparison):
     Attributes:
         saved: The model file, where the model is of one.
         title: Names of the runs.
+        body: Triangles of what was probed, where it is known.
 
     Example:
         >>> found = compare("run.csv")
@@ -291,30 +306,29 @@ class Comparison(Saveable, answer.Comparison):
     sometimes = (FOUND, "pictures/*.png", *REPORT_FILES)
     saved: SavedModel | None = None
     title: str = ""
+    body: Array | None = None
 
     def write(self, folder: Path) -> str:
         """Write comparison.json and residuals.csv into an existing folder; as of `Saveable`."""
         with deviations_in(self.run.touches.deviation_unit):
-            write_comparison(
-                folder / "comparison.json",
-                self,
-                [structure_words(s) for s in self.structure],
-                [remark_sentence(r) for r in self.remarks],
-            )
-            write_residuals(folder / "residuals.csv", self)
+            structure = [structure_words(s) for s in self.structure]
+            remarks = [remark_sentence(r) for r in self.remarks]
+            write_json(folder / "comparison.json", comparison_table(self, structure, remarks))
+            write_whole(folder / "residuals.csv", self.to_csv())
             return "" if self.saved else write_found_arm(folder, self.fit, self.title)
 
     def live(self) -> Framed:
         """The live view: in a notebook effects are switched where it is shown."""
         with deviations_in(self.run.touches.deviation_unit):
-            view = comparison_view(self, self.title)
+            view = comparison_view(self, self.title, self.body)
             return Framed(f"{self.title} against the model", comparison_sentence(self), view)
 
     def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
         """Write the page into an existing folder."""
         reported = self.saved.reported if self.saved else None
         with deviations_in(self.run.touches.deviation_unit):
-            write_compare_page(self, folder, self.title, np.random.default_rng(0), reported)
+            rng = np.random.default_rng(0)
+            write_compare_page(self, folder, self.title, rng, reported, self.body)
             if printed_by is not None:
                 write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 
@@ -324,6 +338,7 @@ def compare(
     model: StartingModel = GEOMETRY,
     *,
     pitch: Mapping[str, float] | None = None,
+    standard: Probed = None,
     progress: Progress = quiet,
 ) -> Comparison:
     """Measured against predicted deviations, and where the model fails.
@@ -334,6 +349,8 @@ def compare(
             standard stands, no more; a model, or the path of a model file: with what it learnt from
             another run it predicts this one.
         pitch: Pitches of screws or scales by axis, mm.
+        standard: What was probed, for the page: a standard, or the path of its file or of a drawing
+            (STL, OBJ, PLY, STEP; mm, artefact frame). `standard.toml` beside the run without it.
         progress: Called with the share done and what is being done.
 
     Raises:
@@ -348,6 +365,7 @@ def compare(
     run, start, saved, title = starting_run(
         runs, model, "so the agreement is optimistic", pitch=pitch
     )
+    body = probed_body(standard, runs, run)
     found = answer.compare(
         run,
         start,
@@ -356,4 +374,4 @@ def compare(
         saved.learnt(without_copies(run)) if saved else None,
     )
     known = {f.name: getattr(found, f.name) for f in fields(found)}
-    return Comparison(**known, saved=saved, title=title)
+    return Comparison(**known, saved=saved, title=title, body=body)

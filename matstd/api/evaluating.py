@@ -19,9 +19,11 @@ from matstd.probe_paths.campaign import (
     check_changes,
     effective_radii,
     read_heights,
+    sag_remarks,
+    with_program_lines,
 )
 from matstd.probe_paths.campaign import evaluate as evaluate_parts
-from matstd.probe_paths.control import LogPart, read_log, read_program
+from matstd.probe_paths.control import LogPart, ReadProgram, read_log, read_program
 from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.scans import STRETCH, ScanNoise, ScanPoints, evaluate_scan
 from matstd.report.numbers import um
@@ -110,19 +112,20 @@ def evaluate(
         raise BadArgument("probe_limit_um", f"{probe_limit / UM:g}", "more than 0 µm")
     chain, piece = chain_of(machine), standard_of(standard)
     parts = [part for path in logs for part in read_log(path, chain.rotary_axes)]
+    known: dict[str, ReadProgram] = {}
     if programs is not None or not isinstance(standard, Standard):
-        _check_programs(programs, standard, parts, chain)
+        known = _checked_programs(programs, standard, parts, chain)
     dialect = Dialect(result_height=z)
     changes = ball_changes(parts, piece, chain, u, dialect)
     first = [part for part in parts if part.is_first]
     heights = [read_heights(part, piece, chain) for part in first]
-    known = [(part.radius, part.heading.probe.radius) for part in first]
+    planned = [(part.radius, part.heading.probe.radius) for part in first]
     radii = effective_radii(parts, chain, u, dialect)
-    of_probe = tuple(ball_lines(changes, probe_limit, heights, radii, known))
+    of_probe = tuple(ball_lines(changes, probe_limit, heights, radii, planned))
     if not any(part.is_measuring for part in parts) and of_probe:
         return Evaluation(None, chain, of_probe)
     check_changes(changes, probe_limit)
-    run = evaluate_parts(parts, piece, chain, u, dialect)
+    run = with_program_lines(evaluate_parts(parts, piece, chain, u, dialect), known)
     twice: list[str] = []
     if sensors is not None:
         record = read_sensors(sensors)
@@ -145,13 +148,13 @@ def evaluate(
     return Evaluation(run, chain, of_probe, remarks)
 
 
-def _check_programs(
+def _checked_programs(
     folder: str | Path | None,
     standard: Standard | str | Path,
     parts: Sequence[LogPart],
     chain: Chain,
-) -> None:
-    """Compare the logs with the programs that wrote them, where these are at hand."""
+) -> dict[str, ReadProgram]:
+    """The programs that wrote logs, where they are at hand; the logs agree with them."""
     place = Path(str(standard)).parent / "programs" if folder is None else Path(folder)
     names = {part.program for part in parts if part.is_measuring}
     files = [f for f in place.glob("*") if f.stem in names and f.suffix in (".H", ".ngc")]
@@ -159,6 +162,7 @@ def _check_programs(
         raise DesignError(f"--programs {place}: found none of {', '.join(sorted(names))}")
     programs = {file.stem: read_program(file, chain) for file in files}
     check_as_programmed(parts, programs, chain)
+    return programs
 
 
 def evaluate_scan_log(
@@ -200,7 +204,7 @@ def evaluate_scan_log(
     points = _points(read, chain, length, stands, frame)
     run, noise = evaluate_scan(points, piece, face, chain, radius, length, stands, u)
     run = with_body(run, stated_body(piece, body_temperature, body_u))
-    return Evaluation(run, chain, (), (_worth(noise, len(run)), *run.remarks))
+    return Evaluation(run, chain, (), (_worth(noise, len(run)), *sag_remarks(piece), *run.remarks))
 
 
 def _points(read: ScanLog, chain: Chain, length: float, stands: Setup, frame: str) -> ScanPoints:

@@ -7,6 +7,7 @@ from pathlib import Path
 from matstd.api.diagnosing import named_effects
 from matstd.api.runs import GEOMETRY, Runs, StartingModel, read_run, starting_run
 from matstd.api.saved import EFFECT, REPORT_FILES, Saveable, write_learnt
+from matstd.api.standards import Probed, probed_body
 from matstd.diagnosis import laws
 from matstd.diagnosis.files import SavedModel, model_text, parsed_model
 from matstd.diagnosis.fit import prior_for
@@ -21,6 +22,7 @@ from matstd.report.laws import (
 from matstd.report.pages import Printer, write_pdf
 from matstd.report.run_view import Framed, learnt_view
 from matstd.twin.files import write_whole
+from matstd.twin.frames import Array
 from matstd.twin.model import Model
 from matstd.twin.record import Run
 from matstd.twin.versions import versions
@@ -34,6 +36,7 @@ class LearntLaws(Saveable, laws.Learning):
     Attributes:
         second: What a second run says of them; None without one.
         title: Names of the runs.
+        body: Triangles of what was probed, where it is known.
 
     Example:
         >>> found = learn("run.csv", add=["thermal-lag(EZZ)"])
@@ -44,6 +47,7 @@ class LearntLaws(Saveable, laws.Learning):
     sometimes = (EFFECT, "pictures/*.png", *REPORT_FILES)
     second: SecondRun | None = None
     title: str = ""
+    body: Array | None = None
 
     @property
     def model_text(self) -> str:
@@ -73,12 +77,12 @@ class LearntLaws(Saveable, laws.Learning):
         """The live view, for a notebook: switch the laws, and see the error and their curves."""
         lead = " ".join(law_sentence(self, one) for one in self.laws) or no_law_sentence(self)
         with deviations_in(self.after.run.touches.deviation_unit):
-            return Framed(self.title, lead, learnt_view(self, self.title))
+            return Framed(self.title, lead, learnt_view(self, self.title, self.body))
 
     def write_page(self, folder: Path, printed_by: Printer | None = None) -> None:
         """Write the page into an existing folder."""
         with deviations_in(self.after.run.touches.deviation_unit):
-            live = learnt_view(self, self.title)
+            live = learnt_view(self, self.title, self.body)
             write_law_page(self, folder, self.title, self.second, live)
             if printed_by is not None:
                 write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
@@ -91,6 +95,7 @@ def learn(
     add: Sequence[str] = (),
     second: Run | str | Path | None = None,
     pitch: Mapping[str, float] | None = None,
+    standard: Probed = None,
 ) -> LearntLaws:
     """Learn laws that a model lacks: what carries them, what they depend on, and their formula.
 
@@ -101,6 +106,8 @@ def learn(
         add: Effects that are in the model besides, by name.
         second: Another run of the machine, in which the laws are tried.
         pitch: Pitches of screws or scales by axis, mm.
+        standard: What was probed, for the page: a standard, or the path of its file or of a drawing
+            (STL, OBJ, PLY, STEP; mm, artefact frame). `standard.toml` beside the run without it.
 
     Raises:
         BadFile: A file that cannot be read, or a model of another machine.
@@ -114,6 +121,7 @@ def learn(
     """
     same = "so that its estimates are made anew: no touch counts twice"
     run, start, _, title = starting_run(runs, model, same, pitch=pitch)
+    body = probed_body(standard, runs, run)
     other = read_run(second) if isinstance(second, str | Path) else second
     added = named_effects(add, start.effects, run)
     if added:  # a time constant at a point of its grid leaves a law that is none
@@ -122,4 +130,4 @@ def learn(
     found = learn_laws(run, Model(start.chain, (*start.effects, *added)))
     known = {f.name: getattr(found, f.name) for f in fields(found)}
     said = None if other is None or not found.laws else second_run(found, other)
-    return LearntLaws(**known, second=said, title=title)
+    return LearntLaws(**known, second=said, title=title, body=body)

@@ -14,7 +14,6 @@ from matstd.diagnosis.remarks import body_sizes
 from matstd.effect_kinds import register_effects
 from matstd.probe_paths.campaign import (
     FIRST_MORNING,
-    SMALLEST_U,
     Campaign,
     VirtualMachine,
     ball_changes,
@@ -217,7 +216,7 @@ def simulate(
     if body_temperature is not None:
         run = with_body(run, stated)
         sizes = [remark_sentence(size) for size in body_sizes(run.touches)]
-    u = max(twin.noise, SMALLEST_U)
+    u = twin.stated_u
     changes = ball_changes(campaign.parts, believed, twin.chain, u, twin.dialect)
     radii = effective_radii(campaign.parts, twin.chain, u, twin.dialect)
     return Simulation(run, campaign, (*ball_lines(changes, radii=radii), *sizes, *run.remarks))

@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import ClassVar
 
-from matstd.diagnosis.files import write_laws
+from matstd.diagnosis.files import law_table
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry import found_arm
 from matstd.diagnosis.laws import Learning, SecondRun
@@ -13,6 +13,7 @@ from matstd.report.laws import effect_text
 from matstd.report.numbers import microns
 from matstd.report.pages import Printer, printer
 from matstd.twin.files import results_folder, write_whole
+from matstd.twin.files.whole import write_json
 
 REPORT_FILES = ("report.html", "report.pdf", "tables.xlsx", "tables/*.csv")
 """Files of a page that not every run of a command leaves."""
@@ -91,6 +92,6 @@ def write_learnt(folder: Path, laws: Learning, title: str, second: SecondRun | N
         title: Names of the runs.
         second: What a second run says of the laws.
     """
-    write_laws(folder / LAW, laws, title, second)
+    write_json(folder / LAW, law_table(laws, title, second))
     if laws.laws:
         write_whole(folder / EFFECT, effect_text(laws, title))

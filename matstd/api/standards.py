@@ -1,8 +1,10 @@
-"""A standard under a coordinate measuring machine, and what measurements of it say of a task."""
+"""Standards: read, calibrated, drawn behind their touches; what visits to one say of a task."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
+
+import numpy as np
 
 from matstd.api.runs import Runs, is_learnt_from, listed, read_run
 from matstd.artefact import body
@@ -22,6 +24,7 @@ from matstd.diagnosis.files import SavedModel, check_machine, read_model, write_
 from matstd.diagnosis.fit import Prior
 from matstd.diagnosis.task import TaskUncertainty, Visits
 from matstd.effect_kinds import register_effects
+from matstd.report.machine import drawing_triangles, standard_bodies, thinned
 from matstd.report.pages import write_uncertainty_page
 from matstd.report.task import measured_sentence, refusal_sentence, task_lines
 from matstd.report.words import remark_sentence
@@ -29,9 +32,16 @@ from matstd.stages.budgets import UNCORRECTED, budgets
 from matstd.twin.display import Displayed
 from matstd.twin.errors import BadArgument, DesignError, NotConforming
 from matstd.twin.files import results_folder
+from matstd.twin.frames import Array
 from matstd.twin.model import Model
 from matstd.twin.record import Run
 from matstd.twin.units import UM
+
+Probed = Standard | str | Path | None
+"""A standard, the path of its file, or that of a drawing of the piece (STL, OBJ, PLY, STEP)."""
+
+BESIDE = "standard.toml"
+"""File that is taken where it lies beside the run and has the stamp of the run."""
 
 
 def read_standard(path: str | Path) -> Standard:
@@ -308,3 +318,43 @@ def _check_visits(names: list[str], runs: list[Run]) -> None:
                 f"{names[k]}: the same measurements as {names[prints.index(fingerprint)]}, "
                 "expected every visit once"
             )
+
+
+def probed_body(probed: Probed, runs: Runs, run: Run) -> Array | None:
+    """Triangles of what was probed, artefact frame, (T, 3, 3), mm; None where it is not known.
+
+    Args:
+        probed: As the user states it; without it the file of the standard beside the run.
+        runs: Measurements as given.
+        run: The same, read.
+
+    Raises:
+        BadFile: A file that is no standard and no drawing.
+        DesignError: Another standard than the run was measured on.
+    """
+    if probed is None:
+        standard = _beside(listed(runs), run)
+        return None if standard is None else _triangles(standard)
+    if not isinstance(probed, Standard) and Path(probed).suffix.lower() != ".toml":
+        return thinned(drawing_triangles(Path(probed)))
+    standard = probed if isinstance(probed, Standard) else read_standard(probed)
+    if run.standard and standard.stamp != run.standard:
+        name = standard.name if isinstance(probed, Standard) else probed
+        raise DesignError(
+            f"{name}: standard {standard.stamp}, expected that of the run, {run.standard}"
+        )
+    return _triangles(standard)
+
+
+def _triangles(standard: Standard) -> Array:
+    return thinned(np.concatenate([corners for _, _, corners in standard_bodies(standard)]))
+
+
+def _beside(given: Sequence[Run | str], run: Run) -> Standard | None:
+    """The standard of a run whose file lies in the folder of the run."""
+    for one in given:
+        path = Path(one).parent / BESIDE if isinstance(one, str) else None
+        if path is not None and run.standard and path.is_file():
+            standard = read_standard(path)
+            return standard if standard.stamp == run.standard else None
+    return None

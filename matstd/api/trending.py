@@ -15,9 +15,9 @@ from matstd.diagnosis.charts import (
     Occasion,
     history,
     history_csv,
+    history_table,
     occasions_of_models,
     occasions_of_runs,
-    write_history,
 )
 from matstd.diagnosis.files import read_model
 from matstd.report.charts import write_history_page
@@ -26,6 +26,7 @@ from matstd.twin.compute import Progress, silent
 from matstd.twin.display import Displayed
 from matstd.twin.errors import BadArgument, NotEnoughData
 from matstd.twin.files import write_whole
+from matstd.twin.files.whole import write_json
 from matstd.twin.record import Run
 
 MODEL = "model.toml"
@@ -72,7 +73,7 @@ class Trend(Saveable, Displayed, History):
 
     def write(self, folder: Path) -> str:
         """Write trend.json and trend.csv; as of `Saveable`."""
-        write_history(folder / "trend.json", self)
+        write_json(folder / "trend.json", history_table(self))
         write_whole(folder / "trend.csv", history_csv(self))
         return ""
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.artefact.brief import Brief, Task
-from matstd.artefact.certify import displaced_features, like_task, on_faces
+from matstd.artefact.certify import displaced_features, like_task, that_prove
 from matstd.artefact.reach import Requests
 from matstd.artefact.worth import Calibration
 from matstd.diagnosis.fit import Prior, fit_run
@@ -68,7 +68,7 @@ def places_of(
             raise DesignError(
                 f"machines of two visits: {key} is {ours} and {theirs}, expected one machine"
             )
-    faces = [on_faces(standard, run.touches) for run in runs]
+    is_datum = [~that_prove(standard, run.touches) for run in runs]
     wanted = [like_task(task, standard, run.touches) for run in runs]
     first = runs[0].touches
     rotary = first.q[:, first.chain.rotary_columns]
@@ -76,7 +76,7 @@ def places_of(
     out = {}
     for name, model in models.items():
         what, estimates = (None, None) if model is None else model
-        out[name] = visits_of(runs, wanted, [~f for f in faces], columns, what, estimates)
+        out[name] = visits_of(runs, wanted, is_datum, columns, what, estimates)
     return out
 
 
@@ -108,7 +108,7 @@ def virtual_budgets(
         body.stated_in(visits(programs, piece, [stand], rng, calibrated=standard)[0].run)
         for piece, stand in zip(pieces, stands, strict=True)
     ]
-    held_back = np.where(on_faces(standard, runs[0].touches), "test", "train")
+    held_back = np.where(that_prove(standard, runs[0].touches), "test", "train")
     fit = fit_run(replace(runs[0], split=held_back), brief.population.expected())
     count = len(fit.model.parameters)
     learnt = fit.model, Prior(fit.theta[:count], np.zeros((count, count)))

@@ -14,7 +14,7 @@ import numpy as np
 
 from matstd.artefact.body import Standard, write_standard
 from matstd.artefact.brief import Brief
-from matstd.artefact.certify import like_task
+from matstd.artefact.certify import like_task, that_prove
 from matstd.artefact.compare import WorstRegions, identifiability_report, worst_regions
 from matstd.artefact.feasibility import check_beside, check_seat, feasibility
 from matstd.artefact.hidden import write_scan_path
@@ -39,7 +39,7 @@ from matstd.probe_paths.stations import (
     plan_options_of,
 )
 from matstd.report.drawing import Issuer, write_drawing
-from matstd.report.identifiability import write_identifiability, write_identification
+from matstd.report.identifiability import identifiability_table, write_identification
 from matstd.report.pages import Design, Proven
 from matstd.report.plots import draw_reach, draw_room
 from matstd.report.style import save
@@ -57,6 +57,7 @@ from matstd.twin.beside import beside
 from matstd.twin.compute import Progress, silent
 from matstd.twin.errors import BadFile
 from matstd.twin.files import errors_toml, write_run, write_whole
+from matstd.twin.files.whole import write_json
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, contribution
 from matstd.twin.record import at_poses
@@ -111,7 +112,7 @@ def _made(
         _write_standard(folder, placement.standard)
         progress("identifiability", 0, 1)
         known = identifiability_report(placement.criterion, placement.requests, rng.other_setups)
-        write_identifiability(folder / "identifiability.json", known)
+        write_json(folder / "identifiability.json", identifiability_table(known))
         making = making_of(placement.standard, stiffness)
         write_making(folder / "making.json", making)
         progress("probing programs", 0, 1)
@@ -307,7 +308,7 @@ def _twin(brief: Brief, errors: list[tuple[Effect, Array]]) -> VirtualMachine:
 
 
 def _with_split(campaign: Campaign, standard: Standard) -> Campaign:
-    """A campaign whose touches on freeform faces prove and do not identify."""
-    on_face = np.isin(campaign.run.touches.feature, [p.name for p in standard.patches])
-    run = replace(campaign.run, split=np.where(on_face, "test", "train"))
+    """A campaign whose touches on features that prove do not identify."""
+    proves = that_prove(standard, campaign.run.touches)
+    run = replace(campaign.run, split=np.where(proves, "test", "train"))
     return replace(campaign, run=run)

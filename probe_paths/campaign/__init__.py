@@ -6,7 +6,7 @@ uses nothing that only the virtual machine knows. `visits` repeats the runs. `or
 `probing_time` estimate the cost of a plan.
 """
 
-from matstd.probe_paths.campaign.as_programmed import check_as_programmed
+from matstd.probe_paths.campaign.as_programmed import check_as_programmed, with_program_lines
 from matstd.probe_paths.campaign.ball_change import (
     BallChange,
     ball_changes,
@@ -19,11 +19,10 @@ from matstd.probe_paths.campaign.contact_points import foot_points
 from matstd.probe_paths.campaign.contact_solver import FIRST_MORNING, ContactSolver, VirtualMachine
 from matstd.probe_paths.campaign.disturbances import effects_over_record, in_campaign
 from matstd.probe_paths.campaign.duration import probing_time
-from matstd.probe_paths.campaign.evaluation import ball_centres, evaluate
+from matstd.probe_paths.campaign.evaluation import ball_centres, evaluate, sag_remarks
 from matstd.probe_paths.campaign.log_parts import checked_parts
 from matstd.probe_paths.campaign.order_study import Ordering, orders
 from matstd.probe_paths.campaign.simulation import (
-    SMALLEST_U,
     Campaign,
     simulate,
     simulate_search,
@@ -33,7 +32,6 @@ from matstd.probe_paths.campaign.tolerance import setup_tolerance
 
 __all__ = [
     "FIRST_MORNING",
-    "SMALLEST_U",
     "BallChange",
     "Campaign",
     "ContactSolver",
@@ -53,8 +51,10 @@ __all__ = [
     "orders",
     "probing_time",
     "read_heights",
+    "sag_remarks",
     "setup_tolerance",
     "simulate",
     "simulate_search",
     "visits",
+    "with_program_lines",
 ]

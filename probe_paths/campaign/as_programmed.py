@@ -5,6 +5,7 @@ and the program that wrote it states them too.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from datetime import timedelta
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from matstd.probe_paths.control import UNDATED, LogPart, ProbeStep, ReadProgram
 from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
+from matstd.twin.record import Run
 from matstd.twin.units import DEG
 
 LONGEST_CAMPAIGN = timedelta(days=30)
@@ -119,3 +121,19 @@ def _check_touch(
         if has != wanted:
             found = f"{what} {has:+d} at touch {number}"
             raise BadFile(part.path, where, found, f"{wanted:+d}, as {program.path.name} has it")
+
+
+def with_program_lines(run: Run, programs: Mapping[str, ReadProgram]) -> Run:
+    """A run that knows the line of its program at every touch; 0 of programs that are not there.
+
+    Args:
+        programs: By name, as the logs name them.
+    """
+    line = {
+        (name, touch.number): touch.line
+        for name, program in programs.items()
+        for touch in program.touches
+        if not touch.is_air
+    }
+    where = zip(run.program.tolist(), run.touch.tolist(), strict=True)
+    return replace(run, program_line=np.array([line.get(one, 0) for one in where]))

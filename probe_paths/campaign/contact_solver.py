@@ -27,6 +27,9 @@ _BEYOND_END = 10.0  # mm beyond the end of a touch: far more than the errors of 
 FIRST_MORNING = datetime(2000, 1, 1, 8, 0, 0)
 """Start of a simulated campaign: a fixed date, so that results do not depend on today's."""
 
+_SMALLEST_U = 1e-5
+"""Uncertainty stated where no noise is simulated, mm: a run file cannot state none."""
+
 
 @dataclass(frozen=True, eq=False)
 class VirtualMachine:
@@ -53,6 +56,11 @@ class VirtualMachine:
     clock: Clock = field(default_factory=Clock)
     dialect: Dialect = field(default_factory=Dialect)
     temperature: Callable[[str, float], float] = lambda name, now: 20.0
+
+    @property
+    def stated_u(self) -> float:
+        """Uncertainty of a touch that its run states, mm."""
+        return max(self.noise, _SMALLEST_U)
 
 
 class ContactSolver:

@@ -85,7 +85,7 @@ def evaluate(
         if not far:
             break
     u_touch = _uncertainty(standard, touches, u)
-    remarks += [*standard.remarks, *_sag_remarks(standard)]
+    remarks += [*standard.remarks, *sag_remarks(standard)]
     remarks += logged_temperatures(parts)[1]
     begin = min(part.begin for part in parts)
     run = Run(
@@ -95,12 +95,14 @@ def evaluate(
         remarks=tuple(remarks),
         date=None if begin.year == UNDATED.year else begin,
         standard=standard.stamp,
+        program=np.concatenate([np.repeat(part.program, len(part.number)) for part in parts]),
+        touch=np.concatenate([part.number for part in parts]),
     )
     # the anchor of a deviation is where the ball met the surface, not where it was believed to be
     return at_true_contacts(run, standard)
 
 
-def _sag_remarks(standard: Standard) -> list[str]:
+def sag_remarks(standard: Standard) -> list[str]:
     """How the sag of the standard is corrected, or why it is not."""
     sag, made_of = standard.usable_sag, standard.material
     if sag is not None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import Standard
+from matstd.probe_paths.campaign.as_programmed import with_program_lines
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.evaluation import evaluate
@@ -17,9 +18,6 @@ from matstd.probe_paths.control import LogPart, ReadProgram, read_log, read_prog
 from matstd.probe_paths.plan import Probe
 from matstd.twin.compute import Progress, silent
 from matstd.twin.record import Run
-
-SMALLEST_U = 1e-5
-"""Uncertainty stated where no noise is simulated, mm: a run file cannot state none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +141,8 @@ def _campaign(
         for name, text in one.log.items()
         for part in read_log(name, machine.chain.rotary_axes, text)
     ]
-    u = max(machine.noise, SMALLEST_U)
+    u = machine.stated_u
     run = evaluate(parts, believed, machine.chain, u, machine.dialect)
+    run = with_program_lines(run, {program.name: program for program in texts})
     begin = min(part.begin for part in parts if part.is_measuring)
     return Campaign(run, tuple(runs), tuple(parts), begin)

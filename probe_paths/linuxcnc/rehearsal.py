@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import Standard
-from matstd.probe_paths.campaign import SMALLEST_U, VirtualMachine, check_moves, evaluate
+from matstd.probe_paths.campaign import VirtualMachine, check_moves, evaluate
 from matstd.probe_paths.control import MAX_FEED, read_log, read_program
 from matstd.probe_paths.emit import Feeds, ProgramSet, make_programs
 from matstd.probe_paths.linuxcnc.latch import latch_error, latch_u
@@ -83,6 +83,6 @@ def rehearse(
     contact.check_in_time()
     parts = [p for name in session.logs for p in read_log(out / name, chain.rotary_axes)]
     slow = programs[0].touches[0].slow_feed
-    u = float(np.hypot(max(machine.noise, SMALLEST_U), latch_u(slow)))
+    u = float(np.hypot(machine.stated_u, latch_u(slow)))
     run = evaluate(parts, standard, chain, u, dialect)
     return Rehearsal(run, u, contact.latched(parts), latch_error(slow))

@@ -10,6 +10,7 @@ from scipy import ndimage
 
 from matstd.artefact.body import FreeformPatch, Standard
 from matstd.twin.frames import Array
+from matstd.twin.sampling import grid_points
 
 PITCH = 1.0
 """Spacing of the places, mm; what is found on them is refined on the exact surfaces."""
@@ -91,7 +92,7 @@ def _face_and_walls(patch: FreeformPatch) -> Array:
     """Points of a face and of the walls of its column, (N, 3), mm."""
     half = patch.half_size
     u, v = (np.arange(-h, h + _FINE, _FINE).clip(-h, h) for h in half)
-    uv = np.stack(np.meshgrid(u, v), axis=-1).reshape(-1, 2)
+    uv = grid_points(u, v)
     face = patch.point(uv)
     rim = face[np.any(np.isclose(np.abs(uv), half), axis=1)]
     below = np.arange(0.0, patch.depth, _FINE)[:, None, None] * patch.T_artefact_patch[:3, 2]

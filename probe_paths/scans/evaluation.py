@@ -5,8 +5,9 @@ their noise: 5000 of them are not 5000 measurements. So
 
 1. points within `_AVERAGED` of each other become one (the surface is straight over such a length to
    a nanometre),
-2. the place of the standard is fitted to all of them, and the distance of every ball along the
-   normal of its foot point, less the radius, is its deviation,
+2. the sag of the face is taken off as of touches, the place of the standard is fitted to all of
+   them, and the distance of every ball along the normal of its foot point, less the radius, is its
+   deviation,
 3. a row is the mean of a stretch of a line, `STRETCH` long. Noise and its correlation are those of
    the deviations about a parabola over a stretch; they give the standard uncertainty of the mean,
 
@@ -50,7 +51,7 @@ _AVERAGED = 0.2  # mm; a curvature of 1/8 mm moves the mean of such an arc by 0.
 _BELIEVED = 10.0  # mm: the same before the fit
 _LARGEST_STEP, _USUAL_STEPS = 2.0, 10.0  # mm between points of a line; and median steps
 _BESIDE = 0.5  # mm that foot points may lie beyond the trimmed edge
-_FEWEST = 4  # points of a stretch that becomes a row
+_POINTS_A_ROW = 4  # points of a stretch that becomes a row
 _ALIKE = np.linspace(0.0, 0.98, 99)  # correlations of neighbours that are tried
 _LEAST_U = 0.01 * UM  # of a row
 _ROUNDS = 20
@@ -144,8 +145,12 @@ def evaluate_scan(
     patch = _patch(standard, face, points.path)
     recorded = len(points)
     points, place = _averaged(points, tip(chain, points.q, length))
-    setup, uv = _fitted(points, place, patch, radius, setup)
-    point, normal = patch.point(uv), patch.normal(uv)
+    # sag at the believed set-up: the fit hardly turns the direction of weight
+    at = setup.T_table_artefact
+    moved = standard.moved(chain, points.q, at, np.full(len(points), face))
+    setup, uv = _fitted(points, place, patch, radius, setup, moved)
+    normal = patch.normal(uv)
+    point = patch.point(uv) + moved
     moves = _touches(points, chain, (radius, length), setup, point, normal, face)
     gap = computed_deviation(moves) + points.deflection
     groups = _stretches(points.line, place)
@@ -155,7 +160,9 @@ def evaluate_scan(
     known = {} if standard.known is None else standard.known.features
     form = known[face].u_form if face in known else 0.0
     worse = np.sqrt([max(1.0, _usual(groups) / len(rows)) for rows in groups])
-    total = np.sqrt((noise.u_mean * worse) ** 2 + u**2 + form**2)
+    share = 0.0 if standard.usable_sag is None else standard.usable_sag.share
+    sag = share * np.einsum("ni,ni->n", normal[middles], moved[middles])
+    total = np.sqrt((noise.u_mean * worse) ** 2 + u**2 + form**2 + sag**2)
     rows = _with_deviations(moves[middles], means)
     return Run(rows, computed_deviation(rows), total, line=points.row[middles]), noise
 
@@ -181,6 +188,7 @@ def _averaged(points: ScanPoints, place: Array) -> tuple[ScanPoints, Array]:
             f"a gap of {step[at]:.1f} mm in line {points.line[at]} of the scan",
             f"points every {usual:.2f} mm, or another number for what follows",
         )
+    # a log without line numbers begins a new line at a gap: the probe was lifted there
     line = np.cumsum([1, *(~same | wide).astype(int)])
     along = np.concatenate([[0.0], np.cumsum(step)])
     begins = along[np.searchsorted(line, line)]
@@ -205,12 +213,21 @@ def _averaged(points: ScanPoints, place: Array) -> tuple[ScanPoints, Array]:
 
 
 def _fitted(
-    points: ScanPoints, place: Array, patch: FreeformPatch, radius: float, setup: Setup
+    points: ScanPoints,
+    place: Array,
+    patch: FreeformPatch,
+    radius: float,
+    setup: Setup,
+    moved: Array,
 ) -> tuple[Setup, Array]:
-    """The set-up that minimises the deviations, and the foot points (N, 2)."""
+    """The set-up that minimises the deviations, and the foot points (N, 2).
+
+    Args:
+        moved: Displacements of the face by its weight, artefact frame, (N, 3), mm.
+    """
     T_table_artefact, limit = setup.T_table_artefact, _BELIEVED
     for _ in range(_ROUNDS):
-        ball = apply(inverse(T_table_artefact), place)
+        ball = apply(inverse(T_table_artefact), place) - moved
         uv = patch.project(ball)
         gap = _gaps(points, ball, uv, patch, radius, limit)
         normal = patch.normal(uv)
@@ -221,7 +238,7 @@ def _fitted(
         if np.abs(step).max() < 1e-2 * NM:
             break
         limit = max(LARGEST_GAP, 0.5 * limit)
-    ball = apply(inverse(T_table_artefact), place)
+    ball = apply(inverse(T_table_artefact), place) - moved
     uv = patch.project(ball)
     gap = _gaps(points, ball, uv, patch, radius, LARGEST_GAP)
     if rms(gap) > LARGEST_RMS:
@@ -313,7 +330,7 @@ def _stretches(line: IntArray, place: Array) -> list[IntArray]:
         count = max(1, round(along[-1] / STRETCH))
         part = np.minimum((along / max(along[-1], 1e-9) * count).astype(int), count - 1)
         out += [rows[part == k] for k in range(count)]
-    return [rows for rows in out if len(rows) >= _FEWEST]
+    return [rows for rows in out if len(rows) >= _POINTS_A_ROW]
 
 
 def _mean_at(gap: Array, place: Array, middle: int) -> float:
@@ -335,7 +352,7 @@ def _noise(
     correlations, the residuals have the covariance ``s^2 M R M``; r and s are those with which its
     trace and its sum beside the diagonal are those found.
     """
-    k = max(int(_usual(groups)), _FEWEST)
+    k = max(int(_usual(groups)), _POINTS_A_ROW)
     some = np.array([gap[rows[:k]] for rows in groups if len(rows) >= k])
     shapes = np.vander(np.linspace(-1.0, 1.0, k), 3)
     M = np.eye(k) - shapes @ np.linalg.pinv(shapes)

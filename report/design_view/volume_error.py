@@ -9,8 +9,10 @@ from matstd.artefact.brief import Brief
 from matstd.diagnosis.accuracy import prove, seen_from
 from matstd.diagnosis.fit import Fit
 from matstd.twin.frames import Array
+from matstd.twin.machine import linear_directions
 from matstd.twin.model import Effect
 from matstd.twin.record import Setup, at_poses
+from matstd.twin.sampling import grid_points
 
 COUNTS = (11, 11, 9)
 """Places along the three linear axes."""
@@ -20,13 +22,13 @@ _SHARES = (0.5, 0.15, 0.85)  # of the range of every rotary axis, at which the f
 
 @dataclass(frozen=True, eq=False)
 class ErrorField:
-    """Length of the error vector over a grid of linear readings, at some rotary readings.
+    """Error vectors over a grid of linear readings, at some rotary readings.
 
     Attributes:
         axes: Names of the three linear axes.
         at: Readings of each, ascending, mm.
         rotary: Readings of the rotary axes by name, for every field, rad.
-        before: (F, n1, n2, n3), mm; nan outside the user's volume.
+        before: (F, n1, n2, n3, 3) along the motion of each axis, mm; nan outside the user's volume.
         after: Not predicted by the identified model, the same shape, mm.
     """
 
@@ -52,7 +54,7 @@ def error_field(
     if len(axes) != len(COUNTS):
         return None
     at = tuple(np.linspace(*workspace.limit(a), n) for a, n in zip(axes, COUNTS, strict=True))
-    grid = np.stack(np.meshgrid(*at, indexing="ij"), axis=-1).reshape(-1, 3)
+    grid = grid_points(*at)
     rotary = []
     before: list[Array] = []
     after: list[Array] = []
@@ -67,11 +69,13 @@ def error_field(
         proof = prove(
             fit, truth, brief.setup, seen_from(at_poses(chain, q, brief.probe.length), believed)
         )
+        to_table = believed.T_table_artefact[:3, :3]
         outside = ~workspace.in_volume(q)
-        for sizes, into in ((proof.before, before), (proof.after, after)):
-            length = np.linalg.norm(sizes, axis=1)
-            length[outside] = np.nan
-            into.append(length.reshape(COUNTS))
+        for vectors, into in ((proof.before, before), (proof.after, after)):
+            in_table = (vectors @ to_table.T)[..., None]
+            along = np.array(np.linalg.solve(linear_directions(chain, q), in_table), dtype=float)
+            along[outside] = np.nan
+            into.append(along.reshape(*COUNTS, 3))
         rotary.append(stands)
     return ErrorField(
         axes=axes, at=at, rotary=tuple(rotary), before=np.array(before), after=np.array(after)

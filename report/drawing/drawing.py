@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -19,12 +20,17 @@ from matstd.cad_out.details import (
 )
 from matstd.report.drawing.sections import (
     BALL_CUT,
+    FACE_CUT,
     HOLE_CUT,
+    LARGE,
+    draw_face,
     draw_screw,
     draw_seat,
     engraving_words,
+    joint_words,
+    section_of,
 )
-from matstd.report.drawing.sheet import WIDTH, Sheet, View
+from matstd.report.drawing.sheet import A1, A2, Paper, Sheet, View
 from matstd.report.drawing.views import draw_from, draw_top
 from matstd.twin.files import written_whole
 from matstd.twin.units import DEG
@@ -34,9 +40,10 @@ DRAWING = ("drawing.pdf", "drawing.svg")
 """Names of the files."""
 
 _SCALES = (2.0, 1.0, 0.5, 0.2, 0.1)  # of ISO 5455
-_LEFT, _TOP = 44.0, 392.0  # mm of paper: where the views begin
-_ROOM = (318.0, 372.0)  # mm of paper for the three views
-_TABLES = 396.0  # mm of paper: where the tables begin
+_SMALLEST = 0.5  # scale of the views below which the sheet is larger
+_LEFT, _ABOVE = 44.0, 28.0  # mm of paper: where the views begin, from the left and the upper edge
+_BESIDE = (276.0, 48.0)  # mm of paper that the three views leave to tables and margins
+_WIDE_TABLES = 198.0  # mm of paper, with the margin beside them
 _FLAT = 10_000.0  # mm: a ball of 3 mm cannot distinguish such a face from a plane
 
 
@@ -60,7 +67,7 @@ class Issuer:
 
 
 def write_drawing(folder: Path, standard: Standard, issuer: Issuer) -> None:
-    """One A2 sheet as PDF and SVG, the same bytes for the same standard."""
+    """One sheet as PDF and SVG, the same bytes for the same standard."""
     import matplotlib
 
     details = details_of(standard)
@@ -74,11 +81,12 @@ def write_drawing(folder: Path, standard: Standard, issuer: Issuer) -> None:
 
 def draw_sheet(standard: Standard, details: Details, issuer: Issuer) -> Sheet:
     """Views, sections, tables, notes and title block."""
-    sheet, base = Sheet(), standard.base
-    (a, b), tall = base.half_size, _tallest(standard)
-    wide, high = (_ROOM[0] - 36.0) / (2.0 * (a + b)), (_ROOM[1] - 90.0) / (tall + 2.0 * b)
-    scale = next((s for s in _SCALES if s <= min(wide, high)), _SCALES[-1])
-    floor = _TOP - 12.0 - scale * tall
+    (a, b), tall = standard.base.half_size, _tallest(standard)
+    sheet, scale = Sheet(A2), _scale(standard, A2)
+    if scale < _SMALLEST:
+        sheet, scale = Sheet(A1), _scale(standard, A1)
+    begin = sheet.paper.height - _ABOVE
+    floor = begin - 12.0 - scale * tall
     front = View(_LEFT + scale * a, floor, scale)
     left = View(_LEFT + scale * 2 * a + 36.0 + scale * b, floor, scale)
     top = View(front.x, floor - 46.0 - scale * b, scale)
@@ -91,13 +99,42 @@ def draw_sheet(standard: Standard, details: Details, issuer: Issuer) -> Sheet:
     _cuts(sheet, top, standard)
     if standard.spheres:
         enlarged = 2.0 if standard.spheres[0].radius <= 16.0 else 1.0
-        draw_seat(sheet, View(top.x + scale * a + 74.0, floor - 76.0, enlarged), standard, details)
+        x, y = top.x + scale * a + 74.0, floor - 76.0
+        if sheet.paper is A1:  # with room for the next scale
+            enlarged, x, y = 2.5 * enlarged, x + 50.0, y - 45.0
+        draw_seat(sheet, View(x, y, enlarged), standard, details)
     if standard.holes:
-        draw_screw(sheet, View(top.x + scale * a + 70.0, 62.0, 1.0), standard, details)
+        aside = 70.0 if sheet.paper is A2 else 140.0
+        draw_screw(sheet, View(top.x + scale * a + aside, 62.0, 1.0), standard, details)
+    _large_face(sheet, top, standard)
     low = _tables(sheet, standard, details)
     _notes(sheet, low - 8.0, standard, details)
     _title(sheet, standard, issuer, scale)
     return sheet
+
+
+def _large_face(sheet: Sheet, top: View, standard: Standard) -> None:
+    """Section of a large face below the view from above, as large as its room allows."""
+    large = [p for p in standard.patches if min(p.half_size) >= LARGE and p.is_upright]
+    if len(standard.patches) != 1 or not large:
+        return
+    patch, a = large[0], standard.base.half_size[0]
+    aside = 20.0 if sheet.paper is A2 else 80.0
+    most = (top.x + top.scale * a + aside - _LEFT) / (2.0 * patch.half_size[0] + 24.0)
+    scale = next((s for s in _SCALES if s <= min(most, 1.0)), top.scale)
+    draw_face(sheet, View(_LEFT + scale * (patch.half_size[0] + 12.0) + 6.0, 34.0, scale),
+              standard, patch)  # fmt: skip
+    for side in (-1.0, 1.0):
+        end = top.at([side * (a + 14.0 / top.scale), section_of(patch)])[0]
+        sheet.cut(end, np.array([0.0, 1.0]), FACE_CUT)
+
+
+def _scale(standard: Standard, paper: Paper) -> float:
+    """The largest scale of ISO 5455 at which the three views fit on a paper."""
+    (a, b), tall = standard.base.half_size, _tallest(standard)
+    wide, high = (total - taken for total, taken in zip(paper.size, _BESIDE, strict=True))
+    most = min((wide - 36.0) / (2.0 * (a + b)), (high - 90.0) / (tall + 2.0 * b))
+    return next((s for s in _SCALES if s <= most), _SCALES[-1])
 
 
 def _tallest(standard: Standard) -> float:
@@ -163,7 +200,8 @@ def _of_features(
 
     In the view from the left one looks along +x, so that y runs to the left.
     """
-    low, high = left.at([[-standard.base.half_size[1], 0.0]])[0], _TOP + 2.0
+    low = left.at([[-standard.base.half_size[1], 0.0]])[0]
+    high = sheet.paper.height - _ABOVE + 2.0
     seat = next(t for t in tolerances.values() if t.kind == "parallelism")
     at, words = (low[0] + 20.0, low[1] - 16.0), "underside"
     under = left.at([[0.0, 0.0]])[0]
@@ -179,7 +217,8 @@ def _of_features(
         edge = top.at([[0.0, standard.base.half_size[1]]])[0]
         # above the frame of datum C, which stands 22 to 28 mm above three quarters of the side
         above = max(6.0, 30.0 - 0.25 * top.scale * standard.base.half_size[1])
-        words = f"{len(standard.patches)} x FF"
+        count = len(standard.patches)
+        words = f"{count} x FF" if count > 1 else patch.name
         _attached(sheet, (tip[0] - 18.0, edge[1] + above), tolerances[patch.name], tip, words)
     if standard.spheres:
         ball = max(standard.spheres, key=lambda one: float(one.centre[2]))
@@ -228,19 +267,21 @@ def _axes(sheet: Sheet, top: View) -> None:
 
 def _tables(sheet: Sheet, standard: Standard, details: Details) -> float:
     """Faces, balls and holes with their places; returns the height of the lower edge."""
-    rows = [["face", "x", "y", "z", "size", "slope", "R", "tests; dominant errors"]]
-    rows += [_face_row(patch) for patch in standard.patches]
-    title = "Freeform faces (middle, steepest slope, least concave radius between their edges)"
-    y = sheet.table(_TABLES, _TOP, (11, 15, 15, 14, 26, 12, 16, 79), rows, title)
+    x, y = sheet.paper.width - _WIDE_TABLES, sheet.paper.height - _ABOVE + 9.0
+    if standard.patches:
+        rows = [["face", "x", "y", "z", "size", "slope", "R", "tests; dominant errors"]]
+        rows += [_face_row(patch) for patch in standard.patches]
+        title = "Freeform faces (middle, steepest slope, least concave radius between their edges)"
+        y = sheet.table(x, y - 9.0, (11, 15, 15, 14, 26, 12, 16, 79), rows, title)
     rows = [["ball", "x", "y", "z", "Ø", "foot", "land", "land z", "sink",
              "identifies; calibrated"]]  # fmt: skip
     rows += [_ball_row(ball, details) for ball in standard.spheres]
     title = f"Balls (centres), {BALL.name}, and their posts"
-    y = sheet.table(_TABLES, y - 9.0, (15, 15, 15, 15, 9, 16, 18, 16, 13, 56), rows, title)
+    y = sheet.table(x, y - 9.0, (15, 15, 15, 15, 9, 16, 18, 16, 13, 56), rows, title)
     rows = [["hole", "x", "y", "z", "through", "counterbore", "pad", "for"]]
     rows += _hole_rows(standard, details)
     title = "Holes (middles of their mouths)"
-    return sheet.table(_TABLES, y - 9.0, (18, 16, 16, 12, 24, 26, 16, 60), rows, title)
+    return sheet.table(x, y - 9.0, (18, 16, 16, 12, 24, 26, 16, 60), rows, title)
 
 
 def _hole_rows(standard: Standard, details: Details) -> list[list[str]]:
@@ -268,7 +309,7 @@ def _ball_row(ball: DatumSphere, details: Details) -> list[str]:
         f"Ø{2 * seat.top_radius:.2f}",
         f"{seat.top:.2f}",
         f"{2 * seat.half_angle / DEG:.0f}°",
-        "centre and form",
+        f"{'no, proves' if ball.proves else 'yes'}; centre and form",
     ]
 
 
@@ -287,29 +328,25 @@ def _face_row(patch: FreeformPatch) -> list[str]:
 
 
 def _notes(sheet: Sheet, top: float, standard: Standard, details: Details) -> None:
-    sheet.text(_TABLES, top, "Notes", size=3.0)
+    x = sheet.paper.width - _WIDE_TABLES
+    sheet.text(x, top, "Notes", size=3.0)
     words = [*notes_of(standard, details), engraving_words()]
     words += [f"Omitted for lack of space: {what}." for what in details.missing]
+    words += joint_words(standard, details)
     faces = ", ".join(f"{letter} = {face}" for letter, face in DATUMS.items())
     words.append(f"Names of faces as in standard.step: {faces}; that model is the definition.")
     for number, note in enumerate(words, 1):
         top -= 5.2
         for plain, sign in ((" degC", " °C"), (" um", " µm"), ("+-", "±")):  # of the STEP file
             note = note.replace(plain, sign)
-        for k, part in enumerate(_wrapped(f"{number}  {note}")):
+        for k, part in enumerate(wrap(f"{number}  {note}", 90, subsequent_indent="    ")):
             top -= 4.2 if k else 0.0
-            sheet.text(_TABLES, top, part)
-
-
-def _wrapped(words: str, most: int = 90) -> list[str]:
-    import textwrap
-
-    return textwrap.wrap(words, most, subsequent_indent="    ")
+            sheet.text(x, top, part)
 
 
 def _title(sheet: Sheet, standard: Standard, issuer: Issuer, scale: float) -> None:
     """Title block of ISO 7200 with the sign of first-angle projection."""
-    x, y, w = _TABLES, 10.0, WIDTH - 10.0 - _TABLES
+    x, y, w = sheet.paper.width - _WIDE_TABLES, 10.0, _WIDE_TABLES - 10.0
     sheet.box(x, y, w, 48.0, 0.7)
     ratio = f"{scale:g}:1" if scale >= 1.0 else f"1:{1.0 / scale:g}"
     tool = f"material-standard {versions()['material-standard']}"
@@ -326,7 +363,7 @@ def _title(sheet: Sheet, standard: Standard, issuer: Issuer, scale: float) -> No
         (126.0, 12.0, 62.0, "made by", tool),
         (0.0, 0.0, 28.0, "mass", f"{issuer.mass:.1f} kg"),
         (28.0, 0.0, 20.0, "scale", ratio),
-        (48.0, 0.0, 34.0, "sheet", "1 / 1, A2"),
+        (48.0, 0.0, 34.0, "sheet", f"1 / 1, {sheet.paper.name}"),
         (82.0, 0.0, 72.0, "tolerances", "ISO 22081, ISO 8015"),
     ]
     for left, low, width, what, words in cells:

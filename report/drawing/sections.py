@@ -1,14 +1,21 @@
-"""Enlarged sections: a ball in its seat, a screw through its pad."""
+"""Sections: a ball in its seat, a screw through its pad, a large face along its middle."""
 
 import numpy as np
 
-from matstd.artefact.body import BLEND, Standard
+from matstd.artefact.body import BLEND, FreeformPatch, Standard, min_concave_radius
 from matstd.cad_out.details import CUTTER, DEPTH, RELIEF, Details, glue_gap
+from matstd.cad_out.making import joints_of
 from matstd.report.drawing.sheet import HATCH, THIN, WIDE, Sheet, View
+from matstd.twin.errors import NotBuildable
 from matstd.twin.units import DEG
 
-BALL_CUT, HOLE_CUT = "D", "E"
+BALL_CUT, HOLE_CUT, FACE_CUT = "D", "E", "F"
 """Letters of the sections; A, B and C are datums."""
+
+_FARTHER = 0.01  # mm of height that count as much as a millimetre along y
+
+LARGE = 40.0
+"""Half side of a face from which its section is drawn, mm."""
 
 
 def draw_seat(sheet: Sheet, view: View, standard: Standard, details: Details) -> None:
@@ -88,12 +95,73 @@ def draw_screw(sheet: Sheet, view: View, standard: Standard, details: Details) -
     sheet.text(where[0], where[1] + 11.0, title, size=3.0, ha="center")
 
 
+def draw_face(sheet: Sheet, view: View, standard: Standard, patch: FreeformPatch) -> None:
+    """A large upright face with its plate, cut along x through its highest crest.
+
+    The view's origin is below the middle of the face.
+    """
+    a, (x0, y0) = patch.half_size[0], patch.T_artefact_patch[:2, 3]
+    u, v = np.linspace(-a, a, 241), section_of(patch) - y0
+    rim = patch.point(np.column_stack([u, np.full(len(u), v)]))
+    thick, wide = standard.base.thickness, a + 12.0
+    low = RELIEF if len(standard.holes) == 3 else 0.0
+    plate = [[wide, thick], [wide, low], [-wide, low], [-wide, thick], [-a, thick]]
+    profile = np.column_stack([rim[:, 0] - x0, rim[:, 2]])
+    body = np.concatenate([profile, [[a, thick]], plate, profile[:1]])
+    sheet.line(view.at(body), WIDE, fill=HATCH)
+    lowest, highest = profile[np.argmin(profile[:, 1])], profile[np.argmax(profile[:, 1])]
+    rise = view.scale * float(highest[1] - lowest[1])
+    for place, way in ((highest, 5.0), (lowest, rise + 5.0)):
+        tip = view.at(place)[0]
+        sheet.leader(tip, np.add(tip, [8.0, way]), f"z {place[1]:.2f}")
+    p, q = view.at([[-a, thick], [a, thick]])
+    sheet.dimension(p, q, -view.scale * thick - 7.0, f"{2.0 * a:g}")
+    where = view.at([[0.0, patch.point(patch.grid())[:, 2].max()]])[0]
+    title = f"{FACE_CUT}-{FACE_CUT} ({_ratio(view.scale)}): {patch.name} at y = {y0 + v:g}"
+    sheet.text(where[0], where[1] + 21.0, title, size=3.0, ha="center")
+    made = f"ball-end cutter R {min_concave_radius(patch):.1f} at most; the model defines it"
+    sheet.text(where[0], where[1] + 17.0, made, ha="center")
+
+
+def section_of(patch: FreeformPatch) -> float:
+    """Where a face is cut: y of a crest, of several the farthest from the target of C, mm."""
+    uv = 0.8 * patch.grid(1.0)
+    best = int(np.argmax(patch.height(uv) + _FARTHER * uv[:, 1]))
+    return float(np.round(patch.point(uv[[best]])[0, 1], 1))
+
+
 def engraving_words() -> str:
     """How lettering is made."""
     return (
         f"Lettering: dots {DEPTH:g} deep, ball-ended cutter Ø{2.0 * CUTTER:g}; "
         "never on a datum's touches."
     )
+
+
+_TORQUES = {4.0: 2.8, 5.0: 5.5, 6.0: 9.5, 8.0: 23.0, 10.0: 46.0, 12.0: 79.0}
+"""Tightening torques of class 8.8 at a friction of 0.12 (VDI 2230-1, table A1), N m."""
+
+
+def joint_words(standard: Standard, details: Details) -> list[str]:
+    """How the parts of the second construction are joined; empty where it does not exist."""
+    try:
+        joints = joints_of(standard, details)
+    except NotBuildable:
+        return []
+    threads = sorted({stud.thread for stud in joints.studs})
+    words = "Of parts (standard-parts.step): "
+    studs = [f"M{d:g} {0.5 * _TORQUES[d]:.0f} N m" for d in threads]
+    if studs:
+        words += (
+            f"studs turned, shoulder square to the thread 0.01, through holes vent; "
+            f"{', '.join(studs)} (half of VDI 2230, class 8.8) with thread lock"
+        )
+    for d in sorted({block.thread for block in joints.blocks}):
+        words += (
+            f"; blocks on three pads flat 0.005 CZ, screws M{d:g} from below "
+            f"{_TORQUES[d]:.0f} N m; calibrate when joined"
+        )
+    return [f"{words}."]
 
 
 def _ratio(scale: float) -> str:

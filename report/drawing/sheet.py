@@ -9,8 +9,23 @@ import numpy as np
 from matstd.report.style import figure
 from matstd.twin.frames import Array
 
-WIDTH, HEIGHT = 594.0, 420.0
-"""A2, mm."""
+
+@dataclass(frozen=True, slots=True)
+class Paper:
+    """A format of ISO 5457, lying; mm."""
+
+    name: str
+    width: float
+    height: float
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Width and height, mm."""
+        return self.width, self.height
+
+
+A2, A1 = Paper("A2", 594.0, 420.0), Paper("A1", 841.0, 594.0)
+"""Papers of drawings."""
 
 WIDE, THIN = 0.5, 0.25
 """Lines of ISO 128-2, mm."""
@@ -51,15 +66,17 @@ class View:
 class Sheet:
     """Lines and signs, all in millimetres of paper from the lower left corner."""
 
-    def __init__(self) -> None:
-        self.figure = figure(HEIGHT / 25.4, WIDTH / 25.4, layout=None)
+    def __init__(self, paper: Paper = A2) -> None:
+        self.paper = paper
+        wide, high = paper.width, paper.height
+        self.figure = figure(high / 25.4, wide / 25.4, layout=None)
         self.axes = self.figure.add_axes((0.0, 0.0, 1.0, 1.0))
-        self.axes.set_xlim(0.0, WIDTH)
-        self.axes.set_ylim(0.0, HEIGHT)
+        self.axes.set_xlim(0.0, wide)
+        self.axes.set_ylim(0.0, high)
         self.axes.set_axis_off()
         self._depth = 1.0
         self._ink: list[Array] = []
-        self.box(_BINDING, _MARGIN, WIDTH - _MARGIN - _BINDING, HEIGHT - 2 * _MARGIN, 0.7)
+        self.box(_BINDING, _MARGIN, wide - _MARGIN - _BINDING, high - 2 * _MARGIN, 0.7)
 
     def line(self, points: Any, width: float = THIN, style: str = "-", fill: str = "none") -> None:
         """A polyline, or a filled figure that hides what was drawn before; `hatch` cuts it."""

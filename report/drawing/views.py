@@ -9,6 +9,7 @@ from matstd.artefact.body import DatumSphere, FreeformPatch, Standard
 from matstd.cad_out.details import DOT, RELIEF, Details
 from matstd.report.drawing.sheet import THIN, WIDE, Sheet, View
 from matstd.twin.frames import Array, apply
+from matstd.twin.sampling import grid_points
 
 _SAMPLES = 41  # along an edge of a face
 _LEVELS = 6  # lines of equal height on a face
@@ -88,7 +89,7 @@ def _patch_from_above(sheet: Sheet, view: View, patch: FreeformPatch) -> None:
     rim = apply(patch.T_artefact_patch, np.column_stack([corners, patch.height(corners)]))
     sheet.line(view.at(rim[:, :2]), WIDE, fill="white")
     u, v = np.linspace(-a, a, _SAMPLES), np.linspace(-b, b, _SAMPLES)
-    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    uv = grid_points(u, v)
     points = patch.point(uv)
     x, y = (view.at(points[:, :2])[:, k].reshape(_SAMPLES, _SAMPLES) for k in (0, 1))
     z = points[:, 2].reshape(_SAMPLES, _SAMPLES)
@@ -142,7 +143,7 @@ def _pillar(
     """Walls and the outline of the face, and its nearer edge."""
     a, b = patch.half_size
     u, v = np.linspace(-a, a, _SAMPLES), np.linspace(-b, b, _SAMPLES)
-    points = patch.point(np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2))
+    points = patch.point(grid_points(u, v))
     grid = points.reshape(_SAMPLES, _SAMPLES, 3)
     if abs(right[0]) < 0.5:  # along x: what was one edge after the other is the depth
         grid = grid.transpose(1, 0, 2)

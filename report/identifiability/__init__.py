@@ -4,7 +4,7 @@ Names of parameters, known combinations, freedoms with their causes and remedies
 `identifiability.json` and `identification.json`.
 """
 
-from matstd.report.identifiability.identifiability_file import write_identifiability
+from matstd.report.identifiability.identifiability_file import identifiability_table
 from matstd.report.identifiability.identifiability_words import (
     combination_words,
     family_words,
@@ -22,11 +22,11 @@ __all__ = [
     "family_words",
     "freedom_words",
     "gist",
+    "identifiability_table",
     "in_words",
     "pair_words",
     "reason_words",
     "resolution_words",
     "short",
-    "write_identifiability",
     "write_identification",
 ]

@@ -1,7 +1,6 @@
 """identifiability.json: what the touches of a design can and cannot determine."""
 
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 from matstd.artefact.compare import Alternative, IdentifiabilityReport
@@ -17,10 +16,8 @@ from matstd.report.identifiability.identifiability_words import (
 )
 from matstd.report.identifiability.parameter_words import in_words, short
 from matstd.report.numbers import shown
-from matstd.twin.files import write_whole
 from matstd.twin.machine import Chain, Link
 from matstd.twin.numbers import significant
-from matstd.twin.text import json_text
 
 FORMAT = "identifiability/1"
 """Format of the file."""
@@ -111,8 +108,3 @@ def _degree(degree: Degree, chain: Chain) -> dict[str, Any]:
         "unit": label,
         "words": degree_words(degree, chain),
     }
-
-
-def write_identifiability(path: Path, known: IdentifiabilityReport) -> None:
-    """Write the record as a JSON file, whole or not at all."""
-    write_whole(path, json_text(identifiability_table(known)))

@@ -8,8 +8,7 @@ from matstd.diagnosis.accuracy import Proof
 from matstd.diagnosis.fit import Estimable, Fit, estimable
 from matstd.report.identifiability.identifiability_words import combination_words, freedom_words
 from matstd.report.numbers import shown
-from matstd.twin.files import write_whole
-from matstd.twin.text import json_text
+from matstd.twin.files.whole import write_json
 from matstd.twin.units import UM
 
 FORMAT = "identification/1"
@@ -68,5 +67,5 @@ def _value(name: str, value: float, u: float, unit: str) -> dict[str, Any]:
 def write_identification(path: str | Path, fit: Fit, proofs: Sequence[Proof] = ()) -> Estimable:
     """Write identification.json, whole or not at all; returns what the fit determines."""
     known = estimable(fit)
-    write_whole(path, json_text(identification_table(fit, known, proofs)))
+    write_json(path, identification_table(fit, known, proofs))
     return known

@@ -8,7 +8,7 @@ readings, and the page multiplies the exact kinematics itself (`live/parts/kinem
 from matstd.report.machine.error_series import ErrorFunction, error_functions
 from matstd.report.machine.machine_page import machine_data, machine_html
 from matstd.report.machine.machine_words import ShownMachine, shown_lines
-from matstd.report.machine.meshes import body_meshes
+from matstd.report.machine.meshes import body_meshes, drawing_triangles, thinned
 from matstd.report.machine.played import Played, played_part, played_probing
 from matstd.report.machine.probing_page import PLAYBACK, write_playback
 from matstd.report.machine.set_up import (
@@ -28,6 +28,7 @@ __all__ = [
     "SetUp",
     "ShownMachine",
     "body_meshes",
+    "drawing_triangles",
     "error_functions",
     "machine_data",
     "machine_html",
@@ -37,6 +38,7 @@ __all__ = [
     "set_up_bodies",
     "shown_lines",
     "standard_bodies",
+    "thinned",
     "with_clearance",
     "write_playback",
 ]

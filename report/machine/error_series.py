@@ -16,6 +16,7 @@ from matstd.report.effects import effect_title
 from matstd.twin.frames import Array
 from matstd.twin.machine import parse_symbol
 from matstd.twin.numbers import rms_length
+from matstd.twin.sampling import grid_points
 
 EXACT = 1e-13
 """Error of a series, of the size of its function, from which it counts as the function itself."""
@@ -262,8 +263,7 @@ def _coefficients(
 
     n = degree + 1
     points = np.cos(np.pi * (np.arange(n) + 0.5) / n)
-    grid = np.stack(np.meshgrid(*[points] * len(readings), indexing="ij"), axis=-1)
-    grid = grid.reshape(-1, len(readings))
+    grid = grid_points(*[points] * len(readings))
     x = np.tile(0.5 * (space.low + space.high), (len(grid), 1))
     low, high = space.low[list(readings)], space.high[list(readings)]
     x[:, list(readings)] = 0.5 * ((low + high) + grid * (high - low))

@@ -30,13 +30,17 @@ def body_meshes(chain: Chain) -> list[Drawn]:
     """
     colours = {name: series(k) for k, name in enumerate(chain.axes)} | {FOUNDATION: _BED}
     return [
-        Drawn(on, colours.get(on, "#aeb6c0"), thinned(_triangles(path)))
+        Drawn(on, colours.get(on, "#aeb6c0"), thinned(drawing_triangles(path)))
         for on, path in chain.drawings.items()
     ]
 
 
-def _triangles(path: Path) -> Array:
-    """Corners of all triangles of a file, (T, 3, 3), mm."""
+def drawing_triangles(path: Path) -> Array:
+    """Corners of all triangles of an STL, OBJ, PLY or STEP file, (T, 3, 3), mm.
+
+    Raises:
+        BadFile: A file that is no mesh and no STEP file, or has nothing in it.
+    """
     expected = f"one of {', '.join((*_MESHES, *_STEPS))}"
     kind = path.suffix.lower()
     if kind not in (*_MESHES, *_STEPS):
@@ -54,7 +58,7 @@ def _triangles(path: Path) -> Array:
         raise BadFile(path, "file", f"{len(corners)} triangles", "a body with finite corners")
     far = float(np.abs(corners).max())
     if far > FARTHEST:
-        found = f"a corner {far:.6g} mm from the origin of the machine"
+        found = f"a corner {far:.6g} mm from the origin"
         raise BadFile(path, "file", found, f"at most {FARTHEST:g} mm; is the file in mm?")
     return corners
 

@@ -137,6 +137,7 @@ def played_probing(
                 row = (float(time), at, step.line, step.number, k)
             else:
                 continue
+            # the page moves straight from row to row: of a turn that would be a chord
             rows += _between(rows[-1], row, rotary) if rows else []
             rows.append(row)
             lengths += [program.heading.probe.length] * (len(rows) - len(lengths))

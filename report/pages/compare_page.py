@@ -28,6 +28,7 @@ from matstd.report.words import (
     remark_sentence,
     structure_words,
 )
+from matstd.twin.frames import Array
 from matstd.twin.units import UM
 
 PAGE = "report.html"
@@ -57,6 +58,7 @@ def write_compare_page(
     title: str,
     rng: np.random.Generator,
     reported: Mapping[str, Sequence[Reported]] | None = None,
+    body: Array | None = None,
 ) -> Path:
     """Write `report.html` and its pictures into a folder.
 
@@ -66,6 +68,7 @@ def write_compare_page(
         title: Name of the run file.
         rng: Shuffles residuals, to show what chance produces.
         reported: Numbers of effects as the model file keeps them, by name.
+        body: Triangles of what was probed, where it is known.
     """
     page = Page(
         title=f"Comparison of {title}",
@@ -86,7 +89,7 @@ def write_compare_page(
         foot=run_foot(found.run, title),
         means=comparison_meaning(found),
         next=comparison_step(found, title),
-        live=comparison_view(found, title),
+        live=comparison_view(found, title, body),
     )
     path = Path(folder) / PAGE
     write_page(path, page)

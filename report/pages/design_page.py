@@ -20,6 +20,7 @@ from matstd.report.pages.standard_sections import (
     at_most,
     cad_sections,
     comparison_table,
+    criterion_words,
     making_sections,
     patch_table,
 )
@@ -30,12 +31,14 @@ from matstd.report.scenes import draw_standard
 from matstd.report.words import (
     best_rival,
     comparison_remarks,
-    criterion_words,
+    features_words,
     identification_lines,
     verdict_of_design,
 )
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
+
+_STEP_FACE = "largest deviation of a STEP face from its design"
 
 MAPS = "sensitivity"
 """Folder of the maps."""
@@ -169,7 +172,7 @@ def _standard_picture(design: Design, folder: Path, remarks: list[str]) -> list[
     except DesignError as error:
         remarks.append(f"No pictures of the standard: {error}")
         return []
-    caption = "The standard from two sides: patches, spheres, datum plane."
+    caption = "The standard from two sides: features with their names, datum plane."
     return [Picture("standard.png", caption)]
 
 
@@ -197,9 +200,10 @@ def _key(design: Design) -> list[KeyFigure]:
             + others,
         ),
         *([] if tolerance is None else [_tolerance_figure(design, tolerance)]),
-        KeyFigure(
-            at_most(max(design.conformity.face_deviation.values())),
-            "largest deviation of a STEP face from its design",
+        *(
+            [KeyFigure(at_most(design.conformity.worst_face[1]), _STEP_FACE)]
+            if design.conformity.face_deviation
+            else []
         ),
     ]
 
@@ -222,7 +226,7 @@ def _opening(design: Design, folder: Path, remarks: Sequence[str]) -> Section:
             "machine's own kinematic table before a program runs or a figure is used."
         )
     words = (
-        f"{len(body.patches)} freeform patches and {len(body.spheres)} datum spheres on one body, "
+        f"{features_words(body, design.placement.family)} on one body, "
         f"{len(plan)} touches at {plural(_poses(design), 'table pose')} in about "
         f"{design.programs.duration / 60.0:.0f} minutes. Chain `{chain.notation}`, "
         f"{len(chain.symbols)} error parameters."

@@ -41,6 +41,7 @@ from matstd.report.words import (
     values,
     verdict_sentence,
 )
+from matstd.twin.frames import Array
 from matstd.twin.library import kinds
 from matstd.twin.units import UM
 
@@ -68,6 +69,7 @@ def write_diagnosis_page(
     title: str,
     rng: np.random.Generator,
     is_saved: bool = False,
+    body: Array | None = None,
 ) -> Path:
     """Write `report.html` and its pictures into a folder.
 
@@ -77,6 +79,7 @@ def write_diagnosis_page(
         title: Name of the run file.
         rng: Shuffles residuals, to show what chance produces.
         is_saved: Whether the model file has what was found.
+        body: Triangles of what was probed, where it is known.
     """
     fits = [("starting model", result.start)]
     fits += [("final model", result.fit)] if len(result.steps) > 1 else []
@@ -105,7 +108,7 @@ def write_diagnosis_page(
         foot=run_foot(result.run, title),
         means=diagnosis_meaning(result),
         next=diagnosis_step(result, title, is_saved),
-        live=diagnosis_view(result, title),
+        live=diagnosis_view(result, title, body),
     )
     path = Path(folder) / PAGE
     write_page(path, page)

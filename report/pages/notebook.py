@@ -27,7 +27,12 @@ from matstd.report.numbers import microns
 from matstd.report.pages.design_result import Design
 from matstd.report.plots import draw_fall, draw_over_variables
 from matstd.report.style import save
-from matstd.report.words import comparison_sentence, study_words, verdict_sentence
+from matstd.report.words import (
+    comparison_sentence,
+    features_words,
+    study_words,
+    verdict_sentence,
+)
 from matstd.sensitivity.shares import regions
 from matstd.sensitivity.study import Study
 from matstd.twin.display import Displayed, Tabular, html, text
@@ -99,10 +104,7 @@ def _saved(saved: SavedModel) -> str:
 @text.register
 def _standard(standard: Standard) -> str:
     state = "as designed" if standard.known is None else f"calibrated with {standard.known.source}"
-    return (
-        f"{standard.name}: {len(standard.patches)} freeform faces, {len(standard.spheres)} balls, "
-        f"{state}"
-    )
+    return f"{standard.name}: {features_words(standard)}, {state}"
 
 
 @text.register
@@ -118,8 +120,9 @@ def _design(design: Design) -> str:
     standard, programs = design.standard, design.programs.programs
     where = "" if design.folder is None else f", in {design.folder}"
     return (
-        f"{standard.name} for {design.brief.chain.name}: {len(standard.patches)} freeform faces, "
-        f"{len(standard.spheres)} balls, {len(design.placement.touches)} touches, "
+        f"{standard.name} for {design.brief.chain.name}: "
+        f"{features_words(standard, design.placement.family)}, "
+        f"{len(design.placement.touches)} touches, "
         f"{len(programs)} programs{where}"
     )
 

@@ -3,19 +3,20 @@
 import numpy as np
 
 from matstd.artefact.body import FreeformPatch, max_slope, min_concave_radius
+from matstd.artefact.worth import CriterionOptions
 from matstd.cad_out.making import FIRST_MODE, ROUGHNESS, SAG, Cutting, FaceHint, Making, Stiffness
 from matstd.cad_out.verify import Conformity
 from matstd.report.layout import Heading, Section, Table
-from matstd.report.numbers import digits, um
+from matstd.report.numbers import digits, percent, plural, um
 from matstd.report.pages.design_result import Design
-from matstd.report.task import modulus_words
+from matstd.report.task import modulus_words, price_lines
 from matstd.twin.units import DEG, UM
 
 _FLAT = 10_000.0  # mm: a ball of 3 mm cannot distinguish such a face from a plane
 
 _PATCHES = (
-    "Freeform faces, which test the model that was identified from the balls: position, curvature, "
-    "and the errors that dominate their signal"
+    "Features that test the model that was identified from the other balls: position, curvature, "
+    "and the errors that dominate the signal of a face"
 )
 _RIVALS = (
     "Predicted standard deviation of the volumetric error after {touches} touches each, {noise} "
@@ -24,17 +25,31 @@ _RIVALS = (
     "patches also places the spheres. The ideal scatter has no body, no obstacles and no "
     "uncertainty"
 )
+_HOW_FACES = "measured without a CAD kernel; limit 0.01 µm"
 _MAKING = (
     "`drawing.pdf` is the sheet for the workshop; `making.json` has these figures by feature. Sag "
     "matters on tables that tilt: `matstd evaluate` corrects every touch for it, with a fifth of "
     "it as standard uncertainty."
 )
 
+_CRITERIA = {
+    "I": "mean variance of the predicted tool point over probed volume and workspace",
+    "G": "largest variance of the predicted tool point at any pose of probed volume and workspace",
+    "D": "volume of the joint uncertainty of the parameters, in units of their expected sizes",
+    "A": "mean variance of the parameters, in units of their expected sizes",
+    "E": "variance of the least well determined error pattern, as it moves the tool point",
+}
+
 
 def patch_table(design: Design) -> Table:
-    """The freeform faces."""
-    columns = ("patch", "centre x, y, z, mm", "smallest concave radius, mm", "steepest slope, °")
+    """The features that prove."""
+    columns = ("feature", "centre x, y, z, mm", "smallest concave radius, mm", "steepest slope, °")
     rows = [_patch(p, design) for p in design.placement.standard.patches]
+    body, plan = design.placement.standard, design.plan
+    for ball in (s for s in body.spheres if s.proves):
+        x, y, z = ball.centre
+        count = str(int(np.sum(plan.feature == ball.name)))
+        rows.append([ball.name, f"{x:.0f}, {y:.0f}, {z:.0f}", "convex", "–", count, "–"])
     return Table((*columns, "touches", "dominant errors (share of its signal)"), rows, _PATCHES)
 
 
@@ -91,6 +106,23 @@ def comparison_table(design: Design, on_machine: dict[str, float]) -> Table:
     return Table(columns, rows, caption, own)
 
 
+def criterion_words(wanted: CriterionOptions) -> str:
+    """Criterion by which the touches were chosen."""
+    words = [_CRITERIA[wanted.name]]
+    if wanted.robust_machines:
+        which = (
+            "" if wanted.robust_share == 1.0 else f"the worst {percent(wanted.robust_share)} of "
+        )
+        words.append(f"averaged over {which}{wanted.robust_machines} random machines")
+    if wanted.potential and wanted.name == "D":
+        words.append("together with the effects of the library")
+    elif wanted.potential:
+        words.append(
+            f"with a weight of {percent(wanted.potential)} for the visibility of library effects"
+        )
+    return ", ".join(words)
+
+
 def cad_sections(c: Conformity) -> list[Section]:
     """CAD files, measured after they were written."""
     rows = [
@@ -102,11 +134,12 @@ def cad_sections(c: Conformity) -> list[Section]:
         ],
         ["volume", f"{c.volume / 1e3:.3f} cm³ re-read, {c.volume_built / 1e3:.3f} cm³ built"],
         ["mass", f"{c.mass:.2f} kg"],
-        [
-            "faces against design",
-            f"{at_most(max(c.face_deviation.values()))}, measured without a CAD kernel; limit "
-            "0.01 µm",
-        ],
+        *([["of parts", _parts_words(c)]] if c.parts else []),
+        *(
+            [["faces against design", f"{at_most(c.worst_face[1])}, {_HOW_FACES}"]]
+            if c.face_deviation
+            else []
+        ),
         [
             "STL",
             f"{c.triangles} triangles, {c.stl_bytes / 1e6:.1f} MB, "
@@ -115,12 +148,21 @@ def cad_sections(c: Conformity) -> list[Section]:
         ],
         [
             "mesh against faces",
-            f"{max(c.chord_error.values()) / UM:.1f} µm at most, requested {c.chord / UM:.0f} µm",
+            f"{c.worst_chord[1] / UM:.1f} µm at most, requested {c.chord / UM:.0f} µm",
         ],
     ]
     return [
         Section(fold="CAD files, measured after writing", is_for_screen=True, table=Table((), rows))
     ]
+
+
+def _parts_words(c: Conformity) -> str:
+    """What the file of the second construction holds."""
+    kinds = {kind: sum(kind in name for name in c.parts) for kind in ("STUD", "BLOCK")}
+    return (
+        f"standard-parts.step: plate, {plural(kinds['STUD'], 'stud')} and "
+        f"{plural(kinds['BLOCK'], 'block')}, balls and screws; every solid valid and closed"
+    )
 
 
 def at_most(deviation: float) -> str:
@@ -156,6 +198,10 @@ def making_rows(made: Making) -> list[tuple[str, str]]:
         ),
         ("largest ball-end mill of a face, mm", cutters),
         *_stiffness_rows(made),
+        *[
+            (words.partition(": ")[0], words.partition(": ")[2])
+            for words in price_lines(made.prices)
+        ],
         *((f"milling {face} with 6 mm", _milling(hint)) for face, hint in made.hints.items()),
     ]
 

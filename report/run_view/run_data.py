@@ -16,7 +16,7 @@ from matstd.report.run_view.touched_bodies import touched_bodies
 from matstd.report.style import axis_of
 from matstd.twin.frames import Array
 from matstd.twin.library import kinds
-from matstd.twin.record import Touches
+from matstd.twin.record import Run, Touches
 from matstd.twin.units import UM
 from matstd.twin.words import in_own_unit
 
@@ -39,12 +39,16 @@ class Findings:
         set_up_alone: Held-out error without geometry, mm; None where it is not known.
         sizes: Of found effects by name.
         remains: What remains with everything that was found; empty for nothing to say.
+        body: Triangles of what was probed, (T, 3, 3), mm; None where only its touches are known.
+        is_prediction: Whether a model predicts the machine, and the run places the standard alone.
     """
 
     title: str
     set_up_alone: float | None = None
     sizes: Mapping[str, str] = field(default_factory=dict)
     remains: str = ""
+    body: Array | None = None
+    is_prediction: bool = False
 
 
 def run_data(
@@ -69,7 +73,8 @@ def run_data(
         "touches": _touches(fit),
         "columns": _columns(fit.run.touches),
         "curves": [_curve(law, c) for law, own in (curves or {}).items() for c in own],
-        "body": _bodies(fit.run.touches),
+        "isPrediction": findings.is_prediction,
+        "body": _body(fit.run.touches, findings.body),
         "switches": [_switch(s, findings.sizes.get(s.effect.name, "")) for s in board.switches],
         "estimate": packed(board.estimate, "f8"),
         "known": [
@@ -103,6 +108,7 @@ def _touches(fit: Fit) -> TREE:
         "measured": packed(run.deviation / UM, "f4", unit="µm"),
         "u": packed(run.u / UM, "f4", unit="µm"),
         "line": packed(run.line, "u4"),
+        **_programmed(run),
         "feature": packed(feature.reshape(-1), "u2"),
         "features": [str(name) for name in features],
         "setup": packed(t.setup, "u2"),
@@ -112,6 +118,19 @@ def _touches(fit: Fit) -> TREE:
         "group": packed(group, "u2"),
         "groups": names,
         "isSpread": bool(np.ptp(t.point, axis=0).max(initial=0.0) > 0.0),
+    }
+
+
+def _programmed(run: Run) -> TREE:
+    """Where each touch stands in its program; nothing where no row says."""
+    names, which = np.unique(run.program, return_inverse=True)
+    if not np.any(run.program != ""):
+        return {"programs": []}
+    return {
+        "programs": [str(name) for name in names],
+        "program": packed(which.reshape(-1), "u1" if len(names) < 256 else "u2"),
+        "number": packed(run.touch, "u4"),
+        "programLine": packed(run.program_line, "u4"),
     }
 
 
@@ -169,9 +188,9 @@ def _curve(law: str, curve: LawCurve) -> TREE:
     }
 
 
-def _bodies(touches: Touches) -> TREE | None:
+def _body(touches: Touches, known: Array | None) -> TREE | None:
     """What was touched, in grains that suit its size; None where nothing can be drawn."""
-    parts = touched_bodies(touches)
+    parts = touched_bodies(touches) if known is None else [known]
     if not parts:
         return None
     corners = np.concatenate(parts).reshape(-1)
@@ -200,7 +219,10 @@ def _switch(one: Switch, size: str) -> TREE:
         "size": in_own_unit(size),
         "isFound": one.is_found,
         "alike": list(one.alike),
-        "amounts": [
+        "isFixed": one.is_fixed,
+        "amounts": []
+        if one.is_fixed
+        else [
             _amount(p.name, p.unit, float(sd))
             for p, sd in zip(one.effect.parameters, one.sd, strict=True)
         ],

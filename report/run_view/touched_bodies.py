@@ -35,7 +35,7 @@ def touched_bodies(touches: Touches) -> list[Array]:
     """Triangles (T, 3, 3) of every feature, artefact frame, mm; some have none."""
     out = []
     names = list(dict.fromkeys(touches.feature.tolist()))
-    every = max(1, len(touches) * 2 // MOST_TRIANGLES)
+    every = -(-2 * len(touches) // MOST_TRIANGLES)  # rounded up
     for name in names:
         rows = np.flatnonzero(touches.feature == name)
         point, normal = touches.point[rows], touches.normal[rows]

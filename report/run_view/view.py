@@ -15,6 +15,7 @@ from matstd.report.numbers import sentence
 from matstd.report.run_view.run_data import Findings, run_data
 from matstd.report.verdict import part_lines
 from matstd.report.words import sizes, structure_words
+from matstd.twin.frames import Array
 
 PATTERNS = 2
 """Patterns of a residual that are named."""
@@ -42,8 +43,14 @@ def run_view(
     )
 
 
-def diagnosis_view(result: Diagnosis, title: str) -> LiveView:
-    """Of a diagnosis: found effects on, and laws that were learnt of what they leave."""
+def diagnosis_view(result: Diagnosis, title: str, body: Array | None = None) -> LiveView:
+    """Of a diagnosis: found effects on, and laws that were learnt of what they leave.
+
+    Args:
+        result: The diagnosis.
+        title: Name of the run.
+        body: Triangles of what was probed, where it is known.
+    """
     laws = result.laws if result.laws is not None and result.laws.laws else None
     found = {s.effect.name: sizes(s, most=2) for s in result.steps if s.effect is not None}
     findings = Findings(
@@ -51,16 +58,17 @@ def diagnosis_view(result: Diagnosis, title: str) -> LiveView:
         set_up_alone=_set_up_alone(result.geometry),
         sizes=found if laws is None else found | _law_sizes(laws),
         remains=sentence(dict(part_lines(result))["what remains"]),
+        body=body,
     )
     if laws is None:
         return run_view(diagnosed_board(result), findings)
     return run_view(learnt_board(laws, result.found), findings, _curves(laws))
 
 
-def learnt_view(learning: Learning, title: str) -> LiveView:
+def learnt_view(learning: Learning, title: str, body: Array | None = None) -> LiveView:
     """Of laws that were learnt: they are on, each with its curve over its variables."""
     remains = "" if learning.laws else no_law_sentence(learning)
-    findings = Findings(title, sizes=_law_sizes(learning), remains=remains)
+    findings = Findings(title, sizes=_law_sizes(learning), remains=remains, body=body)
     return run_view(learnt_board(learning), findings, _curves(learning))
 
 
@@ -76,13 +84,15 @@ def _curves(learning: Learning) -> dict[str, list[LawCurve]]:
     }
 
 
-def comparison_view(found: Comparison, title: str) -> LiveView:
+def comparison_view(found: Comparison, title: str, body: Array | None = None) -> LiveView:
     """Of a comparison: no effect on."""
     patterns = "; ".join(structure_words(s) for s in found.structure[:PATTERNS])
     findings = Findings(
         title,
         set_up_alone=_set_up_alone(found.geometry),
         remains=sentence(patterns) if patterns else "Nothing beyond chance.",
+        body=body,
+        is_prediction=found.is_prediction,
     )
     return run_view(compared_board(found), findings)
 

@@ -11,6 +11,7 @@ from matstd.report.scenes.renderer import STL, screenshot
 from matstd.report.scenes.standard_scene import PICTURE, STANDARD
 from matstd.report.style import series
 from matstd.twin.frames import Array
+from matstd.twin.sampling import grid_points
 
 SIZE = (2000, 860)
 _BODY = "#b9bec4"
@@ -85,7 +86,7 @@ def _face(patch: FreeformPatch) -> Any:
     a, b = patch.half_size
     u = np.linspace(-a, a, int(2 * a / _PITCH) + 2)
     v = np.linspace(-b, b, int(2 * b / _PITCH) + 2)
-    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    uv = grid_points(u, v)
     node = np.arange(len(uv)).reshape(len(u), len(v))
     quads = np.stack([node[:-1, :-1], node[1:, :-1], node[1:, 1:], node[:-1, 1:]], axis=-1)
     cells = np.column_stack([np.full(quads.size // 4, 4), quads.reshape(-1, 4)])

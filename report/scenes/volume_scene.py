@@ -18,6 +18,7 @@ from matstd.report.scenes.renderer import render, shared_folder
 from matstd.report.style import INK, RED, WIDTH, figure, save
 from matstd.twin.errors import DesignError, ShapeMismatch
 from matstd.twin.frames import Array, apply
+from matstd.twin.sampling import grid_points
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -122,7 +123,7 @@ def _camera(scene: Scene) -> Array:
     middle = scene.box.mean(axis=0)
     half = 0.5 * float(np.linalg.norm(np.ptp(scene.box, axis=0)))
     if scene.body is not None and scene.T_readings_artefact is not None:
-        corners = np.stack(np.meshgrid(*scene.body.T), axis=-1).reshape(-1, 3)
+        corners = grid_points(*scene.body.T)
         off = apply(scene.T_readings_artefact, corners) - middle
         half = max(half, float(np.abs(off @ _across().T).max()))
     return np.append(middle, _FREE * half)

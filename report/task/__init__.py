@@ -7,7 +7,7 @@ from matstd.report.task.calibration_words import (
     verdict_lines,
     verdict_rows,
 )
-from matstd.report.task.making_words import fewer_lines, making_lines
+from matstd.report.task.making_words import fewer_lines, making_lines, price_lines
 from matstd.report.task.task_words import budget_rows, measured_sentence, task_lines
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "making_lines",
     "measured_sentence",
     "modulus_words",
+    "price_lines",
     "refusal_sentence",
     "task_lines",
     "verdict_lines",

@@ -3,7 +3,6 @@
 from matstd.report.words.design_words import (
     best_rival,
     comparison_remarks,
-    criterion_words,
     design_lines,
     identification_lines,
     proof_line,
@@ -21,6 +20,7 @@ from matstd.report.words.diagnosis_words import (
     structure_words,
     values,
 )
+from matstd.report.words.family_words import features_words
 from matstd.report.words.probe_words import ball_lines, located_lines
 from matstd.report.words.remark_words import remark_sentence
 from matstd.report.words.sensitivity_words import (
@@ -37,9 +37,9 @@ __all__ = [
     "best_rival",
     "comparison_remarks",
     "comparison_sentence",
-    "criterion_words",
     "design_lines",
     "dominant_words",
+    "features_words",
     "figures",
     "identification_lines",
     "learnt_lines",

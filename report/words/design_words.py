@@ -10,23 +10,15 @@ import numpy as np
 
 from matstd.artefact.compare import DETECTION_POWER, FALSE_ALARM, MODEL_ERROR, Rival, WorstRegions
 from matstd.artefact.place import Placement
-from matstd.artefact.worth import CriterionOptions
 from matstd.diagnosis.accuracy import Proof
 from matstd.diagnosis.fit import Fit
 from matstd.report.numbers import digits, percent, um
-from matstd.report.words.family_words import family_line
+from matstd.report.words.family_words import family_line, proving_words
 from matstd.twin.numbers import rms
 from matstd.twin.units import DEG
 from matstd.twin.words import listed
 
-_CRITERIA = {
-    "I": "mean variance of the predicted tool point over probed volume and workspace",
-    "G": "largest variance of the predicted tool point at any pose of probed volume and workspace",
-    "D": "volume of the joint uncertainty of the parameters, in units of their expected sizes",
-    "A": "mean variance of the parameters, in units of their expected sizes",
-    "E": "variance of the least well determined error pattern, as it moves the tool point",
-}
-
+_NOTHING = 5e-4  # of the error that remains unknown
 _NAMED = 4  # effects of low power that are named
 
 COVERED, NEARLY_ALL, FAR = 0.5, 0.9, 3.0
@@ -38,23 +30,6 @@ AT_20 = "This holds for a standard at 20 °C, or corrected with its known temper
 
 EQUAL = 1.05
 """Ratio up to which two predicted errors count as equal: no user would notice the difference."""
-
-
-def criterion_words(wanted: CriterionOptions) -> str:
-    """Criterion by which the touches were chosen."""
-    words = [_CRITERIA[wanted.name]]
-    if wanted.robust_machines:
-        which = (
-            "" if wanted.robust_share == 1.0 else f"the worst {percent(wanted.robust_share)} of "
-        )
-        words.append(f"averaged over {which}{wanted.robust_machines} random machines")
-    if wanted.potential and wanted.name == "D":
-        words.append("together with the effects of the library")
-    elif wanted.potential:
-        words.append(
-            f"with a weight of {percent(wanted.potential)} for the visibility of library effects"
-        )
-    return ", ".join(words)
 
 
 def best_rival(placement: Placement) -> Rival | None:
@@ -144,7 +119,7 @@ def identification_lines(placement: Placement, worst: WorstRegions) -> list[str]
 
 
 def identification_sentence(placement: Placement) -> str:
-    """What the freeform faces cost or gain in identification; empty without rival spheres."""
+    """What the features that prove cost or gain in identification; empty without rival spheres."""
     own = placement.own
     spheres = [r for r in placement.rivals[1:] if r.body is not None and not r.body.patches]
     if not spheres:
@@ -152,33 +127,46 @@ def identification_sentence(placement: Placement) -> str:
     best = min(spheres, key=lambda r: r.rms_user)
     change = own.rms_user / best.rms_user - 1.0
     return (
-        f"Identification: the freeform faces {'cost' if change > 0.0 else 'gain'} "
-        f"{percent(abs(change))} over your workspace. With the same number of touches, the "
-        f"standard leaves {um(own.rms_user)} rms; {best.name}, placed by the same optimiser, "
-        f"leave {um(best.rms_user)}. The calibration uncertainty of every feature is included."
+        f"Identification: {proving_words(placement.standard, placement.family)} "
+        f"{_cost_or_gain(placement, change)} over your workspace. With the same number of "
+        f"touches, the standard leaves {um(own.rms_user)} rms; {best.name}, placed by the same "
+        f"optimiser, leave {um(best.rms_user)}. The calibration uncertainty of every feature is "
+        "included."
     )
 
 
+def _cost_or_gain(placement: Placement, change: float) -> str:
+    verb = "cost" if change > 0.0 else "gain"
+    verb += "s" if len(placement.standard.proving) == 1 else ""
+    return f"{verb} {percent(abs(change))}" if abs(change) > _NOTHING else f"{verb} nothing"
+
+
 def proof_sentence(placement: Placement) -> str:
-    """Power of the freeform faces to detect a wrong model, compared with more touches on balls."""
+    """Power of what proves to detect a wrong model, compared with more touches on balls."""
     faces, anywhere = placement.power, placement.power_in_volume
     balls, of_all = placement.power_of_balls, percent(float(anywhere.power.mean()))
     return (
-        f"Proof: {faces.touches} touches on the {len(placement.standard.patches)} freeform faces, "
+        f"Proof: {faces.touches} touches on {proving_words(placement.standard, placement.family)}, "
         f"not used for identification, detect a model that is wrong by {um(MODEL_ERROR)} rms "
         f"on surfaces of the same slopes, anywhere in the probed volume, with an average power of "
         f"{percent(float(faces.power.mean()))} at {percent(FALSE_ALARM)} risk "
         f"({percent(DETECTION_POWER)} or more for {faces.found} of {len(faces.effects)} effects "
         f"of the library). For errors of this size in any direction the power is {of_all} "
         f"({anywhere.found} of {len(anywhere.effects)} "
-        f"effects). The same number of further touches on the balls would "
-        f"detect {balls.found} of these, but they share the calibration on which the model rests, "
-        "and no ball resembles the surface of a workpiece."
+        f"effects). The same number of further touches on the balls that identify "
+        f"would detect {balls.found} of these, but they share the calibration on which the model "
+        f"rests{_unlike(placement)}."
+    )
+
+
+def _unlike(placement: Placement) -> str:
+    return (
+        ", and no ball resembles the surface of a workpiece" if placement.standard.patches else ""
     )
 
 
 def blind_spots(placement: Placement) -> str:
-    """Effects that the faces detect with low power, and whether calibration is the cause.
+    """Effects that the proof detects with low power, and whether calibration is the cause.
 
     Where a face is touched at one table pose, or few, a smooth error displaces the whole face, as
     the uncertainty of its calibrated position does.
@@ -191,25 +179,25 @@ def blind_spots(placement: Placement) -> str:
     named = [f"{faces.effects[i]} ({percent(float(faces.power[i]))})" for i in order[:_NAMED]]
     more = f" and {len(weak) - _NAMED} more" if len(weak) > _NAMED else ""
     if exact.found - faces.found > 0.5 * len(weak):
-        cause = "a better calibration of the faces would help"
+        cause = "a better calibration of these features would help"
     elif exact.found > faces.found:
         cause = "their calibration is one cause, their slopes and places are another"
     else:
         cause = "the touches are hardly sensitive to these effects, whatever the calibration"
     return (
         f"Power below {percent(DETECTION_POWER)}: {', '.join(named)}{more}. With exactly known "
-        f"positions of the faces, {exact.found} of {len(exact.effects)} effects would be "
-        f"detected with {percent(DETECTION_POWER)} or more, "
+        f"positions of {proving_words(placement.standard, placement.family)}, {exact.found} of "
+        f"{len(exact.effects)} effects would be detected with {percent(DETECTION_POWER)} or more, "
         f"{percent(float(exact.power.mean()))} on average: {cause}."
     )
 
 
 def regions_sentence(worst: WorstRegions) -> str:
-    """Power of the faces at the poses where random machines are most often among the worst."""
+    """What the proof determines where random machines are most often among the worst."""
     return (
         f"At the {worst.poses} poses of your workspace that are most often among the worst 5 % "
-        f"({100 * worst.recurrence:.0f} % of random machines each, on average), touches on the "
-        f"freeform faces alone reduce the expected error from {um(worst.before)} to "
+        f"({100 * worst.recurrence:.0f} % of random machines each, on average), the touches "
+        f"that prove alone reduce the expected error from {um(worst.before)} to "
         f"{um(worst.after)}. At {100 * worst.covered:.0f} % of these poses at most a tenth of the "
         "error remains."
     )
@@ -234,10 +222,10 @@ def proof_line(number: int, in_workspace: Proof, in_volume: Proof, fit: Fit) -> 
     """One simulated machine: the error that its model does not predict."""
     held_back = fit.test_rows
     left, noise = (rms(v[held_back]) if held_back.any() else 0.0 for v in (fit.residual, fit.run.u))
-    faces = f"; residual on the faces held out {um(left)} rms, noise {um(noise)}" if left else ""
+    proof = f"; residual of the touches held out {um(left)} rms, noise {um(noise)}" if left else ""
     return (
         f"machine {number}: in your workspace {_after(in_workspace)}; "
-        f"in the probed volume {_after(in_volume)}{faces}"
+        f"in the probed volume {_after(in_volume)}{proof}"
     )
 
 

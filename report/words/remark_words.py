@@ -5,6 +5,7 @@ from typing import Any
 
 import matstd.diagnosis.remarks as noticed
 from matstd.diagnosis.fit import MistakenUnit, UnitMistake
+from matstd.diagnosis.remarks import What
 from matstd.report.numbers import plural, um, unit_words, with_uncertainty
 from matstd.twin.library import title_of
 from matstd.twin.units import T_REF, UM
@@ -25,7 +26,7 @@ LISTED = 20
 
 def remark_sentence(remark: noticed.Remark) -> str:
     """One line, without a full stop."""
-    words = _SENTENCES[type(remark)]
+    words = _SENTENCES[remark.what if isinstance(remark, noticed.Noticed) else type(remark)]
     return words.format(r=remark) if isinstance(words, str) else words(remark)
 
 
@@ -79,7 +80,7 @@ def _machine_warmth(r: noticed.BodySize) -> str:
     return f"scales of the machine hold at its temperatures during the run, {at}"
 
 
-def _noise_remembers(r: noticed.NoiseRemembers) -> str:
+def _noise_remembers(r: noticed.Noticed) -> str:
     words = memory_words(r.correlation, r.step, r.by_place)
     count = f"{r.rows} touches count as {r.independent:.0f} independent touches"
     if r.is_noise:
@@ -98,7 +99,7 @@ def _of_another_run(r: noticed.EffectOfOtherRun) -> str:
     return f"{words} belongs to {whose}{size}: it is not applied here"
 
 
-def _chosen(r: noticed.ChosenByPrediction) -> str:
+def _chosen(r: noticed.Noticed) -> str:
     tried = "; ".join(f"{name} {error / UM:.2f} µm" for name, error in r.tried)
     none = NONE_CERTAIN if r.is_empty and r.chosen != "nothing" else ""
     return (
@@ -107,7 +108,7 @@ def _chosen(r: noticed.ChosenByPrediction) -> str:
     )
 
 
-def _field_shares(r: noticed.FieldShares) -> str:
+def _field_shares(r: noticed.Noticed) -> str:
     words = ", ".join(f"{drive} {size / UM:.1f}" for drive, size in r.sizes)
     return (
         f"the thermal field of {r.axis} follows {words} µm rms, which partly cancel; correlated "
@@ -115,7 +116,7 @@ def _field_shares(r: noticed.FieldShares) -> str:
     )
 
 
-def _joints_stood(r: noticed.JointsStood) -> str:
+def _joints_stood(r: noticed.Noticed) -> str:
     return (
         f"{listed([*r.names])} did not move in any pose: their errors cannot be determined and are "
         "part of the position of the reflector"
@@ -131,7 +132,7 @@ def _jump_in_order(r: noticed.JumpInOrder) -> str:
     )
 
 
-def _few_poses(r: noticed.FewPoses) -> str:
+def _few_poses(r: noticed.Noticed) -> str:
     if not r.has_rotary:
         return f"only {plural(r.poses, 'pose')}: rows are held out in blocks instead of by pose"
     return (
@@ -141,14 +142,14 @@ def _few_poses(r: noticed.FewPoses) -> str:
     )
 
 
-def _noise_misstated(r: noticed.NoiseMisstated) -> str:
+def _noise_misstated(r: noticed.Noticed) -> str:
     return (
         f"touches scatter by {r.found / UM:.2f} µm about the model; the stated noise is "
         f"{r.stated / UM:.2f} µm"
     )
 
 
-def _many_stood_out(r: noticed.ManyStoodOut) -> str:
+def _many_stood_out(r: noticed.Noticed) -> str:
     share = f"{r.touches} of {r.of} touches are outliers ({100.0 * r.touches / r.of:.0f} %)"
     why = (
         "scattered, of all sizes and far from the rest, like accidental errors"
@@ -161,7 +162,7 @@ def _many_stood_out(r: noticed.ManyStoodOut) -> str:
     )
 
 
-def _outliers_left_out(r: noticed.OutliersLeftOut) -> str:
+def _outliers_left_out(r: noticed.Noticed) -> str:
     count = len(r.lines)
     several = count > 1
     side = "outside" if r.largest > 0 else "inside"
@@ -180,7 +181,7 @@ def _outliers_left_out(r: noticed.OutliersLeftOut) -> str:
     )
 
 
-def _not_significant(r: noticed.NotSignificant) -> str:
+def _not_significant(r: noticed.Noticed) -> str:
     size = with_uncertainty(r.value, r.u, unit_words(r.unit))
     return (
         f"{r.effect} was added by name, but its size is not significant: {r.quantity} {size}; "
@@ -233,40 +234,40 @@ def _harmonics_alike(r: noticed.HarmonicsAlike) -> str:
     )
 
 
-_SENTENCES: dict[type, str | Callable[[Any], str]] = {
+_SENTENCES: dict[type | What, str | Callable[[Any], str]] = {
     UnitMistake: _units,
     noticed.BodySize: _body_size,
-    noticed.NoiseRemembers: _noise_remembers,
-    noticed.ChosenByPrediction: _chosen,
-    noticed.FieldShares: _field_shares,
+    What.NOISE_REMEMBERS: _noise_remembers,
+    What.CHOSEN_BY_PREDICTION: _chosen,
+    What.FIELD_SHARES: _field_shares,
     noticed.EffectOfOtherRun: _of_another_run,
-    noticed.ReaderRemark: "{r.text}",
-    noticed.FewTouches: "{r.touches} touches for {r.parameters} possible errors of the machine: "
+    What.READER: "{r.text}",
+    What.FEW_TOUCHES: "{r.touches} touches for {r.parameters} possible errors of the machine: "
     "the expected sizes determine the rest; not the single errors are known, but their sum where "
     "the machine was probed",
-    noticed.FewDegreesOfFreedom: "only {r.dof:.0f} degrees of freedom remain for the noise: only "
+    What.FEW_DEGREES_OF_FREEDOM: "only {r.dof:.0f} degrees of freedom remain for the noise: only "
     "large effects can be detected, and the stated uncertainty is used",
-    noticed.HeldOutInDoubt: "the error of held-out touches is {r.ratio:.1f} times the stated "
+    What.HELD_OUT_IN_DOUBT: "the error of held-out touches is {r.ratio:.1f} times the stated "
     "noise, with too few touches to decide whether an effect is missing: probe more",
-    noticed.FewPoses: _few_poses,
-    noticed.JointsStood: _joints_stood,
+    What.FEW_POSES: _few_poses,
+    What.JOINTS_STOOD: _joints_stood,
     noticed.JumpInOrder: _jump_in_order,
-    noticed.WorseThanReplicates: "residuals are {r.ratio:.2f} times as large as the scatter of "
+    What.WORSE_THAN_REPLICATES: "residuals are {r.ratio:.2f} times as large as the scatter of "
     "{r.dof} replicates: the model is incomplete",
-    noticed.NoiseMisstated: _noise_misstated,
-    noticed.OutliersKept: "more touches are outliers than accidental errors can explain: all were "
+    What.NOISE_MISSTATED: _noise_misstated,
+    What.OUTLIERS_KEPT: "more touches are outliers than accidental errors can explain: all were "
     "kept, and the residual is treated as a pattern",
-    noticed.OutliersLeftOut: _outliers_left_out,
-    noticed.ManyStoodOut: _many_stood_out,
-    noticed.PriorWidened: "the errors of the machine are about {r.factor:.1f} times as large as "
+    What.OUTLIERS_LEFT_OUT: _outliers_left_out,
+    What.MANY_STOOD_OUT: _many_stood_out,
+    What.PRIOR_WIDENED: "the errors of the machine are about {r.factor:.1f} times as large as "
     "stated; the prior was widened by this factor",
-    noticed.ShortBeam: "{r.effect} is at most {r.slenderness:.1f} times as long as deep: beam "
+    What.SHORT_BEAM: "{r.effect} is at most {r.slenderness:.1f} times as long as deep: beam "
     "theory is doubtful there, and the compliance of its support matters as much",
-    noticed.LoadTooSmall: "loads of up to {r.load:.3g} N are too small to identify {r.effect}: "
+    What.LOAD_TOO_SMALL: "loads of up to {r.load:.3g} N are too small to identify {r.effect}: "
     "its numbers are the prior ones; load the tool with about 100 N",
-    noticed.SearchEnded: "the search was stopped after {r.sets:.0f} sets of effects: the reported "
+    What.SEARCH_ENDED: "the search was stopped after {r.sets:.0f} sets of effects: the reported "
     "effects passed every test, but another set may explain more",
-    noticed.NotSignificant: _not_significant,
+    What.NOT_SIGNIFICANT: _not_significant,
     noticed.HarmonicsAlike: _harmonics_alike,
 }
 """For each kind of remark a text with its fields, or a function that makes one."""

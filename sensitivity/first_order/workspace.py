@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from matstd.twin.errors import DesignError, NotReachable, OutsideTravel, UnknownAxis
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, inverse_linear, tip
-from matstd.twin.sampling import latin_points
+from matstd.twin.sampling import grid_points, latin_points
 
 Box = tuple[tuple[float, float, float], tuple[float, float, float]]
 _ROUNDS = 40  # draws of joints until enough tool points lie in the box
@@ -103,8 +103,7 @@ def grid(workspace: Workspace, counts: Mapping[str, int] | int) -> Array:
     total = int(np.prod([len(v) for v in each], dtype=float))
     if total > _MOST_POSES:
         raise DesignError(f"a grid of {total} poses, expected at most {_MOST_POSES}")
-    mesh = np.meshgrid(*each, indexing="ij")
-    q = _inside(workspace, np.stack([m.ravel() for m in mesh], axis=-1))
+    q = _inside(workspace, grid_points(*each))
     if not len(q):
         assert workspace.volume is not None  # the limits alone leave every pose in
         raise NotReachable(

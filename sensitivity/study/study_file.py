@@ -9,8 +9,9 @@ from matstd.sensitivity.montecarlo import Volumetric
 from matstd.sensitivity.study.machine_study import Study
 from matstd.sensitivity.study.study_table import pose_columns, statistics_columns
 from matstd.twin.files import write_whole, written_whole
+from matstd.twin.files.whole import write_json
 from matstd.twin.frames import Array
-from matstd.twin.text import csv_text, json_text
+from matstd.twin.text import csv_text
 from matstd.twin.units import UM, URAD
 
 
@@ -48,7 +49,7 @@ def write_study(study: Study, folder: str | Path, statement: str) -> None:
         table |= {f"errors_of_{e.axis}_um": e.size / UM for e in study.path.effects}
         write_whole(folder / "trajectory.csv", _table_text(table))
     _write_sections(study, folder / "sections.npz")
-    write_whole(folder / "montecarlo.json", json_text(_summary(study, statement)))
+    write_json(folder / "montecarlo.json", _summary(study, statement))
 
 
 def _summary(study: Study, statement: str) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from matstd.sensitivity.population import Population
 from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array, apply
 from matstd.twin.machine import Symbol, inverse_linear, reach, tip
+from matstd.twin.sampling import grid_points
 
 SECTION_POINTS = (19, 19, 17)
 """Readings of each axis in a volume."""
@@ -111,9 +112,9 @@ def volume(
     each = tuple(
         np.linspace(*workspace.limit(name), n) for name, n in zip(names, points, strict=True)
     )
-    mesh = np.meshgrid(*each, indexing="ij")
-    q = np.tile(base, (mesh[0].size, 1))
-    q[:, columns] = np.stack([m.ravel() for m in mesh], axis=1)
+    points_of_grid = grid_points(*each)
+    q = np.tile(base, (len(points_of_grid), 1))
+    q[:, columns] = points_of_grid
     # where the tool point is to be, at the table's origin and one step along each of its axes
     corners = np.concatenate([np.zeros((1, 3)), np.eye(3)])
     found = inverse_linear(chain, corners, np.tile(base, (4, 1)), workspace.length)[:, columns]

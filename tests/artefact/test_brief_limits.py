@@ -24,15 +24,15 @@ def check(**limits: float) -> None:
 
 
 @pytest.mark.parametrize(
-    ("limits", "told"),
+    ("limits", "expected"),
     [
         ({"min_concave_radius_mm": 0.5}, r"found 0\.5, expected a number, 3 mm or more"),
         ({"min_concave_radius_mm": 2.9}, r"found 2\.9, expected a number, 3 mm or more"),
         ({"slot_pitch_mm": 0.01}, "found 0.01, expected 20 mm or more, or 0"),
     ],
 )
-def test_what_no_cutter_or_table_has_is_refused(limits, told):
-    with pytest.raises(BadFile, match=told):
+def test_what_no_cutter_or_table_has_is_refused(limits, expected):
+    with pytest.raises(BadFile, match=expected):
         check(**limits)
 
 

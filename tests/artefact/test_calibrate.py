@@ -1,6 +1,5 @@
 """A standard with planted errors, a CMM that measures it somewhere, and what comes back."""
 
-import importlib.util
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -48,16 +47,6 @@ def form(uv: np.ndarray) -> np.ndarray:
     """What was planted on FF1, along the normal, mm: place, tilt and a wave."""
     u, v = uv.T / 15.0
     return 6 * UM + 4 * UM * u + 7 * UM * np.sin(2.2 * u + 1.0) * np.cos(1.5 * v)
-
-
-@pytest.fixture(scope="module")
-def golden():
-    spec = importlib.util.spec_from_file_location(
-        "golden_calibrated", ROOT / "tests" / "golden" / "make_programs.py"
-    )
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
@@ -248,7 +237,7 @@ def test_a_ball_by_hand() -> None:
 
 
 @pytest.mark.parametrize(
-    ("spoil", "told"),
+    ("spoil", "expected"),
     [
         (lambda rows: [r for r in rows if not r[0].startswith("FF1_1")], "FF1 has"),
         (lambda rows: [r for r in rows if r[0] not in ("SPH1",)], "points on 2 balls"),
@@ -256,10 +245,10 @@ def test_a_ball_by_hand() -> None:
         (lambda rows: [*rows[:-1], (rows[-1][0], *np.add(rows[-1][1:], 5.0))], "FF2"),
     ],
 )
-def test_points_that_do_not_do(nominal, tmp_path, spoil, told) -> None:
+def test_points_that_do_not_do(nominal, tmp_path, spoil, expected) -> None:
     rows = spoil(cmm_rows(nominal, np.random.default_rng(3), per_face=22))
     path = written(tmp_path / "cmm.csv", rows, nominal.fingerprint)
-    with pytest.raises((BadFile, NotEnoughData), match=told):
+    with pytest.raises((BadFile, NotEnoughData), match=expected):
         fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, NOISE)
 
 
@@ -390,7 +379,7 @@ def test_a_head_stands_on_the_side_that_its_angles_say(nominal) -> None:
 
 
 def test_the_piece_is_probed_and_the_design_believed(golden, nominal, found, tmp_path) -> None:
-    """`simulate --real-standard`: the balls that stand off are told by their deviations."""
+    """`simulate --real-standard`: the balls that stand off are reported by their deviations."""
     from matstd.twin.files.run_file import read_run
 
     write_standard(tmp_path / "standard.toml", nominal)
@@ -417,8 +406,8 @@ def test_the_piece_is_probed_and_the_design_believed(golden, nominal, found, tmp
     assert rms["real"] == pytest.approx(0.5, abs=0.15)
 
 
-def test_dust_is_left_out_and_told(nominal, tmp_path) -> None:
-    """A chip of 40 µm under a point of a face and of a ball: the same standard, two lines told."""
+def test_dust_is_left_out_and_reported(nominal, tmp_path) -> None:
+    """A chip of 40 µm under a point of a face and of a ball: the same standard, and two lines."""
     made = []
     for chip in (0.0, 40 * UM):
         rows = cmm_rows(nominal, np.random.default_rng(6))

@@ -22,10 +22,10 @@ from matstd.information.identifiability.estimable_combinations import combinatio
 from matstd.information.identifiability.freedoms import Resolution
 from matstd.report.identifiability.identifiability_file import (
     identifiability_table,
-    write_identifiability,
 )
 from matstd.sensitivity.first_order.workspace import Workspace
 from matstd.sensitivity.population.sampling import Population
+from matstd.twin.files.whole import write_json
 from matstd.twin.machine.chain import Axis, make_chain
 from matstd.twin.record.touches import Setup
 from matstd.twin.units import DEG, UM
@@ -159,7 +159,7 @@ def test_errors_known_for_themselves(criterion, requests, known):
 
 def test_the_file_says_what_the_record_says(known, tmp_path):
     path = tmp_path / "identifiability.json"
-    write_identifiability(path, known)
+    write_json(path, identifiability_table(known))
     data = json.loads(path.read_text(encoding="utf-8"))
     assert data == json.loads(json.dumps(identifiability_table(known)))
     assert data["format"] == "identifiability/1"

@@ -10,6 +10,7 @@ from matstd.artefact.body.first_contact import contact
 from matstd.artefact.body.limits import Limits, check
 from matstd.artefact.body.patch import Meeting
 from matstd.artefact.body.standard import Base
+from matstd.artefact.body.standard_file import read_standard, write_standard
 from matstd.artefact.brief.brief import PlacementOptions
 from matstd.artefact.compare.power import proof_power, task_normals
 from matstd.artefact.layout.blank import Blank
@@ -319,3 +320,20 @@ def test_other_families_meet_every_limit_and_identify_as_balls_do(reach, workspa
     own = next(one for one in made.families if one.family == made.family)
     assert own.rms_user == pytest.approx(made.own.rms_user, rel=1e-9)
     assert own.touches == 160
+
+
+def test_balls_alone_are_a_standard_of_their_own(reach, workspace, tmp_path):
+    options = replace(OPTIONS, family="balls")
+    placed = design_standard(brief_of(reach, workspace, options), np.random.default_rng(3))
+    made = placed.standard
+    check(made, Limits())
+    assert not made.patches
+    assert 1 <= len(made.proving) <= options.patches
+    assert set(placed.proof.feature) <= set(made.proving)
+    assert not set(placed.requests.feature) & set(made.proving)
+    spheres = [r.rms_user for r in placed.rivals[1:] if r.body is not None and not r.body.patches]
+    assert placed.own.rms_user <= 1.02 * min(spheres)
+    write_standard(tmp_path / "s.toml", made)
+    again = read_standard(tmp_path / "s.toml")
+    assert again.proving == made.proving
+    assert again.fingerprint == made.fingerprint

@@ -69,8 +69,8 @@ def test_touches_cover_every_face(criterion, upright, chosen):
         spread = left(face.point(face.grid(0.5)), mine.point)
         assert spread < 1.35 * HONEYCOMB * area / len(mine)  # edges are kept clear, slopes longer
         most = informative_touches(criterion.on(upright), tried, some, 40)
-        told = most[most.feature == face.name]
-        assert spread < 0.7 * left(face.point(face.grid(0.5)), told.point)
+        stated = most[most.feature == face.name]
+        assert spread < 0.7 * left(face.point(face.grid(0.5)), stated.point)
     assert np.bincount(proof.pose).max() <= np.ceil(1.25 * 40 / 5)
 
 

@@ -58,7 +58,7 @@ def test_pillars_weigh_what_they_may():
         freeform_faces(Blank(), 6, 5, np.random.default_rng(2), heaviest=-1.0)
 
 
-def test_the_lightest_standard_is_told_and_can_be_built(reach):
+def test_the_lightest_standard_is_reported_and_can_be_built(reach):
     rng = np.random.default_rng(3)
     faces, balls = freeform_faces(Blank(), 4, 50, rng), balls_on_posts(Blank(), 40, rng)
     refused = lightest_room(room_among(faces, balls, 4, heavy(19.0)), faces, balls)

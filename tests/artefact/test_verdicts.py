@@ -126,7 +126,7 @@ def test_a_piece_as_drawn_conforms(nominal, drawn, capsys):
 
 
 @pytest.mark.parametrize(
-    ("fault", "told"),
+    ("fault", "expected"),
     [
         (
             {"radii": 20 * UM},
@@ -148,13 +148,13 @@ def test_a_piece_as_drawn_conforms(nominal, drawn, capsys):
         ({"scale": -20e-6}, "ppm too short .* or a piece at 18.1 °C; let the CMM compensate"),
     ],
 )
-def test_a_fault_is_refused_and_named_and_can_be_accepted(nominal, drawn, capsys, fault, told):
+def test_a_fault_is_refused_and_named_and_can_be_accepted(nominal, drawn, capsys, fault, expected):
     points = measured(drawn, **fault)
     code, out = calibrate(drawn, points)
     assert code == 2
     assert not out.exists()
     said = capsys.readouterr()
-    assert re.search(told, said.err), said.err
+    assert re.search(expected, said.err), said.err
     assert said.err.count("\n") == 1
     assert "--accept accepts the piece as it is" in said.err
     assert "not conforming" in said.out
@@ -171,7 +171,7 @@ def test_a_fault_is_refused_and_named_and_can_be_accepted(nominal, drawn, capsys
 
 
 @pytest.mark.parametrize(
-    ("fault", "told"),
+    ("fault", "expected"),
     [
         ({"names": {"SPH2": "SPH5", "SPH5": "SPH2"}}, "points of SPH5 under the name SPH2, SPH2"),
         ({"names": {"FF1": "FF2", "FF2": "FF1"}}, "points of FF2 under the name FF1"),
@@ -179,12 +179,12 @@ def test_a_fault_is_refused_and_named_and_can_be_accepted(nominal, drawn, capsys
         ({"radii": 1.5, "tip": 1.5}, "radii that are all 1.500 mm too large"),
     ],
 )
-def test_points_that_are_no_measurement_of_the_piece_are_named(drawn, capsys, fault, told):
+def test_points_that_are_no_measurement_of_the_piece_are_named(drawn, capsys, fault, expected):
     points = measured(drawn, **fault)
     for options in ((), ("--accept",)):
         code, out = calibrate(drawn, points, *options)
         assert code == 2
-        assert told in capsys.readouterr().err
+        assert expected in capsys.readouterr().err
         assert not out.exists()
 
 

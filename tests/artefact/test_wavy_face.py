@@ -11,6 +11,7 @@ from matstd.artefact.body.standard import Base
 from matstd.artefact.hidden.scan_lines import Scan, scanned
 from matstd.artefact.hidden.scan_path import scan_path, write_scan_path
 from matstd.artefact.layout.blank import Blank
+from matstd.artefact.layout.upright import holes_on
 from matstd.artefact.layout.wavy import Wave, wavy_face
 from matstd.artefact.place.family import (
     Family,
@@ -85,22 +86,25 @@ def test_the_mean_plane_of_a_wave_is_level(upright):
     [
         ("prove", (10.0, 8.0, 8.0, 16.0), (1.0, 1.01, 1.01, 1.01), Family.WAVY),
         ("prove", (10.0, 9.7, 9.0, 9.0), (1.0, 1.01, 1.01, 1.01), Family.FACES),
-        ("prove", (10.0, 9.0, 9.5, 16.0), (1.0, 1.01, 1.01, 1.03), Family.FLAT),
+        ("prove", (10.0, 9.0, 9.6, 16.0), (1.0, 1.01, 1.01, 1.03), Family.FLAT),
+        ("prove", (10.0, 9.0, 9.5, 16.0), (1.0, 1.01, 1.01, 1.03), Family.BALLS),
+        ("prove", (10.0, 9.0, 9.5, 16.0), (1.0, 1.03, 1.03, 1.03), Family.BALLS),
         ("identify", (10.0, 8.0, 8.0, 16.0), (1.0, 1.01, 1.02, 0.99), Family.WAVY),
         ("identify", (10.0, 8.0, 8.0, 16.0), (1.0, 1.01, 1.02, 1.02), Family.FACES),
+        ("worst", (10.0, 8.0, 8.0, 16.0), (1.0, 1.01, 1.02, 1.02), Family.FACES),
     ],
 )
 def test_the_family_that_wins(goal, signals, lefts, wins):
     figures = tuple(
-        FamilyFigures(family, rms_user=left * UM, signal=signal)
+        FamilyFigures(family, rms_user=left * UM, worst_user=2.0 * left * UM, signal=signal)
         for family, signal, left in zip(Family, signals, lefts, strict=True)
     )
-    assert chosen_family(figures[1:], goal, 1.0 * UM) is wins
+    assert chosen_family(figures, goal, 1.0 * UM) is wins
 
 
 def test_a_family_that_cannot_be_built_does_not_win():
     figures = (
-        FamilyFigures(Family.FACES, 1.0 * UM, 5.0),
+        FamilyFigures(Family.FACES, 1.0 * UM, signal=5.0),
         FamilyFigures(Family.WAVY, refused="no room"),
     )
     assert chosen_family(figures, "prove", 1.0 * UM) is Family.FACES
@@ -159,3 +163,12 @@ def test_a_gap_in_a_line_begins_a_new_one(criterion):
     assert line.max() > 2 * whole[1].max()
     steps = np.linalg.norm(np.diff(points.point, axis=0), axis=1)
     assert steps[np.diff(line) == 0].max() < 1.5 * 2.5 / np.cos(45.0 * DEG)
+
+
+def test_screws_stand_round_the_middle():
+    """On three corners of a square the middle lies on a side, and the fourth corner swings."""
+    wide = replace(BLANK, base=Base((160.0, 160.0)))
+    a, b, c = (np.array([hole.x, hole.y]) for hole in holes_on(wide))
+    for p, q in ((a, b), (b, c), (c, a)):
+        (x, y), (u, v) = p, q - p
+        assert abs(x * v - y * u) / np.hypot(u, v) > 55.0

@@ -94,10 +94,10 @@ def test_off_and_on_begins_at_zero_where_the_axes_are():
 
 
 def test_counts_that_were_lost_are_given_again():
-    """The control drops changes for a moment in which nobody knew: at last they agree."""
+    """The control drops changes for a moment of which the pin knew nothing: at last they agree."""
     run = Run()
     run.pass_by(0.02, [30 * UM, 0.0])
-    run.axes.on = False  # and the pin has not told it yet
+    run.axes.on = False  # and the pin has not reported it yet
     given = (run.now, True, run.axes.requested, FREE)
     for _ in range(5):
         run.now += PERIOD

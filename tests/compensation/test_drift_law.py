@@ -113,7 +113,7 @@ def test_columns_move_what_they_are_bound_to(drifting, bench_chain):
     moved = deviation(errors, errors.touches(q, LENGTH))[0]
     assert moved[2] == pytest.approx(5.0 * PER_K + 1000.0 * PER_RPM, rel=1e-3)
     only = parse_effect(f"drift-law({drifting.path},z:EYY@-100:300)", bench_chain)
-    assert [p.name for p in only.parameters] == ["law"]  # all that touches are to tell
+    assert [p.name for p in only.parameters] == ["law"]  # all that touches have to determine
     y = bench_chain.axis_index("Y")
     q = np.zeros((3, 6))
     q[:, y] = -100.0, 100.0, 300.0

@@ -1,4 +1,4 @@
-"""Process forces: by blocks of a program, and what loads cannot tell."""
+"""Process forces: by blocks of a program, and what loads cannot determine."""
 
 from dataclasses import replace
 
@@ -77,7 +77,7 @@ def test_loads_that_make_no_sense_are_refused(tmp_path, rows, words):
         read_loads(path)
 
 
-def test_a_beam_is_added_on_the_command_line_and_a_short_one_is_told(tmp_path, capsys):
+def test_a_beam_is_added_on_the_command_line_and_a_short_one_is_reported(tmp_path, capsys):
     (tmp_path / "m.toml").write_text(MACHINE)
     (tmp_path / "e.toml").write_text(
         'format = "errors/1"\n[EXX]\nshape = "linear"\namplitude = 5\n'

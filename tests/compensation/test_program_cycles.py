@@ -7,11 +7,8 @@ import numpy as np
 import pytest
 from rs274 import interpreted, is_there
 
-from matstd.compensation.field.state import State
-from matstd.compensation.part_programs.frame import Frame
 from matstd.compensation.part_programs.program import read_part_program
 from matstd.compensation.programs.compensation import compensated
-from matstd.compensation.tables.header import header_of
 from matstd.twin.errors import BadFile
 from matstd.twin.units import DEG, UM
 
@@ -35,16 +32,6 @@ G90 M30
 %
 """
 START = "BEGIN PGM A MM\nTOOL CALL 3 Z S100\nL X+0 Y+0 Z+9 FMAX\nL Z+0 F500\n"
-
-
-@pytest.fixture(scope="module")
-def frame(bench_chain, datum):
-    return Frame(bench_chain, datum)
-
-
-@pytest.fixture(scope="module")
-def head(bench_chain, datum):
-    return header_of(bench_chain, "0123456789ab", datum, State())
 
 
 def program(text, frame, folder, name="a.H", **more):
@@ -119,7 +106,7 @@ def test_a_hole_is_where_it_should_be_at_its_bottom(frame, known, head, tmp_path
     }
     assert np.linalg.norm(done.before, axis=1).max() > 10 * UM
     assert max(off[k] for k in bottoms) < 0.03 * UM
-    # above it the same shift holds: what it leaves there is told
+    # above it the same shift holds: what it leaves there is reported
     assert 0.03 * UM < max(off[k - 1] for k in bottoms) < 3 * UM
     assert len(done.leans) == len(bottoms)
     assert max(done.leans) <= max(off[k - 1] + off[k] for k in bottoms)

@@ -10,7 +10,6 @@ from rs274 import is_there, moves
 from matstd.cli import main
 from matstd.compensation.field.machine_errors import MachineErrors
 from matstd.compensation.field.state import State
-from matstd.compensation.part_programs.frame import Frame
 from matstd.compensation.part_programs.motion import Keep
 from matstd.compensation.part_programs.program import read_part_program
 from matstd.compensation.programs.compensation import compensated
@@ -61,16 +60,6 @@ KLARTEXT = """0 BEGIN PGM PART MM
 16 M30
 17 END PGM PART MM
 """
-
-
-@pytest.fixture(scope="module")
-def frame(bench_chain, datum):
-    return Frame(bench_chain, datum)
-
-
-@pytest.fixture(scope="module")
-def head(bench_chain, datum):
-    return header_of(bench_chain, "0123456789ab", datum, State())
 
 
 def program(text, frame, folder, name="part.ngc"):

@@ -13,11 +13,8 @@ import pytest
 from control import AXES, AXIS, INI, a_user
 from rs274 import interpreted, is_there
 
-from matstd.compensation.field.state import State
-from matstd.compensation.part_programs.frame import Frame
 from matstd.compensation.part_programs.program import read_part_program
 from matstd.compensation.programs.compensation import compensated
-from matstd.compensation.tables.header import header_of
 from matstd.probe_paths.linuxcnc.session import LOCK
 from matstd.twin.errors import BadFile
 from matstd.twin.units import UM
@@ -77,16 +74,6 @@ SECONDS = {
     30: 60 / 20,
 }
 """Of every fed line by hand: degrees over degrees a minute, mm over mm a minute, 1 over F."""
-
-
-@pytest.fixture(scope="module")
-def frame(bench_chain, datum):
-    return Frame(bench_chain, datum)
-
-
-@pytest.fixture(scope="module")
-def head(bench_chain, datum):
-    return header_of(bench_chain, "0123456789ab", datum, State())
 
 
 @pytest.fixture
@@ -220,7 +207,7 @@ net change iocontrol.0.tool-change => iocontrol.0.tool-changed
     for k in range(5)
 )
 STANDS = 200
-"""Periods of 1 ms without motion, by which motions are told apart: dwells take 400."""
+"""Periods of 1 ms without motion, by which motions are distinguished: dwells take 400."""
 
 
 def run_on_linuxcnc(texts):

@@ -37,11 +37,6 @@ from matstd.twin.units import DEG, NM, UM, URAD
 
 
 @pytest.fixture(scope="module")
-def head(bench_chain, datum):
-    return header_of(bench_chain, "0123456789ab", datum, State())
-
-
-@pytest.fixture(scope="module")
 def written(known, datum, head, poses, tmp_path_factory):
     """Folders of all formats."""
     folder = tmp_path_factory.mktemp("tables")
@@ -331,7 +326,7 @@ def test_the_sign_switch_turns_every_value(
 
 
 @pytest.mark.parametrize("name", list(FORMATS))
-def test_the_one_point_test_tells_a_wrong_sign(results, name):
+def test_the_one_point_test_detects_a_wrong_sign(results, name):
     test = results[name].acceptance
     change = test.with_table - test.without
     np.testing.assert_allclose(test.wrong_sign - test.without, -change, atol=0.1 * UM)

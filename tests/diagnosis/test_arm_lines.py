@@ -55,16 +55,16 @@ def test_links_of_displaced_lines_are_measured_as_they_are(fit) -> None:
     theta = np.zeros(len(fit.model.parameters))
     for name, value in errors.items():
         theta[places[name]] = value
-    told = {f.symbol: float(f.weights @ theta) for f in arm_functionals(fit, JOINTS)}
+    reported = {f.symbol: float(f.weights @ theta) for f in arm_functionals(fit, JOINTS)}
     before, after = displaced({}), displaced(errors)
     for one, other in (("C", "B"), ("B1", "A")):
         change = distance(after[one], after[other]) - distance(before[one], before[other])
-        assert told[f"a({one},{other})"] == pytest.approx(change, abs=2e-3)
+        assert reported[f"a({one},{other})"] == pytest.approx(change, abs=2e-3)
         angle = [np.arccos(s[one][1] @ s[other][1]) for s in (before, after)]
-        assert abs(told[f"alpha({one},{other})"]) == pytest.approx(
+        assert abs(reported[f"alpha({one},{other})"]) == pytest.approx(
             abs(angle[1] - angle[0]), abs=1e-6
         )
-    lean = np.array([told["alpha(B,B1)"], told["beta(B,B1)"]])
+    lean = np.array([reported["alpha(B,B1)"], reported["beta(B,B1)"]])
     opposite = np.pi - np.arccos(after["B"][1] @ after["B1"][1])
     assert -np.cos(opposite) == pytest.approx(after["B"][1] @ after["B1"][1])
     assert np.linalg.norm(lean) == pytest.approx(opposite, rel=1e-3)

@@ -6,7 +6,7 @@ import pytest
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.geometry.arm_machine import found_arm
 from matstd.diagnosis.geometry.learnt import geometry_rows
-from matstd.diagnosis.remarks.run_remarks import JointsStood, remarks
+from matstd.diagnosis.remarks import What, noticed, remarks
 from matstd.importers.arms import arm_from_dh, read_arm, tracker_run
 from matstd.importers.sheets import read_sheet
 from matstd.report.geometry.geometry_words import quantity_name
@@ -73,7 +73,7 @@ def learnt(tmp_path_factory):
 
 
 @pytest.mark.parametrize("name", PLANTED)
-def test_what_is_wrong_with_an_arm_is_told_in_its_terms(learnt, name) -> None:
+def test_what_is_wrong_with_an_arm_is_reported_in_its_terms(learnt, name) -> None:
     array, index, step, symbol = PLANTED[name]
     rows = {r.symbol: r for r in geometry_rows(learnt(array, index, step))}
     found = rows[symbol]
@@ -91,7 +91,7 @@ def test_what_is_wrong_with_an_arm_is_told_in_its_terms(learnt, name) -> None:
 def test_all_lines_together_make_the_machine_file_of_the_arm_that_was_measured(
     learnt, name
 ) -> None:
-    """Ten times the error, planted in the table: with the file alone 5 % of it is left, as told."""
+    """Ten times the error, planted in the table: 5 % of it is left with the file alone."""
     array, index, step, _ = PLANTED[name]
     arm = found_arm(learnt(array, index, 10.0 * step))
     assert arm is not None
@@ -106,7 +106,7 @@ def test_lines_to_copy_hold_no_share_of_what_a_machine_file_cannot_hold(learnt) 
     fit = learnt(sag=2e-3)
     arm = found_arm(fit)
     assert arm is not None
-    assert JointsStood(("B1", "A", "B2", "A1")) in remarks(fit)
+    assert noticed(What.JOINTS_STOOD, names=("B1", "A", "B2", "A1")) in remarks(fit)
     again = fit_run(learnt(sag=2e-3, chain=arm.chain).run, Model(arm.chain, ())).rms
     assert max(again, arm.after) < 0.9 * arm.before
 

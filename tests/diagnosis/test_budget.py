@@ -2,18 +2,18 @@
 
 import matstd.diagnosis.search.search_loop as rounds
 from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.remarks.run_remarks import SearchEnded
-from matstd.diagnosis.search.budget import MOST_SETS, Budget
+from matstd.diagnosis.remarks import What, noticed
+from matstd.diagnosis.search.screening import MOST_SETS, Budget
 from matstd.twin.library.catalogue import parse_effect
 
 KEY = (8, "hmc1995", ("thermal-expansion(Y,scaleY)",))
 LIBRARY = ("thermal-expansion(Y,scaleY)", "backlash(X)", "drift", "probe-radius", "probe-lobing")
 
 
-def told(run):
+def found_in(run):
     library = [parse_effect(name, run.touches.chain) for name in LIBRARY]
     d = diagnose(run, candidates=library)
-    return [e.name for e in d.found], SearchEnded(MOST_SETS) in d.remarks
+    return [e.name for e in d.found], noticed(What.SEARCH_ENDED, sets=MOST_SETS) in d.remarks
 
 
 def test_a_usual_search_is_far_from_its_limit(case, monkeypatch) -> None:
@@ -24,14 +24,14 @@ def test_a_usual_search_is_far_from_its_limit(case, monkeypatch) -> None:
         return made[-1]
 
     monkeypatch.setattr(rounds, "Budget", budget)
-    assert told(case(*KEY).run) == (["thermal-expansion(Y,scaleY)"], False)
+    assert found_in(case(*KEY).run) == (["thermal-expansion(Y,scaleY)"], False)
     (one,) = made
     assert 0.8 * MOST_SETS < one.left < MOST_SETS
 
 
 def test_a_search_at_its_limit_ends_and_says_so(case, monkeypatch) -> None:
     monkeypatch.setattr(rounds, "Budget", lambda: Budget(0.5))
-    assert told(case(*KEY).run)[1]
+    assert found_in(case(*KEY).run)[1]
 
 
 def test_sets_of_a_small_run_count_for_less() -> None:

@@ -165,6 +165,7 @@ def of(found, symbol):
     return next(chart for chart in found["charts"] if chart["symbol"] == symbol)
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_a_jump_is_found_where_it_was_planted(jumped, tmp_path, capsys):
     out = tmp_path / "out"
     assert main(["trend", str(jumped), "-o", str(out)]) == 0

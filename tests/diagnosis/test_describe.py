@@ -1,4 +1,4 @@
-"""Sizes as they are told: unbiased, and in their intervals as often as these say."""
+"""Sizes as they are reported: unbiased, and in their intervals as often as these say."""
 
 import numpy as np
 import pytest
@@ -37,8 +37,8 @@ def test_noise_across_does_not_lengthen(name) -> None:
     z = []
     for _ in range(DRAWS):
         theta = np.append(true + sd * rng.standard_normal(len(sd)), 3e-6)
-        told = size(effect, theta, covariance)
-        z.append((told.value * told.factor - np.linalg.norm(true)) / (told.u * told.factor))
+        stated = size(effect, theta, covariance)
+        z.append((stated.value * stated.factor - np.linalg.norm(true)) / (stated.u * stated.factor))
     assert abs(np.mean(z)) < 0.15  # the plain length is off by 0.04, -0.03, 0.75 and 1.26
     held = np.mean(np.abs(z) < 1.96)
     assert held > 0.93 - BINOMIAL * np.sqrt(0.95 * 0.05 / DRAWS)

@@ -76,7 +76,7 @@ def test_a_ball_radius_comes_back_with_its_sign(texts, radius, change) -> None:
     assert number.u < 0.003
 
 
-def test_a_tool_length_and_the_point_of_its_tilting_axis_are_not_told_apart(texts) -> None:
+def test_a_tool_length_and_the_point_of_its_tilting_axis_are_not_distinguished(texts) -> None:
     """On a machine that tilts the table about B both move B's line along Z as the tool sees it."""
     run, machine = texts
     (fault,) = faults_in(run.replace("length_mm = 160.0", "length_mm = 161.5"), machine)
@@ -105,8 +105,10 @@ def test_the_command_line_names_the_mistake_in_its_refusal(texts, tmp_path, caps
     (tmp_path / "machine.toml").write_text(turned, encoding="utf-8")
     out = tmp_path / "out"
     assert main(["compare", str(tmp_path / "run.csv"), "-o", str(out), "--no-report"]) == 2
-    told = capsys.readouterr().err
-    assert "B moves in the direction opposite to that in the machine file" in " ".join(told.split())
+    message = capsys.readouterr().err
+    assert "B moves in the direction opposite to that in the machine file" in " ".join(
+        message.split()
+    )
     assert not out.exists()
 
 

@@ -87,6 +87,7 @@ def test_probings_stand_where_the_log_was(tmp_path):
         read_probed(late, record)
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_the_command_writes_a_law_that_predicts_the_same_again(tmp_path, capsys):
     log = written(tmp_path / "a.csv", rows_of())
     out = tmp_path / "out"
@@ -137,7 +138,7 @@ def test_what_cannot_be_is_refused(tmp_path, capsys, monkeypatch, options, words
     assert not (tmp_path / "out").exists()
 
 
-def test_a_constant_sensor_is_left_out_and_told(tmp_path):
+def test_a_constant_sensor_is_left_out_and_reported(tmp_path):
     rows = [f"{r},21.5" for r in rows_of()]
     log = written(tmp_path / "a.csv", rows, f"{HEAD},T_dead_degC")
     record = varying(read_log(log, 300.0), np.arange(100))
@@ -145,7 +146,7 @@ def test_a_constant_sensor_is_left_out_and_told(tmp_path):
     assert "dead: constant in the training hours, left out" in record.remarks[0]
 
 
-def test_displacements_that_answer_before_the_speed_are_told(tmp_path):
+def test_displacements_that_answer_before_the_speed_are_reported(tmp_path):
     """A body of 40 min behind the speed; its logger's clock is 30 min ahead of the control's."""
     rpm = 1000.0 * np.array([k % 30 > 15 for k in range(150)])
     growth, course = 0.0, []

@@ -30,7 +30,7 @@ def test_what_a_spindle_that_stands_still_hides_is_named(known) -> None:
 
 
 def test_constant_of_c_is_the_rotation_of_the_set_ups(known) -> None:
-    """A zero of C that is off cannot be told from standards that were all turned on the table."""
+    """A zero of C that is off looks like standards that were all turned on the table."""
     _, e = known
     turns = {f"setup({c}): rz" for c in "abc"}
     freedom = next(f for f in e.freedoms if turns <= {f.parameter, *f.values})
@@ -93,7 +93,7 @@ def test_stated_uncertainties_hold_over_random_machines(known) -> None:
     inside = total = determined_inside = determined_total = 0
     for _ in range(MACHINES):
         theta = sd * rng.normal(size=len(sd))
-        theta[machine:] *= 0.01  # nobody clamps a millimetre off
+        theta[machine:] *= 0.01  # a standard is never clamped a millimetre off
         fit = fit_run(replace(run, deviation=A @ theta + rng.normal(0.0, run.u)), base.model)
         found = estimable(fit)
         for c in found.combinations:

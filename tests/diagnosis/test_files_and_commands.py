@@ -9,7 +9,7 @@ from simulator_case import simulate_case
 
 from matstd.cli import main
 from matstd.diagnosis.files.model_file import read_model
-from matstd.diagnosis.files.model_writer import write_model
+from matstd.diagnosis.files.model_writer import model_text
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.unit_mistakes import unit_mistake
 from matstd.diagnosis.remarks.run_remarks import remarks
@@ -208,7 +208,7 @@ def test_next_measurement_is_a_run_plan(table, case) -> None:
 def saved(fitted, tmp_path_factory):
     fit = fitted(1, "hmc1995")
     path = tmp_path_factory.mktemp("model") / "model.toml"
-    write_model(path, fit, "run.csv")
+    path.write_text(model_text(fit, "run.csv"), encoding="utf-8")
     return fit, path
 
 
@@ -258,13 +258,13 @@ def test_compare_writes_what_the_model_leaves(folder, tmp_path, capsys) -> None:
     out = tmp_path / "out"
     assert main(["compare", str(folder / "run.csv"), "-o", str(out), "--no-report"]) == 0
     assert "The residual is not noise" in " ".join(capsys.readouterr().out.split())
-    told = json.loads((out / "comparison.json").read_text(encoding="utf-8"))
-    assert told["format"] == "comparison/1"
-    assert told["rms_um"] < told["measured_rms_um"]
-    assert told["chi2_ratio"] > 1.1
+    stated = json.loads((out / "comparison.json").read_text(encoding="utf-8"))
+    assert stated["format"] == "comparison/1"
+    assert stated["rms_um"] < stated["measured_rms_um"]
+    assert stated["chi2_ratio"] > 1.1
     assert sorted(p.name for p in out.iterdir()) == ["comparison.json", "residuals.csv"]
     rows = (out / "residuals.csv").read_text(encoding="utf-8").splitlines()
-    assert len(rows) == told["touches"] + 1
+    assert len(rows) == stated["touches"] + 1
     names = rows[0].split(",")
     numbers = [dict(zip(names, row.split(","), strict=True)) for row in rows[1:]]
     residual = np.array([float(r["residual_um"]) for r in numbers])
@@ -272,7 +272,7 @@ def test_compare_writes_what_the_model_leaves(folder, tmp_path, capsys) -> None:
         # each of the three is rounded to 0.0001 um
         assert float(r["measured_um"]) - float(r["predicted_um"]) == pytest.approx(left, abs=2e-4)
     kept = np.array([r["gross_error"] == "0" for r in numbers])
-    assert np.sqrt(np.mean(residual[kept] ** 2)) == pytest.approx(told["rms_um"], abs=2e-4)
+    assert np.sqrt(np.mean(residual[kept] ** 2)) == pytest.approx(stated["rms_um"], abs=2e-4)
 
 
 def test_compare_with_a_model_of_the_same_machine(folder, tmp_path) -> None:
@@ -289,9 +289,9 @@ def test_compare_with_a_model_of_the_same_machine(folder, tmp_path) -> None:
     add = ["--add", "backlash(Y)", "--only", "backlash"]
     assert main(["diagnose", a, *add, "-o", m, "--no-report"]) == 0
     assert main(["compare", b, "--model", f"{m}/model.toml", "-o", c, "--no-report"]) == 0
-    told = json.loads((tmp_path / "c" / "comparison.json").read_text(encoding="utf-8"))
+    stated = json.loads((tmp_path / "c" / "comparison.json").read_text(encoding="utf-8"))
     # 1 within 4 deviations of 390 squares, which share the errors of the model: twice that
-    assert told["chi2_ratio"] == pytest.approx(1.0, abs=8.0 * np.sqrt(2.0 / 390))
+    assert stated["chi2_ratio"] == pytest.approx(1.0, abs=8.0 * np.sqrt(2.0 / 390))
 
 
 # matstd diagnose
@@ -303,13 +303,13 @@ def test_auto_finds_puts_in_and_goes_on_from_its_own_model(folder, tmp_path, cap
     assert main(["diagnose", run, "--auto", "-o", str(out), "--no-report"]) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "The model lacks one effect: reversal of Y (amplitude " in printed
-    told = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
-    assert [s["effect"] for s in told["steps"]] == [None, "backlash(Y)"]
+    stated = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
+    assert [s["effect"] for s in stated["steps"]] == [None, "backlash(Y)"]
     model = out / "model.toml"
     assert 'name = "backlash(Y)"' in model.read_text(encoding="utf-8")
     assert main(["diagnose", run, "--model", str(model), "-o", str(again), "--no-report"]) == 0
-    told = json.loads((again / "diagnosis.json").read_text(encoding="utf-8"))
-    assert told["verdict"] == "no missing effect"
+    stated = json.loads((again / "diagnosis.json").read_text(encoding="utf-8"))
+    assert stated["verdict"] == "no missing effect"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["again", "out"]  # nothing half-written
 
 
@@ -335,12 +335,12 @@ def test_named_effects_and_effects_of_ones_own(folder, tmp_path, monkeypatch) ->
     own = ["--effects", str(tmp_path / "mine.py"), "--add", "tested-hose", "backlash(Y)"]
     command = ["diagnose", str(folder / "run.csv"), *own, "-o", str(out), "--no-report"]
     assert main(command) == 0
-    told = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
-    assert [s["effect"] for s in told["steps"]] == [None, "tested-hose", "backlash(Y)"]
-    assert told["verdict"] == "no missing effect"
-    hose = told["steps"][1]
+    stated = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
+    assert [s["effect"] for s in stated["steps"]] == [None, "tested-hose", "backlash(Y)"]
+    assert stated["verdict"] == "no missing effect"
+    hose = stated["steps"][1]
     assert abs(hose["parameters"]["lift_um"]) < 4.0 * hose["uncertainty"]["lift_um"]
-    assert told["steps"][2]["p_value"] < 1e-6
+    assert stated["steps"][2]["p_value"] < 1e-6
     assert 'name = "tested-hose"' in (out / "model.toml").read_text(encoding="utf-8")
 
 
@@ -451,10 +451,10 @@ def test_no_such_run(tmp_path, capsys) -> None:
     assert "no.csv" in one_line(capsys, "compare")
 
 
-# odd input: used, and told
+# odd input: used, and reported
 
 
-def told_of(changed, tmp_path, change, head=lambda lines: lines):
+def message_of(changed, tmp_path, change, head=lambda lines: lines):
     """Remarks in comparison.json of the changed run."""
     path = changed(change, head)
     assert main(["compare", path, "-o", str(tmp_path / "out"), "--no-report"]) == 0
@@ -482,9 +482,9 @@ def backwards(rows):
     ],
     ids=["constant sensor", "gap in a sensor", "copy", "clock", "one pose", "few touches"],
 )
-def test_odd_runs_are_used_and_the_oddity_told(changed, tmp_path, change, phrase) -> None:
-    told = told_of(changed, tmp_path, change)
-    assert any(phrase in line for line in told["remarks"]), told["remarks"]
+def test_odd_runs_are_used_and_the_oddity_reported(changed, tmp_path, change, phrase) -> None:
+    message = message_of(changed, tmp_path, change)
+    assert any(phrase in line for line in message["remarks"]), message["remarks"]
 
 
 UNITS = {
@@ -504,8 +504,8 @@ def test_units_mixed_up_are_named(case, key, what) -> None:
     deviation, u, phrase = UNITS[what]
     run = case(*key).run
     run = replace(run, deviation=run.deviation * deviation, u=run.u * u)
-    told = remarks(fit_run(run, ordinary_model(run.touches.chain)))
-    assert phrase in remark_sentence(told[0])
+    remark = remarks(fit_run(run, ordinary_model(run.touches.chain)))
+    assert phrase in remark_sentence(remark[0])
 
 
 @pytest.mark.parametrize("factor", [0.1, 1.0, 10.0])
@@ -514,10 +514,10 @@ def test_good_and_bad_machines_are_not_mixed_units(case, factor) -> None:
     run = case(2, "hsm600u").run
     fit = fit_run(run, ordinary_model(run.touches.chain))
     deviation = run.deviation * factor + fit.residual * (1.0 - factor)
-    told = unit_mistake(
+    stated = unit_mistake(
         fit_run(replace(run, deviation=deviation), ordinary_model(run.touches.chain))
     )
-    assert told is None
+    assert stated is None
 
 
 def test_a_run_pasted_many_times_counts_once(case) -> None:
@@ -553,10 +553,10 @@ def test_replicates_are_no_copies(case) -> None:
 
 def test_millimetres_in_a_file(changed, tmp_path) -> None:
     """The same end to end: a head that states 0.0006 µm."""
-    told = told_of(
+    message = message_of(
         changed,
         tmp_path,
         lambda rows: rows,
         lambda lines: [line.replace("u_um = 0.6", "u_um = 0.0006") for line in lines],
     )
-    assert "u_um looks like mm" in told["remarks"][0]
+    assert "u_um looks like mm" in message["remarks"][0]

@@ -11,14 +11,7 @@ import pytest
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.regression.linear import left_out, solve
 from matstd.diagnosis.regression.noise import replicate_groups
-from matstd.diagnosis.remarks.run_remarks import (
-    FewTouches,
-    NoiseMisstated,
-    OutliersKept,
-    OutliersLeftOut,
-    WorseThanReplicates,
-    remarks,
-)
+from matstd.diagnosis.remarks import What, noticed, remarks
 from matstd.importers.instruments.axis_run import one_axis_machine, positioning_run
 from matstd.importers.instruments.positioning import PositioningTest
 from matstd.twin.effects.setup_error import SHIFT_SD, TURN_SD, setup_errors
@@ -119,32 +112,32 @@ def test_rows_marked_as_held_out_teach_nothing(case) -> None:
 
 
 @pytest.mark.parametrize("seed", [3, 4, 5])
-def test_chips_are_found_told_and_kept_out(case, fitted, seed) -> None:
+def test_chips_are_found_reported_and_kept_out(case, fitted, seed) -> None:
     """Chips of 15 to 60 um at a noise below 0.85 um: all of them, and hardly ever another row."""
     run, truth = case(seed, "hsm600u", (), True)
     fit = fitted(seed, "hsm600u", (), True)
     assert np.flatnonzero(fit.gross.rows).tolist() == truth["chips"]
     np.testing.assert_array_equal(fit.used, ~fit.gross.rows)
     assert np.min(fit.residual[truth["chips"]]) > 10.0 * UM
-    (told,) = [r for r in remarks(fit) if isinstance(r, OutliersLeftOut)]
-    assert sorted(told.lines) == sorted(run.line[truth["chips"]])
-    assert told.largest == pytest.approx(fit.residual[truth["chips"]].max())
+    (remark,) = [r for r in remarks(fit) if getattr(r, "what", None) is What.OUTLIERS_LEFT_OUT]
+    assert sorted(remark.lines) == sorted(run.line[truth["chips"]])
+    assert remark.largest == pytest.approx(fit.residual[truth["chips"]].max())
 
 
 def test_nothing_is_dropped_where_nothing_stands_out(fitted) -> None:
     fit = fitted(1, "hsm600u")
     assert fit.used.all()
-    assert not any(isinstance(r, OutliersLeftOut) for r in remarks(fit))
+    assert not any(getattr(r, "what", None) is What.OUTLIERS_LEFT_OUT for r in remarks(fit))
 
 
 def test_too_many_outliers_are_structure_and_stay(case) -> None:
-    """Every tenth touch 20 um off is no accident: all are kept, and it is told."""
+    """Every tenth touch 20 um off is no accident: all are kept, and it is reported."""
     run, _ = case(1, "hmc1995")
     off = np.where(np.arange(len(run)) % 10 == 0, 20.0 * UM, 0.0)
     model = ordinary_model(run.touches.chain)
     fit = fit_run(replace(run, deviation=run.deviation + off), model)
     assert fit.used.all()
-    assert OutliersKept() in remarks(fit)
+    assert noticed(What.OUTLIERS_KEPT) in remarks(fit)
 
 
 @pytest.mark.parametrize("factor", [0.45 / 0.6, 0.85 / 0.6])
@@ -154,8 +147,8 @@ def test_noise_wrongly_stated_is_recognised(case, factor) -> None:
     fit = fit_run(replace(run, u=run.u / factor), ordinary_model(run.touches.chain))
     assert fit.noise.factor == pytest.approx(factor, rel=SIGMAS / np.sqrt(2.0 * fit.noise.dof))
     assert fit.noise.is_wrongly_stated
-    (told,) = [r for r in remarks(fit) if isinstance(r, NoiseMisstated)]
-    assert told.found / told.stated == fit.noise.factor
+    (remark,) = [r for r in remarks(fit) if getattr(r, "what", None) is What.NOISE_MISSTATED]
+    assert remark.found / remark.stated == fit.noise.factor
 
 
 @pytest.mark.parametrize("seed", [3, 4, 5])
@@ -169,7 +162,7 @@ def test_noise_of_hard_cases_is_found_beside_chips(case, fitted, seed) -> None:
 def test_noise_rightly_stated_is_left_alone(fitted) -> None:
     fit = fitted(1, "hsm600u")
     assert fit.noise.factor == pytest.approx(1.0, abs=SIGMAS / np.sqrt(2.0 * fit.noise.dof))
-    assert not any(isinstance(r, NoiseMisstated) for r in remarks(fit))
+    assert not any(getattr(r, "what", None) is What.NOISE_MISSTATED for r in remarks(fit))
 
 
 def test_the_machine_does_not_depend_on_where_the_standard_was_clamped(case, fitted) -> None:
@@ -212,8 +205,8 @@ def test_fewer_touches_than_parameters(case) -> None:
         u = np.sqrt(np.diag(fit.covariance))
         assert np.all(u <= sd * fit.widened * (1.0 + SAME))
         squares.append(np.mean(((fit.theta - theta) / u) ** 2))
-    (told,) = [r for r in remarks(fit) if isinstance(r, FewTouches)]
-    assert told.touches == len(few) < told.parameters < len(sd)  # some errors nothing feels
+    (remark,) = [r for r in remarks(fit) if getattr(r, "what", None) is What.FEW_TOUCHES]
+    assert remark.touches == len(few) < remark.parameters < len(sd)  # some errors nothing feels
     assert fit.solution.effective_parameters < len(few)
     error = np.std(squares) / np.sqrt(len(squares))
     assert np.mean(squares) == pytest.approx(1.0, abs=SIGMAS * error)
@@ -226,7 +219,7 @@ def test_so_few_touches_are_refused(case) -> None:
         fit_run(run[:5], ordinary_model(run.touches.chain))
 
 
-def test_replicates_tell_noise_from_what_the_model_lacks(case) -> None:
+def test_replicates_distinguish_noise_from_what_the_model_lacks(case) -> None:
     """Every touch twice, 0.9 um apart by chance, beside 0.6 um that both share."""
     run, _ = case(1, "hmc1995")
     twice = run[np.repeat(np.arange(len(run)), 2)]
@@ -240,8 +233,8 @@ def test_replicates_tell_noise_from_what_the_model_lacks(case) -> None:
     # the residual holds both
     both = np.hypot(0.9, 0.6) / 0.6
     assert fit.noise.factor == pytest.approx(both, rel=SIGMAS / np.sqrt(2.0 * len(run)))
-    (told,) = [r for r in remarks(fit) if isinstance(r, WorseThanReplicates)]
-    assert told.ratio == pytest.approx(fit.noise.factor / fit.noise.replicates)
+    (remark,) = [r for r in remarks(fit) if getattr(r, "what", None) is What.WORSE_THAN_REPLICATES]
+    assert remark.ratio == pytest.approx(fit.noise.factor / fit.noise.replicates)
     assert fit_run(run, fit.model).noise.replicates is None
 
 

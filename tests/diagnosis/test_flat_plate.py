@@ -39,9 +39,9 @@ def test_a_lag_behind_a_plate_is_found(tmp_path):
     assert result.verdict is Verdict.MISSING
     (step,) = result.steps[1:]
     assert step.effect.kind == "thermal-lag"
-    told = {r.quantity: r.value for r in step.reported}
-    assert abs(told["amplitude"] - 10.0) < 1.5  # the tip grows down, the plane is met lower
-    assert abs(told["tau"] - 5.0) < 1.5
+    reported = {r.quantity: r.value for r in step.reported}
+    assert abs(reported["amplitude"] - 10.0) < 1.5  # the tip grows down, the plane is met lower
+    assert abs(reported["tau"] - 5.0) < 1.5
 
 
 def test_noise_that_nothing_shows_is_undecided(tmp_path):

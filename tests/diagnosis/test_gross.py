@@ -8,7 +8,8 @@ from made_up import arm_poses
 
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.regression.gross import find_gross, shots
-from matstd.diagnosis.remarks.run_remarks import ManyStoodOut, remarks
+from matstd.diagnosis.remarks import What
+from matstd.diagnosis.remarks.run_remarks import remarks
 from matstd.diagnosis.residual.crowds import crowds
 from matstd.report.words.remark_words import remark_sentence
 from matstd.twin.library.ordinary import ordinary_model
@@ -145,15 +146,15 @@ def test_many_that_lie_together_are_structure() -> None:
     assert find_gross(X, y, np.ones(240, dtype=bool), shot)[1].too_many
 
 
-def test_the_error_is_told_both_ways_where_many_stand_out() -> None:
+def test_the_error_is_reported_both_ways_where_many_stand_out() -> None:
     seen = arm_poses(60)
     seen = replace(seen, time=10.0 * seen.pose)
     rng = np.random.default_rng(8)
     bad = np.isin(seen.pose, rng.choice(60, 6, replace=False))
     off = rng.normal(0.0, 0.02, len(seen)) + bad * rng.normal(0.0, 1.0, len(seen))
     fit = fit_run(Run(seen, off, np.full(len(seen), 0.02)), ordinary_model(seen.chain))
-    (told,) = [r for r in remarks(fit) if isinstance(r, ManyStoodOut)]
-    assert told.left_out
-    assert told.touches == bad.sum() == fit.gross.rows.sum()
-    assert 5.0 * told.without < told.whole
-    assert "18 of 180 touches are outliers (10 %), scattered" in remark_sentence(told)
+    (remark,) = [r for r in remarks(fit) if getattr(r, "what", None) is What.MANY_STOOD_OUT]
+    assert remark.left_out
+    assert remark.touches == bad.sum() == fit.gross.rows.sum()
+    assert 5.0 * remark.without < remark.whole
+    assert "18 of 180 touches are outliers (10 %), scattered" in remark_sentence(remark)

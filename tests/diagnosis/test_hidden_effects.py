@@ -12,7 +12,7 @@ from simulator_experiment import random_experiment, random_noise
 
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.verdict import Verdict
-from matstd.diagnosis.remarks.run_remarks import OutliersLeftOut
+from matstd.diagnosis.remarks import What
 from matstd.report.words.verdict_words import verdict_sentence
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.model.model import columns
@@ -75,8 +75,8 @@ def test_nothing_hidden_nothing_found(diagnosed) -> None:
 )
 def test_one_effect_is_named_with_its_size(case, diagnosed, name) -> None:
     key = (*SINGLE[name], (name,))
-    (told,) = case(*key).truth["hidden"]
-    assert told["detectable"]
+    (hidden,) = case(*key).truth["hidden"]
+    assert hidden["detectable"]
     d = diagnosed(*key)
     assert d.verdict is Verdict.MISSING
     assert len(d.found) == 1
@@ -88,8 +88,8 @@ def test_one_effect_is_named_with_its_size(case, diagnosed, name) -> None:
     assert d.steps[0].fit.noise.chi2_ratio > 1.1
     if step.effect.name == name:  # of a rival the size means something else
         size = amplitude(step.reported)
-        assert abs(abs(size.value) - told["amplitude"]) < WITHIN * size.u
-        assert size.u < told["amplitude"] / 5.0  # else the line above says nothing
+        assert abs(abs(size.value) - hidden["amplitude"]) < WITHIN * size.u
+        assert size.u < hidden["amplitude"] / 5.0  # else the line above says nothing
     assert verdict_sentence(d).startswith("The model lacks one effect: ")
 
 
@@ -106,22 +106,22 @@ def test_signs(case, diagnosed) -> None:
         (step,) = diagnosed(*SINGLE[name], (name,)).steps[1:]
         assert amplitude(step.reported).value > 0.0
     run = case(2, "hsm600u", ("backlash(X)",)).run
-    (told,) = case(2, "hsm600u", ("backlash(X)",)).truth["hidden"]
+    (hidden,) = case(2, "hsm600u", ("backlash(X)",)).truth["hidden"]
     turned = columns([parse_effect("backlash(X)", run.touches.chain)], run.touches)[:, 0]
-    back = replace(run, deviation=run.deviation - 2.0 * told["amplitude"] * UM * turned)
+    back = replace(run, deviation=run.deviation - 2.0 * hidden["amplitude"] * UM * turned)
     (step,) = diagnose(back, candidates=[parse_effect("backlash(X)", run.touches.chain)]).steps[1:]
     size = amplitude(step.reported)
-    assert abs(size.value + told["amplitude"]) < WITHIN * size.u
+    assert abs(size.value + hidden["amplitude"]) < WITHIN * size.u
 
 
 def test_inner_parameters_are_found_with_their_uncertainty(case, diagnosed) -> None:
     """Time constant within what is stated for it; number of lobes exactly."""
     key = (*SINGLE["thermal-lag(EXC)"], ("thermal-lag(EXC)",))
-    (told,) = case(*key).truth["hidden"]
+    (hidden,) = case(*key).truth["hidden"]
     (step,) = diagnosed(*key).steps[1:]
     tau = next(r for r in step.reported if r.name == "tau_min")
     assert tau.u is not None
-    assert abs(tau.value - told["inner"]["tau_min"]) < WITHIN * tau.u
+    assert abs(tau.value - hidden["inner"]["tau_min"]) < WITHIN * tau.u
     assert tau.u < 0.5 * tau.value
     key = (*SINGLE["probe-lobing"], ("probe-lobing",))
     (step,) = diagnosed(*key).steps[1:]
@@ -134,10 +134,10 @@ def test_two_at_once(case, diagnosed) -> None:
     d = diagnosed(*TWO)
     assert d.verdict is Verdict.MISSING
     assert sorted(e.name for e in d.found) == sorted(TWO[2])
-    told = {t["effect"]: t["amplitude"] for t in case(*TWO).truth["hidden"]}
+    hidden = {t["effect"]: t["amplitude"] for t in case(*TWO).truth["hidden"]}
     for step in d.steps[1:]:
         size = amplitude(step.reported)
-        assert abs(abs(size.value) - told[step.effect.name]) < WITHIN * size.u
+        assert abs(abs(size.value) - hidden[step.effect.name]) < WITHIN * size.u
     rms = [step.fit.standardised_test_rms for step in d.steps]
     assert rms[0] > rms[1] > rms[2]
     assert rms[2] == pytest.approx(added_noise(*TWO[:2]), rel=HELD_OUT)
@@ -154,33 +154,33 @@ def test_an_effect_outside_the_library_is_called_unexplained(diagnosed) -> None:
     assert verdict_sentence(d).startswith("A residual remains")
 
 
-def test_below_the_limit_nothing_is_claimed_and_the_limit_is_told(case, diagnosed) -> None:
-    (told,) = case(*WEAK).truth["hidden"]
+def test_below_the_limit_nothing_is_claimed_and_the_limit_is_reported(case, diagnosed) -> None:
+    (hidden,) = case(*WEAK).truth["hidden"]
     d = diagnosed(*WEAK)
-    assert not told["detectable"]
+    assert not hidden["detectable"]
     assert d.verdict is Verdict.NONE
     (limit,) = [x for x in d.detectable if x.effect.name == "backlash(X)"]
     assert limit.size is not None
-    assert limit.size / UM > told["amplitude"]
+    assert limit.size / UM > hidden["amplitude"]
 
 
 def test_limits_are_those_of_visibility(case, diagnosed) -> None:
-    """A reversal of the size told as smallest has a signal-to-noise between 4 and 12.
+    """A reversal of the size reported as smallest has a signal-to-noise between 4 and 12.
 
     Found in four of five runs by a chi-square test whose threshold pays for some hundred
     candidates: sqrt(chi2(1e-3 / 400, 1)) = 4.7, and 0.84 for the power.
     """
     run, truth = case(2, "hsm600u", ("backlash(X)",))
-    (told,) = truth["hidden"]
+    (hidden,) = truth["hidden"]
     (limit,) = [x for x in diagnosed(*NOTHING).detectable if x.effect.name == "backlash(X)"]
     # the same seed plans the same touches: visibility per size of one run holds for the other
     assert limit.size is not None
-    visibility = told["signal_to_noise"] / told["amplitude"] * limit.size / UM
+    visibility = hidden["signal_to_noise"] / hidden["amplitude"] * limit.size / UM
     assert 4.0 < visibility < 12.0
     assert len(run) == len(case(*NOTHING).run)
 
 
-def test_what_no_touch_can_tell_apart_comes_as_one_class(case, diagnosed) -> None:
+def test_what_no_touch_can_distinguish_comes_as_one_class(case, diagnosed) -> None:
     """A weight on B that tilts is 2 sin B cos B = sin 2B: harmonic 2 of EBB in other words."""
     run = case(*NOTHING).run
     chain = run.touches.chain
@@ -204,4 +204,4 @@ def test_chips_and_wrong_noise_do_not_make_an_effect(case, diagnosed) -> None:
     d = diagnosed(3, "hsm600u", (), True)
     assert d.verdict is Verdict.NONE
     assert np.flatnonzero(d.fit.gross.rows).tolist() == case(3, "hsm600u", (), True).truth["chips"]
-    assert any(isinstance(r, OutliersLeftOut) for r in d.remarks)
+    assert any(getattr(r, "what", None) is What.OUTLIERS_LEFT_OUT for r in d.remarks)

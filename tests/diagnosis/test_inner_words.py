@@ -28,7 +28,7 @@ class Settling(ThermalLag):
         return {"settling": self.tau}
 
 
-def test_a_span_of_time_is_told_in_minutes_whatever_its_name() -> None:
+def test_a_span_of_time_is_reported_in_minutes_whatever_its_name() -> None:
     grid = np.array([60.0, 600.0])
     for name in ("tau", "settling", "x"):
         assert inner_unit(Inner(name, "s", grid)) == ("_min", 60.0)
@@ -40,10 +40,10 @@ def test_the_same_lag_by_another_word_gives_the_same_answer(case) -> None:
     """EXC after switching on, hidden by the simulator: size, time constant, uncertainties alike."""
     run = case(*HIDDEN).run[::3]
     lag = parse_effect("thermal-lag(EXC)", run.touches.chain)
-    told = {}
+    reported = {}
     for effect in (lag, Settling(lag.symbol, lag.drive)):
         (step,) = diagnose(run, candidates=[effect]).steps[1:]
-        told[type(effect).__name__] = {r.name: (r.value, r.u) for r in step.reported}
-    assert told["Settling"]["settling_min"] == told["ThermalLag"].pop("tau_min")
-    del told["Settling"]["settling_min"]
-    assert told["Settling"] == told["ThermalLag"]
+        reported[type(effect).__name__] = {r.name: (r.value, r.u) for r in step.reported}
+    assert reported["Settling"]["settling_min"] == reported["ThermalLag"].pop("tau_min")
+    del reported["Settling"]["settling_min"]
+    assert reported["Settling"] == reported["ThermalLag"]

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from matstd.diagnosis.search.instants import p_by_instants
+from matstd.diagnosis.search.members import p_by_instants
 
 POSES, ROWS = 60, 3
 

@@ -50,6 +50,6 @@ def test_a_jump_is_found_at_its_row_with_its_size() -> None:
     assert plain < found.u < 2.5 * plain
 
 
-def test_no_jump_is_told_of_noise_or_where_times_are_known() -> None:
+def test_no_jump_is_reported_of_noise_or_where_times_are_known() -> None:
     assert jump_in_order(fitted(0.0)[0]) is None
     assert jump_in_order(fitted(SIZE, time=1.0)[0]) is None

@@ -15,7 +15,7 @@ from simulator_laws import law_case
 from matstd.api.diagnosing import compare, diagnose
 from matstd.cli import main
 from matstd.diagnosis.answer import Verdict
-from matstd.diagnosis.files import model_of, read_model, write_model
+from matstd.diagnosis.files import model_of, model_text, read_model
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.laws import (
     POLICY,
@@ -163,7 +163,7 @@ def test_a_curve_is_saved_and_is_uncertain_where_it_has_not_been(stylus, tmp_pat
     curve = parse_effect("law(EZY,curve Y)", chain).tuned(low, high, 0.2, size)
     model = ordinary_model(chain)
     fit = fit_run(near, Model(chain, (*model.effects, curve)))
-    write_model(tmp_path / "model.toml", fit, "near.csv")
+    (tmp_path / "model.toml").write_text(model_text(fit, "near.csv"), encoding="utf-8")
     saved = read_model(tmp_path / "model.toml")
     text = (tmp_path / "model.toml").read_text(encoding="utf-8")
     assert text.startswith('format = "model/2"')

@@ -12,7 +12,7 @@ ROUNDING = 1e-9
 def problem() -> tuple[np.ndarray, np.ndarray]:
     rng = np.random.default_rng(3)
     X = rng.standard_normal((60, 7)) * np.array([30.0, 10.0, 3.0, 1.0, 0.3, 0.0, 5.0])
-    X[:, 6] = X[:, 0]  # two columns alike: only the prior tells them apart
+    X[:, 6] = X[:, 0]  # two columns alike: only the prior distinguishes them
     return X, X @ rng.standard_normal(7) + rng.standard_normal(60)
 
 

@@ -7,7 +7,8 @@ from made_up import made_up
 
 from matstd.diagnosis.fit.describe import Role, reported
 from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.remarks.run_remarks import LoadTooSmall, ShortBeam, remarks
+from matstd.diagnosis.remarks import What
+from matstd.diagnosis.remarks.run_remarks import remarks
 from matstd.report.words.remark_words import remark_sentence
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.model.model import Model, columns
@@ -33,26 +34,26 @@ def fitted(load, texts, seed=3):
 
 
 def said(fit, kind):
-    return [r for r in remarks(fit) if isinstance(r, kind)]
+    return [r for r in remarks(fit) if getattr(r, "what", None) is kind]
 
 
 def test_touches_of_one_newton_do_not_identify_a_stiffness():
     fit, _ = fitted(1.0, ["stiffness(Z)"])
-    (remark,) = said(fit, LoadTooSmall)
+    (remark,) = said(fit, What.LOAD_TOO_SMALL)
     assert remark.load == 1.0 or abs(remark.load - 1.0) < 1e-9
     assert "1 N are too small to identify stiffness(Z)" in remark_sentence(remark)
 
 
 def test_known_loads_do():
     fit, theta = fitted(300.0, ["stiffness(Z)", "tool-point-stiffness(X,Y)"])
-    assert not said(fit, LoadTooSmall)
+    assert not said(fit, What.LOAD_TOO_SMALL)
     rows = [p for p, (e, _) in enumerate(fit.parameters) if e.kind == "tool-point-stiffness"]
     left = (fit.theta[rows] - theta[1:]) / np.sqrt(np.diag(fit.covariance)[rows])
     assert np.sqrt(np.mean(left**2)) < 1.6
     assert np.diag(fit.covariance)[rows][0] < (0.5 * theta[1]) ** 2
 
 
-def test_a_compliance_is_told_by_what_it_explains():
+def test_a_compliance_is_reported_by_what_it_explains():
     """Some of its entries are known by belief alone; its size is known all the same."""
     fit, theta = fitted(300.0, ["tool-point-stiffness(X,Y)"])
     effect = next(e for e in fit.effects if e.kind == "tool-point-stiffness")
@@ -62,7 +63,7 @@ def test_a_compliance_is_told_by_what_it_explains():
     assert abs(size.value - np.sqrt(np.mean(bent**2)) / UM) < 3.0 * size.u < 1.0
 
 
-def test_a_beam_that_is_too_short_is_told():
+def test_a_beam_that_is_too_short_is_reported():
     fit, _ = fitted(1.0, ["beam(Z,cantilever,300x300,at:500)"])
-    (remark,) = said(fit, ShortBeam)
+    (remark,) = said(fit, What.SHORT_BEAM)
     assert "times as long as deep" in remark_sentence(remark)

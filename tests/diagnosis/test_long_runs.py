@@ -1,14 +1,14 @@
-"""Long runs are searched in a choice of their rows first; what is told stands beyond chance."""
+"""Long runs are searched in a choice of their rows first; what is reported stands beyond chance."""
 
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from matstd.diagnosis.answer.collinear import weakest
 from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.diagnosis.answer.verdict import Step, Verdict
-from matstd.diagnosis.choice.long_runs import CHOSEN_ROWS, chosen_rows
+from matstd.diagnosis.answer.steps import Step, weakest
+from matstd.diagnosis.answer.verdict import Verdict
+from matstd.diagnosis.choice.noise_memory import CHOSEN_ROWS, chosen_rows
 from matstd.diagnosis.fit.describe import Reported, Role
 from matstd.twin.frames import Array
 from matstd.twin.machine import Axis, make_chain
@@ -55,7 +55,7 @@ def test_a_choice_takes_one_row_of_every_stretch() -> None:
 
 
 @pytest.mark.slow
-def test_a_long_log_is_told_its_wave_and_no_more() -> None:
+def test_a_long_log_is_reported_its_wave_and_no_more() -> None:
     """The memory of 0.8 is found beside a wave of thirty times the noise."""
     x = log_of(8000).touches.q[:, 0]
     found = diagnose(log_of(8000, 8.2 * UM * np.sin(2.0 * np.pi * x / 2.5 + 1.1)))

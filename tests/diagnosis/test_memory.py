@@ -8,7 +8,7 @@ from scipy.linalg import block_diag
 
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.verdict import Verdict
-from matstd.diagnosis.files.model_writer import write_model
+from matstd.diagnosis.files.model_writer import model_text
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.policy import POLICY
@@ -175,7 +175,7 @@ def test_the_stated_error_is_that_of_another_run(clean, memory) -> None:
     assert np.mean(np.abs(ratio - 1.0) < (0.1 if memory is None else 0.2)) >= 0.9
 
 
-def test_rows_that_count_for_less_widen_what_is_told(noisy) -> None:
+def test_rows_that_count_for_less_widen_what_is_reported(noisy) -> None:
     """With a = 0.8 nine touches are one observation: uncertainties of the well known grow by 3."""
     model = ordinary_model(noisy.touches.chain)
     prior, gross = Prior.of_effects(model.effects), fit_run(noisy, model).gross
@@ -193,10 +193,10 @@ def test_noise_that_remembers_is_said_to_and_nothing_is_named(noisy, tmp_path) -
     assert result.found == ()
     memory = result.fit.memory
     assert memory is not None
-    told = f"correlation {memory.correlation:.2f}"
-    assert f"and is correlated ({told}" in verdict_sentence(result)
+    stated = f"correlation {memory.correlation:.2f}"
+    assert f"and is correlated ({stated}" in verdict_sentence(result)
     assert any(
-        f"the noise is correlated ({told}" in remark_sentence(r) for r in remarks(result.fit)
+        f"the noise is correlated ({stated}" in remark_sentence(r) for r in remarks(result.fit)
     )
-    write_model(tmp_path / "model.toml", result.fit, "run.csv")
+    (tmp_path / "model.toml").write_text(model_text(result.fit, "run.csv"), encoding="utf-8")
     assert "held_out_um" in (tmp_path / "model.toml").read_text(encoding="utf-8")

@@ -17,7 +17,7 @@ from simulator_experiment import MACHINES, STATED_NOISE, placed, random_experime
 from matstd.cli import main
 from matstd.compensation.field import MachineErrors
 from matstd.diagnosis.answer import compare
-from matstd.diagnosis.files import read_model, write_model
+from matstd.diagnosis.files import model_text, read_model
 from matstd.diagnosis.fit import fit_run
 from matstd.report.words import remark_sentence
 from matstd.twin.errors import BadFile
@@ -85,10 +85,10 @@ def test_a_slip_of_one_run_is_not_predicted_for_another(visits, tmp_path, capsys
     assert before > 5.0
     assert found["rms_um"] < 1.05 * reference["rms_um"]
     assert reference["rms_um"] == pytest.approx(STATED_NOISE / UM, rel=0.1)
-    told = "slip of the set-up (artefact-slip, instant 5935 s) belongs to slipped.csv"
-    assert told in said
+    stated = "slip of the set-up (artefact-slip, instant 5935 s) belongs to slipped.csv"
+    assert stated in said
     assert "it is not applied here" in said
-    assert any(told in remark for remark in found["remarks"])
+    assert any(stated in remark for remark in found["remarks"])
     # what the model says of a run with such a slip is what the slip did to this one
     same = r"had a slip of the set-up of the same size as that run, an error of ([\d.]+) µm"
     again = re.search(same, said)
@@ -135,7 +135,7 @@ def saved_with(visits, tmp_path, *names):
     start = ordinary_model(run.touches.chain)
     added = tuple(parse_effect(name, run.touches.chain) for name in names)
     fit = fit_run(run, Model(start.chain, (*start.effects, *added)))
-    write_model(tmp_path / "model.toml", fit, "calm.csv")
+    (tmp_path / "model.toml").write_text(model_text(fit, "calm.csv"), encoding="utf-8")
     return tmp_path / "model.toml"
 
 

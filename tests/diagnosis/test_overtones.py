@@ -30,12 +30,12 @@ def test_a_triangle_is_one_period_with_its_odd_sines() -> None:
     assert result.verdict is Verdict.MISSING
     (effect,) = result.found
     assert effect.name.startswith("periodic(EXX,")
-    told = {r.quantity: r for r in result.steps[1].reported}
-    assert told["period"].u < 1e-3 * 0.4
-    assert told["period"].value == pytest.approx(0.4, abs=4.0 * told["period"].u)
+    reported = {r.quantity: r for r in result.steps[1].reported}
+    assert reported["period"].u < 1e-3 * 0.4
+    assert reported["period"].value == pytest.approx(0.4, abs=4.0 * reported["period"].u)
     for k in (1, 2, 3):
         true = 6.0 * 8.0 / np.pi**2 / k**2 * (k % 2)
-        assert told[f"sine_{k}"].value == pytest.approx(true, abs=4.0 * told[f"sine_{k}"].u)
+        assert reported[f"sine_{k}"].value == pytest.approx(true, abs=4.0 * reported[f"sine_{k}"].u)
     assert "amplitudes of its harmonics 1 to " in sizes(result.steps[1], 3)
 
 
@@ -44,10 +44,10 @@ def test_a_strongest_second_sine_does_not_halve_the_period() -> None:
     turn = 2.0 * np.pi * x / 0.5
     result = found_in((1.5 * np.sin(turn) + 7.0 * np.cos(2.0 * turn) + np.sin(3.0 * turn)) * UM, x)
     assert len(result.found) == 1
-    told = {r.quantity: r for r in result.steps[1].reported}
-    assert told["period"].value == pytest.approx(0.5, abs=4.0 * told["period"].u)
+    reported = {r.quantity: r for r in result.steps[1].reported}
+    assert reported["period"].value == pytest.approx(0.5, abs=4.0 * reported["period"].u)
     for k, true in ((1, 1.5), (2, 7.0), (3, 1.0)):
-        assert told[f"sine_{k}"].value == pytest.approx(true, abs=4.0 * told[f"sine_{k}"].u)
+        assert reported[f"sine_{k}"].value == pytest.approx(true, abs=4.0 * reported[f"sine_{k}"].u)
 
 
 def test_waves_of_two_parts_stay_two() -> None:

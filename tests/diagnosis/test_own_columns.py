@@ -13,7 +13,7 @@ from matstd.diagnosis.choice.field import sized_field
 from matstd.diagnosis.choice.prediction import candidate_effects
 from matstd.diagnosis.evidence.effect_signatures import ScaledEffect
 from matstd.diagnosis.files.model_file import read_model
-from matstd.diagnosis.files.model_writer import write_model
+from matstd.diagnosis.files.model_writer import model_text
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.search.task import DiagnosisTask
 from matstd.twin.library.catalogue import parse_effect
@@ -56,13 +56,13 @@ def test_a_lag_after_an_own_column_is_found_with_its_size(run, tmp_path) -> None
         run, candidates=[e for e in candidate_effects(run.touches) if e.kind in kinds]
     )
     assert [e.name for e in result.found] == ["thermal-lag(EZZ,V_coolant_bar)"]
-    told = {r.name: r for r in result.steps[-1].reported}
-    assert abs(told["tau_min"].value - TAU / MINUTE) < 3.0 * told["tau_min"].u
-    assert told["tau_min"].u < 3.0
+    reported = {r.name: r for r in result.steps[-1].reported}
+    assert abs(reported["tau_min"].value - TAU / MINUTE) < 3.0 * reported["tau_min"].u
+    assert reported["tau_min"].u < 3.0
     step = result.found[0].tuning["step"]
     assert step == 10.0
-    assert abs(told["amplitude_um"].value - PER_BAR * step) < 3.0 * told["amplitude_um"].u
-    write_model(tmp_path / "model.toml", result.fit, "run.csv")
+    assert abs(reported["amplitude_um"].value - PER_BAR * step) < 3.0 * reported["amplitude_um"].u
+    (tmp_path / "model.toml").write_text(model_text(result.fit, "run.csv"), encoding="utf-8")
     saved = read_model(tmp_path / "model.toml")
     assert [e.tuning["step"] for e in saved.model.effects if e.kind == "thermal-lag"] == [step]
     higher = {"coolant_bar": 10.0 * run.touches.value["coolant_bar"]}
@@ -97,5 +97,7 @@ def test_a_field_of_own_columns_keeps_its_steps_in_a_model_file(run, tmp_path) -
     warm = next(e for e in candidate_effects(run.touches) if e.kind == "thermal-field")
     bare = parse_effect(warm.name, run.touches.chain)
     assert (bare.steps, warm.steps) == ((1.0,), (10.0,))
-    write_model(tmp_path / "model.toml", task.fit((ScaledEffect(warm),)), "run.csv")
+    (tmp_path / "model.toml").write_text(
+        model_text(task.fit((ScaledEffect(warm),)), "run.csv"), encoding="utf-8"
+    )
     assert warm in read_model(tmp_path / "model.toml").model.effects

@@ -1,4 +1,4 @@
-"""Periods on one axis: fine logs, and targets that cannot tell one period from another.
+"""Periods on one axis: fine logs, and targets that cannot distinguish one period from another.
 
 Data are made by a plain sine; periods that look alike come from the sampling theorem by hand.
 """
@@ -26,7 +26,7 @@ def positioning(targets: Array, period: float, amplitude: float, seed: int = 0) 
     x = np.tile(np.concatenate([targets, targets[::-1]]), 5)
     cycle = np.repeat(np.arange(5), 2 * len(targets))
     noise = rng.normal(0.0, 0.5 * UM, len(x))
-    # a row tells where the tool believes the surface to stand: minus the error of the axis
+    # a row says where the tool believes the surface to stand: minus the error of the axis
     return run_of(x, -amplitude * np.sin(2.0 * np.pi * x / period + 0.4) + noise, cycle=cycle)
 
 
@@ -55,14 +55,14 @@ def test_a_fine_log_shows_a_short_period(period: float) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("encoder", "told"),
+    ("encoder", "expected"),
     [
         pytest.param(0.27, [("periodic(EXX)", 0.27), ("periodic(EXX)", 2.0)], id="no harmonic"),
         pytest.param(0.25, [("periodic(EXX,8)", 2.0)], id="the eighth harmonic, which it may be"),
     ],
 )
 def test_a_fine_log_of_many_rows_shows_two_periods(
-    encoder: float, told: list[tuple[str, float]]
+    encoder: float, expected: list[tuple[str, float]]
 ) -> None:
     """A screw of 2 mm and an encoder, written down while the axis moves evenly."""
     rng = np.random.default_rng(4)
@@ -74,8 +74,8 @@ def test_a_fine_log_of_many_rows_shows_two_periods(
     assert found.verdict is Verdict.MISSING
     tuned = [e for e in found.found if is_tunable(e)]
     waves = sorted((e.tuning["period"], e.name.partition("#")[0]) for e in tuned)
-    assert [name for _, name in waves] == [name for name, _ in told]
-    assert [p for p, _ in waves] == pytest.approx([p for _, p in told], rel=1e-4)
+    assert [name for _, name in waves] == [name for name, _ in expected]
+    assert [p for p, _ in waves] == pytest.approx([p for _, p in expected], rel=1e-4)
     assert found.fit.rms < 0.055 * UM
 
 
@@ -111,7 +111,7 @@ def test_a_small_sine_is_found_beside_a_large_one_in_a_long_log() -> None:
     assert sorted(periods) == pytest.approx([0.8, 20.0], rel=1e-4)
 
 
-def test_what_was_scanned_is_told() -> None:
+def test_what_was_scanned_is_reported() -> None:
     """Targets 6 mm apart over 295 mm: periods from 1 to 50 mm."""
     found = diagnose(positioning(np.arange(5.0, 300.0, 6.0), 2.5, 0.0))
     assert found.verdict is Verdict.NONE
@@ -139,7 +139,7 @@ def test_effects_of_a_log_do_not_cancel_one_another() -> None:
         assert size.u < 1.0
 
 
-def test_even_targets_tell_every_period_that_looks_alike() -> None:
+def test_even_targets_report_every_period_that_looks_alike() -> None:
     run = positioning(np.arange(5.0, 300.0, 6.0), 2.5, 8.0 * UM)
     found = diagnose(run, rng=np.random.default_rng(0))
     confusion = found.steps[1].confusion
@@ -153,7 +153,7 @@ def test_even_targets_tell_every_period_that_looks_alike() -> None:
     assert 15.0 in every
     assert 10.0 in every
     np.testing.assert_allclose(sorted([own, *alike.periods], reverse=True), every, rtol=2e-3)
-    # the plan's places tell the true period from every other one by hand
+    # the plan's places distinguish the true period from every other one by hand
     plan = found.plans[0]
     assert plan.periods_of == "periodic(EXX)"
     x = plan.touches.reading("X")
@@ -186,7 +186,7 @@ def test_a_stated_pitch_names_the_period(pitch: float | None, named: float) -> N
     assert own == pytest.approx(named, rel=2e-3)
 
 
-def test_uneven_targets_tell_one_period() -> None:
+def test_uneven_targets_determine_one_period() -> None:
     rng = np.random.default_rng(5)
     targets = np.sort(np.arange(5.0, 300.0, 6.0) + rng.uniform(-2.5, 2.5, 50))
     found = diagnose(positioning(targets, 2.5, 8.0 * UM))

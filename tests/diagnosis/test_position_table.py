@@ -1,6 +1,6 @@
 """Positioning tests as laser makers write them, diagnosed: a table where no law does, else the law.
 
-The axes are made up here by their own formulas; what is held out is a cycle that nobody fitted.
+The axes are made up here by their own formulas; what is held out is a cycle outside the fit.
 """
 
 from dataclasses import replace
@@ -96,17 +96,17 @@ def test_a_table_is_named_where_no_law_does_the_same(name) -> None:
         check_sizes(name, {r.quantity: r for r in step.reported})
 
 
-def check_sizes(name, told) -> None:
-    """What a curve is told to be is what was put in: over the targets, line and other laws off."""
+def check_sizes(name, expected) -> None:
+    """The reported curve is what was put in: over the targets, line and other laws off."""
     curve, reversal, laws = AXES[name]
     x = np.linspace(0.0, L, 2001)
-    if "peak_to_valley" in told and "periodic(EXX)" not in laws:
-        turned = reversal(x) if "reversal_at_most" in told else 0.0 * x
+    if "peak_to_valley" in expected and "periodic(EXX)" not in laws:
+        turned = reversal(x) if "reversal_at_most" in expected else 0.0 * x
         mean = curve(x) - np.polyval(np.polyfit(x, curve(x), 1), x)
         both = np.concatenate([mean + 0.5 * turned, mean - 0.5 * turned])
-        assert told["peak_to_valley"].value == pytest.approx(np.ptp(both), rel=0.1, abs=0.4)
-    if "reversal_at_most" in told:
-        mean, most = told["reversal_on_average"], told["reversal_at_most"]
+        assert expected["peak_to_valley"].value == pytest.approx(np.ptp(both), rel=0.1, abs=0.4)
+    if "reversal_at_most" in expected:
+        mean, most = expected["reversal_on_average"], expected["reversal_at_most"]
         assert mean.value == pytest.approx(reversal(x).mean(), abs=4.0 * mean.u)
         assert most.value == pytest.approx(reversal(x).max(), abs=4.0 * most.u)
 

@@ -13,18 +13,17 @@ from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.sizes import sizes
 from matstd.diagnosis.answer.verdict import Diagnosis
 from matstd.diagnosis.choice import prediction
-from matstd.diagnosis.choice.blocks import blocks
+from matstd.diagnosis.choice.blocks import blocks, prune_by_held_out_error
 from matstd.diagnosis.choice.bodies import bodies
 from matstd.diagnosis.choice.chosen_set import with_chosen_set
 from matstd.diagnosis.choice.field import PRIOR_SIZES, sized_field
 from matstd.diagnosis.choice.prediction import Choice, candidate_effects, without
-from matstd.diagnosis.choice.prune import prune_by_held_out_error
 from matstd.diagnosis.evidence.effect_signatures import ResidualSpace, ScaledEffect, projected
 from matstd.diagnosis.evidence.evidence import EffectSet
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.regression.memory import Memory
-from matstd.diagnosis.search.search_loop import search_until_stable
+from matstd.diagnosis.search.search_loop import searched
 from matstd.diagnosis.search.task import DiagnosisTask
 from matstd.report.words.diagnosis_words import named_value, promise_sentence
 from matstd.twin.errors import DesignError
@@ -90,8 +89,8 @@ def test_both_time_constants_of_a_body_are_found_within_what_is_stated() -> None
     found = bodies(task, (), gross)
     names = {s.effect.name for s in found}
     assert {"thermal-lag(EZZ,bed)", "thermal-lag(EZZ,bed)#2", "thermal-static(EZZ,frame)"} <= names
-    told, _ = sizes(task, found, gross, ResidualSpace.of(task.fit((), gross)))
-    lags = sorted((r.value, r.u) for reported in told for r in reported if r.name == "tau_min")
+    stated, _ = sizes(task, found, gross, ResidualSpace.of(task.fit((), gross)))
+    lags = sorted((r.value, r.u) for reported in stated for r in reported if r.name == "tau_min")
     for (value, u), tau in zip(lags, TAUS, strict=True):
         assert abs(value - tau / MINUTE) < 3.0 * u
         assert u < 0.5 * value
@@ -216,7 +215,7 @@ def single_of(run: Run) -> list:
 
 
 def test_the_stated_error_has_paid_for_the_choice(chosen) -> None:
-    """Each block by hand: what is chosen without it predicts it with the error that is told."""
+    """Each block by hand: what is chosen without it predicts it with the error that is reported."""
     task, choice = chosen
     gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
     way = next(w for w in choice.rules if w.name == "two time constants")
@@ -233,16 +232,16 @@ def test_the_stated_error_has_paid_for_the_choice(chosen) -> None:
     assert choice.best.error <= 1.05 * min(w.error for w in choice.rules)
 
 
-def test_of_the_set_that_was_weighed_all_is_told_but_what_chance_explains(result) -> None:
+def test_of_the_set_that_was_weighed_all_is_reported_but_what_chance_explains(result) -> None:
     assert result.choice is not None
-    told = [e.name for e in result.found]
+    stated = [e.name for e in result.found]
     weighed = {s.effect.name for s in result.choice.best.effects}
-    assert weighed >= set(told) >= {"thermal-lag(EZZ,bed)", "thermal-static(EZZ,frame)"}
+    assert weighed >= set(stated) >= {"thermal-lag(EZZ,bed)", "thermal-static(EZZ,frame)"}
     assert all(step.p_value < 0.05 for step in result.steps[1:])
-    assert len(set(told)) == len(told)
+    assert len(set(stated)) == len(stated)
     assert result.remarks[0].chosen == result.choice.best.name
     names = [e.name for e in result.fit.model.effects]
-    assert names[-len(told) :] == told
+    assert names[-len(stated) :] == stated
 
 
 def test_a_way_that_is_followed_counts_independent_observations(chosen) -> None:
@@ -250,7 +249,7 @@ def test_a_way_that_is_followed_counts_independent_observations(chosen) -> None:
     single = single_of(task.run)
     way = next(w for w in choice.rules if w.name == "two time constants")
     other = Choice(choice.rules, way, choice.blocks, Memory(0.9))
-    slow, final = with_chosen_set(task, (), search_until_stable(task, (), single), other, single)
+    slow, final = with_chosen_set(task, (), searched(task, (), single), other, single)
     assert slow.memory is not None
     assert not slow.memory.is_filtered
     complement = final.search.complement
@@ -287,10 +286,10 @@ def test_a_time_constant_at_the_end_of_its_scan_is_a_bound() -> None:
     task = task_of(replace(quick, deviation=quick.deviation + noise))
     gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
     lag_frame = parse_effect("thermal-lag(EZZ,frame)", run.touches.chain).tuned(120.0)
-    (told,), _ = sizes(
+    (stated,), _ = sizes(
         task, [ScaledEffect(lag_frame, 4.0)], gross, ResidualSpace.of(task.fit((), gross))
     )
-    tau = next(r for r in told if r.name == "tau_min")
+    tau = next(r for r in stated if r.name == "tau_min")
     assert (tau.bound, tau.u) == (-1, None)
     assert named_value(tau) == ("time constant", "at most 2.00 min")
 
@@ -303,9 +302,9 @@ def test_a_slip_is_as_large_as_the_direction_that_was_probed_says() -> None:
     task = task_of(replace(run, deviation=step + noise))
     gross = replace(task.fit().gross, rows=np.zeros(N, dtype=bool))
     slip = parse_effect("artefact-slip", run.touches.chain).tuned(7000.0)
-    (told,), _ = sizes(
+    (stated,), _ = sizes(
         task, [ScaledEffect(slip, 4.0)], gross, ResidualSpace.of(task.fit((), gross))
     )
-    size = next(r for r in told if r.name.startswith("amplitude"))
+    size = next(r for r in stated if r.name.startswith("amplitude"))
     assert abs(size.value - 9.0) < 3.0 * size.u
     assert size.u < 1.0

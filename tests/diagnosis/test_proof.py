@@ -1,4 +1,4 @@
-"""The proof on the twin: predicted against true volumetric error where nobody probed."""
+"""The proof on the twin: predicted against true volumetric error without a touch."""
 
 from dataclasses import replace
 
@@ -76,7 +76,7 @@ def test_the_error_falls_to_what_is_stated(proofs) -> None:
 def test_uncertainty_is_honest_over_machines(proofs) -> None:
     """Mean square of error over uncertainty is 1, and twice the uncertainty covers nearly all.
 
-    A machine has few effective directions, so that six machines tell the square within some two.
+    A machine has few effective directions, so that six machines give the square within some two.
     """
     ratio = [np.mean(np.sum(p.after**2, axis=1) / p.u**2) for p, *_ in proofs]
     assert 0.5 < np.mean(ratio) < 2.0

@@ -19,6 +19,10 @@ def test_equal_weights_are_a_beta_distribution(k: int, level: float) -> None:
     assert p[0] == pytest.approx(level, rel=0.15 if k == 1 else A_FEW_PER_CENT)
 
 
+def test_no_ratio_is_sure_to_be_reached() -> None:
+    assert ratio_probability(np.zeros(1), np.ones((1, 3)), 40)[0] == 1.0
+
+
 def test_unequal_weights_against_simulated_noise() -> None:
     rng = np.random.default_rng(5)
     weights = np.exp(-np.arange(20) / 3.0)

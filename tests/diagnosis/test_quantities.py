@@ -153,7 +153,7 @@ def test_compliances_of_the_tool_are_two_quantities() -> None:
         assert abs(numbers[name].value - true) < 3.5 * numbers[name].u
 
 
-def test_play_and_a_compliance_of_two_sides_are_told_from_the_mean_compliance() -> None:
+def test_play_and_a_compliance_of_two_sides_are_distinguished_from_the_mean_compliance() -> None:
     """A hinge by hand: 0.06 µm/N pulled, 0.10 µm/N pushed, 4 µm of play between."""
     t = made_up("hmc1995", 300)
     load = np.linspace(-200.0, 200.0, 300)

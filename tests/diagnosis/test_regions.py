@@ -39,7 +39,7 @@ def test_a_box_of_two_conditions_is_found_with_its_mean(case, fit_with) -> None:
         ("C_deg", Side.FROM),
     }
     assert (first.rows & box).sum() > 0.85 * (first.rows | box).sum()
-    # a set-up takes some of it: told is what the residual has, over the poses that judge
+    # a set-up takes some of it: reported is what the residual has, over the poses that judge
     judges = np.unique(np.column_stack([t.setup, t.pose]), axis=0, return_inverse=True)[1] % 2 == 0
     seen = first.rows & fit.used & judges.reshape(-1)
     assert first.mean == pytest.approx(fit.residual[seen].mean())

@@ -1,4 +1,4 @@
-"""One set: tested, told and saved; every figure can be had again from the saved model."""
+"""One set: tested, reported and saved; every figure can be had again from the saved model."""
 
 import json
 from dataclasses import replace
@@ -10,19 +10,19 @@ from simulator_case import simulate_case
 from matstd.cli import main
 from matstd.diagnosis.answer import reported_set as reporting
 from matstd.diagnosis.answer.ambiguity import ConfusionClass, Rival
-from matstd.diagnosis.answer.collinear import left_by
-from matstd.diagnosis.answer.reported_set import reported_set, with_members
+from matstd.diagnosis.answer.reported_set import reported_set
+from matstd.diagnosis.answer.steps import left_by
 from matstd.diagnosis.choice.chosen_set import choice_remarks
 from matstd.diagnosis.choice.prediction import MAX_SETS_PER_BLOCK, Choice, ChoiceRule
 from matstd.diagnosis.files.diagnosis_file import choice_table
 from matstd.diagnosis.files.model_file import read_model
-from matstd.diagnosis.files.model_writer import write_model
+from matstd.diagnosis.files.model_writer import model_text
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.fit.learnt_fit import Learnt
 from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.regression.memory import Memory
-from matstd.diagnosis.remarks.run_remarks import SearchEnded
-from matstd.diagnosis.search.search_loop import search_until_stable
+from matstd.diagnosis.remarks import What, noticed
+from matstd.diagnosis.search import search_loop
 from matstd.diagnosis.search.task import DiagnosisTask
 from matstd.report.words.diagnosis_words import figures, number_words
 from matstd.twin.library.catalogue import parse_effect
@@ -42,20 +42,20 @@ def searched(case, key, names):
     start = ordinary_model(run.touches.chain)
     task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
     library = [parse_effect(name, run.touches.chain) for name in names]
-    return task, search_until_stable(task, (), library)
+    return task, search_loop.searched(task, (), library)
 
 
-# --- the set that is told is the set that was tested ------------------------------------------
+# --- the set that is reported is the set that was tested ------------------------------------------
 
 
-def test_refined_effects_are_tested_as_they_are_told(case) -> None:
+def test_refined_effects_are_tested_as_they_are_reported(case) -> None:
     _, final = searched(case, LAG, ["thermal-lag(EXC)", "backlash(X)"])
     tested = reported_set(final)
-    (told,) = tested.state.effects
+    (stated,) = tested.state.effects
     (member,) = tested.state.chosen.members
-    assert member.effect is told.effect
-    grid = [p for inner in told.effect.inner(case(*LAG).run.touches) for p in inner.grid]
-    assert all(abs(told.effect.tuning["tau"] / g - 1.0) > 1e-6 for g in grid)  # off the grid
+    assert member.effect is stated.effect
+    grid = [p for inner in stated.effect.inner(case(*LAG).run.touches) for p in inner.grid]
+    assert all(abs(stated.effect.tuning["tau"] / g - 1.0) > 1e-6 for g in grid)  # off the grid
     test = tested.tests["thermal-lag(EXC)"]
     assert test.stands
     without = tested.state.search.evaluate(())
@@ -63,12 +63,12 @@ def test_refined_effects_are_tested_as_they_are_told(case) -> None:
     assert test.evidence == pytest.approx(gained)
 
 
-def test_a_name_that_does_not_stand_is_not_told(case, monkeypatch) -> None:
+def test_a_name_that_does_not_stand_is_not_reported(case, monkeypatch) -> None:
     """The class offers a head that explains nothing: the tested member keeps its name."""
     _, final = searched(case, LAG, ["thermal-lag(EXC)", "backlash(X)"])
     other = replace(final.effects[0], effect=parse_effect("backlash(X)", final.base.model.chain))
 
-    def headed(pool, found, others, fixed=None):
+    def headed(pool, found, base, others):
         return ConfusionClass(other, (), ())
 
     monkeypatch.setattr(reporting, "confusion_class", headed)
@@ -85,29 +85,16 @@ def test_no_effect_stands_twice_when_two_classes_want_one_head(case, monkeypatch
     assert len(final.effects) == 2
     wanted = final.effects[0]
 
-    def headed(pool, found, others, fixed=None):
-        assert found.effect.name not in {o.effect.name for o in others}
+    def headed(pool, found, base, others):
+        assert found.effect.name not in others
         return ConfusionClass(found, (Rival(wanted, 0.0, 1.0),), ())
 
     monkeypatch.setattr(reporting, "confusion_class", headed)
     tested = reported_set(final)
-    told = [s.effect.name for s in tested.state.effects]
-    assert sorted(told) == sorted(set(told)) == ["backlash(Y)", "stylus-bending"]
+    stated = [s.effect.name for s in tested.state.effects]
+    assert sorted(stated) == sorted(set(stated)) == ["backlash(Y)", "stylus-bending"]
     rivals = {r.effect.name for c in tested.classes for r in c.rivals}
-    assert not rivals & set(told)
-
-
-def test_a_set_put_back_is_what_it_was(case) -> None:
-    _, final = searched(case, LAG, ["thermal-lag(EXC)", "backlash(X)"])
-    before = final.search.pool.C.copy()
-    grid = tuple(
-        replace(s, effect=m.effect)
-        for s, m in zip(final.effects, final.chosen.members, strict=True)
-    )
-    moved = with_members(final, final.effects)
-    assert np.abs(moved.search.pool.C - before).max() > 0.0
-    again = with_members(moved, grid)
-    assert pytest.approx(before) == again.search.pool.C
+    assert not rivals & set(stated)
 
 
 # --- figures made again from what is kept -----------------------------------------------------
@@ -146,7 +133,7 @@ def test_uncertain_inner_parameters_widen_what_is_saved(case, tmp_path) -> None:
     root = Learnt.of(fit).from_inner
     count = len(model.parameters)
     assert root.shape == (count, 1)
-    write_model(tmp_path / "model.toml", fit, "run.csv")
+    (tmp_path / "model.toml").write_text(model_text(fit, "run.csv"), encoding="utf-8")
     saved = read_model(tmp_path / "model.toml")
     whole = saved.estimates.root @ saved.estimates.root.T
     held = fit.covariance[:count, :count]
@@ -186,8 +173,8 @@ def folder(tmp_path_factory):
 def test_every_figure_can_be_had_again_from_the_model(folder, tmp_path, capsys, option) -> None:
     run = str(folder / "run.csv")
     narrow = ["--only", "thermal-lag(EXC)", "backlash"]
-    told = [run, *option, *narrow, "--no-report", "-o", str(tmp_path / "d")]
-    assert main(["diagnose", *told]) == 0
+    arguments = [run, *option, *narrow, "--no-report", "-o", str(tmp_path / "d")]
+    assert main(["diagnose", *arguments]) == 0
     capsys.readouterr()
     model = str(tmp_path / "d" / "model.toml")
     assert main(["compare", run, "--model", model, "-o", str(tmp_path / "c")]) == 0
@@ -208,7 +195,7 @@ def test_every_figure_can_be_had_again_from_the_model(folder, tmp_path, capsys, 
         assert " ".join(words) in shown
 
 
-# --- additions that these touches cannot tell apart ---------------------------------------------
+# --- additions that these touches cannot distinguish ---------------------------------------------
 
 
 def test_additions_that_are_one_to_these_touches_are_refused_by_name(
@@ -245,21 +232,21 @@ def test_an_addition_that_is_not_significant_is_commented(folder, tmp_path, caps
 # --- a choice by prediction ---------------------------------------------------------------------
 
 
-def test_ways_of_a_choice_are_told_with_the_limit_that_was_met() -> None:
+def test_ways_of_a_choice_are_reported_with_the_limit_that_was_met() -> None:
     nothing = ChoiceRule("nothing", (), np.array([3.0, 4.0]) * UM, np.array([10, 30]))
     way = ChoiceRule("single effects", (), np.array([1.0, 1.0]) * UM, np.array([10, 30]))
     choice = Choice((nothing, way), way, 2, None, is_ended=True)
-    told, ended = choice_remarks(choice, [])
+    remark, ended = choice_remarks(choice, [])
     plain = np.sqrt((10 * 3.0**2 + 30 * 4.0**2) / 40)
-    assert [error / UM for _, error in told.tried] == pytest.approx([plain, 1.0])
-    assert ended == SearchEnded(MAX_SETS_PER_BLOCK)
+    assert [error / UM for _, error in remark.tried] == pytest.approx([plain, 1.0])
+    assert ended == noticed(What.SEARCH_ENDED, sets=MAX_SETS_PER_BLOCK)
     assert len(choice_remarks(replace(choice, is_ended=False), [])) == 1
     table = choice_table(choice)
     assert (table["chosen"], table["blocks"]) == ("single effects", 2)
     assert [w["held_out_um"] for w in table["ways"]] == pytest.approx([plain, 1.0], rel=1e-5)
 
 
-def test_rivals_of_a_large_effect_are_told(case) -> None:
+def test_rivals_of_a_large_effect_are_reported(case) -> None:
     """Hundreds of times the noise, off the grid: one growth is like two others."""
     run = case(*LAG).run
     start = ordinary_model(run.touches.chain)
@@ -269,6 +256,6 @@ def test_rivals_of_a_large_effect_are_told(case) -> None:
     task = DiagnosisTask(run, start, Prior.of_effects(start.effects))
     alike = [f"thermal-lag(EZ{axis})" for axis in "XYZ"]
     library = [parse_effect(n, start.chain) for n in [*alike, "thermal-lag(EXC)", "backlash(X)"]]
-    tested = reported_set(search_until_stable(task, (), library))
+    tested = reported_set(search_loop.searched(task, (), library))
     growth = next(c for c in tested.classes if c.effect.name in alike)
     assert {growth.effect.name, *(r.effect.name for r in growth.rivals)} == set(alike)

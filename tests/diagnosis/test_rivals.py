@@ -1,4 +1,4 @@
-"""What to write into a file, and what else would explain the run: told from the console.
+"""What to write into a file, and what else would explain the run: read from the console.
 
 Runs come from the exact simulator; mistakes are written into the text of run or machine file.
 """
@@ -34,7 +34,7 @@ def numbers(pattern, line):
 
 @pytest.mark.parametrize(("machine", "stated"), [("fork", 220.0), ("hsm600u", -420.0)])
 @pytest.mark.parametrize("longer", [1.0, 0.3])
-def test_a_probe_too_long_is_told_beside_the_pivot(tmp_path, capsys, machine, stated, longer):
+def test_a_probe_too_long_is_reported_beside_the_pivot(tmp_path, capsys, machine, stated, longer):
     """A longer tool R_B l and a pivot (I - R_B) l add up to l, which is where the standard stands.
 
     So a probe stated 1 mm too long and a pivot 1 mm off are one to this run. 0.3 mm are named by no
@@ -98,7 +98,7 @@ def test_a_line_of_a_rotary_axis_far_from_its_place_is_printed(planted):
     assert "usual ± 64 µm, ± 64 µrad" in every
 
 
-def test_a_zero_of_b_is_told_beside_the_two_lines_that_it_moves(planted):
+def test_a_zero_of_b_is_reported_beside_the_two_lines_that_it_moves(planted):
     """B turned by 874 urad tilts C as much and moves its line by 874e-6 times 420 mm."""
     lines, geometry = planted("hsm600u", EB0B=874e-6)
     found = {c["key"]: c["found"] for c in geometry["corrections"]}

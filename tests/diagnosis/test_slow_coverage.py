@@ -46,12 +46,12 @@ def of_one_case(seed):
         with_alike=False,
     )
     d = diagnose(read_back(run_file, machine))
-    (told,) = truth["hidden"]
-    if d.verdict is not Verdict.MISSING or [e.name for e in d.found] != [told["effect"]]:
+    (hidden,) = truth["hidden"]
+    if d.verdict is not Verdict.MISSING or [e.name for e in d.found] != [hidden["effect"]]:
         return None
     sizes = [r for r in d.steps[1].reported if r.name.startswith("amplitude")]
     size = sizes[0]
-    return abs(abs(size.value) - told["amplitude"]) < 1.96 * size.u
+    return abs(abs(size.value) - hidden["amplitude"]) < 1.96 * size.u
 
 
 def test_intervals_hold_what_they_say() -> None:

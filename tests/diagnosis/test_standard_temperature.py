@@ -86,7 +86,7 @@ def test_an_unknown_temperature_is_in_the_uncertainty_of_every_scale(found, temp
 
 def test_what_is_said_beside_the_scales(found) -> None:
     """Sizes by hand: 52.5 ppm of growth; 1.05 and 5 ppm of u, or 21 where nothing is known."""
-    told = {}
+    message = {}
     for head in ("", AT_25, UNKNOWN):
         run, *_ = found(25.0, head)
         (size,) = [
@@ -96,15 +96,16 @@ def test_what_is_said_beside_the_scales(found) -> None:
         ]
         corners = run.touches.point.max(axis=0) - run.touches.point.min(axis=0)
         assert size.length == pytest.approx(np.sqrt(np.sum(corners**2)))
-        told[head] = size, remark_sentence(size)
-    assert told[AT_25][0].strain == pytest.approx(52.5e-6)
-    assert told[AT_25][0].u == pytest.approx(np.hypot(1.05e-6, 5e-6))
-    assert "was at 25.0 ± 0.1 °C: its growth of +52.5 ppm" in told[AT_25][1]
-    assert told[UNKNOWN][0].u == pytest.approx(21e-6)
+        message[head] = size, remark_sentence(size)
+    assert message[AT_25][0].strain == pytest.approx(52.5e-6)
+    assert message[AT_25][0].u == pytest.approx(np.hypot(1.05e-6, 5e-6))
+    assert "was at 25.0 ± 0.1 °C: its growth of +52.5 ppm" in message[AT_25][1]
+    assert message[UNKNOWN][0].u == pytest.approx(21e-6)
     assert (
-        "20 ± 2 °C is assumed, which leaves a standard uncertainty of 21.0 ppm" in told[UNKNOWN][1]
+        "20 ± 2 °C is assumed, which leaves a standard uncertainty of 21.0 ppm"
+        in message[UNKNOWN][1]
     )
-    assert "scales hold for a standard at 20 °C" in told[""][1]
+    assert "scales hold for a standard at 20 °C" in message[""][1]
 
 
 def test_nothing_is_corrected_twice(found) -> None:

@@ -84,7 +84,7 @@ def test_what_is_left_to_the_class_gains_evidence_and_nothing_else_would():
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_a_good_machine_is_told_as_well_as_by_least_squares_of_what_is_there(seed):
+def test_a_good_machine_is_reported_as_well_as_by_least_squares_of_what_is_there(seed):
     run = holes(seed)
     model = ordinary_model(run.touches.chain)
     fit = fit_run(run, model)

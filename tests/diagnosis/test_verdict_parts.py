@@ -1,14 +1,16 @@
 """The verdict in three parts, repeatability, and errors to expect; sums worked by hand."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from matstd.diagnosis.accuracy import Repeatability, Scatter, other_places, promise, repeatability
 from matstd.diagnosis.answer import diagnose
-from matstd.diagnosis.answer.parts import Weighed, verdict_parts
-from matstd.diagnosis.fit import fit_run
+from matstd.diagnosis.answer.parts import verdict_parts
+from matstd.diagnosis.answer.steps import Step
+from matstd.diagnosis.fit import Reported, Role, fit_run
 from matstd.diagnosis.geometry import LearntGeometry
 from matstd.diagnosis.residual import Shape, Structure
 from matstd.report.verdict import part_lines
@@ -24,18 +26,22 @@ NO_GEOMETRY = LearntGeometry((), (), ())
 
 
 def weighed(chain, name, scatter, p=1e-9, is_significant=True):
-    return Weighed(
-        effect=parse_effect(name, chain),
-        p_value=p,
-        scatter=scatter * UM,
-        runner_up=None,
-        is_significant=is_significant,
-    )
+    size = Reported("amplitude", "um", 10.0, 1.0 if is_significant else 6.0, UM, Role.SIZE)
+    effect = parse_effect(name, chain)
+    fit = left_by_model(scatter)
+    return Step(effect=effect, fit=fit, p_value=p, reported=(size,), confusion=None)
+
+
+def left_by_model(scatter, dof=100.0):
+    """A fit that leaves a scatter in units of a stated noise of 1 um."""
+    return SimpleNamespace(noise=SimpleNamespace(factor=scatter, dof=dof))
 
 
 def parts(start, steps, left=(), repeats=None, dof=100.0):
     known = repeats or Repeatability(1.0 * UM, None, None, None)
-    return verdict_parts(start * UM, dof, steps, left, NO_GEOMETRY, (), known)
+    fit = left_by_model(start, dof)
+    first = Step(effect=None, fit=fit, p_value=1.0, reported=(), confusion=None)
+    return verdict_parts([first, *steps], left, NO_GEOMETRY, (), known, {})
 
 
 def pattern(share):

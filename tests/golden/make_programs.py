@@ -4,6 +4,7 @@ A small standard (two patches, three spheres) on a machine of the type [w C' B' 
 five table poses, a visit from either side of most of them.
 """
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -103,6 +104,7 @@ def setup() -> Setup:
     return Setup("a", pose(rotation(np.array([0.0, 0.0, 0.35])), np.array([12.0, -8.0, 5.0])))
 
 
+@cache
 def plan() -> TouchPlan:
     """All touches that can be made; two of them lean too far in their pose."""
     small = standard()
@@ -110,6 +112,7 @@ def plan() -> TouchPlan:
     return plan_touches(small, machine(), Probe(), setup(), requests(small), options)
 
 
+@cache
 def programs(control: str = "itnc530") -> ProgramSet:
     """The golden programs of a control, three files."""
     return make_programs(plan(), read_dialect(control), Feeds(touches_per_file=24))

@@ -45,7 +45,7 @@ def tilting():
     return positioning_run(test, chain, 1e-3)
 
 
-def test_a_table_of_angles_tells_its_first_harmonic(tmp_path):
+def test_a_table_of_angles_shows_its_first_harmonic(tmp_path):
     """It feels no eccentric clamping: the wave is the axis's own, and reversal its half."""
     angles = np.arange(0.0, 360.0, 30.0)
     wave = 4.0 * np.sin(angles * DEG + 0.4)
@@ -54,11 +54,11 @@ def test_a_table_of_angles_tells_its_first_harmonic(tmp_path):
     (tmp_path / "table.csv").write_text(text)
     test = read_positioning(read_sheet(tmp_path / "table.csv"), "C")
     run = positioning_run(test, one_axis_machine("C", test.target), 0.5 * URAD)
-    told = {r.symbol: r for r in geometry_rows(fit_run(run, ordinary_model(run.touches.chain)))}
-    assert list(told) == ["ECC"]
+    reported = {r.symbol: r for r in geometry_rows(fit_run(run, ordinary_model(run.touches.chain)))}
+    assert list(reported) == ["ECC"]
     wanted = np.ptp(4.0 * np.sin(np.linspace(0.0, 330.0, 400) * DEG + 0.4)) * ARCSEC
-    assert told["ECC"].estimate.value == pytest.approx(wanted, rel=0.01)
-    assert told["ECC"].is_determined
+    assert reported["ECC"].estimate.value == pytest.approx(wanted, rel=0.01)
+    assert reported["ECC"].is_determined
 
 
 def test_columns_are_differences_of_the_exact_chain(tilting):
@@ -117,7 +117,7 @@ def test_a_cheap_encoder_off_by_degrees_is_read_and_its_harmonics_found(tmp_path
     assert 50.0 * DEG < result.fit.test_rms < 90.0 * DEG
 
 
-def test_angles_are_told_in_their_own_unit(tilting, capsys):
+def test_angles_are_reported_in_their_own_unit(tilting, capsys):
     """At an arm of a metre a µm is a µrad; at another, and of lengths, it is not."""
     touches = tilting.touches
     assert touches.deviation_unit == "µrad"
@@ -157,10 +157,10 @@ def test_a_worm_is_found_where_targets_resolve_it():
 
 def test_harmonics_that_even_targets_confuse_are_listed():
     """A harmonic of 45 at 120 targets may be one of 75, 165, 195, 285; a curve may be anything."""
-    (alike,) = told(turned(120, 45), "periodic(ECC)", 45.0)
+    (alike,) = reported_of(turned(120, 45), "periodic(ECC)", 45.0)
     assert alike == HarmonicsAlike("C", 120, 45, (75, 165, 195, 285))
     assert "cannot distinguish harmonic 45 from 75, 165, 195 or 285" in remark_sentence(alike)
-    (curve,) = told(turned(12, 40), "geometric(ECC,2-4)")
+    (curve,) = reported_of(turned(12, 40), "geometric(ECC,2-4)")
     assert curve == HarmonicsAlike("C", 12, 0, ())
     assert (
         "12 evenly spaced targets per turn of C show errors that repeat more than 6 times"
@@ -168,7 +168,7 @@ def test_harmonics_that_even_targets_confuse_are_listed():
     )
 
 
-def told(run, name, *inner):
+def reported_of(run, name, *inner):
     """Remarks on harmonics about the ordinary model with one effect."""
     start = ordinary_model(run.touches.chain)
     effect = parse_effect(name, run.touches.chain)
@@ -178,17 +178,17 @@ def told(run, name, *inner):
 
 
 @pytest.mark.slow
-def test_a_worm_is_found_at_uneven_targets_and_its_look_alikes_are_told():
-    """Eight uneven targets tell 72 waves a turn from 2 to 400; six leave dozens that may be it."""
+def test_a_worm_is_found_at_uneven_targets_and_its_look_alikes_are_reported():
+    """Eight uneven targets find 72 waves a turn from 2 to 400; six leave dozens that may be it."""
     (effect,) = diagnose(turned_at(uneven(8), 72)).found
     assert (effect.name, effect.tuning["harmonic"]) == ("periodic(ECC)", 72.0)
     few = diagnose(turned_at(uneven(6), 72), rng=np.random.default_rng(1))
     (step,) = few.steps[1:]
     assert 72.0 in step.confusion.alike.periods
-    told = verdict_sentence(few)
-    assert "it cannot be distinguished from harmonic 69, 71, 72, 73 or one of " in told
-    assert "higher ones; to distinguish them, measure at C " in told
-    assert "°)" in told
+    message = verdict_sentence(few)
+    assert "it cannot be distinguished from harmonic 69, 71, 72, 73 or one of " in message
+    assert "higher ones; to distinguish them, measure at C " in message
+    assert "°)" in message
 
 
 def uneven(targets: int):
@@ -196,7 +196,7 @@ def uneven(targets: int):
     return np.sort(np.random.default_rng(1).uniform(0.0, 2.0 * np.pi, targets))
 
 
-def test_gears_are_looked_for_where_many_poses_tell_them():
+def test_gears_are_looked_for_where_many_poses_determine_them():
     """Waves of 12 a turn at most, felt as displacements, until 40 readings are there."""
     rng = np.random.default_rng(3)
     for readings, highest in ((30, 12.0), (60, 400.0)):

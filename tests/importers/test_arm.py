@@ -215,9 +215,9 @@ def test_several_reflectors_with_torques_and_loads_are_one_run(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("coupling", "told", "code"), [(1.0, "--coupled J3+J2", 0), (-1.0, "--coupled J3-J2", BAD)]
+    ("coupling", "expected", "code"), [(1.0, "--coupled J3+J2", 0), (-1.0, "--coupled J3-J2", BAD)]
 )
-def test_a_joint_that_counts_from_another_link_is_named(tmp_path, capsys, coupling, told, code):
+def test_a_joint_that_counts_from_another_link_is_named(tmp_path, capsys, coupling, expected, code):
     """As the controls of Fanuc count joint 3; nothing is applied until the user says so.
 
     The other way round 172 mm are left of places that spread by 323: no run is made of that.
@@ -227,9 +227,9 @@ def test_a_joint_that_counts_from_another_link_is_named(tmp_path, capsys, coupli
     arguments = ["import", log, "--arm", "--dh", dh, "--u-um", "5", "-o", out]
     assert main(arguments) == code
     said = capsys.readouterr()
-    assert told in (said.err if code else said.out)
+    assert expected in (said.err if code else said.out)
     assert (tmp_path / "run.csv").exists() == (code == 0)
-    assert main([*arguments, "--force", "--coupled", told.split()[1]]) == 0
+    assert main([*arguments, "--force", "--coupled", expected.split()[1]]) == 0
     said = capsys.readouterr().out
     assert "do not agree" not in said
     assert "deviations 0.000 µm" in said
@@ -290,10 +290,10 @@ def test_a_path_with_one_orientation_does_not_say_where_the_reflector_sits(tmp_p
     assert np.ptp(flange[:, 0]) == pytest.approx(300.0)
     np.testing.assert_allclose(np.ptp(flange[:, 1:], axis=0), 0.0, atol=1e-9)
     places = seen(q) + noise * np.random.default_rng(5).normal(size=(len(q), 3))
-    told = refused(tmp_path, q, places)
-    assert "the reflector along every direction of the tool frame" in told
-    assert "a turn of the tracker about X of the table frame" in told
-    assert "--reflector X Y Z" in told
+    message = refused(tmp_path, q, places)
+    assert "the reflector along every direction of the tool frame" in message
+    assert "a turn of the tracker about X of the table frame" in message
+    assert "--reflector X Y Z" in message
     table, dh, out = (str(tmp_path / name) for name in ("log.csv", "ur5.csv", "run.csv"))
     words = ["import", table, "--arm", "--dh", dh, "--u-um", "5", "-o", out]
     assert main(words) == BAD
@@ -303,9 +303,9 @@ def test_a_path_with_one_orientation_does_not_say_where_the_reflector_sits(tmp_p
 
 def test_one_pose_says_nothing_but_where_the_reflector_was(tmp_path):
     q = np.tile(poses()[0], (10, 1))
-    told = refused(tmp_path, q, seen(q))
-    assert "the reflector along every direction of the tool frame" in told
-    assert "a turn of the tracker about every direction of the table frame" in told
+    message = refused(tmp_path, q, seen(q))
+    assert "the reflector along every direction of the tool frame" in message
+    assert "a turn of the tracker about every direction of the table frame" in message
 
 
 def test_a_turn_of_one_joint_says_how_far_from_its_line_the_reflector_is(tmp_path):
@@ -318,16 +318,16 @@ def test_a_turn_of_one_joint_says_how_far_from_its_line_the_reflector_is(tmp_pat
     q[:, 5] = np.linspace(-2.0, 2.0, 20)
     (tmp_path / "ur5.csv").write_text(UR5)
     _, turned = arm_from_dh(read_sheet(tmp_path / "ur5.csv"), q)
-    told = refused(tmp_path, q, seen(q))
+    message = refused(tmp_path, q, seen(q))
     number = r"(-?\d\.\d\d)"
     triple = rf"\({number}, {number}, {number}\)"
-    match = re.search(rf"reflector along every direction square to {triple} of the tool", told)
+    match = re.search(rf"reflector along every direction square to {triple} of the tool", message)
     assert match
     determined = np.array(match.groups(), dtype=float)
     assert np.linalg.norm(determined) == pytest.approx(1.0, abs=0.01)
     assert determined @ turned[:, 2] == pytest.approx(0.0, abs=0.01)
     line = by_hand(q[0])[:3, 2] * np.sign(by_hand(q[0])[1, 2])
-    assert f"a turn of the tracker about ({', '.join(f'{c:.2f}' for c in line)}) of" in told
+    assert f"a turn of the tracker about ({', '.join(f'{c:.2f}' for c in line)}) of" in message
 
 
 def test_a_stated_reflector_on_a_line_leaves_a_turn_about_it(tmp_path):
@@ -380,7 +380,7 @@ def test_a_column_z_is_not_a_column_Z(tmp_path, capsys):
     capsys.readouterr()
 
 
-def test_two_columns_of_places_that_nobody_names_are_refused(tmp_path):
+def test_two_columns_of_places_without_names_are_refused(tmp_path):
     q = poses()
     table = written(tmp_path, seen(q), q)
     text = table.read_text(encoding="cp1252").splitlines()

@@ -73,7 +73,7 @@ def test_what_was_measured_is_what_the_axis_is_found_to_do(
     assert "reversal of the " in turning.title.text
 
 
-def test_a_command_makes_the_run_and_tells_the_curve(tmp_path, capsys) -> None:
+def test_a_command_makes_the_run_and_shows_the_curve(tmp_path, capsys) -> None:
     table(tmp_path, "Pitch [µrad]", 20.0 * np.cos(np.pi * POSITIONS / 600.0))
     out = tmp_path / "run.csv"
     words = ["import", str(tmp_path / "table.csv"), "--component", "EBX", "-o", str(out)]

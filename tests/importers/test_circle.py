@@ -47,7 +47,7 @@ def table(tmp_path):
     return made
 
 
-def test_lag_reversal_and_squareness_are_told_apart(table):
+def test_lag_reversal_and_squareness_are_distinguished(table):
     errors = {"lag": 2e-4, "reversal": 5.0 * UM, "square": 40.0 * URAD}
     test = read_circle(table(**errors), "XY", RADIUS)
     assert list(dict.fromkeys(test.run)) == ["gegen Uhrzeigersinn", "im Uhrzeigersinn"]

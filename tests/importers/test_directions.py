@@ -1,4 +1,4 @@
-"""Directions of approach as tables tell them, and the figures of ISO 230-2 made of them by hand."""
+"""Directions of approach as tables state them, and figures of ISO 230-2 made of them by hand."""
 
 import numpy as np
 import pytest
@@ -70,7 +70,7 @@ def test_of_a_report_with_several_tables_the_fullest_is_read(tmp_path):
     assert len(sheet) == 4
 
 
-def test_a_word_that_tells_no_direction_beside_others_is_refused(tmp_path):
+def test_a_word_that_states_no_direction_beside_others_is_refused(tmp_path):
     text = "target [mm];1 up [µm];1 xyz [µm]\n0;1;2\n10;3;4\n"
     with pytest.raises(BadFile, match=r"column '1 xyz \[µm\]', expected up or down"):
         positioning(tmp_path, text)
@@ -94,7 +94,7 @@ def test_a_table_in_two_parts_says_which_is_which(tmp_path):
     ],
     ids=["turn twice", "turn once", "one way", "sorted"],
 )
-def test_the_order_of_rows_tells_directions(targets, signs, cycles):
+def test_the_order_of_rows_gives_directions(targets, signs, cycles):
     sign, cycle = approaches(np.array(targets, dtype=float))
     assert sign.tolist() == signs
     assert cycle.tolist() == cycles
@@ -112,13 +112,13 @@ def test_figures_of_the_standard_by_hand(tmp_path):
     assert found.accuracy / UM == pytest.approx(8.0 + 4.0 * s)
 
 
-def test_import_tells_the_figures_and_what_is_missing(tmp_path, capsys):
+def test_import_reports_the_figures_and_what_is_missing(tmp_path, capsys):
     path = tmp_path / "parts.md"
     path.write_text(PARTS, encoding="utf-8")
     arguments = ["--positioning", "X", "--u-um", "1", "-o", str(tmp_path / "a.csv")]
     assert main(["import", str(path), *arguments]) == 0
-    told = capsys.readouterr().out
-    assert "ISO 230-2: reversal B 5 µm (mean 4), M 4, E 8, R 10.7, A 13.7 µm" in told
+    message = capsys.readouterr().out
+    assert "ISO 230-2: reversal B 5 µm (mean 4), M 4, E 8, R 10.7, A 13.7 µm" in message
     path.write_text("target [mm],1 [µm],2 [µm]\n0,1,2\n10,3,4\n", encoding="utf-8")
     assert main(["import", str(path), *arguments, "--force"]) == 0
     assert "no direction of approach is stated" in capsys.readouterr().out

@@ -99,7 +99,7 @@ def test_a_report_in_columns_of_blanks(tmp_path, text):
     assert "Err X" in sheet.unused
 
 
-def test_a_table_without_a_header_is_told_its_columns(tmp_path):
+def test_a_table_without_a_header_is_given_its_columns(tmp_path):
     (tmp_path / "log.txt").write_text("1.0e+01 1.00010e+01 0\n2.0e+01 2.00030e+01 0\n")
     with pytest.raises(BadFile, match="--columns"):
         read_sheet(tmp_path / "log.txt")
@@ -131,7 +131,7 @@ def test_a_point_may_be_named_by_two_columns(tmp_path):
     np.testing.assert_allclose(points.deviation[:, :2] / UM, off, atol=1e-6)
 
 
-def test_points_whose_names_are_mixed_up_are_told(imported, capsys):
+def test_points_whose_names_are_mixed_up_are_reported(imported, capsys):
     rows = ["name,x nom,y nom,x meas,y meas"]
     place = {"A": (0, 0), "B": (30, 0), "C": (0, 40), "D": (3, 42), "E": (90, 10)}
     found = {**place, "C": place["D"], "D": place["C"]}

@@ -125,10 +125,10 @@ def test_an_axis_that_moves_from_cycle_to_cycle(tmp_path):
     test = read_positioning(read_sheet(saved(tmp_path, text)), "X")
     result = diagnose(positioning_run(test, one_axis_machine("X", test.target), 0.3 * UM))
     steps = [s for s in result.steps if s.effect is not None]
-    told = {s.effect.name: next(r for r in s.reported if r.role is Role.SIZE) for s in steps}
-    assert set(told) == {"follows(EXX,cycle_1)", "backlash(X)"}
+    reported = {s.effect.name: next(r for r in s.reported if r.role is Role.SIZE) for s in steps}
+    assert set(reported) == {"follows(EXX,cycle_1)", "backlash(X)"}
     for name, true in (("follows(EXX,cycle_1)", 0.9), ("backlash(X)", 1.5)):
-        assert abs(told[name].value) == pytest.approx(true, abs=4.0 * told[name].u)
+        assert abs(reported[name].value) == pytest.approx(true, abs=4.0 * reported[name].u)
 
 
 def test_a_screw_that_warms_over_the_cycles(tmp_path):
@@ -151,14 +151,14 @@ def test_a_screw_that_warms_over_the_cycles(tmp_path):
     ]
     test = read_positioning(read_sheet(saved(tmp_path, "\n".join(lines))), "X")
     result = diagnose(positioning_run(test, one_axis_machine("X", test.target), 0.3 * UM))
-    told = {s.effect.name: s.reported for s in result.steps if s.effect is not None}
-    assert set(told) == {"axis-warming(X,V_cycles_done_1)", "backlash(X)"}
+    reported = {s.effect.name: s.reported for s in result.steps if s.effect is not None}
+    assert set(reported) == {"axis-warming(X,V_cycles_done_1)", "backlash(X)"}
     first, last = 0.5 / 24.0, (9.0 + 11.5 / 12.0) / 2.0  # cycles done at the touches
     grown = 24.0 * (np.exp(-first / 1.5) - np.exp(-last / 1.5))
     true = {"change_at_highest_reading": grown, "change_at_lowest_reading": 0.0}
     true |= {"cycles": 1.5, "high_end": 24.0, "low_end": 0.0}
-    assert within(told["axis-warming(X,V_cycles_done_1)"], true)
-    assert within(told["backlash(X)"], {"amplitude": 1.5})
+    assert within(reported["axis-warming(X,V_cycles_done_1)"], true)
+    assert within(reported["backlash(X)"], {"amplitude": 1.5})
     # an effect that was found does not hide itself
     smallest = {d.effect.name: d.size for d in result.detectable}
     assert 0.1 * UM < smallest["backlash(X)"] < 0.4 * UM
@@ -194,9 +194,9 @@ def test_counts_that_an_encoder_lost_are_a_jump_of_its_axis():
     chain = one_axis_machine("X", target)
     named = [parse_effect("jump(EXX)", chain)]
     result = diagnose(positioning_run(test, chain, 0.05 * UM), named=named)
-    told = {s.effect.name: s.reported for s in result.steps if s.effect is not None}
-    assert set(told) == {"jump(EXX)", "backlash(X)"}
-    assert within(told["jump(EXX)"], {"amplitude": 0.6, "instant": 20.25})
+    reported = {s.effect.name: s.reported for s in result.steps if s.effect is not None}
+    assert set(reported) == {"jump(EXX)", "backlash(X)"}
+    assert within(reported["jump(EXX)"], {"amplitude": 0.6, "instant": 20.25})
     assert result.fit.test_rms == pytest.approx(0.05 * UM, rel=0.15)
 
 
@@ -262,7 +262,7 @@ def test_names_and_units_of_columns():
 
 
 @pytest.mark.parametrize(
-    ("text", "told"),
+    ("text", "expected"),
     [
         ("target,deviation\n0,1\n10,2\n", "unknown unit"),
         ("a,b\n0,1\n10,2\n", "a column of targets"),
@@ -276,8 +276,8 @@ def test_names_and_units_of_columns():
         ("target_mm,cycle,deviation_um\n0,1.5,1\n10,2,2\n", "the number of a cycle"),
     ],
 )
-def test_what_is_not_understood_is_refused(tmp_path, text, told):
-    with pytest.raises(BadFile, match=told):
+def test_what_is_not_understood_is_refused(tmp_path, text, expected):
+    with pytest.raises(BadFile, match=expected):
         read_positioning(read_sheet(saved(tmp_path, text)), "X")
 
 
@@ -364,7 +364,7 @@ def test_any_table_by_a_mapping_file(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "told"),
+    ("old", "new", "expected"),
     [
         ('from = "steps"', 'from = "stepz"', "columns.dev_um"),
         ("import/1", "import/2", "format"),
@@ -373,14 +373,14 @@ def test_any_table_by_a_mapping_file(tmp_path):
         ("factor = -2.5", "faktor = -2.5", "dev_um"),
     ],
 )
-def test_faults_of_a_mapping_file_are_one_line(tmp_path, capsys, old, new, told):
+def test_faults_of_a_mapping_file_are_one_line(tmp_path, capsys, old, new, expected):
     saved(tmp_path, MACHINE, "machine.toml")
     table = saved(tmp_path, "minutes\tsteps\tbed\n0\t1\t20.5\n1\t3\t21.5\n", "log.txt")
     mapping = saved(tmp_path, MAPPING.replace(old, new), "map.toml")
     out = tmp_path / "run.csv"
     assert main(["import", str(table), "--map", str(mapping), "-o", str(out)]) == BAD
     said = capsys.readouterr().err
-    assert told in said
+    assert expected in said
     assert said.count("\n") == 1
     assert not out.exists()
 

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import rs274
 from browser import faults, opened, requests
+from figures import render_alone
 
 from matstd.artefact.body.limits import Limits
 from matstd.artefact.body.standard_file import read_standard
@@ -90,6 +91,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         patch.setattr(comparison, "COUNTS", (4,))
         bodies = comparison.rivals
         patch.setattr(comparison, "rivals", lambda *of: dict([*bodies(*of).items()][:1]))
+        render_alone(patch, "drawing")  # `report/test_*` render the others
         patch.setattr(study_run, "draw_maps", lambda *_: [])
         patch.setattr(design_page, "draw_study_volumes", lambda *_: [])
         assert main(["design", str(small_project(folder)), "-o", str(out)]) == 0
@@ -186,18 +188,41 @@ def test_the_report_moves(made: Path, browser: Any) -> None:
     actual = apply(inverse(stands), exact_tip(chain, q, length, errors))
     moved = actual - apply(inverse(believed), tip(chain, q, length))
     counts = [len(places) for places in field["at"]]
-    shown = np.reshape(field["before"], (-1, *counts))[1, 2, 2, 2]
-    assert shown * UM == pytest.approx(float(np.linalg.norm(moved)), abs=0.01 * UM)
+    # axes that read as much more would stand where the machine really does
+    shown = np.reshape(field["before"], (-1, *counts, 3))[1, 2, 2, 2]
+    there = q.copy()
+    there[0, [chain.axis_index(axis) for axis in field["axes"]]] += shown * UM
+    moved_so = apply(inverse(believed), tip(chain, there, length) - tip(chain, q, length))
+    moved_so -= apply(inverse(believed), np.zeros(3))
+    assert moved_so == pytest.approx(moved, abs=0.01 * UM)
+    # the same as an arrow on the plane
+    drawn = do(
+        """const { field, data } = designPage, cut = designPage.cut(), at = data.field.at;
+        Object.assign(field, { axis: 2, rotary: 1, place: at[2][2], isAfter: false, stretch: 3 });
+        document.getElementById("stretch").value = Math.log10(3);
+        document.getElementById("stretch").dispatchEvent(new Event("input"));
+        const from = at.map(a => a[2]), { positions } = cut.arrows;
+        for (let i = 0; i < positions.length; i += 6) {
+          if (from.every((v, k) => Math.abs(v - positions[i + k]) < 1e-3)) {
+            return [...positions.subarray(i, i + 6), cut.view.camera.size];
+          }
+        }"""
+    )
+    arrow = np.array(drawn[3:6]) - drawn[:3]
+    assert arrow / np.linalg.norm(arrow) == pytest.approx(shown / np.linalg.norm(shown), abs=1e-3)
+    most = np.nanquantile(np.linalg.norm(np.reshape(field["before"], (-1, 3)), axis=1), 0.98)
+    share = np.linalg.norm(shown) / most
+    assert np.linalg.norm(arrow) == pytest.approx(3.0 * 0.11 * share * drawn[6], rel=0.02)
     # another artefact in place of the standard, then the standard again
     do("document.querySelectorAll('#rivals input')[1].click()")
     assert not do("return designPage.standard.own[0].isVisible")
     do("document.querySelectorAll('#rivals input')[0].click()")
     assert do("return designPage.standard.own[0].isVisible")
-    told = do(
+    stated = do(
         """return [...document.querySelectorAll("#sensitivities li")].map(
           e => [e.children[0].textContent, parseFloat(e.querySelector("output").textContent)]);"""
     )
-    assert dict(map(tuple, told))["EXX"] == 1.0
+    assert dict(map(tuple, stated))["EXX"] == 1.0
     assert faults(browser) == []
     assert requests(browser) == []
 
@@ -232,10 +257,10 @@ def test_the_run_can_be_made_again_from_the_files(made: Path, tmp_path: Path) ->
 
 
 def test_what_was_measured_stands_with_its_limits(made: Path) -> None:
-    told = json.loads((made / "conformity.json").read_text())
-    assert told["faults"] == []
-    assert 0.0 < told["measured"]["mass"] < 60.0
-    assert told["limits"]["face_deviation_mm"] == FACE_LIMIT
+    saved = json.loads((made / "conformity.json").read_text())
+    assert saved["faults"] == []
+    assert 0.0 < saved["measured"]["mass"] < 60.0
+    assert saved["limits"]["face_deviation_mm"] == FACE_LIMIT
 
 
 def test_the_page_stands_alone(made: Path) -> None:
@@ -244,8 +269,8 @@ def test_the_page_stands_alone(made: Path) -> None:
     assert "https://" not in page
     assert page.count("data:image/png;base64,") >= 7
     assert "placeholders" in page
-    told = re.search(r"the (\d+) proving touches take (\d+) minutes, or (\d+) with each", page)
-    touches, minutes, once = map(int, told.groups())
+    stated = re.search(r"the (\d+) proving touches take (\d+) minutes, or (\d+) with each", page)
+    touches, minutes, once = map(int, stated.groups())
     with next(made.glob("tables/05-*.csv")).open(encoding="utf-8") as table:
         assert 0 < once <= minutes < max(float(way["minutes"]) for way in csv.DictReader(table))
     run = read_run(made / "run.csv").touches
@@ -307,9 +332,9 @@ def test_bad_project(
     assert old in text
     path.write_text(text.replace(old, new))
     assert main(["design", str(path), "-o", str(tmp_path / "out")]) == 2
-    told = capsys.readouterr().err
-    assert expected in told
-    assert len([line for line in told.splitlines() if not line.startswith("[")]) == 1  # progress
+    message = capsys.readouterr().err
+    assert expected in message
+    assert len([line for line in message.splitlines() if not line.startswith("[")]) == 1  # progress
     assert not (tmp_path / "out").exists()
 
 

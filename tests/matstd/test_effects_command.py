@@ -29,7 +29,7 @@ def test_lines_fit_the_console(capsys) -> None:
     assert max(len(line) for line in capsys.readouterr().out.splitlines()) <= 80
 
 
-def test_one_kind_tells_its_whole_story(capsys) -> None:
+def test_one_kind_states_its_whole_story(capsys) -> None:
     assert main(["effects", "gravity(EBB)"]) == 0
     out = " ".join(capsys.readouterr().out.split())
     for phrase in ("cantilever under a load", "E = a sin 2q", "off the centre of the table"):

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -104,52 +105,66 @@ def test_what_a_killed_run_left_goes_at_the_next_start(tmp_path: Path) -> None:
 
 
 RACES = """
-import sys, time
+import sys
 from pathlib import Path
 from matstd.twin.errors import DesignError
 from matstd.twin.files import results_folder, refuse_to_overwrite, write_whole
-kind, out, mine, force = sys.argv[1], Path(sys.argv[2]), sys.argv[3], sys.argv[4] == "force"
-try:
-    if kind == "folder":
-        with results_folder(out, force, ours=["only-*"]) as work:
-            for k in range(30):
-                (work / f"f{k}").write_text(mine)
-            (work / f"only-{mine}").write_text(mine)
+mine = sys.argv[1]
+for line in sys.stdin:
+    kind, name, force = line.rstrip("\\n").split("|")
+    out, force = Path(name), force == "force"
+    try:
+        if kind == "folder":
+            with results_folder(out, force, ours=["only-*"]) as work:
+                for k in range(30):
+                    (work / f"f{k}").write_text(mine)
+                (work / f"only-{mine}").write_text(mine)
+                print("ready", flush=True)
+                sys.stdin.readline()
+        else:
+            refuse_to_overwrite(out, force)
             print("ready", flush=True)
             sys.stdin.readline()
-    else:
-        refuse_to_overwrite(out, force)
-        print("ready", flush=True)
-        sys.stdin.readline()
-        write_whole(out, mine)
-except DesignError as error:
-    print(error, flush=True)
-    sys.exit(2)
+            write_whole(out, mine)
+        print("0|", flush=True)
+    except DesignError as error:
+        print(f"2|{error}", flush=True)
 """
+"""A process that writes results whenever a line names them; it starts once for all races."""
+
+
+@pytest.fixture(scope="module")
+def racers() -> Iterator[list[subprocess.Popen[str]]]:
+    """Four processes that write the same results, each its own letter."""
+    words = [[sys.executable, "-c", RACES, mine] for mine in "abcd"]
+    runs = [subprocess.Popen(w, stdin=-1, stdout=-1, text=True, bufsize=1) for w in words]
+    yield runs
+    for run in runs:
+        run.communicate()
+        assert run.returncode == 0
 
 
 def raced(
-    kind: str, out: Path, force: str, together: bool, count: int = 4
+    runs: list[subprocess.Popen[str]], kind: str, out: Path, force: str, together: bool
 ) -> list[tuple[int, str]]:
     """Exit code and last line of processes that all began before one of them had ended."""
-    runs = []
-    for mine in "abcdefgh"[:count]:
-        words = [sys.executable, "-c", RACES, kind, str(out), mine, force]
-        runs.append(subprocess.Popen(words, stdin=-1, stdout=-1, text=True))
-    for run in runs:
+
+    def answer(run: subprocess.Popen[str]) -> str:
         assert run.stdout is not None
-        assert run.stdout.readline() == "ready\n"
-    ended = []
+        return run.stdout.readline().rstrip("\n")
+
+    for run in runs:
+        assert run.stdin is not None
+        run.stdin.write(f"{kind}|{out}|{force}\n")
+        assert answer(run) == "ready"
+    ended = {}
     for run in reversed(runs):  # who began last ends first
         assert run.stdin is not None
         run.stdin.write("\n")
-        run.stdin.flush()
         if not together:
-            run.wait()
-    for run in runs:
-        said, _ = run.communicate()
-        ended.append((run.returncode, said.strip()))
-    return ended
+            ended[run] = answer(run)
+    said = [(ended.get(run) or answer(run)).partition("|") for run in runs]
+    return [(int(code), words.strip()) for code, _, words in said]
 
 
 def held(out: Path) -> str:
@@ -165,10 +180,10 @@ def held(out: Path) -> str:
 @pytest.mark.parametrize("together", [False, True])
 @pytest.mark.parametrize(("kind", "name"), [("folder", "out"), ("file", "run.csv")])
 def test_of_runs_that_race_the_first_stays_and_the_others_are_kept(
-    tmp_path: Path, kind: str, name: str, together: bool
+    racers: list[subprocess.Popen[str]], tmp_path: Path, kind: str, name: str, together: bool
 ) -> None:
     out = tmp_path / name
-    ended = raced(kind, out, "no", together)
+    ended = raced(racers, kind, out, "no", together)
     codes = [code for code, _ in ended]
     assert sorted(codes) == [0, 2, 2, 2]
     first = held(out)
@@ -186,13 +201,13 @@ def test_of_runs_that_race_the_first_stays_and_the_others_are_kept(
 @pytest.mark.parametrize("before", [False, True])
 @pytest.mark.parametrize(("kind", "name"), [("folder", "out"), ("file", "run.csv")])
 def test_forced_runs_that_race_leave_one_whole_result(
-    tmp_path: Path, kind: str, name: str, before: bool
+    racers: list[subprocess.Popen[str]], tmp_path: Path, kind: str, name: str, before: bool
 ) -> None:
     out = tmp_path / name
     if before:
-        raced(kind, out, "no", together=False, count=1)
+        raced(racers[:1], kind, out, "no", together=False)
     for _ in range(3):
-        assert raced(kind, out, "force", together=True) == [(0, "")] * 4
+        assert raced(racers, kind, out, "force", together=True) == [(0, "")] * 4
         assert held(out) in "abcd"
         assert [p.name for p in tmp_path.iterdir()] == [name]
 

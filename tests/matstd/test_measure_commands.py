@@ -79,9 +79,9 @@ def test_a_model_of_another_machine_is_refused(
     for command in ("compare", "diagnose"):
         words = [command, str(tmp_path / "run.csv"), "--model", model, "-o", str(tmp_path / "o")]
         assert main(words) == BAD
-        told = capsys.readouterr().err
-        assert expected in told
-        assert told.count("\n") == 1
+        message = capsys.readouterr().err
+        assert expected in message
+        assert message.count("\n") == 1
     assert not (tmp_path / "o").exists()
 
 
@@ -140,9 +140,9 @@ def test_effects_that_cannot_be_added(folder, tmp_path, capsys, effects, expecte
 def test_a_named_effect_is_not_called_missing(folder, tmp_path, capsys) -> None:
     words = ["diagnose", str(folder / "run.csv"), "--add", "probe-radius", *NARROW]
     assert main([*words, "-o", str(tmp_path / "o")]) == 0
-    told = capsys.readouterr().out
-    assert "The model lacks one effect: reversal of Y" in told
-    assert "Added by name: effective radius of the ball" in told
+    message = capsys.readouterr().out
+    assert "The model lacks one effect: reversal of Y" in message
+    assert "Added by name: effective radius of the ball" in message
 
 
 def test_a_file_is_no_folder(folder, tmp_path, capsys) -> None:
@@ -169,13 +169,13 @@ def test_a_full_disk_is_one_line(folder, tmp_path, capsys, monkeypatch) -> None:
     monkeypatch.setattr("matstd.report.layout.html.save", full)
     words = ["compare", str(folder / "run.csv"), "-o", str(tmp_path / "o")]
     assert main(words) == BAD
-    told = capsys.readouterr().err
-    assert told.endswith("o: cannot be written (No space left on device)\n")
+    message = capsys.readouterr().err
+    assert message.endswith("o: cannot be written (No space left on device)\n")
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_whoever_is_stopped_leaves_nothing_half_written(folder, tmp_path, number) -> None:
+def test_a_stopped_command_leaves_nothing_half_written(folder, tmp_path, number) -> None:
     out = tmp_path / "o"
     words = ["-m", "matstd", "diagnose", str(folder / "run.csv"), "-o", str(out)]
     process = subprocess.Popen([sys.executable, *words], stderr=subprocess.PIPE, text=True)
@@ -183,9 +183,9 @@ def test_whoever_is_stopped_leaves_nothing_half_written(folder, tmp_path, number
     while not list(tmp_path.iterdir()) and time.monotonic() < until:
         time.sleep(0.02)  # until the working folder is there, so that there is something to tidy
     os.kill(process.pid, number)
-    told = process.communicate(timeout=60.0)[1]
+    message = process.communicate(timeout=60.0)[1]
     assert process.returncode == 130
-    assert told.strip().endswith("stopped, and nothing half-written is left")
+    assert message.strip().endswith("stopped, and nothing half-written is left")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -206,8 +206,8 @@ def test_json_and_words_name_a_region_alike(folder, tmp_path, capsys) -> None:
     model = Path(folder / "added" / "model.toml")
     words = ["compare", str(tmp_path / "lifted.csv"), "--model", str(model), "--no-report"]
     assert main([*words, "-o", str(out)]) == 0
-    told = json.loads((out / "comparison.json").read_text(encoding="utf-8"))
-    assert any("time_s" in region["region"] for region in told["where"])
+    saved = json.loads((out / "comparison.json").read_text(encoding="utf-8"))
+    assert any("time_s" in region["region"] for region in saved["where"])
     assert "time < " in capsys.readouterr().out
 
 
@@ -256,22 +256,22 @@ def test_a_users_formula_that_fails_is_a_line_of_his_file(
     (tmp_path / "late.py").write_text(LATE.replace(old, new) if old else LATE, encoding="utf-8")
     words = ["diagnose", str(folder / "run.csv"), "--effects", str(tmp_path / "late.py")]
     assert main([*words, "-o", str(tmp_path / "o"), "--no-report"]) == BAD
-    told = capsys.readouterr().err
-    assert expected in told
-    assert told.count("\n") == 1
+    message = capsys.readouterr().err
+    assert expected in message
+    assert message.count("\n") == 1
     assert not (tmp_path / "o").exists()
 
 
-def test_copies_are_told_where_few_touches_are_left(folder, tmp_path, capsys) -> None:
+def test_copies_are_reported_where_few_touches_are_left(folder, tmp_path, capsys) -> None:
     lines = (folder / "run.csv").read_text(encoding="utf-8").splitlines()
     n = next(i for i, line in enumerate(lines) if not line.startswith("#"))
     text = "\n".join([*lines[: n + 1], *[lines[n + 1]] * 50]) + "\n"
     (tmp_path / "run.csv").write_text(text, encoding="utf-8")
     (tmp_path / "machine.toml").write_text((folder / "machine.toml").read_text(encoding="utf-8"))
     assert main(["compare", str(tmp_path / "run.csv"), "-o", str(tmp_path / "o")]) == BAD
-    told = capsys.readouterr().err
-    assert "1 touch, expected at least 8" in told
-    assert "49 rows stand twice" in told
+    message = capsys.readouterr().err
+    assert "1 touch, expected at least 8" in message
+    assert "49 rows stand twice" in message
 
 
 @pytest.mark.parametrize(
@@ -292,9 +292,9 @@ def test_a_model_file_that_was_edited_badly_is_refused(
     (tmp_path / "model.toml").write_text(change(text), encoding="utf-8")
     words = ["compare", str(folder / "run.csv"), "--model", str(tmp_path / "model.toml")]
     assert main([*words, "-o", str(tmp_path / "o")]) == BAD
-    told = capsys.readouterr().err
-    assert expected in told
-    assert told.count("\n") == 1
+    message = capsys.readouterr().err
+    assert expected in message
+    assert message.count("\n") == 1
 
 
 @pytest.mark.parametrize("command", ["compare", "diagnose"])

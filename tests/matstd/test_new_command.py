@@ -165,7 +165,7 @@ def test_the_workspace_is_what_brings_the_tool_over_the_standard():
     assert found == {"X": [-190.0, 210.0], "Y": [-200.0, 200.0], "Z": [-340.0, -120.0]}
 
 
-def test_a_machine_that_is_too_small_is_told_in_one_message(tmp_path, capsys):
+def test_a_machine_that_is_too_small_is_reported_in_one_message(tmp_path, capsys):
     code, path = proposed("micro", tmp_path, "--table-mm", "40")
     assert code == 2
     said = capsys.readouterr().err
@@ -174,7 +174,7 @@ def test_a_machine_that_is_too_small_is_told_in_one_message(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "expected"),
     [
         (["run", "--like", "cmm"], "--like cmm: expected it with `matstd new machine` alone"),
         (["machine", "--machine", "m.toml"], "--machine m.toml: expected it with"),
@@ -182,6 +182,6 @@ def test_a_machine_that_is_too_small_is_told_in_one_message(tmp_path, capsys):
         (["project", "--machine", "m", "--table-mm", "0"], "--table-mm 0: expected a diameter"),
     ],
 )
-def test_options_that_do_not_belong_together_are_refused(words, told, capsys):
+def test_options_that_do_not_belong_together_are_refused(words, expected, capsys):
     assert main(["new", *words]) == 2
-    assert told in capsys.readouterr().err
+    assert expected in capsys.readouterr().err

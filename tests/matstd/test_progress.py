@@ -31,13 +31,13 @@ def test_the_time_left_does_not_grow() -> None:
     assert state.left(101.0) == 9.0
 
 
-def test_turns_that_nobody_can_foresee_are_counted() -> None:
+def test_turns_that_cannot_be_foreseen_are_counted() -> None:
     """A search begins anew, and its share with it: no time is promised that will not hold."""
-    told: list[str] = []
-    tell = turns(lambda *shown: told.append(_State(*shown).words(99.0)))
+    stated: list[str] = []
+    report = turns(lambda *shown: stated.append(_State(*shown).words(99.0)))
     for share, doing in ((0.2, "sets"), (0.8, "sets"), (0.5, "structure"), (0.2, "sets")):
-        tell(share, doing)
-    assert told == ["sets", "sets", "structure", "sets, turn 2"]
+        report(share, doing)
+    assert stated == ["sets", "sets", "structure", "sets, turn 2"]
 
 
 @pytest.mark.parametrize(("seconds", "words"), [(0.4, "0 s"), (59.4, "59 s"), (60.0, "1:00 min")])
@@ -45,7 +45,7 @@ def test_durations(seconds: float, words: str) -> None:
     assert clock(seconds) == words
 
 
-def test_a_silent_stage_is_told_too() -> None:
+def test_a_silent_stage_is_reported_too() -> None:
     """Lines come by the clock, not by what the work reports; none comes once it is over."""
     out = io.StringIO()
     with _lines(out, 0.05) as show:
@@ -53,8 +53,8 @@ def test_a_silent_stage_is_told_too() -> None:
         time.sleep(0.2)
         show("placement", 1, 4)
         time.sleep(0.3)
-    told = out.getvalue().splitlines()
-    assert len(told) >= 2
-    assert re.fullmatch(r"\[ *\d+ s\] placement: 25 %, about \d+ s left", told[-1])
+    stated = out.getvalue().splitlines()
+    assert len(stated) >= 2
+    assert re.fullmatch(r"\[ *\d+ s\] placement: 25 %, about \d+ s left", stated[-1])
     time.sleep(0.15)
-    assert out.getvalue().splitlines() == told
+    assert out.getvalue().splitlines() == stated

@@ -75,9 +75,9 @@ def test_the_travel_that_binds_is_named_and_enough(tmp_path: Path) -> None:
     """Z ends 150 mm too high; with the travel that the refusal asks for, the design may begin."""
     short = {r"^\[axis.Z\]\nrange = .*": "[axis.Z]\nrange = [-150.0, 0.0]"}
     wishes = {r"^Z = .*\n": ""}
-    told = refusal(read_project(changed(tmp_path, "vertical", wishes, short)))
-    asked = re.search(r"Z would have to go to (-\d+) mm, its travel ends at -150", told)
-    assert asked, told
+    message = refusal(read_project(changed(tmp_path, "vertical", wishes, short)))
+    asked = re.search(r"Z would have to go to (-\d+) mm, its travel ends at -150", message)
+    assert asked, message
     enough = {next(iter(short)): f"[axis.Z]\nrange = [{asked[1]}.0, 0.0]"}
     project = read_project(changed(tmp_path, "vertical", wishes, enough))
     assert is_reached(project)
@@ -86,30 +86,30 @@ def test_the_travel_that_binds_is_named_and_enough(tmp_path: Path) -> None:
 
 def test_the_nearest_wish_does(tmp_path: Path) -> None:
     far = with_setup("origin_mm = [700.0, 0.0, 0.0]" + LARGE_TABLE)
-    told = refusal(read_project(changed(tmp_path, "vertical", far, {})))
-    assert "X would have to go to" in told
-    place = re.search(r"setup.a.origin_mm = (\[.*?\]) would do", told)
-    assert place, told
+    message = refusal(read_project(changed(tmp_path, "vertical", far, {})))
+    assert "X would have to go to" in message
+    place = re.search(r"setup.a.origin_mm = (\[.*?\]) would do", message)
+    assert place, message
     near = with_setup(f"origin_mm = {place[1]}" + LARGE_TABLE)
     assert is_reached(read_project(changed(tmp_path, "vertical", near, {})))
 
 
-def test_a_standard_that_looks_away_is_told_to_turn(tmp_path: Path) -> None:
-    told = refusal(
+def test_a_standard_that_looks_away_is_asked_to_turn(tmp_path: Path) -> None:
+    message = refusal(
         read_project(
             changed(tmp_path, "vertical", with_setup("rotation_deg = [180.0, 0.0, 0.0]"), {})
         )
     )
-    assert "degrees away from the tool axis, 75 at most" in told
+    assert "degrees away from the tool axis, 75 at most" in message
 
 
-def test_z_that_cannot_rise_is_told_before_anything_is_designed(tmp_path: Path) -> None:
+def test_z_that_cannot_rise_is_reported_before_anything_is_designed(tmp_path: Path) -> None:
     low = {r"^\[axis.Z\]\nrange = .*": "[axis.Z]\nrange = [-500.0, -250.0]"}
     project = changed(tmp_path, "vertical", {r"^Z = .*\n": ""}, low)
-    told = refusal(read_project(project))
+    message = refusal(read_project(project))
     # table at -500, sphere 130 + 12.5 high, ball pole 163 below the gauge point, 20 mm to spare
-    assert "Z would have to rise to -174 mm" in told
-    assert "retracts to -251 mm" in told
+    assert "Z would have to rise to -174 mm" in message
+    assert "retracts to -251 mm" in message
 
 
 @pytest.mark.usefixtures("unrendered")
@@ -122,15 +122,15 @@ def test_a_refused_command_leaves_its_picture_alone(
     path, out = changed(tmp_path, "gantry", far, {}), tmp_path / "out"
     for _ in range(2):  # its own picture does not stand in the way of the next run
         assert main(["design", str(path), "-o", str(out)]) == 2
-        # beside lines of progress, which a slow machine is told
-        (told,) = re.findall(r"(?m)^matstd .*", capsys.readouterr().err)
-        assert f"{out / REFUSED_REACH} shows what is reached" in told
+        # beside lines of progress, which a slow machine prints
+        (message,) = re.findall(r"(?m)^matstd .*", capsys.readouterr().err)
+        assert f"{out / REFUSED_REACH} shows what is reached" in message
         assert [p.name for p in out.iterdir()] == [REFUSED_REACH]
         assert (out / REFUSED_REACH).read_bytes().startswith(b"\x89PNG")
 
 
 @pytest.mark.parametrize(
-    ("name", "setup", "told"),
+    ("name", "setup", "expected"),
     [
         ("vertical", "origin_mm = [0.0, 0.0, -50.0]", "lowest corner lies 50.0 mm below"),
         # a base of 280 mm, tilted by 20 degrees about its middle
@@ -140,10 +140,10 @@ def test_a_refused_command_leaves_its_picture_alone(
     ],
 )
 def test_a_standard_in_the_table_or_under_it_is_refused(
-    tmp_path: Path, name: str, setup: str, told: str
+    tmp_path: Path, name: str, setup: str, expected: str
 ) -> None:
     project = read_project(changed(tmp_path, name, with_setup(setup), {}))
-    with pytest.raises(BadFile, match=re.escape(told)):
+    with pytest.raises(BadFile, match=re.escape(expected)):
         check_seat(project)
 
 
@@ -157,7 +157,7 @@ def test_a_face_that_is_no_table_is_said() -> None:
     assert set(said.values()) == {()}
 
 
-def test_travels_of_a_table_entered_the_other_way_are_told(tmp_path: Path) -> None:
+def test_travels_of_a_table_entered_the_other_way_are_reported(tmp_path: Path) -> None:
     """Y carries the table: its readings are those of the tool relative to it."""
     machine = {
         r"(?<=^\[axis.Y\]\nrange = ).*": "[100.0, 700.0]",
@@ -166,8 +166,8 @@ def test_travels_of_a_table_entered_the_other_way_are_told(tmp_path: Path) -> No
         r"(?<=^\[axis.C\]\nrange = \[-360.0, 360.0\]\npoint = ).*": "[0.0, -400.0, 0.0]",
     }
     wrong = changed(tmp_path, "trunnion", {r"^Y = .*\n": ""}, machine)
-    told = refusal(read_project(wrong))
-    assert "axis.Y.range = [-700, -100] of the machine (readings move the tool" in told
+    message = refusal(read_project(wrong))
+    assert "axis.Y.range = [-700, -100] of the machine (readings move the tool" in message
     machine[r"(?<=^\[axis.Y\]\nrange = ).*"] = "[-700.0, -100.0]"
     assert is_reached(read_project(changed(tmp_path, "trunnion", {r"^Y = .*\n": ""}, machine)))
 
@@ -176,7 +176,7 @@ def with_few_sites(patches, reach, blank, poses, _sites, seed):
     return room_for(patches, reach, blank, poses, 40, seed)
 
 
-def test_patches_that_do_not_fit_are_told_with_a_picture(
+def test_patches_that_do_not_fit_are_reported_with_a_picture(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("matstd.stages.design.design_standard", None)  # not begun
@@ -185,14 +185,14 @@ def test_patches_that_do_not_fit_are_told_with_a_picture(
     path, out = changed(tmp_path, "vertical", wide, {}), tmp_path / "out"
     for _ in range(2):
         assert main(["design", str(path), "-o", str(out)]) == 2
-        (told,) = re.findall(r"(?m)^matstd .*", capsys.readouterr().err)
+        (message,) = re.findall(r"(?m)^matstd .*", capsys.readouterr().err)
         assert [p.name for p in out.iterdir()] == [REFUSED_ROOM]
-    assert re.search(r"only 1 of 6 patches fit on the blank side by side", told)
-    assert re.search(r"; limits\.gap_mm = \d+ would do; ", told)
+    assert re.search(r"only 1 of 6 patches fit on the blank side by side", message)
+    assert re.search(r"; limits\.gap_mm = \d+ would do; ", message)
 
 
 @pytest.mark.parametrize(
-    ("name", "limits", "told", "wish"),
+    ("name", "limits", "expected", "wish"),
     [
         ("vertical", "max_mass_kg = 19.0", "limit 19 kg: its plate 18.2 kg", "max_mass_kg"),
         pytest.param(
@@ -202,7 +202,7 @@ def test_patches_that_do_not_fit_are_told_with_a_picture(
         ),
     ],
 )
-def test_what_would_do_does(tmp_path, monkeypatch, name, limits, told, wish) -> None:
+def test_what_would_do_does(tmp_path, monkeypatch, name, limits, expected, wish) -> None:
     """A tenth of the usual places are tried: what is refused is, and the wish that is met."""
     monkeypatch.setattr(side_by_side, "_fewer_patches", lambda *_: ())
     path = changed(tmp_path, name, {r"\Z": f"\n[limits]\n{limits}\n"}, {})
@@ -210,7 +210,7 @@ def test_what_would_do_does(tmp_path, monkeypatch, name, limits, told, wish) -> 
     project = replace(project, options=replace(project.options, sites=40))
     poses = np.linspace(-3.0, 3.0, 12)[:, None] * np.ones(len(project.chain.rotary_axes))
     room = side_by_side.room_of(project, poses)
-    with pytest.raises(NotBuildable, match=told):
+    with pytest.raises(NotBuildable, match=expected):
         check_room(room)
     (words,) = [w for w in side_by_side.nearest_that_fits(project, room, poses) if wish in w]
     key, unit = {"max_mass_kg": ("max_mass", 1.0), "max_slope_deg": ("max_slope", DEG)}[wish]
@@ -261,10 +261,10 @@ def test_a_rotary_range_at_the_end_of_its_travel_is_refused_with_its_numbers(
 ) -> None:
     path = changed(tmp_path, "trunnion", {r"^A = .*": "A = [29.0, 29.5]"}, {})
     assert main(["design", str(path), "-o", str(tmp_path / "out")]) == 2
-    told = capsys.readouterr().err
-    assert "readings of A from 29 to" in told
-    assert "6 degrees away, within the travel" in told
-    assert told.startswith(f"matstd design: {path}: ")
+    message = capsys.readouterr().err
+    assert "readings of A from 29 to" in message
+    assert "6 degrees away, within the travel" in message
+    assert message.startswith(f"matstd design: {path}: ")
 
 
 def test_limits_bar_what_they_say() -> None:

@@ -106,7 +106,7 @@ def shared(first: trimesh.Trimesh, second: trimesh.Trimesh) -> float:
 def test_clamps_in_the_base_are_those_that_share_volume_with_it(upright: bool) -> None:
     rng, seen = np.random.default_rng(11), {True: 0, False: 0}
     project = with_table(example(), sides_mm=[900.0, 900.0])
-    for _ in range(40):
+    for _ in range(24):
         place = np.array([*rng.uniform(-60.0, 60.0, 2), 0.0])
         T_face = pose(rotation(np.array([0.0, 0.0, rng.uniform(-0.6, 0.6)])), place)
         T = T_face.copy()
@@ -120,13 +120,13 @@ def test_clamps_in_the_base_are_those_that_share_volume_with_it(upright: bool) -
         if not (apart or inside):
             continue
         seen[inside] += 1
-        told = refusal(with_bodies(replace(project, setups=(Setup("a", T),)), body))
-        assert ("CLAMP beside the standard" in told) == inside, (body, T, told)
+        message = refusal(with_bodies(replace(project, setups=(Setup("a", T),)), body))
+        assert ("CLAMP beside the standard" in message) == inside, (body, T, message)
         if inside:
-            assert "would do" in told
-            at = literal_eval(told.rsplit("at_mm = ", 1)[1].removesuffix(" would do"))
+            assert "would do" in message
+            at = literal_eval(message.rsplit("at_mm = ", 1)[1].removesuffix(" would do"))
             assert shared(base, clamp_mesh(body | {"at_mm": at})) < 1.0
-    assert min(seen.values()) > 8
+    assert min(seen.values()) > 4
 
 
 @pytest.mark.parametrize("is_disc", [True, False])
@@ -149,7 +149,7 @@ def test_standards_over_the_edge_are_those_with_volume_outside(is_disc: bool) ->
         return trimesh.boolean.union(parts, engine="manifold")
 
     tables = {more: table(more) for more in (allowed - NEAR, allowed + NEAR)}
-    for _ in range(100):
+    for _ in range(40):
         place = np.array([*rng.uniform(-80.0, 80.0, 2), 0.0])
         T = pose(rotation(np.array([0.0, 0.0, rng.uniform(-np.pi, np.pi)])), place)
         base = base_mesh().apply_transform(T)
@@ -158,13 +158,13 @@ def test_standards_over_the_edge_are_those_with_volume_outside(is_disc: bool) ->
             continue
         is_over = outside[allowed + NEAR]
         seen[is_over] += 1
-        told = refusal(replace(project, setups=(Setup("a", T),)))
-        assert ("beyond the edge" in told) == is_over, (T, told)
+        message = refusal(replace(project, setups=(Setup("a", T),)))
+        assert ("beyond the edge" in message) == is_over, (T, message)
         if is_over:
-            origin = literal_eval(told.rsplit("origin_mm = ", 1)[1].removesuffix(" would do"))
+            origin = literal_eval(message.rsplit("origin_mm = ", 1)[1].removesuffix(" would do"))
             moved = base_mesh().apply_transform(pose(T[:3, :3], np.array(origin)))
             assert moved.volume - shared(moved, tables[allowed + NEAR]) < 1.0
-    assert min(seen.values()) > 20
+    assert min(seen.values()) > 8
 
 
 def setup_at(x: float, y: float, z: float) -> Setup:
@@ -172,7 +172,7 @@ def setup_at(x: float, y: float, z: float) -> Setup:
 
 
 @pytest.mark.parametrize(
-    ("place", "told"),
+    ("place", "expected"),
     [
         # a disc of 160, the near side of a base of 280 at 300 mm from it
         ((600.0, 0.0, 0.0), "it stands 300.0 mm beside it"),
@@ -182,9 +182,9 @@ def setup_at(x: float, y: float, z: float) -> Setup:
         ((60.0, 0.0, 0.0), "it reaches 64.1 mm beyond the edge"),
     ],
 )
-def test_distances_by_hand(place: tuple[float, float, float], told: str) -> None:
+def test_distances_by_hand(place: tuple[float, float, float], expected: str) -> None:
     said = refusal(replace(example(), setups=(setup_at(*place),)))
-    assert told in said
+    assert expected in said
     origin = literal_eval(said.rsplit("origin_mm = ", 1)[1].removesuffix(" would do"))
     check_seat(replace(example(), setups=(setup_at(*origin),)))
 
@@ -215,9 +215,9 @@ def test_a_mesh_that_surrounds_the_base_is_no_clamp_in_it(tmp_path: Path) -> Non
     project = replace(with_table(example(), diameter_mm=500.0), path=path)
     body = {"name": "FRAME", "stl": "frame.stl"}
     assert not refusal(with_bodies(project, body))
-    told = refusal(with_bodies(project, body | {"at_mm": [60.0, 0.0, 0.0]}))
-    assert "FRAME beside the standard" in told
-    assert "workshop.bodies.0.at_mm = [" in told
+    message = refusal(with_bodies(project, body | {"at_mm": [60.0, 0.0, 0.0]}))
+    assert "FRAME beside the standard" in message
+    assert "workshop.bodies.0.at_mm = [" in message
 
 
 def test_a_clamp_in_the_finished_standard_is_seen_by_its_mesh(tmp_path: Path) -> None:

@@ -2,12 +2,14 @@
 
 import csv
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from matstd.cli import main
+from matstd.sensitivity import montecarlo
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -49,7 +51,7 @@ def test_a_study_stands_in_a_folder_with_its_precision(project, tmp_path, capsys
     assert {"X_mm", "p95_um", "exceedance", "errors_of_X_um", "errors_of_C_um"} <= set(rows[0])
     assert np.ptp([float(r["B_deg"]) for r in rows]) == pytest.approx(110.0, abs=0.1)
     for name in ("trajectory.png", "trajectory_X.png", "trajectory_C.png"):
-        assert (out / name).stat().st_size > 10_000
+        assert (out / name).stat().st_size > 4_000
 
 
 @pytest.mark.parametrize(
@@ -82,7 +84,11 @@ def test_errors_that_no_machine_can_have_are_one_line(project, tmp_path, capsys,
         (["--draws", "5"], "montecarlo.draws"),
     ],
 )
-def test_settings_that_cannot_be_met_are_one_line(project, tmp_path, capsys, options, words):
+def test_settings_that_cannot_be_met_are_one_line(
+    project, tmp_path, capsys, monkeypatch, options, words
+):
+    in_short = partial(montecarlo.cluster, answer=0.3)
+    monkeypatch.setattr(montecarlo, "cluster", in_short)  # a scheduler has 5 s to answer
     assert main(["sensitivity", str(project), "-o", str(tmp_path / "out"), *options]) == 2
     line = capsys.readouterr().err
     assert line.count("\n") == 1

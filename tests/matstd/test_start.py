@@ -29,7 +29,7 @@ def folder(tmp_path_factory):
     return place
 
 
-def told(folder, command, *words):
+def result_of(folder, command, *words):
     out = folder / "out"
     name = {"diagnose": "diagnosis.json", "compare": "comparison.json"}[command]
     run = [command, str(folder / "run.csv"), "--no-report", "-o", str(out), "--force"]
@@ -42,20 +42,20 @@ def rungs(result):
 
 
 def test_the_ladder_begins_where_the_start_is(folder):
-    alone = told(folder, "compare", "--start", "setup")
-    whole = told(folder, "compare", "--start", "geometry")
+    alone = result_of(folder, "compare", "--start", "setup")
+    whole = result_of(folder, "compare", "--start", "geometry")
     assert rungs(alone) == ["set-up alone"]
     assert rungs(whole) == ["set-up alone", "geometry"]
     # 50 ppm over 300 mm: 15 um, spread evenly
     assert alone["rms_um"] == pytest.approx(np.hypot(15.0 / np.sqrt(12.0), 1.5), rel=0.1)
     assert whole["rms_um"] == pytest.approx(1.5, rel=0.05)
-    assert told(folder, "compare")["rms_um"] == whole["rms_um"], "geometry without the option"
+    assert result_of(folder, "compare")["rms_um"] == whole["rms_um"], "geometry without the option"
 
 
 def test_what_a_start_lacks_is_found(folder):
     """From the set-up alone the scale is an effect like any other; from geometry it is known."""
-    alone = told(folder, "diagnose", "--start", "setup", "--auto")
-    whole = told(folder, "diagnose", "--auto")
+    alone = result_of(folder, "diagnose", "--start", "setup", "--auto")
+    whole = result_of(folder, "diagnose", "--auto")
     names = [step["effect"] for step in alone["steps"][1:]]
     assert "backlash(X)" in names
     assert len(names) == 2
@@ -66,11 +66,11 @@ def test_what_a_start_lacks_is_found(folder):
 
 
 def test_a_saved_model_is_a_start_by_either_option(folder):
-    told(folder, "diagnose", "--auto")
+    result_of(folder, "diagnose", "--auto")
     model = folder / "model.toml"
     model.write_text((folder / "out" / "model.toml").read_text())
-    one = told(folder, "compare", "--start", str(model))
-    other = told(folder, "compare", "--model", str(model))
+    one = result_of(folder, "compare", "--start", str(model))
+    other = result_of(folder, "compare", "--model", str(model))
     assert one == other
 
 

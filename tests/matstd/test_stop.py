@@ -38,9 +38,9 @@ def test_it_ends_and_tidies_up(tmp_path: Path, work: str, number: int) -> None:
     time.sleep(0.3)
     process.send_signal(number)
     try:
-        _, told = process.communicate(timeout=20.0)  # work goes on for 30 s and more
+        _, message = process.communicate(timeout=20.0)  # work goes on for 30 s and more
     finally:
         process.kill()
     assert process.returncode != 0
-    assert b"stopped" in told or b"KeyboardInterrupt" in told
+    assert b"stopped" in message or b"KeyboardInterrupt" in message
     assert list(tmp_path.iterdir()) == []

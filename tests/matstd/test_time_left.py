@@ -73,7 +73,7 @@ def test_the_shares_of_a_design_are_shares():
     assert list(PLAN.shares) == list(LINEAR_PLAN.shares)
 
 
-def test_a_line_tells_the_stage_the_share_of_the_whole_and_the_time_left():
+def test_a_line_shows_the_stage_the_share_of_the_whole_and_the_time_left():
     out, left = io.StringIO(), TimeLeft(SHARES, 1.0, time.monotonic() - 2.0)
     with _whole(out, left, 0.05) as show:
         show("second", 1, 2)

@@ -74,7 +74,7 @@ def call(place: Path, *more: str, runs: int = 3) -> int:
     return main(["uncertainty", *files, "--standard", str(place / "standard.toml"), *more, *out])
 
 
-def test_the_high_face_is_told(place: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_high_face_is_reported(place: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert call(place) == 0
     (found,) = json.loads((place / "u.json").read_text())["budgets"]
     run = read_run(place / "v0.csv")
@@ -91,11 +91,11 @@ def test_the_high_face_is_told(place: Path, capsys: pytest.CaptureFixture[str]) 
     assert "ISO 15530-3 asks for 10" in said
     assert "u_w is 0" in said
     assert "2 faces, 5 table poses and 3 visits hardly determine how much the errors differ" in said
-    assert found["k"] > 5.0  # as good as one number tells of two faces
+    assert found["k"] > 5.0  # as well as one number describes two faces
     assert found["U_um"] == pytest.approx(found["k"] * found["u_um"], rel=1e-3)
 
 
-def test_a_page_tells_the_same(place: Path) -> None:
+def test_a_page_shows_the_same(place: Path) -> None:
     page = place / "u.html"
     assert call(place, "--page", str(page)) == 0
     (found,) = json.loads((place / "u.json").read_text())["budgets"]
@@ -144,7 +144,7 @@ def test_a_task_chooses_places(place: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("task", "told"),
+    ("task", "expected"),
     [
         ("slope_deg = [80.0, 85.0]", "none of"),
         ("slope_deg = [40.0, 10.0]", "smallest and largest"),
@@ -155,12 +155,12 @@ def test_a_task_chooses_places(place: Path) -> None:
     ],
 )
 def test_a_task_that_says_nothing(
-    place: Path, capsys: pytest.CaptureFixture[str], task: str, told: str
+    place: Path, capsys: pytest.CaptureFixture[str], task: str, expected: str
 ) -> None:
     (place / "task.toml").write_text(f'format = "task/1"\nname = "t"\n{task}\n')
     assert call(place, "--task", str(place / "task.toml")) == 2
     error = capsys.readouterr().err
-    assert told in error
+    assert expected in error
     assert error.count("\n") == 1
 
 
@@ -191,7 +191,7 @@ def test_where_hardly_anything_was_touched(
     assert "10 places on 1 face at 5 table poses in 2 visits" in said
     assert "only one face: U holds for workpieces at its place" in said
     assert main(["uncertainty", files[2], files[0], *more, "--force"]) == 2
-    assert "no touch on a freeform face of standard" in capsys.readouterr().err
+    assert "no touch on a feature of standard" in capsys.readouterr().err
 
 
 def test_a_run_of_another_standard(place: Path) -> None:
@@ -219,13 +219,13 @@ def test_another_file_of_the_standard_than_the_run_was_evaluated_with_is_refused
     write_standard(piece, found)
     run = str(place / "v0.csv")
     assert main(["uncertainty", run, "--standard", str(piece), "-o", str(out)]) == 2
-    told = capsys.readouterr().err
-    off = float(re.search(r"v0.csv: .* touches ([0-9.]+) µm rms off the surfaces", told)[1])
+    message = capsys.readouterr().err
+    off = float(re.search(r"v0.csv: .* touches ([0-9.]+) µm rms off the surfaces", message)[1])
     touches = read_run(run).touches
     share = np.mean(touches.feature == "FF1")
     upwards = np.mean(touches.normal[touches.feature == "FF1"][:, 2] ** 2)
     assert off == pytest.approx(20.0 * np.sqrt(share * upwards), rel=0.05)
-    assert "the design, perhaps" in told
+    assert "the design, perhaps" in message
     program = str(next((place / "programs").glob("*.H")))
     real = ["--standard", str(place / "standard.toml"), "--real-standard", str(piece)]
     machine = ["--machine", str(place / "machine.toml"), "-o", str(out)]

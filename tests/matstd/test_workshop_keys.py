@@ -175,7 +175,7 @@ def test_boxes_cover_a_mesh_and_not_much_else(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("task", "told"),
+    ("task", "expected"),
     [
         ("slope_deg = [50.0, 60.0]", r"slope_deg: found 50 and more, expected some within limits"),
         ("curvature_1_m = [900.0, 1000.0]", r"900 and more, expected some up to 166\.7, twice"),
@@ -183,10 +183,10 @@ def test_boxes_cover_a_mesh_and_not_much_else(tmp_path):
         ("[poses]\nB_deg = [25.0, 29.0]", r"poses\.B_deg: found 25 to 29, expected some of work"),
     ],
 )
-def test_a_task_out_of_reach_is_refused_with_the_project(tmp_path, task, told):
+def test_a_task_out_of_reach_is_refused_with_the_project(tmp_path, task, expected):
     text = (EXAMPLES / "hsm600u.toml").read_text().replace("# task =", "task =")
     (tmp_path / "task.toml").write_text(f'format = "task/1"\nname = "blade"\n{task}\n')
     (tmp_path / "hsm600u-machine.toml").write_text((EXAMPLES / "hsm600u-machine.toml").read_text())
     (tmp_path / "project.toml").write_text(text)
-    with pytest.raises(BadFile, match=told):
+    with pytest.raises(BadFile, match=expected):
         read_project(tmp_path / "project.toml")

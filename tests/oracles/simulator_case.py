@@ -1,6 +1,6 @@
 """Cases with known truth: a random experiment, hidden effects of a chosen size, and the answer.
 
-`simulate_case` returns the texts of a run file and a machine file and the truth, which tells how
+`simulate_case` returns the texts of a run file and a machine file and the truth, which states how
 visible each effect is beside an ordinary geometric model and what could be mistaken for it. Only
 for that last part the columns of `twin` are used.
 """
@@ -171,7 +171,7 @@ def simulate_case(
             (rng, machine) that draw one; one that no amplitude makes visible is drawn again.
         hard: Chips, a noise that is not what the file states, a spindle that runs.
         signal_to_noise: Range from which the visibility of each effect is drawn.
-        with_alike: Whether the truth tells what could be mistaken for each effect (a second).
+        with_alike: Whether the truth states what could be mistaken for each effect (a second).
         keep_weak: Whether an effect stays whose largest amplitude cannot be detected.
         poses: Table poses of every set-up, of some two dozen touches each.
     """
@@ -181,7 +181,7 @@ def simulate_case(
     plain = probe(e, [], np.zeros(n))
     run = read_back(run_text(e, plain, hard), MACHINES[machine])
     ordinary = Ordinary(run.touches)
-    chosen, told = [], []
+    chosen, stated = [], []
     for wanted in hidden:
         taken = [c.name for c in chosen]
         effect, truth = place_one(rng, e, wanted, ordinary, sd, signal_to_noise, keep_weak, taken)
@@ -191,14 +191,14 @@ def simulate_case(
             truth["nearest"] = ranked[0][:2]
         truth.pop("signature", None)
         chosen.append(effect)
-        told.append(truth)
+        stated.append(truth)
     text = run_text(e, probe(e, chosen, noise), hard)
     residual = ordinary.left(read_back(text, MACHINES[machine]).deviation)
     return (
         text,
         MACHINES[machine],
         {
-            "hidden": told,
+            "hidden": stated,
             "touches": n,
             "rank": ordinary.rank,
             "chi2_ratio_baseline": round(

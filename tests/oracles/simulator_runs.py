@@ -1,4 +1,4 @@
-"""Several runs of one machine, exactly simulated: what it is stays, or changes as it is told to."""
+"""Several runs of one machine, exactly simulated: it stays as it is, or changes as stated."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace

@@ -1,8 +1,6 @@
 """The small standard, its plan and its programs, as the golden files have them."""
 
-import importlib.util
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 
@@ -13,15 +11,6 @@ from matstd.probe_paths.emit.program import ProgramSet
 from matstd.probe_paths.plan.touch_plan import TouchPlan
 
 GOLDEN = Path(__file__).parents[1] / "golden"
-
-
-@pytest.fixture(scope="session")
-def golden() -> ModuleType:
-    """The module that makes the golden programs."""
-    spec = importlib.util.spec_from_file_location("make_programs", GOLDEN / "make_programs.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="session")

@@ -138,7 +138,7 @@ def test_no_ball_no_program(plan):
         plan_ball(bare)
 
 
-def test_evaluate_tells_the_change_and_refuses_beyond_the_limit(
+def test_evaluate_reports_the_change_and_refuses_beyond_the_limit(
     logged, programs, read, small, chain, golden, tmp_path, capsys
 ):
     run = run_programs(read[:1], small, VirtualMachine(chain), np.random.default_rng(0))[0]

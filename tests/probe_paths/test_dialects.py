@@ -74,7 +74,7 @@ def test_a_bad_dialect_is_one_line(old, new, reason, tmp_path):
     assert "\n" not in str(refusal.value)
 
 
-def test_a_control_that_nobody_knows_is_refused_before_any_work(tmp_path, capsys):
+def test_a_control_that_is_unknown_is_refused_before_any_work(tmp_path, capsys):
     with pytest.raises(DesignError, match="expected one of itnc530"):
         read_dialect("fanuc")
     project = ROOT / "examples" / "hsm600u.toml"

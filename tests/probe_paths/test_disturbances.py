@@ -92,7 +92,7 @@ def test_a_record_that_does_not_cover_the_run_is_refused(chain, record):
         disturbance(touches_at(chain, [90.0]))
 
 
-def test_a_drive_that_nobody_recorded_is_refused(chain):
+def test_a_drive_without_a_record_is_refused(chain):
     effect = parse_effect("thermal-lag(EZZ,spindle_rpm)", chain)
     with pytest.raises(UnknownEffect, match="spindle speed of these touches is unknown"):
         effects_over_record([(effect, np.array([1.0]))])(touches_at(chain, [1.0]))

@@ -104,7 +104,7 @@ def test_what_is_wrong_is_refused(made, reads, old, new, expected):
 
 
 @pytest.mark.parametrize("meaning", ["gauge", "tip"])
-def test_its_log_tells_what_z_the_control_returns(program, small, chain, meaning):
+def test_its_log_shows_what_z_the_control_returns(program, small, chain, meaning):
     machine = VirtualMachine(chain, dialect=replace(read_dialect("itnc530"), result_height=meaning))
     run = run_programs([program], small, machine, np.random.default_rng(0))[0]
     run.check_done()

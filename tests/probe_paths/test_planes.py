@@ -1,10 +1,10 @@
 """Coordinates of tilted planes: other numbers, the same positions, the same measurements."""
 
 import re
-import sys
 from dataclasses import replace
 from pathlib import Path
 
+import make_programs as golden
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -29,8 +29,6 @@ from matstd.twin.machine.kinematics import table_to_tool
 from matstd.twin.model import contribution
 
 ROOT = Path(__file__).parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "golden"))
-import make_programs as golden  # noqa: E402
 
 TILTED = replace(Dialect(), is_tilted=True)
 PIVOT, ORIGIN = np.array([0.0, 0.0, -420.0]), np.array([0.0, 0.0, -500.0])

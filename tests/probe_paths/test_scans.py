@@ -10,6 +10,7 @@ from matstd.artefact.body import Standard
 from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.wavy import Wave, wavy_face
 from matstd.importers.points.scan_log import read_scan_log
+from matstd.probe_paths.scans.evaluation import ScanPoints, evaluate_scan
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_run
 from matstd.twin.frames import apply, fixed_xyz, inverse, pose
@@ -174,3 +175,37 @@ def test_units_and_times_of_a_log(tmp_path):
     path.write_text("x,z\n" + "1,2\n" * 20, encoding="utf-8")
     with pytest.raises(BadFile, match="a column y"):
         read_scan_log(path)
+
+
+def test_sag_is_taken_off_a_scan_as_it_is_off_touches(body):
+    """Lying on its side, a face that weight along z pushes up by s stands s higher than upright."""
+    s, chain = 4.0 * UM, make_chain(
+        "tilting",
+        "[w A' f X Y Z t]",
+        {n: Axis(range=(-400.0, 400.0)) for n in "XYZ"} | {"A": Axis((-2.0, 2.0))},
+        (0.0, 0.0, 0.0),
+    )  # fmt: skip
+    heavy = body.sagging("by hand", "-Z", 0.25, {"FF1": np.diag([0.0, 0.0, s])})
+    face = body.patches[0]
+    u, v = np.arange(-40.0, 41.0, 10.0), np.arange(-40.0, 40.0, PITCH)
+    uv = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    p, n, lines = face.point(uv), face.normal(uv), np.repeat(np.arange(len(u)), len(v))
+    upright = p + RADIUS * n
+    ball = np.concatenate([upright, upright + np.array([0.0, 0.0, s])])
+    q = np.zeros((len(ball), 4))
+    q[len(p) :, chain.axis_index("A")] = 90.0 * DEG
+    q = inverse_linear(chain, ball, q, LENGTH)
+    rows = np.arange(len(ball))
+    points = ScanPoints(
+        Path("s.csv"), rows, np.concatenate([lines, lines + 100]), True, q,
+        np.zeros(len(ball)), 0.01 * rows,
+    )  # fmt: skip
+    there = Setup("a", np.eye(4))
+    seen, _ = evaluate_scan(points, heavy, "FF1", chain, RADIUS, LENGTH, there, 0.0)
+    bare, _ = evaluate_scan(points, body, "FF1", chain, RADIUS, LENGTH, there, 0.0)
+    assert np.abs(seen.deviation).max() < 0.01 * UM
+    assert np.abs(bare.deviation).max() > 0.4 * s
+    lying = seen.touches.q[:, chain.axis_index("A")] > 1.0
+    assert seen.u[~lying].max() < 0.02 * UM
+    flat = seen.touches.normal[:, 2]
+    np.testing.assert_allclose(seen.u[lying], 0.25 * s * flat[lying], rtol=0.01)

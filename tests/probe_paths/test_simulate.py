@@ -20,6 +20,7 @@ from matstd.probe_paths.plan.planner import plan_touches
 from matstd.probe_paths.plan.touch_plan import PlanOptions
 from matstd.twin.files.run_file import read_run
 from matstd.twin.model.model import Model
+from matstd.twin.record.several_runs import joined
 from matstd.twin.record.touches import Body
 from matstd.twin.units import NM, UM
 
@@ -74,12 +75,6 @@ def test_a_run_file_of_all_programs(folder, plan, capsys):
     assert run.touches.feature.tolist() == plan.feature.tolist()
     assert {p.name for p in (folder / "logs").iterdir()} == {f"MS_A_{i}.TXT" for i in (1, 2, 3)}
     assert not list((folder / "out").glob(".*"))
-
-
-@pytest.fixture(autouse=True)
-def no_progress(monkeypatch):
-    """On a busy computer a line of progress would come between."""
-    monkeypatch.setattr("matstd.progress.PERIOD", 1e6)
 
 
 def test_errors_of_a_file_and_drawn_ones(folder):
@@ -195,6 +190,24 @@ def test_logs_of_a_control_become_the_run_that_was_simulated(folder, capsys):
     assert np.array_equal(made.touches.pose, read.touches.pose)
     assert evaluated(folder) == 2
     assert "already exists" in capsys.readouterr().err
+
+
+def test_a_run_knows_the_line_of_its_program(logged):
+    """At it stands the cycle, above it the comment with the number and feature of the touch."""
+    assert evaluated(logged) == 0
+    made, read = (read_run(logged / name / "run.csv") for name in ("out", "read"))
+    for name in ("program", "touch", "program_line"):
+        assert np.array_equal(getattr(made, name), getattr(read, name)), name
+    for row in range(0, len(made), 7):
+        file = logged / "programs" / f"{made.program[row]}.H"
+        lines = file.read_text(encoding="utf-8").splitlines()
+        at = int(made.program_line[row]) - 1
+        assert "TCH PROBE 4" in lines[at]
+        comment = next(line for line in lines[at::-1] if ";TOUCH" in line)
+        assert f";TOUCH {made.touch[row]} ON {made.touches.feature[row]}" in comment
+    both = joined({"first": made, "second": replace(read, deviation=read.deviation + UM)})
+    assert both.program_line.tolist() == [*made.program_line, *read.program_line]
+    assert both[::2].touch.tolist() == both.touch[::2].tolist()
 
 
 def test_a_log_that_stopped_is_used_and_reported(logged, capsys):

@@ -1,10 +1,10 @@
-"""Several probes and clampings in one campaign: who touches what, and what their logs tell."""
+"""Several probes and clampings in one campaign: what touches what, and what their logs report."""
 
 import re
-import sys
 from dataclasses import replace
 from pathlib import Path
 
+import make_programs as golden
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
@@ -32,9 +32,6 @@ from matstd.twin.files.run_writer import write_run
 from matstd.twin.frames import pose, rotation
 from matstd.twin.model import Model
 from matstd.twin.record.touches import Setup
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "golden"))
-import make_programs as golden
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "hsm600u.toml"
 WIDE = Probe(stack=((40.0, 1.5), (160.0, 31.0)), nose_radius=50.0)

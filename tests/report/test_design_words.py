@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from matstd.artefact.place import Family, FamilyFigures
 from matstd.report.words.design_words import (
     AT_20,
     best_rival,
@@ -13,6 +14,7 @@ from matstd.report.words.design_words import (
     proof_sentence,
     verdict_of_design,
 )
+from matstd.report.words.family_words import family_line
 from matstd.twin.machine import Chain
 from matstd.twin.units import UM
 
@@ -32,7 +34,7 @@ def placement(own: float, spheres: float, block: float = 9.0, scatter: float = 0
         for name, left in zip(names, (own, spheres, block, scatter), strict=True)
     )
     power = SimpleNamespace(touches=160, power=np.array([0.9, 1.0]), found=1, effects=("a", "b"))
-    body = SimpleNamespace(patches=("FF1", "FF2"))
+    body = SimpleNamespace(patches=("FF1", "FF2"), proving=("FF1", "FF2"))
     return SimpleNamespace(
         own=rivals[0],
         rivals=rivals,
@@ -42,6 +44,7 @@ def placement(own: float, spheres: float, block: float = 9.0, scatter: float = 0
         power_exact=power,
         standard=body,
         families=(),
+        family=Family.FACES,
     )
 
 
@@ -67,7 +70,7 @@ def test_the_verdict_is_on_the_workspace(own: float, spheres: float, said: str) 
     assert said in words
 
 
-def test_scatter_that_nobody_can_build_is_no_rival() -> None:
+def test_scatter_that_cannot_be_built_is_no_rival() -> None:
     assert best_rival(placement(1.0, 2.0)).name == "four spheres"
     alone = placement(1.0, 2.0)
     alone.rivals = (alone.own, alone.rivals[-1])
@@ -78,7 +81,7 @@ def test_scatter_that_nobody_can_build_is_no_rival() -> None:
 def test_the_probed_volume_comes_second_and_by_name() -> None:
     first, second, _ = design_lines(placement(1.0, 2.0), {})
     proof = proof_sentence(placement(1.0, 2.0))
-    assert "160 touches on the 2 freeform faces" in proof
+    assert "160 touches on 2 freeform faces" in proof
     assert "average power of 95 %" in proof
     assert "for 1 of 2 effects" in proof
     assert "probed volume" not in first
@@ -88,15 +91,46 @@ def test_the_probed_volume_comes_second_and_by_name() -> None:
 
 def test_faces_are_weighed_against_spheres_by_what_they_cost_or_gain() -> None:
     gain, cost = (design_lines(placement(own, 1.0), {})[2] for own in (0.5, 1.32))
-    assert "the freeform faces gain 50 % over your workspace" in gain
-    assert "the freeform faces cost 32 % over your workspace" in cost
+    assert "2 freeform faces gain 50 % over your workspace" in gain
+    assert "2 freeform faces cost 32 % over your workspace" in cost
     assert "leaves 1.32 µm rms; four spheres, placed by the same optimiser, leave 1.00 µm" in cost
+
+
+@pytest.mark.parametrize(
+    ("goal", "built", "signals", "lefts", "said"),
+    [
+        ("prove", Family.WAVY, (10.0, 12.5), (1.0, 1.01), "it is 25 % better than the next, balls"),
+        ("prove", Family.WAVY, (10.0, 9.7), (1.0, 1.0), "balls alone would be 3.1 % better, less"),
+        ("prove", Family.BALLS, (10.0, 14.0), (1.0, 1.3), "but would leave 30 % more unknown"),
+        ("identify", Family.BALLS, (10.0, 14.0), (1.0, 1.3), "it is 30 % better than the next"),
+    ],
+)
+def test_the_first_line_says_which_family_wins_and_by_how_much(
+    goal, built, signals, lefts, said
+) -> None:
+    made = placement(1.0, 2.0)
+    made.goal, made.family = goal, built
+    face = SimpleNamespace(half_size=(90.0, 90.0))
+    balls = [SimpleNamespace(proves=k > 12) for k in range(15)]
+    made.standard = SimpleNamespace(
+        patches=(face,) if built is Family.WAVY else (),
+        proving=("FF1",) if built is Family.WAVY else ("SPH14", "SPH15"),
+        spheres=balls[: 13 if built is Family.WAVY else 15],
+    )
+    made.families = tuple(
+        FamilyFigures(family, rms_user=left * UM, signal=signal, least=(True, 40.0, "Y"))
+        for family, signal, left in zip((Family.BALLS, Family.WAVY), signals, lefts, strict=True)
+    )
+    line = family_line(made)
+    begin = "one wavy face of 180 x 180 mm" if built is Family.WAVY else "2 balls that prove"
+    assert line.startswith(f"Built: 13 balls and {begin}. For ")
+    assert said in line
 
 
 @pytest.mark.parametrize(
     ("exact", "blame"),
     [
-        ([0.99, 0.97, 0.96, 0.9, 1.0], "a better calibration of the faces would help"),
+        ([0.99, 0.97, 0.96, 0.9, 1.0], "a better calibration of these features would help"),
         ([0.99, 0.9, 0.9, 0.9, 1.0], "their slopes and places are another"),
         ([0.6, 0.7, 0.5, 0.9, 1.0], "the touches are hardly sensitive to these effects"),
     ],
@@ -118,7 +152,7 @@ def test_what_the_proof_does_not_find_is_named_with_the_cause(exact, blame) -> N
     assert blind_spots(made) == ""
 
 
-def test_a_workspace_beyond_the_touches_is_told_by_axis(chain: Chain) -> None:
+def test_a_workspace_beyond_the_touches_is_reported_by_axis(chain: Chain) -> None:
     made = placement(1.0, 2.0)
     read = np.zeros((2, len(chain.axes)))
     read[:, [chain.axis_index(axis) for axis in "XYB"]] = [

@@ -9,7 +9,7 @@ import pytest
 from matstd.cad_out.details.detail_list import details_of
 from matstd.report.drawing.drawing import Issuer, draw_sheet, write_drawing
 from matstd.report.drawing.sections import draw_screw
-from matstd.report.drawing.sheet import HEIGHT, WIDTH, Sheet, View
+from matstd.report.drawing.sheet import A2, Sheet, View
 from matstd.report.drawing.views import draw_from
 
 ISSUER = Issuer("A. Müller", "Workshop & Co", 6.2)
@@ -57,8 +57,8 @@ def test_the_title_block_and_the_notes_leave_no_question(upright):
     assert {"B. Approver", "2026-11-23", "part drawing", "edges ISO 13715"} <= set(words)
     text = " ".join(words)
     assert "ISO 2768" not in text
-    for told in ("ISO 22081", "hardness 50 to 54 HRC", "epoxy", "stress-relieve", "No coating"):
-        assert told in text
+    for stated in ("ISO 22081", "hardness 50 to 54 HRC", "epoxy", "stress-relieve", "No coating"):
+        assert stated in text
     assert {"D-D", "E-E"} <= {w.split(" ")[0] for w in words}
     assert words.count("D") == words.count("E") == 2
     hatched = [p for p in sheet.axes.patches if p.get_hatch()]
@@ -78,7 +78,7 @@ def test_a_frame_points_at_what_it_holds_for(upright):
     assert any(np.allclose(end, top, atol=0.1) for end in leaders for top in tops)
 
 
-def test_pads_of_two_sizes_are_not_told_to_be_alike(upright):
+def test_pads_of_two_sizes_are_not_said_to_be_alike(upright):
     """The outline leaves less relief beside the last."""
     near = replace(upright.holes[2], y=upright.base.half_size[1] - 15.0)
     moved = replace(upright, holes=(*upright.holes[:2], near))
@@ -140,7 +140,7 @@ def test_files_are_one_a2_page_and_the_same_bytes_again(upright, tmp_path):
     pdf = (tmp_path / "one" / "drawing.pdf").read_bytes()
     assert pdf == (tmp_path / "two" / "drawing.pdf").read_bytes()
     box = re.search(rb"/MediaBox \[ ?0 0 ([\d.]+) ([\d.]+)", pdf)
-    assert [float(v) * 25.4 / 72.0 for v in box.groups()] == pytest.approx([WIDTH, HEIGHT], abs=0.1)
+    assert [float(v) * 25.4 / 72.0 for v in box.groups()] == pytest.approx(A2.size, abs=0.1)
     svg = (tmp_path / "one" / "drawing.svg").read_text()
     assert svg == (tmp_path / "two" / "drawing.svg").read_text()
     assert "<svg" in svg

@@ -1,22 +1,25 @@
 """Laws on the live page: their figures against the fits, their curves against the touches."""
 
 import json
-import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from browser import faults, opened, requests, run
+from browser import faults, opened, page_data, requests, run
 from simulator_case import read_back
 from simulator_experiment import MACHINES
 from simulator_laws import law_case
 
+from matstd.diagnosis.answer.comparison import compare
 from matstd.diagnosis.answer.run_diagnosis import diagnose
+from matstd.diagnosis.fit.identification import fit_run
+from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.laws import amplitudes, learn_laws, learn_remainder
-from matstd.diagnosis.reduced import learnt_board
+from matstd.diagnosis.reduced import compared_board, learnt_board
 from matstd.report.laws import law_curve
 from matstd.report.layout import Page, write_page
-from matstd.report.run_view import diagnosis_view, learnt_view
+from matstd.report.run_view import comparison_view, diagnosis_view, learnt_view
+from matstd.twin.model.model import Model
 from matstd.twin.units import UM
 
 LAW = "law(bias,step time)"
@@ -72,8 +75,7 @@ def test_a_diagnosis_shows_what_it_found_and_the_law_of_what_remains(learning):
     found = diagnose(learning.after.run)
     found = replace(found, laws=learn_remainder(found.start, found.fit))
     assert found.laws.laws
-    data = re.search(r'id="live-data">(.*?)</script>', diagnosis_view(found, "run.csv").script)
-    page = json.loads(data[1])
+    page = page_data(diagnosis_view(found, "run.csv").script)
     names = {s["name"] for s in page["switches"] if s["isFound"]}
     kept = {e.name for e in found.laws.after.model.effects}
     laws = {one.law.name for one in found.laws.laws}
@@ -112,3 +114,58 @@ def test_the_page_shows_curve_and_touches_and_takes_the_law_away(browser, learni
     assert half == pytest.approx((0.5 * curve.value).tolist(), abs=1e-3)
     assert faults(browser) == []
     assert requests(browser) == []
+
+
+@pytest.fixture(scope="module")
+def predicted(learning):
+    """Every second touch of the run, predicted with the law as it was learnt."""
+    known = learning.after
+    count = sum(len(e.parameters) for e in known.model.effects)
+    estimates = Prior.of_estimates(known.theta[:count], known.covariance[:count, :count])
+    return compare(known.run[::2], known.model, estimates)
+
+
+def without_the_law(predicted):
+    """The prediction without the law, by a fit of the set-ups to the touches."""
+    fit = predicted.fit
+    effects = tuple(e for e in fit.model.effects if e.name != LAW)
+    kept = [fit.of_effect(e.name) for e in effects]
+    mean = np.concatenate([fit.prior.mean[place] for place in kept])
+    prior = Prior(mean, np.zeros((len(mean), len(mean))))
+    return fit_run(fit.run, Model(fit.model.chain, effects), prior, gross=fit.gross)
+
+
+def test_a_law_of_the_model_is_taken_out_of_its_prediction(predicted):
+    board = compared_board(predicted)
+    assert board.found == {LAW}
+    on, off = board.errors({LAW}), board.errors(())
+    known = [predicted.fit.rms, predicted.fit.test_rms]
+    assert [on.fitted, on.held_out] == pytest.approx(known, rel=1e-7)
+    known = without_the_law(predicted)
+    assert [off.fitted, off.held_out] == pytest.approx([known.rms, known.test_rms], rel=1e-7)
+    assert off.fitted > 1.2 * on.fitted
+
+
+@pytest.mark.browser
+def test_the_page_of_a_prediction_switches_its_law(browser, predicted, tmp_path):
+    path = tmp_path / "predicted.html"
+    view = comparison_view(predicted, "run.csv")
+    write_page(path, Page(title="t", heading="h", lead="l", key=(), sections=(), live=view))
+    opened(browser, path)
+    figures = "const { fitted, heldOut } = livePage.shown.now; return [fitted, heldOut];"
+    fit = predicted.fit
+    assert run(browser, figures) == pytest.approx([fit.rms / UM, fit.test_rms / UM], rel=1e-12)
+    words = run(browser, "return document.querySelector('.amount').textContent")
+    assert words.startswith("What the model predicts; moves the residuals by")
+    click = f"""document.querySelector('input[data-effect="{LAW}"]').click();"""
+    known = without_the_law(predicted)
+    expected = pytest.approx([known.rms / UM, known.test_rms / UM], rel=1e-7)
+    assert run(browser, click + figures) == expected
+    shown = np.array(run(browser, "return [...livePage.shown.residual]"))
+    assert shown == pytest.approx(known.residual / UM, abs=5e-3)
+    run(browser, click)
+    pull = "livePage.board.pull(livePage.board.on[0], 0); livePage.changed();"
+    assert run(browser, pull + figures) == expected
+    run(browser, "document.getElementById('again').click()")
+    assert run(browser, figures)[0] == pytest.approx(fit.rms / UM, rel=1e-12)
+    assert faults(browser) == []

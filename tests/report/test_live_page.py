@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from browser import faults, opened, requests, run
+from browser import faults, numbers_of, opened, requests, run
 
 from matstd.diagnosis.answer.comparison import compare
 from matstd.diagnosis.answer.run_diagnosis import diagnose
@@ -68,7 +68,6 @@ def page(diagnosis, tmp_path_factory):
 def live(browser, page):
     """The page, newly opened; it may not complain and not ask for anything."""
     opened(browser, page)
-    assert run(browser, "return document.getElementById('live').dataset.isReady") == "true"
     yield browser
     assert faults(browser) == []
     assert requests(browser) == []
@@ -185,6 +184,40 @@ def test_touches_are_pointed_at_chosen_and_listed(live, diagnosis):
     assert run(live, "return document.getElementById('chosen').textContent") == ""
 
 
+def test_a_touch_has_the_line_of_its_program(browser, diagnosis, tmp_path):
+    """Rows of a program, of a program whose text was not at hand, and rows without a program."""
+    known = diagnosis.fit.run
+    count = len(known)
+    program = np.array(["MS_A_1", "MS_A_2", ""])[np.arange(count) % 3]
+    number = np.where(program == "", 0, np.arange(count) + 10)
+    line = np.where(program == "MS_A_1", 7 * number, 0)
+    stated = replace(known, program=program, touch=number, program_line=line)
+    board = diagnosed_board(replace(diagnosis, steps=(*diagnosis.steps[:1],), candidates=()))
+    board = replace(board, fit=replace(board.fit, run=stated))
+    opened(browser, written(tmp_path / "program.html", run_view(board, Findings("run.csv"))))
+    tip = "livePage.mark(ROW); return document.querySelector('.tip').textContent"
+    first, second, third = (run(browser, tip.replace("ROW", str(k))) for k in (3, 4, 5))
+    assert f"line {known.line[3]}, set-up" in first
+    assert "; MS_A_1 touch 13, line 91; " in first
+    assert "; MS_A_2 touch 14; " in second
+    assert "MS_A" not in third
+    run(browser, "livePage.choose([3, 4])")
+    column = "document.querySelectorAll('#chosen tr > :nth-child(2)')"
+    cells = f"return [...{column}].map(e => e.textContent)"
+    assert run(browser, cells) == ["program", "MS_A_1 touch 13, line 91", "MS_A_2 touch 14"]
+    assert faults(browser) == []
+
+
+def test_the_true_body_stands_behind_the_touches(diagnosis):
+    """With a body of the user it is that, to the grain of the page; without, what was touched."""
+    board, cube = diagnosed_board(diagnosis), np.arange(36.0).reshape(4, 3, 3) * 5.0
+    data = run_data(board, Findings("run.csv", body=cube))
+    body = data["body"]
+    assert unpacked(body) * body["grain"] == pytest.approx(cube.reshape(-1), abs=body["grain"])
+    without = run_data(board, Findings("run.csv"))
+    assert without["body"]["shape"][0] > 36
+
+
 def test_keys_and_labels_suffice(live):
     from selenium.webdriver.common.keys import Keys
 
@@ -228,7 +261,13 @@ def without_poses(run_):
 
 def without_places(run_):
     n = len(run_)
-    return changed(run_, point=np.zeros((n, 3)), normal=np.tile([0.0, 0.0, 1.0], (n, 1)))
+    return changed(run_, point=np.ones((n, 3)), normal=np.tile([0.0, 0.0, 1.0], (n, 1)))
+
+
+def along_one_axis(run_):
+    """As of a laser: points on a line that does not pass the origin."""
+    point = np.column_stack([np.linspace(0.0, 400.0, len(run_)), *np.full((2, len(run_)), 300.0)])
+    return changed(run_, point=point, normal=np.tile([1.0, 0.0, 0.0], (len(run_), 1)))
 
 
 def with_an_empty_column(run_):
@@ -246,6 +285,7 @@ def held_out(run_):
         pytest.param(one_touch_a_feature, marks=pytest.mark.slow),
         pytest.param(without_poses, marks=pytest.mark.slow),
         pytest.param(without_places, marks=pytest.mark.slow),
+        pytest.param(along_one_axis, marks=pytest.mark.slow),
         pytest.param(held_out, marks=pytest.mark.slow),
     ],
     ids=lambda f: f.__name__,
@@ -254,9 +294,29 @@ def test_odd_runs_are_shown_as_far_as_they_go(odd, browser, diagnosis, tmp_path)
     found = compare(odd(diagnosis.run[::5]), ordinary_model(diagnosis.run.touches.chain))
     view = run_view(compared_board(found), Findings("odd.csv"))
     opened(browser, written(tmp_path / "odd.html", view))
-    assert run(browser, "return document.getElementById('live').dataset.isReady") == "true"
     fitted, held, *_ = run(browser, FIGURES)
     assert [fitted, held] == pytest.approx([found.fit.rms / UM, found.fit.test_rms / UM])
+    # what lies in space is in the middle of the picture; readings at one place have none
+    seen = run(
+        browser,
+        """const { view } = livePage.touched, { point, count } = livePage.data.touches, out = [];
+        for (let i = 0; i < count; i++) {
+          out.push(view.project([...point.values.subarray(3 * i, 3 * i + 3)]));
+        }
+        return [view.canvas.clientWidth, view.canvas.clientHeight, out];""",
+    )
+    assert (
+        bool(seen[0])
+        == run_data(compared_board(found), Findings("odd.csv"))["touches"]["isSpread"]
+        == (odd is not without_places)
+    )
+    if seen[0]:
+        places = np.array(seen[2])
+        assert (places.min(axis=0) > 0.0).all()
+        assert (places.max(axis=0) < seen[:2]).all()
+        assert (places.min(axis=0) + places.max(axis=0)) / 2.0 == pytest.approx(
+            np.array(seen[:2]) / 2.0, rel=0.25
+        )
     assert faults(browser) == []
 
 
@@ -283,14 +343,8 @@ def numbers(tree):
 
 
 def unpacked(one):
-    """Numbers of a packed array; of shortened doubles the lower bytes are zero."""
-    raw, kind = base64.b64decode(one["base64"]), one["kind"]
-    if kind not in ("f6", "f3"):
-        return np.frombuffer(raw, f"<{kind}")
-    kept = int(kind[1])
-    whole = np.zeros((len(raw) // kept, 8), dtype="u1")
-    whole[:, 8 - kept :] = np.frombuffer(raw, "u1").reshape(-1, kept)
-    return whole.reshape(-1).view("<f8")
+    """Numbers of a packed array."""
+    return numbers_of(base64.b64decode(one["base64"]), one["kind"])
 
 
 def test_of_hundreds_of_effects_fifteen_are_offered(diagnosis):
@@ -335,9 +389,7 @@ def test_in_a_notebook_the_view_stands_in_a_frame(browser, diagnosis, tmp_path):
     framed = Framed("run.csv", "One effect is missing.", diagnosis_view(diagnosis, "run.csv"))
     path = tmp_path / "notebook.html"
     path.write_text(f"<!DOCTYPE html><title>n</title>{framed._repr_html_()}", encoding="utf-8")
-    opened(browser, path)
-    browser.switch_to.frame(0)
-    assert run(browser, "return document.getElementById('live').dataset.isReady") == "true"
+    opened(browser, path, frame=0)
     held_out = diagnosis.fit.test_rms / UM
     assert run(browser, FIGURES)[1] == pytest.approx(held_out)
     browser.switch_to.default_content()

@@ -1,6 +1,5 @@
 """Parts of live pages, in a real browser: data, view in three dimensions, plots, numbers."""
 
-import json
 import re
 from pathlib import Path
 
@@ -16,12 +15,14 @@ PAGES = {f.stem for f in (Path(embed.__file__).parent / "pages").glob("*.js")}
 SQUARE = np.array(
     [[[-10, -10, 0], [10, -10, 0], [10, 10, 0]], [[-10, -10, 0], [10, 10, 0], [-10, 10, 0]]]
 )
+NUMBERS = np.array([np.pi, -1e-9, 0.0, 6.02e23, 1.0 - 1e-13])
+KINDS = {"f8": 0.0, "f6": 2e-11, "f4": 6e-8, "f3": 2e-4}  # with the share that they lose
 POINTS = np.array([[0.0, 0.0, 0.0], [6.0, 0.0, 0.0], [0.0, 0.0, -8.0]])
 
 SCENE = """
 const { View3D } = parts.view3d;
 const { pageData } = parts.data;
-const data = pageData();
+const data = await pageData();
 document.body.innerHTML = '<canvas id="c" style="width:400px;height:400px"></canvas>';
 const view = new View3D(document.getElementById("c"), { isDrawn: ISDRAWN });
 window.body = view.mesh({ corners: data.square.values, colour: [1, 0.8, 0], isPickable: true });
@@ -43,6 +44,7 @@ def page(tmp_path_factory):
         "square": packed(SQUARE, "i2", grain=0.05, unit="mm", name="a square"),
         "points": packed(POINTS, "f4", unit="mm"),
         "words": ["</script>", "µ", None, 3],
+        **{kind: packed(NUMBERS, kind) for kind in KINDS},
     }
     parts = [name for name in embed._sources() if name not in PAGES]
     every = "".join(f'import * as {name} from "./{name}.js";\n' for name in parts)
@@ -99,12 +101,37 @@ def test_bodies_dots_and_lines_are_drawn_where_they_are(scene):
 @pytest.mark.browser
 def test_shortened_doubles_keep_their_upper_digits(browser, page):
     opened(browser, page)
-    values = np.array([np.pi, -1e-9, 0.0, 6.02e23, 1.0 - 1e-13])
-    for kind, share in (("f8", 0.0), ("f6", 2e-11), ("f4", 6e-8), ("f3", 2e-4)):
-        given = json.dumps(packed(values, kind))
-        kept = run(browser, f"return [...parts.data.unpacked({given}).values]")
-        assert kept == pytest.approx(values.tolist(), rel=share, abs=0.0)
-        assert (kept == values.tolist()) == (kind == "f8")
+    for kind, share in KINDS.items():
+        kept = run(browser, f"return [...(await parts.data.pageData()).{kind}.values]")
+        assert kept == pytest.approx(NUMBERS.tolist(), rel=share, abs=0.0)
+        assert (kept == NUMBERS.tolist()) == (kind == "f8")
+
+
+@pytest.mark.browser
+def test_thousands_of_needles_have_their_own_colours(scene):
+    """Thin lines, each of its colour at both ends: a red needle among green ones beside it."""
+    run(
+        scene,
+        """const count = 4000, positions = new Float32Array(6 * count).fill(1e4);
+        const colours = new Uint8Array(3 * count);
+        for (let i = 0; i < count; i++) colours[3 * i + 1] = 200;
+        positions.set([-8, 6, 0, -8, 6, 9], 6 * 2345);
+        colours.set([250, 0, 0], 3 * 2345);
+        window.many = view.lines({ positions, colours });
+        view.draw();""",
+    )
+    for height in (1.0, 4.5, 8.0):
+        x, y, *_ = seen(scene, [-8, 6, height])
+        near = run(
+            scene,
+            f"""const copy = document.createElement("canvas"), c = copy.getContext("2d");
+            [copy.width, copy.height] = [view.canvas.width, view.canvas.height];
+            c.drawImage(view.canvas, 0, 0);
+            return [...c.getImageData({round(x)} - 2, {round(y)}, 5, 1).data];""",
+        )
+        reddest = max(np.reshape(near, (5, 4)), key=lambda pixel: int(pixel[0]) - int(pixel[1]))
+        assert reddest[0] > 100
+        assert reddest[1] < 0.6 * reddest[0]
 
 
 @pytest.mark.browser
@@ -194,7 +221,7 @@ def test_data_come_as_they_were_packed(browser, page):
     opened(browser, page)
     square, points, words = run(
         browser,
-        """const { square, points, words } = parts.data.pageData();
+        """const { square, points, words } = await parts.data.pageData();
         const plain = p => ({ ...p, values: [...p.values], kind: p.values.constructor.name });
         return [plain(square), plain(points), words];""",
     )
@@ -262,5 +289,5 @@ def test_a_page_has_only_the_parts_that_it_imports():
     text = scripted("view3d", {"a": "</script><!--"})
     names = re.findall(r"^const (\w+)_js = ", text, re.MULTILINE)
     assert names == ["camera", "normals", "painter", "gl_drawer", "view3d"]
-    assert text.count("</script>") == 2
+    assert text.count("</script>") == 3
     assert "<!--" not in text

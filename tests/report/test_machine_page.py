@@ -1,12 +1,11 @@
 """The page of a machine: its bodies, its errors as functions, and the kinematics of its scripts."""
 
-import json
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import faults, opened, requests
+from browser import faults, opened, page_data, requests
 
 import matstd
 from matstd.compensation.field import MachineErrors, State
@@ -440,7 +439,7 @@ def test_nothing_overflows_in_light_and_dark(browser, page, width):
 def test_the_data_are_those_of_the_machine(page, machine):
     text = page.read_text(encoding="utf-8")
     assert "http" not in text.replace("http://www.w3.org", "")
-    found = json.loads(text.split('id="live-data">')[1].split("</script>")[0])
+    found = page_data(text)
     assert [k["name"] for k in found["machine"]["links"]] == [k.name for k in machine.chain.links]
     assert len(found["symbols"]) == 71
 

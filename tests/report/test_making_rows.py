@@ -1,4 +1,4 @@
-"""What a page tells of cutters and stiffness: limits that are missed are named."""
+"""What a page says of cutters and stiffness: limits that are missed are named."""
 
 import numpy as np
 
@@ -20,6 +20,7 @@ def made(mode, sag, out_of_reach=()):
         overhang=80.0 if out_of_reach else 60.0,
         cutter={"FF1": 16.0},
         radius={"FF1": 12.0},
+        whole_radius={"FF1": 11.0},
     )
     soft = {name: np.diag([size, size, 0.0]) for name, size in sag.items()}
     hints = {
@@ -44,7 +45,7 @@ def made(mode, sag, out_of_reach=()):
     )
 
 
-def test_a_stiff_standard_that_a_cutter_reaches_is_told_by_its_figures():
+def test_a_stiff_standard_that_a_cutter_reaches_is_reported_by_its_figures():
     rows = made(900.4, {"FF1": 4e-5, "SPH1": 9e-5})
     assert rows["first mode on rigid screws"] == "900 Hz"
     assert rows["Young's modulus"] == "71 GPa, Poisson's ratio 0.3 of 'EN AW-5083' (stated)"

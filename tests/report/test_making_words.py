@@ -7,9 +7,10 @@ import pytest
 
 from matstd.artefact.brief.brief import Brief
 from matstd.artefact.layout.blank import Blank
+from matstd.artefact.price import prices_of
 from matstd.cad_out.making.making_file import Making
 from matstd.cad_out.making.stiffness import Stiffness
-from matstd.report.task.making_words import fewer_lines, making_lines
+from matstd.report.task.making_words import fewer_lines, making_lines, price_lines
 from matstd.stages.design import _check_first_mode
 from matstd.twin.errors import BadFile
 
@@ -20,10 +21,24 @@ def stiffness(first_mode: float) -> Stiffness:
 
 def test_a_low_first_mode_is_a_named_compromise(upright) -> None:
     made = Making(None, stiffness(412.3), {}, upright.material)
-    _, words = making_lines(made)
+    _, price, words = making_lines(made)
+    assert price == "price: not estimated, no rates are known of this material"
     assert words.startswith("compromise: first mode 412 Hz on rigid screws, below 500 Hz")
     assert "softest ball SPH2, 2.5 N/µm" in words
-    assert len(making_lines(replace(made, stiffness=stiffness(500.0)))) == 1
+    assert len(making_lines(replace(made, stiffness=stiffness(500.0)))) == 2
+
+
+def test_the_cheaper_construction_is_named_where_it_is_clear(upright) -> None:
+    billet, parts = prices_of(upright)
+    (line,) = price_lines((billet, parts))
+    assert "all in one from a billet" in line
+    assert "kg of stock" in line
+    apart = replace(billet, labour=billet.labour * 2.0)
+    (clear,) = price_lines((apart, parts))
+    assert "; plate, studs and a block for every face is" in clear
+    assert clear.endswith("% cheaper")
+    (same,) = price_lines((parts, parts))
+    assert same.endswith("they differ by less than the uncertainty of one")
 
 
 def test_a_limit_refuses_it() -> None:

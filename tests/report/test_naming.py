@@ -1,4 +1,4 @@
-"""Effects in sentences: the words of a workshop first, a class told as a class, names behind."""
+"""Effects in sentences: the words of a workshop first, a class as a class, names behind."""
 
 from types import SimpleNamespace
 
@@ -21,14 +21,14 @@ LAGS = ["thermal-lag(EZZ)", "thermal-lag(EZY)", "thermal-lag(EZX)", "thermal-lag
 
 
 def step(*names):
-    """A step whose effect cannot be told from the ones behind it."""
+    """A step whose effect cannot be distinguished from the ones behind it."""
     chain = made_up("hsm600u").chain
     first, *rest = [parse_effect(name, chain) for name in names]
     rivals = [SimpleNamespace(effect=e) for e in rest]
     return SimpleNamespace(effect=first, confusion=SimpleNamespace(rivals=rivals))
 
 
-def test_a_class_that_differs_in_its_body_alone_is_told_as_one() -> None:
+def test_a_class_that_differs_in_its_body_alone_is_reported_as_one() -> None:
     assert class_words(step(*LAGS), ["time constant 12 min"]) == (
         "growth along Z after switching on (time constant 12 min; carried by Z, Y, X or B, which "
         "this run cannot distinguish) [thermal-lag(EZZ) or one of 3 more]"
@@ -43,7 +43,7 @@ def test_a_class_that_differs_in_its_body_alone_is_told_as_one() -> None:
     )
 
 
-def test_what_else_it_may_be_is_told_beside_the_bodies() -> None:
+def test_what_else_it_may_be_is_reported_beside_the_bodies() -> None:
     assert class_words(step("backlash(X)", "geometric(EXX,3)")) == (
         "reversal of X (or instead positioning error of X) [backlash(X) or geometric(EXX,3)]"
     )
@@ -54,7 +54,7 @@ def test_what_else_it_may_be_is_told_beside_the_bodies() -> None:
     )
 
 
-def test_other_titles_that_share_their_words_are_told_once() -> None:
+def test_other_titles_that_share_their_words_are_reported_once() -> None:
     words = class_words(step(*LAGS[:2], "thermal-static(EZZ,room)", "thermal-static(EZY,room)"))
     assert "or instead growth along Z with room (carried by Z or Y)) [" in words
 
@@ -93,7 +93,7 @@ def test_many_rivals_are_counted_beyond_the_first() -> None:
     assert words.endswith("or one of 6 more]")
 
 
-def test_plans_say_what_they_tell_apart() -> None:
+def test_plans_say_what_they_distinguish() -> None:
     touches = made_up("hsm600u")
     plan = SimpleNamespace(
         touches=touches, distinguishes=("backlash(X)", "backlash(Y)"), periods_of=""

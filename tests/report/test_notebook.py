@@ -21,6 +21,7 @@ from matstd.twin import display
 from matstd.twin.errors import MissingLibrary
 from matstd.twin.files.run_file import read_run
 from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.thermal.thermal_lag import KIND as LAG
 from matstd.twin.units import UM
 
 RUN = Path(__file__).parents[2] / "examples" / "hidden_effect" / "warm_up.csv"
@@ -38,8 +39,9 @@ def comparison(run):
 
 @pytest.fixture(scope="module")
 def diagnosis(run):
-    """Of every second table pose."""
-    return diagnose(run[run.touches.pose % 2 == 0])
+    """Of every second table pose, among the lags."""
+    half = run[run.touches.pose % 2 == 0]
+    return diagnose(half, candidates=list(LAG.propose(half.touches)))
 
 
 @pytest.fixture(scope="module")

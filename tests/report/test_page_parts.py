@@ -126,7 +126,7 @@ def test_nothing_to_print_with_is_said_at_once(monkeypatch: pytest.MonkeyPatch) 
 @pytest.mark.skipif("sys.platform == 'win32'", reason="the stand-in browser is a shell script")
 @pytest.mark.parametrize("fails", [False, True])
 def test_a_browser_prints(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fails: bool) -> None:
-    """A stand-in for the browser takes the page's address and writes where it is told to."""
+    """A stand-in for the browser takes the page's address and writes where it is asked to."""
     browser = tmp_path / "chromium"
     line = 'case "$a" in --print-to-pdf=*) cp page.html "${a#--print-to-pdf=}";; esac'
     body = "echo no screen >&2; exit 3" if fails else f"for a in $@; do {line}; done"

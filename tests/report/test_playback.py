@@ -1,12 +1,11 @@
 """The playback: bodies where they stand, and at every touch a ball that touches."""
 
-import importlib.util
-import json
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from browser import page_data
 
 from matstd.compensation.field import MachineErrors
 from matstd.probe_paths.control.interpreter import interpret
@@ -21,15 +20,6 @@ from matstd.twin.machine import tip
 from matstd.twin.units import DEG
 
 ROOT = Path(__file__).parents[2]
-
-
-@pytest.fixture(scope="module")
-def golden():
-    path = ROOT / "tests" / "golden" / "make_programs.py"
-    spec = importlib.util.spec_from_file_location("make_programs", path)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 @pytest.fixture(scope="module")
@@ -58,9 +48,7 @@ def page(golden, plan, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def data(page):
-    return json.loads(
-        re.search(r'<script type="application/json" id="live-data">(.*?)</script>', page)[1]
-    )
+    return page_data(page)
 
 
 def test_at_every_touch_the_ball_touches_its_feature(golden, read, plan):
@@ -134,21 +122,15 @@ def test_the_page_holds_it_all_and_loads_nothing(page, data, plan, read):
     assert not re.search(r"\b(src|href)\s*=", page)
     assert len(page) < 700_000
     program = data["program"]
-    touch = unpacked(program["touch"])
+    touch = program["touch"]
     assert np.sum(touch > 0) == len(plan)
     assert program["names"] == [one.name for one in read]
     assert program["features"][0]["1"] == plan.feature[0]
     assert [e["name"] for e in data["errors"]] == ["backlash(X)"]
-    q = unpacked(program["q"]).reshape(len(touch), -1)
+    q = program["q"].reshape(len(touch), -1)
     rows = np.flatnonzero(touch)[::9]
     gaps = ToolClearance(plan.chain, plan.standard, plan.setup, plan.probe, plan.options.workshop)
     expected, nearest = gaps.gap(q[rows].astype(float))
-    assert unpacked(program["clearance"])[rows] == pytest.approx(expected, abs=2e-3)
-    which = unpacked(program["nearest_body"])[rows]
+    assert program["clearance"][rows] == pytest.approx(expected, abs=2e-3)
+    which = program["nearest_body"][rows]
     assert [program["nearest"][k] for k in which] == list(nearest)
-
-
-def unpacked(packed):
-    import base64
-
-    return np.frombuffer(base64.b64decode(packed["base64"]), f"<{packed['kind']}")

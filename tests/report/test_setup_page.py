@@ -1,8 +1,6 @@
 """The set-up sheet: every alarm of the programs explained, every figure that of the plan."""
 
-import importlib.util
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,16 +18,6 @@ from matstd.twin.frames import apply, inverse, pose, turn
 from matstd.twin.machine.kinematics import linear_directions, tip
 from matstd.twin.units import DEG
 
-GOLDEN = Path(__file__).parents[1] / "golden" / "make_programs.py"
-
-
-@pytest.fixture(scope="module")
-def golden():
-    spec = importlib.util.spec_from_file_location("make_programs", GOLDEN)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
 
 @pytest.fixture(scope="module")
 def sheet(golden, tmp_path_factory):
@@ -40,7 +28,7 @@ def sheet(golden, tmp_path_factory):
     others.write(folder)
     page = write_setup_page(folder, [Station(plan, Dialect(), programs)], 0, others)
     assert page == folder / PAGE
-    assert (folder / PICTURE).stat().st_size > 10_000
+    assert (folder / PICTURE).stat().st_size > 4_000
     assert "RAISED BY +80.0 MM" in (folder / "MS_A_DRY.H").read_text(encoding="ascii")
     assert "SEARCH FROM ABOVE" in (folder / "MS_A_LOC.H").read_text(encoding="ascii")
     return page.read_text(encoding="utf-8"), programs
@@ -51,9 +39,9 @@ def test_every_alarm_of_the_programs_is_explained(sheet):
     alarms = set(re.findall(r"LBL (\d+) ;(?:ALARM|NOTRIGGER)", programs.programs[0].text))
     assert len(alarms) == 10
     (table,) = [t for t in shown_tables(text) if t.section == "Alarms"]
-    told = {row[0]: row for row in table.rows[table.headings :]}
-    assert set(told) == alarms
-    assert all(len(row[-1]) > 10 for row in told.values())
+    stated = {row[0]: row for row in table.rows[table.headings :]}
+    assert set(stated) == alarms
+    assert all(len(row[-1]) > 10 for row in stated.values())
 
 
 def test_hashes_programs_and_place_are_those_of_the_head(sheet):

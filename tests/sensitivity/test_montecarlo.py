@@ -171,14 +171,14 @@ def test_a_machine_without_errors_has_none(chain, poses):
     assert found.p95.max() < UM
 
 
-def test_progress_is_told(chain, poses):
-    told = []
+def test_progress_is_reported(chain, poses):
+    stated = []
     volumetric(
         Population(chain),
         poses,
         LENGTH,
         11_000,
         np.random.default_rng(1),
-        progress=lambda what, done, total: told.append((what, done, total)),
+        progress=lambda what, done, total: stated.append((what, done, total)),
     )
-    assert told == [("random machines", n, 11_000) for n in (10_240, 11_000)]
+    assert stated == [("random machines", n, 11_000) for n in (10_240, 11_000)]

@@ -1,4 +1,4 @@
-"""Work by others: the same numbers to the last bit, whoever counts and whoever dies."""
+"""Work by others: the same numbers to the last bit, whichever process counts or dies."""
 
 import socket
 import subprocess
@@ -27,8 +27,8 @@ def study(chain, workspace):
     population = Population(chain)
     q = latin_hypercube(workspace, 40, np.random.default_rng(7))
 
-    def run(workers, told=None):
-        progress = {"progress": lambda _, done, __: told(done)} if told else {}
+    def run(workers, report=None):
+        progress = {"progress": lambda _, done, __: report(done)} if report else {}
         return volumetric(
             population, q, LENGTH, DRAWS, np.random.default_rng(5), workers=workers, **progress
         )
@@ -160,7 +160,7 @@ def test_a_scheduler_that_does_not_answer_is_one_line():
         ),
         cluster("tcp://127.0.0.1:1", answer=0.5),
     ):
-        pytest.fail("nobody is there")
+        pytest.fail("no worker is there")
 
 
 def test_a_scheduler_without_workers_is_one_line(tmp_path):
@@ -171,6 +171,6 @@ def test_a_scheduler_without_workers_is_one_line(tmp_path):
             pytest.raises(DesignError, match="has no workers; expected at least one"),
             cluster(made.address, answer=1.0),
         ):
-            pytest.fail("nobody works")
+            pytest.fail("no worker works")
     finally:
         made.close()

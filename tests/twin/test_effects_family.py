@@ -29,7 +29,7 @@ def on_a_path(touches):
 
 
 def elastic(touches):
-    """What nobody proposes: beams, whose sections are the user's to say, higher couplings."""
+    """What is never proposed: beams, whose sections are the user's to say, higher couplings."""
     chain = touches.chain
     axis = next(a for a in chain.linear_axes if not carried_by_rotary(chain, a))
     low, high = chain.link(axis).range

@@ -100,7 +100,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize(("text", "error", "message"), REFUSED.values(), ids=REFUSED.keys())
-def test_refusals_are_one_line_that_tells_what_is_expected(text, error, message) -> None:
+def test_refusals_are_one_line_that_shows_what_is_expected(text, error, message) -> None:
     with pytest.raises(error, match=message) as caught:
         library.parse_effect(text, CHAIN)
     assert "\n" not in str(caught.value)
@@ -129,7 +129,7 @@ def test_what_cannot_show_is_not_proposed() -> None:
     assert [e.name for e in library.proposals(poses)] == ["probe-radius"]
 
 
-def test_every_kind_tells_its_formula_units_size_and_source() -> None:
+def test_every_kind_states_its_formula_units_size_and_source() -> None:
     for kind in library.kinds():
         for text in (kind.formula, kind.units, kind.typical, kind.source, kind.summary):
             assert len(text) > 2, kind.word
@@ -248,7 +248,7 @@ def test_faulty_entry_points_are_named(own_register, monkeypatch, value, message
         library.load_installed_effects()
 
 
-def test_unknown_axes_are_told_with_what_there_is() -> None:
+def test_unknown_axes_are_reported_with_what_there_is() -> None:
     with pytest.raises(UnknownAxis, match="this machine has C, B, X, Y, Z, C1"):
         CHAIN.axis_index("A")
 

@@ -28,14 +28,14 @@ def machine(tmp_path: Path) -> Path:
     return path
 
 
-def test_all_missing_keys_of_a_table_are_told_at_once(tmp_path: Path) -> None:
+def test_all_missing_keys_of_a_table_are_reported_at_once(tmp_path: Path) -> None:
     path = tmp_path / "machine.toml"
     path.write_text('format = "machine/1"\nname = "small"\n', encoding="utf-8")
     with pytest.raises(BadFile, match=r"file: found nothing for .* expected the keys chain, axis$"):
         read_machine(path)
 
 
-def test_missing_keys_within_a_table_are_told_with_its_name(machine: Path) -> None:
+def test_missing_keys_within_a_table_are_reported_with_its_name(machine: Path) -> None:
     run = machine.parent / "run.csv"
     head = '# format = "run/1"\n# machine = "machine.toml"\n# probe = {}\n'
     run.write_text(head + "X_mm\n1\n", encoding="utf-8")
@@ -43,7 +43,7 @@ def test_missing_keys_within_a_table_are_told_with_its_name(machine: Path) -> No
         read_run(run)
 
 
-def test_all_missing_columns_are_told_at_once(machine: Path) -> None:
+def test_all_missing_columns_are_reported_at_once(machine: Path) -> None:
     run = machine.parent / "run.csv"
     head = '# format = "run/1"\n# machine = "machine.toml"\n'
     head += "# probe = { radius_mm = 3.0, length_mm = 100.0 }\n"
@@ -52,7 +52,7 @@ def test_all_missing_columns_are_told_at_once(machine: Path) -> None:
         read_run(run)
 
 
-def test_an_error_that_stands_twice_is_told_how_shapes_add_up(machine: Path) -> None:
+def test_an_error_that_stands_twice_is_reported_how_shapes_add_up(machine: Path) -> None:
     errors = machine.parent / "errors.toml"
     entry = '{}\nshape = "linear"\namplitude = 3.0\n'
     text = 'format = "errors/1"\n' + entry.format("[EXX]") + entry.format("[EXX]")

@@ -122,8 +122,10 @@ def test_a_sensor_on_the_standard_counts_touch_by_touch(tmp_path: Path) -> None:
     # what is taken off is no effect of that sensor any more, and all of it is one of another
     assert not columns([ArtefactExpansion("body")], run.touches).any()
     plain = read_run(write(tmp_path, rows, columns=BODY_COLUMN))
-    told = columns([ArtefactExpansion("body")], plain.touches)[:, 0]
-    assert 10.5e-6 * told == pytest.approx(grown, rel=1e-3)  # here p counts from the table's origin
+    stated = columns([ArtefactExpansion("body")], plain.touches)[:, 0]
+    assert 10.5e-6 * stated == pytest.approx(
+        grown, rel=1e-3
+    )  # here p counts from the table's origin
 
 
 @pytest.mark.parametrize("column", [False, True])
@@ -180,7 +182,7 @@ def test_the_scale_of_the_cmm_is_one_error_of_all_runs_of_a_standard(tmp_path: P
 
 
 @pytest.mark.parametrize(
-    ("stated", "told"),
+    ("stated", "expected"),
     [
         (f"{STEEL}, scale_u_ppm = 5e3", "standard.scale_u_ppm: found 5000, expected the standard"),
         ("expansion_1_K = 11.5", "standard.expansion_1_K: found 11.5, expected 0 to 0.001 1/K"),
@@ -193,13 +195,13 @@ def test_the_scale_of_the_cmm_is_one_error_of_all_runs_of_a_standard(tmp_path: P
         (f"{STEEL}, body_C = 25.0", "standard.body_C: found an unknown key"),
     ],
 )
-def test_what_cannot_be_is_refused_by_its_key(tmp_path: Path, stated: str, told: str) -> None:
-    with pytest.raises(BadFile, match=told):
+def test_what_cannot_be_is_refused_by_its_key(tmp_path: Path, stated: str, expected: str) -> None:
+    with pytest.raises(BadFile, match=expected):
         read(tmp_path, stated)
 
 
 @pytest.mark.parametrize(
-    ("reading", "stated", "told"),
+    ("reading", "stated", "expected"),
     [
         (
             "25.0",
@@ -211,9 +213,9 @@ def test_what_cannot_be_is_refused_by_its_key(tmp_path: Path, stated: str, told:
     ],
 )
 def test_a_sensor_that_is_not_on_the_standard(
-    tmp_path: Path, reading: str, stated: str, told: str
+    tmp_path: Path, reading: str, stated: str, expected: str
 ) -> None:
-    with pytest.raises(BadFile, match=told):
+    with pytest.raises(BadFile, match=expected):
         read(tmp_path, STEEL + stated, ROW.replace("20.5", reading), columns=BODY_COLUMN)
 
 

@@ -1,4 +1,4 @@
-"""Runs whose rows as a whole, or single ones, cannot be measurements: refused or left out, told.
+"""Runs whose rows, all or single ones, cannot be measurements: refused, or left out and reported.
 
 A ball of 3 mm touches a sphere of 50 mm from all sides on a machine without errors, so that every
 deviation is known without any fit: zero, and what a test does to it.
@@ -93,9 +93,9 @@ def test_stated_deviations_in_another_unit(tmp_path: Path, factor: float, expect
 def test_deviations_of_another_instrument_are_its_own(tmp_path: Path) -> None:
     """Readings are nominal there, so that they say nothing of what the instrument read."""
     table = rows()
-    told = np.random.default_rng(8).normal(size=COUNT)
-    run = read_run(write(tmp_path, table, {"dev_um": [f"{d:.6f}" for d in told]}))
-    np.testing.assert_allclose(run.deviation, told * UM, atol=1e-3 * UM)
+    found = np.random.default_rng(8).normal(size=COUNT)
+    run = read_run(write(tmp_path, table, {"dev_um": [f"{d:.6f}" for d in found]}))
+    np.testing.assert_allclose(run.deviation, found * UM, atol=1e-3 * UM)
 
 
 def stated() -> dict[str, list]:
@@ -157,7 +157,7 @@ def test_one_wrong_reading_beside_a_stated_deviation_is_left_out(tmp_path: Path)
     )
 
 
-def test_small_disagreement_with_the_readings_is_told(tmp_path: Path) -> None:
+def test_small_disagreement_with_the_readings_is_reported(tmp_path: Path) -> None:
     """Every deviation is stated 10 µm larger than readings give it: ten times its uncertainty."""
     more = {"dev_um": [f"{d / UM + 10.0:.6f}" for d in true_deviation()]}
     (remark,) = read_run(write(tmp_path, rows(), more)).remarks
@@ -201,14 +201,14 @@ def test_a_standard_somewhere_else_is_no_wrong_radius(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("column", "value", "told"),
+    ("column", "value", "expected"),
     [
         (1, -9999.0, "line 12, column X_mm: -9999 cannot be, expected a reading within the travel"),
         (4, 250.0, "line 12, deviation computed from the readings: .* mm cannot be, expected some"),
     ],
 )
-def test_a_slip_of_one_row_is_left_out_and_told(
-    tmp_path: Path, column: int, value: float, told: str
+def test_a_slip_of_one_row_is_left_out_and_reported(
+    tmp_path: Path, column: int, value: float, expected: str
 ) -> None:
     table = rows()
     table[6, column] = value
@@ -217,7 +217,7 @@ def test_a_slip_of_one_row_is_left_out_and_told(
     assert 12 not in run.line
     (remark,) = run.remarks
     assert remark.endswith("the row is left out")
-    assert re.match(told, remark)
+    assert re.match(expected, remark)
 
 
 def test_slips_in_many_rows_are_no_slips(tmp_path: Path) -> None:
@@ -239,7 +239,7 @@ def test_a_touch_at_the_limit_is_used(tmp_path: Path) -> None:
     assert any("column X_mm" in remark and remark.endswith("used so") for remark in run.remarks)
 
 
-def test_a_clock_that_stands_still_is_told(tmp_path: Path) -> None:
+def test_a_clock_that_stands_still_is_reported(tmp_path: Path) -> None:
     table = rows()
     table[:, 0] = 0.0
     run = read_run(write(tmp_path, table))

@@ -135,12 +135,12 @@ def test_what_is_written_is_read_back(tmp_path: Path) -> None:
         ([ROW.replace(",0.0,0.0,1.0,", ",0.0,0.0,1.0005,")], "normal of length 1.0005"),
     ],
 )
-def test_what_can_be_mended_is_mended_and_told(
+def test_what_can_be_mended_is_mended_and_reported(
     tmp_path: Path, rows: list[str], remark: str
 ) -> None:
     run = read_run(write(tmp_path, rows))
     if "constant" in remark or len(rows) > 1:
-        assert any(remark in told for told in run.remarks), run.remarks
+        assert any(remark in stated for stated in run.remarks), run.remarks
     else:
         assert remark in run.remarks[0]
     assert len(run) >= 1
@@ -232,7 +232,7 @@ def test_a_file_that_was_appended_to_itself_keeps_its_clock(tmp_path: Path) -> N
     assert any("2 rows stand twice; copies are left out" in r for r in run.remarks)
 
 
-def test_a_run_without_any_deviation_is_told(tmp_path: Path) -> None:
+def test_a_run_without_any_deviation_is_reported(tmp_path: Path) -> None:
     run = read_run(write(tmp_path, [ROW + ",0"], columns=COLUMNS + ",dev_um"))
     assert "every deviation is zero: nothing was measured" in run.remarks
 
@@ -259,7 +259,7 @@ def test_a_sensor_of_gaps_is_left_out(tmp_path: Path) -> None:
     assert remark.endswith("T_s_degC has no number in 3 rows; the sensor is left out")
 
 
-def test_a_line_that_nobody_placed_is_said(tmp_path: Path) -> None:
+def test_a_line_without_a_place_is_said(tmp_path: Path) -> None:
     path = write(tmp_path, [ROW])
     machine = path.parent / "machine.toml"
     text = machine.read_text(encoding="utf-8")
@@ -300,8 +300,8 @@ def test_rows_in_another_order_are_the_same_run(tmp_path: Path, order: str) -> N
     assert other.fingerprint == one.fingerprint
     np.testing.assert_array_equal(other.touches.time, one.touches.time)
     np.testing.assert_array_equal(other.touches.temperature["s"], one.touches.temperature["s"])
-    (told,) = [r for r in other.remarks if "time_s goes back" in r]
-    assert "another order" in told
+    (remark,) = [r for r in other.remarks if "time_s goes back" in r]
+    assert "another order" in remark
     assert not any("goes back" in r for r in one.remarks)
 
 
@@ -318,7 +318,7 @@ def test_a_clock_that_began_anew_is_no_other_order(tmp_path: Path) -> None:
     assert run.line.tolist() == list(range(9, 49))
 
 
-def test_a_clock_that_was_set_is_told(tmp_path: Path) -> None:
+def test_a_clock_that_was_set_is_reported(tmp_path: Path) -> None:
     rows = run_of_rows()
     rows[30:] = [
         r.replace(f",{9.0 * k + k % 3},", f",{1.7e9 + 9.0 * k},")

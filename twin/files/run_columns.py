@@ -24,6 +24,7 @@ POINT = ("px_mm", "py_mm", "pz_mm")
 NORMAL = ("nx", "ny", "nz")
 TARGET = ("tx_mm", "ty_mm", "tz_mm")
 RADIUS = "radius_mm"
+PROGRAM = ("program", "touch", "program_line")
 FORCE = ("Fx_N", "Fy_N", "Fz_N")
 
 MAX_GAP_SHARE = 0.5
@@ -317,15 +318,15 @@ def splits(table: CsvTable) -> Labels:
     return np.array(out, dtype="U5")
 
 
-def repeats(table: CsvTable) -> IntArray | None:
-    """Number of the repetition, (N,); None where none is recorded."""
-    if "repeat" not in table:
-        return None
-    numbers = table.numbers("repeat", empty=0.0)
+def counted(table: CsvTable, column: str) -> IntArray:
+    """A column of whole numbers, 0 for empty cells, (N,); empty where there is no such column."""
+    if column not in table:
+        return np.zeros(0, dtype=np.int64)
+    numbers = table.numbers(column, empty=0.0)
     odd = np.flatnonzero(numbers != np.round(numbers))
     if len(odd):
         row = int(odd[0])
-        raise table.bad(row, "repeat", f"{numbers[row]:g}", "a whole number")
+        raise table.bad(row, column, f"{numbers[row]:g}", "a whole number")
     return numbers.astype(np.int64)
 
 

@@ -47,6 +47,7 @@ _OPTIONAL = (
     "dev_um",
     *columns.TARGET,
     columns.RADIUS,
+    *columns.PROGRAM,
 )
 
 
@@ -276,8 +277,11 @@ def _assemble(table: CsvTable, chain: Chain, head: HeadTable, remarks: list[str]
         else computed_deviation(touches),
         u=columns.uncertainties(table, head.u_um),
         split=columns.splits(table),
-        repeat=columns.repeats(table),
+        repeat=columns.counted(table, "repeat") if "repeat" in table else None,
         line=np.array(table.lines),
+        program=np.array(table.text("program") if "program" in table else [""] * n),
+        touch=columns.counted(table, "touch"),
+        program_line=columns.counted(table, "program_line"),
     )
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.files.pose_file import reading_columns
-from matstd.twin.files.run_columns import FORCE, NORMAL, POINT, RADIUS, TARGET
+from matstd.twin.files.run_columns import FORCE, NORMAL, POINT, PROGRAM, RADIUS, TARGET
 from matstd.twin.files.whole import write_whole
 from matstd.twin.frames import Array, fixed_xyz_angles
 from matstd.twin.record import BODY, Instrument, Run, Touches, implied_approach
@@ -145,6 +145,10 @@ def _optional_columns(run: Run, common_u: bool) -> dict[str, list[str]]:
         columns["u_um"] = [f"{v / UM:.12g}" for v in run.u]
     if run.repeat is not None:
         columns["repeat"] = [str(v) for v in run.repeat]
-    if np.any(run.split != ""):
-        columns["split"] = list(run.split)
+    recorded = {"split": run.split, **{name: getattr(run, name) for name in PROGRAM}}
+    columns |= {
+        name: [str(v) for v in values]
+        for name, values in recorded.items()
+        if np.any(values.astype(bool))
+    }
     return columns

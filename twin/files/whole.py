@@ -7,9 +7,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 from matstd.twin.errors import DesignError
 from matstd.twin.files.lock import in_turn
+from matstd.twin.text import json_text
 
 NOT_WRITABLE = (
     errno.ENOSPC,
@@ -120,6 +122,11 @@ def write_whole(path: str | Path, text: str, newline: str = "\n") -> None:
     """
     with written_whole(path) as part:
         part.write_bytes(text.replace("\n", newline).encode("utf-8"))
+
+
+def write_json(path: str | Path, table: Mapping[str, Any], sort_keys: bool = False) -> None:
+    """Write a table as JSON (`json_text`) whole or not at all."""
+    write_whole(path, json_text(table, sort_keys))
 
 
 def write_into(

@@ -3,6 +3,7 @@
 import hashlib
 from dataclasses import dataclass, field, replace
 from datetime import datetime
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,9 @@ from matstd.twin.display import Displayed
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array
 from matstd.twin.record.touches import IntArray, Labels, Touches
+
+PER_ROW = ("deviation", "u", "split", "repeat", "line", "program", "touch", "program_line")
+"""Fields of `Run` with a value for each touch."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -24,6 +28,9 @@ class Run(Displayed):
         split: "train", "test" or "" for each row, (N,).
         repeat: Number of the repetition, equal points share everything else; None if not recorded.
         line: Line of each row in its file, for messages, (N,).
+        program: Name of the probing program that made each touch, "" where not recorded, (N,).
+        touch: Its number in that program, 0 where not recorded, (N,).
+        program_line: Line of that program on which the touch begins, 0 where not recorded, (N,).
         remarks: What the reader noticed and did about it, one clear line each.
         date: When it began; None where it is not recorded.
         standard: Name, serial number and digest of the probed standard; "" where not recorded.
@@ -38,14 +45,23 @@ class Run(Displayed):
     remarks: tuple[str, ...] = ()
     date: datetime | None = None
     standard: str = ""
+    program: Labels = field(default_factory=lambda: np.zeros(0, dtype="U1"))
+    touch: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    program_line: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
 
     def __post_init__(self) -> None:
         n = len(self.touches)
-        if len(self.split) == 0 and n:
-            object.__setattr__(self, "split", np.full(n, "", dtype="U5"))
-        if len(self.line) == 0 and n:
-            object.__setattr__(self, "line", np.arange(1, n + 1))
-        for name in ("deviation", "u", "split", "repeat", "line"):
+        unstated = {
+            "split": np.full(n, "", dtype="U5"),
+            "line": np.arange(1, n + 1),
+            "program": np.full(n, "", dtype="U1"),
+            "touch": np.zeros(n, dtype=np.int64),
+            "program_line": np.zeros(n, dtype=np.int64),
+        }
+        for name, default in unstated.items():
+            if len(getattr(self, name)) == 0:
+                object.__setattr__(self, name, default)
+        for name in PER_ROW:
             value = getattr(self, name)
             if value is not None and len(value) != n:
                 raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n} as the touches")
@@ -79,12 +95,6 @@ class Run(Displayed):
 
     def __getitem__(self, rows: NDArray[np.bool_] | IntArray | slice) -> "Run":
         """The measurements of some rows, as a new record."""
-        return replace(
-            self,
-            touches=self.touches[rows],
-            deviation=self.deviation[rows],
-            u=self.u[rows],
-            split=self.split[rows],
-            repeat=None if self.repeat is None else self.repeat[rows],
-            line=self.line[rows],
-        )
+        own = {name: getattr(self, name) for name in PER_ROW}
+        picked: dict[str, Any] = {name: None if v is None else v[rows] for name, v in own.items()}
+        return replace(self, touches=self.touches[rows], **picked)

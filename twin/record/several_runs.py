@@ -9,7 +9,7 @@ import numpy as np
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
 from matstd.twin.record.copies import without_copies
-from matstd.twin.record.run import Run
+from matstd.twin.record.run import PER_ROW, Run
 from matstd.twin.record.touches import MAPS, PER_TOUCH, Setup, Touches
 
 PAUSE = 3600.0
@@ -53,13 +53,10 @@ def joined(runs: Mapping[str, Run]) -> Run:
         for t, k, s in zip(every, first, starts, strict=True)
     ]
     touches = stacked(moved, tuple(setups))
+    stamps = {part.standard for part in parts}
     return Run(
         touches=touches,
-        deviation=np.concatenate([part.deviation for part in parts]),
-        u=np.concatenate([part.u for part in parts]),
-        split=np.concatenate([part.split for part in parts]),
-        repeat=_all_of([part.repeat for part in parts]),
-        line=np.concatenate([part.line for part in parts]),
+        **{name: _all_of([getattr(part, name) for part in parts]) for name in PER_ROW},
         remarks=(
             *_dropped(names, every),
             *(
@@ -68,6 +65,7 @@ def joined(runs: Mapping[str, Run]) -> Run:
                 for text in p.remarks
             ),
         ),
+        standard=stamps.pop() if len(stamps) == 1 else "",
     )
 
 

@@ -72,7 +72,7 @@ def _card(kind: Kind) -> Table:
 
 
 def _story(cls: type, with_head: bool) -> str:
-    """What the docstring of a class of effects tells a user: all but its attributes, reflowed.
+    """What the docstring of a class of effects says to a user: all but its attributes, reflowed.
 
     Its first line stands beside the name of the kind already where the kind has one class.
     """

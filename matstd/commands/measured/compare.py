@@ -34,7 +34,9 @@ def run(args: argparse.Namespace) -> int:
     register_effects(*args.effects)
     model, pitch, printed_by = starting_model(args), pitches(args), asked_printer(args)
     with results_folder(args.output, args.force, Comparison.sometimes) as folder, stages() as show:
-        found = compare(args.run_file, model, pitch=pitch, progress=turns(show))
+        found = compare(
+            args.run_file, model, pitch=pitch, standard=args.standard, progress=turns(show)
+        )
         arm = found.write(folder)
         if not args.no_report:
             show("report", 0, 1)

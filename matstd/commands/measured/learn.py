@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.options import add_measured, asked_printer, pitches, starting_model
+from matstd.options import add_measured, add_several, asked_printer, pitches, starting_model
 
 if TYPE_CHECKING:
     from matstd.api.learning import LearntLaws
@@ -24,14 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="RUN2.csv",
         help="another run of the machine, in which the law is tried; nothing is learnt from it",
     )
-    parser.add_argument(
-        "--add",
-        metavar="EFFECT",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="effects that are in the model besides",
-    )
+    add_several(parser, "--add", "EFFECT", "effects that are in the model besides")
     add_measured(parser, "model in which a law is missing (default: the ordinary geometric model)")
 
 
@@ -47,7 +40,14 @@ def run(args: argparse.Namespace) -> int:
     model, pitch, printed_by = starting_model(args), pitches(args), asked_printer(args)
     with results_folder(args.output, args.force, LearntLaws.sometimes) as folder, stages() as show:
         show("law", 0, 1)
-        found = learn(args.run_files, model, add=args.add, second=args.second_run, pitch=pitch)
+        found = learn(
+            args.run_files,
+            model,
+            add=args.add,
+            second=args.second_run,
+            pitch=pitch,
+            standard=args.standard,
+        )
         found.write(folder)
         if not args.no_report:
             show("report", 0, 1)

@@ -1,4 +1,4 @@
-"""`matstd replan`: programs planned again for where the standard stands, as a log tells it."""
+"""`matstd replan`: programs planned again for the standard's actual position, from a log."""
 
 from __future__ import annotations
 

@@ -82,10 +82,10 @@ def run(args: argparse.Namespace) -> int:
             scheduler=args.scheduler,
             pdf=bool(args.pdf),
         )
-    say_each(made.remarks)
     built, *others = design_lines(made.placement, brief.ranges)
     say(built, style="bold")
     say_each(others)
+    say_each(made.remarks)
     # a pose is visited twice
     dropped = dict.fromkeys(str(r) for one in made.stations for r in one.plan.refused)
     say_each(f"touch dropped: {refusal}" for refusal in dropped)

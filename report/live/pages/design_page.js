@@ -3,15 +3,16 @@
 import { axisOrder } from "../parts/axis_order.js";
 import { pageData } from "../parts/data.js";
 import { element, slider, toggle } from "../parts/elements.js";
-import { digits, fixed } from "../parts/numbers.js";
+import { digits, fixed, quantile, rms } from "../parts/numbers.js";
 import { SensitivityList } from "../parts/sensitivity_list.js";
 import { StandardView } from "../parts/standard_view.js";
+import { foldStill } from "../parts/still.js";
 import { themeButton } from "../parts/theme.js";
 import { VolumeCut } from "../parts/volume_cut.js";
 
 const DEG = Math.PI / 180, PACE = 4;  // touches in a second while they are played
 
-const data = pageData(), byId = id => document.getElementById(id);
+const data = await pageData(), byId = id => document.getElementById(id);
 byId("design").hidden = false;
 const standard = new StandardView(byId("standard"), data, choose);
 
@@ -128,29 +129,23 @@ function show(rival) {
 // ---- the error field
 
 let cut = null;
-const field = { place: 0, axis: 2, rotary: 0, isAfter: false };
+const field = { place: 0, axis: 2, rotary: 0, isAfter: false, stretch: 1 };
 
 function drawCut() {
-  const { before, after, at: grid } = data.field, size = grid.reduce((n, a) => n * a.length, 1);
+  const { before, after, at: grid } = data.field, size = grid.reduce((n, a) => n * a.length, 3);
   const values = (field.isAfter ? after : before).values.subarray(field.rotary * size,
     (field.rotary + 1) * size);
-  const most = quantile(before.values);
-  const plane = cut.cut(values, field.axis, field.place);
-  cut.show(plane, most);
-  let squares = 0, found = 0;
-  for (const v of values) {
-    if (!Number.isFinite(v)) continue;
-    squares += v * v;
-    found++;
-  }
+  const most = quantile(lengths(before.values), 0.98) || 1;
+  cut.show(cut.cut(values, field.axis, field.place), most, field.stretch);
   byId("of-field").textContent = `${field.isAfter ? "After" : "Before"} identification: `
-    + `${digits(Math.sqrt(squares / Math.max(found, 1)))} µm rms in this volume.`;
+    + `${digits(rms(lengths(values).filter(Number.isFinite)))} µm rms in this volume.`;
   byId("of-colours").replaceChildren("length of the error: 0", element("i"), `${digits(most)} µm`);
 }
 
-function quantile(values) {
-  const sorted = Float64Array.from(values).filter(Number.isFinite).sort();
-  return sorted.length ? sorted[Math.floor(0.98 * (sorted.length - 1))] : 1;
+/** Of vectors, three numbers each. */
+function lengths(vectors) {
+  return Float64Array.from({ length: vectors.length / 3 },
+    (_, i) => Math.hypot(...vectors.subarray(3 * i, 3 * i + 3)));
 }
 
 function makeCut() {
@@ -185,7 +180,13 @@ function makeCut() {
     drawCut();
   } });
   after.box.id = "after";
-  byId("cuts").append(after, across, ...(words(rotary[0]) ? [turned] : []), place);
+  const stretch = slider({ label: "arrows", low: 0, high: 2, value: 0,
+    words: v => `× ${digits(10 ** v, 2)}`, input: v => {
+      field.stretch = 10 ** v;
+      drawCut();
+    } });
+  stretch.range.id = "stretch";
+  byId("cuts").append(after, across, ...(words(rotary[0]) ? [turned] : []), place, stretch);
   drawCut();
 }
 
@@ -209,6 +210,7 @@ byId("readings").append(...axisOrder(axes).map(k => {
 
 if (data.field) makeCut();
 choose("");
+foldStill();
 themeButton(byId("theme"), () => {
   standard.recolour();
   if (cut) {

@@ -18,7 +18,7 @@ const DEG = Math.PI / 180, UM = 1000;
 const ROWS = 3000;  // positions of a program at which its path is worked out
 const AROUND = 15;  // s before and behind that are drawn of a path that is not drawn whole
 
-const data = pageData(), byId = id => document.getElementById(id);
+const data = await pageData(), byId = id => document.getElementById(id);
 const { machine, axes } = data;
 
 const sum = new ErrorSum(machine, data.errors, data.low, data.high);

@@ -22,7 +22,7 @@ export class EffectList {
     const none = switches.length ? null : element("p", { class: "hint",
       text: "The library has no effect that these touches could show." });
     this.place.replaceChildren(...[
-      block("Found", found), this.remains(), block("Cannot be distinguished from it", alike),
+      block(this.data.isPrediction ? "In the model" : "Found", found), this.remains(), block("Cannot be distinguished from it", alike),
       block(found.length ? "Other effects" : "Effects that suit the residual best", others), none,
     ].filter(Boolean));
   }
@@ -73,14 +73,16 @@ export class EffectList {
     row.amount = element("p", { class: "amount" });
     const gain = slider({
       label: "gain", low: 0, high: MOST_GAIN, value: 1, step: 0.01,
-      words: v => (one.gain === null ? "fitted" : `× ${fixed(v, 2)}`),
+      words: v => (one.gain === null && !one.isFixed ? "fitted" : `× ${fixed(v, 2)}`),
       input: v => {
         this.board.pull(one, v);
         this.changed();
       },
     });
     row.free = element("button", {
-      type: "button", text: "fit again", title: "let the run determine the amount again",
+      type: "button", ...(one.isFixed
+        ? { text: "as predicted", title: "the amount of the model again" }
+        : { text: "fit again", title: "let the run determine the amount again" }),
       onclick: () => {
         this.board.pull(one, null);
         this.changed();
@@ -119,12 +121,17 @@ export class EffectList {
   amount(one, now) {
     const { board, data } = this, explained = rms(board.contribution(one, now));
     const share = `moves the residuals by ${digits(explained, 2)} ${data.unit} rms`;
-    if (one.size && now.isAsFound) return capital(`${one.size}; ${share}`);
+    if (one.isFixed) {
+      const gain = one.gain === null ? "" : `× ${fixed(one.gain, 2)} of `;
+      return capital(`${gain}what the model predicts; ${share}`);
+    }
+    if (one.size && now.isAsFound) return capital(`${one.size.replace(/-(?=\d)/g, "−")}; ${share}`);
     if (one.amounts.length > 2) return capital(share);
-    const place = now.own.find(([other]) => other === one)?.[1];
+    const amounts = board.amounts(one, now), place = now.own.find(([other]) => other === one)?.[1];
     const parts = one.amounts.map(({ name, unit, sd }, k) => {
-      if (one.gain !== null) return `${name} ${digits(one.gain * one.pinned[k] * sd)} ${unit} (set)`;
-      const u = now.spread[place + k] * sd, value = now.estimate[place + k] * sd;
+      const value = amounts[k] * sd;
+      if (one.gain !== null) return `${name} ${digits(value)} ${unit} (set)`;
+      const u = now.spread[place + k] * sd;
       const places = Math.max(0, 1 - Math.floor(Math.log10(u || 1)));
       return `${name} ${fixed(value, places)} ± ${fixed(u, places)} ${unit}`;
     });

@@ -5,12 +5,13 @@ import { EffectBoard } from "../parts/effect_board.js";
 import { element } from "../parts/elements.js";
 import { showLadder } from "../parts/ladder.js";
 import { fixed, quantile } from "../parts/numbers.js";
+import { foldStill } from "../parts/still.js";
 import { bytes, colour, signedColours, themeButton } from "../parts/theme.js";
 import { EffectList } from "./run_effects.js";
 import { Residuals } from "./run_residuals.js";
 import { Touched } from "./run_touched.js";
 
-const data = pageData(), board = new EffectBoard(data);
+const data = await pageData(), board = new EffectBoard(data);
 const place = document.getElementById("live");
 const words = v => fixed(v, v < 10 ? 3 : 2);
 
@@ -29,7 +30,8 @@ function laidOut() {
   const theme = element("button", { type: "button", id: "theme" });
   const again = element("button", {
     type: "button", id: "again", title: "every effect as the command left it",
-    text: board.switches.some(s => s.isFound) ? "as found" : "all off",
+    text: !board.switches.some(s => s.isFound) ? "all off"
+      : data.isPrediction ? "as predicted" : "as found",
     onclick: () => { board.reset(); effects.refresh(); changed(); },
   });
   const figures = element("p", { class: "figures", role: "status", "aria-live": "polite" });
@@ -37,8 +39,10 @@ function laidOut() {
     element("div", { class: "panel effects" },
       element("div", { class: "bar-of-buttons" },
         element("h2", { text: "Effects" }), again, theme),
-      element("p", { class: "hint", text: "A switch fits the model again, geometry and "
-        + "set-ups with it. In grey: the held-out error that the switch leads to." }),
+      element("p", { class: "hint", text: `${data.isPrediction
+        ? "The geometry is predicted by the model; a switch fits the set-ups again."
+        : "A switch fits the model again, geometry and set-ups with it."} In grey: the held-out `
+        + "error that the switch leads to." }),
       element("div", { id: "effect-list" })),
     element("div", { class: "panel touched" }),
     element("div", { class: "panel residuals" }),
@@ -75,13 +79,16 @@ function painted() {
 
 function ladder() {
   const { now } = shown, unit = data.unit;
-  const rungs = [{ name: "starting model", ...start }], on = board.on;
+  const on = board.on, hasOwn = board.switches.some(s => s.isFound);
+  const first = !data.isPrediction ? "starting model" : hasOwn ? "model without its effects"
+    : "the model";
+  const rungs = [{ name: first, ...start }];
   for (let k = 1; k <= on.length; k++) {
     const last = k === on.length;
     rungs.push({ name: `+ ${on[k - 1].title}`, ...(last ? now : board.errors(on.slice(0, k))) });
   }
   rungs[rungs.length - 1].isNow = true;
-  if (!now.isAsFound) rungs.push({ name: "as found", ...board.asFound() });
+  if (hasOwn && !now.isAsFound) rungs.push({ name: data.isPrediction ? "as predicted" : "as found", ...board.asFound() });
   const most = 1.05 * Math.max(...rungs.map(r => Math.max(r.heldOut, r.fitted)), data.noise);
   showLadder(parts.ladder, { rungs, noise: data.noise, most, words, unit });
   const pinned = on.some(s => s.gain !== null);
@@ -111,6 +118,7 @@ function choose(rows) {
 }
 
 place.hidden = false;
+place.classList.toggle("placeless", !data.touches.isSpread);  // readings at one place: no picture
 sized();
 addEventListener("resize", sized);
 const parts = laidOut();
@@ -121,10 +129,6 @@ const residuals = new Residuals(place, board, { mark, choose });
 effects.refresh();
 changed();
 themeButton(parts.theme, () => { touched.recolour(); painted(); });
-for (const still of document.querySelectorAll("details.still")) still.open = false;
+foldStill();
 addEventListener("keydown", e => { if (e.key === "Escape") choose(null); });
-addEventListener("beforeprint", () => {
-  for (const still of document.querySelectorAll("details.still")) still.open = true;
-});
-place.dataset.isReady = "true";
 window.livePage = { board, data, shown, changed, choose, mark, touched, residuals, effects };

@@ -4,6 +4,7 @@ import { Bars } from "../parts/bars.js";
 import { copied, element, table } from "../parts/elements.js";
 import { digits, fixed, quantile } from "../parts/numbers.js";
 import { Scatter } from "../parts/scatter.js";
+import { programmed } from "./run_touched.js";
 
 const MOST_ROWS = 200;  // of the table that are shown; all are copied
 
@@ -58,7 +59,8 @@ export class Residuals {
     const y = seen.map(v => Math.max(-edge, Math.min(edge, v)));
     this.plot.show({ x: this.column.values, y, colours, xRange: this.xRange,
       yRange: [-edge, edge], band: this.law ? 0 : 2 * this.data.noise, curve });
-    this.hint.textContent = `drag to choose touches, click to choose none; ${this.law
+    const alone = this.data.touches.isSpread ? "" : "all readings at one place: no picture in space; ";
+    this.hint.textContent = `${alone}drag to choose touches, click to choose none; ${this.law
       ? `${curve ? "line: the law with ± 2 u; " : ""}dots: residuals${
         curve ? " with the law put back" : ""}, over their levers on ${this.law.carrier}`
       : "shaded: ± 2 u of the stated noise; gross errors stand at the edge"}`;
@@ -149,14 +151,15 @@ export class Residuals {
   }
 
   heads() {
-    const { unit, columns } = this.data;
-    return ["line", "feature", "set-up", "pose", `residual in ${unit}`, `u in ${unit}`,
+    const { unit, columns, touches: { programs } } = this.data;
+    return ["line", ...(programs.length ? ["program"] : []), "feature", "set-up", "pose", `residual in ${unit}`, `u in ${unit}`,
       `measured in ${unit}`, ...columns.map(c => c.name)];
   }
 
   rows(rows, residual, now) {
     const { touches: t, columns } = this.data;
-    return rows.map(i => [String(t.line.values[i]), t.features[t.feature.values[i]],
+    return rows.map(i => [String(t.line.values[i]),
+      ...(t.programs.length ? [programmed(t, i)] : []), t.features[t.feature.values[i]],
       t.setups[t.setup.values[i]], String(t.pose.values[i]), fixed(residual[i], 3),
       fixed(t.u.values[i] * now.s, 3), fixed(t.measured.values[i], 3),
       ...columns.map(c => digits(c.values[i], 6))]);

@@ -7,6 +7,7 @@ import { showTriad } from "../parts/triad.js";
 import { View3D, rgb } from "../parts/view3d.js";
 
 const MOST = 2.5;  // of the scale's end, the longest arrow
+const MANY = 5000;  // touches from which they are drawn small and plain
 const ARROW = 0.05;  // length of the arrow of the largest residual, over the size of the scene
 
 export class Touched {
@@ -31,17 +32,17 @@ export class Touched {
   }
 
   made() {
-    const { data } = this, t = data.touches, n = t.count;
-    this.view = new View3D(this.canvas, { camera: { turn: -1.1, tilt: 0.55 } });
+    const { data } = this, t = data.touches, n = t.count, isMany = n > MANY;
+    this.view = new View3D(this.canvas, { camera: { turn: -1.1, tilt: 0.55 }, isSmooth: !isMany });
     this.view.layers = [];
     this.body = data.body && this.view.mesh({ corners: data.body.values });
     this.dots = this.view.points({ positions: t.point.values, colours: new Uint8Array(3 * n),
-      size: n > 5000 ? 4 : 7 });
-    this.arrows = this.view.lines({ positions: new Float32Array(6 * n), size: n > 5000 ? 1 : 2,
+      size: isMany ? 4 : 7 });
+    this.view.fit();
+    this.arrows = this.view.lines({ positions: new Float32Array(6 * n), size: isMany ? 1 : 2,
       colours: new Uint8Array(3 * n) });
     this.circle = this.view.points({ positions: new Float32Array(3), colours: new Uint8Array(3),
       size: 13, isVisible: false, isPickable: false });
-    this.view.fit();
     showTriad(this.view);
     this.recolour();
     this.canvas.addEventListener("pointermove", e => this.over(e));
@@ -133,7 +134,17 @@ export function described(data, i, residual, now) {
   const setup = t.setups.length > 1 ? `, set-up ${t.setups[t.setup.values[i]]}` : "";
   const readings = data.columns.filter(c => / in (mm|°)$/.test(c.name) && c.name.length < 9)
     .map(c => `${c.name.replace(/ in .*/, "")} ${digits(c.values[i], 4)}`).join(" ");
+  const program = programmed(t, i);
   return `touch ${i + 1}${feature ? ` on ${feature}` : ""}, line ${t.line.values[i]}${setup}, pose `
-    + `${t.pose.values[i]}; ${readings}; measured ${signed(t.measured.values[i])}, residual `
+    + `${t.pose.values[i]}${program ? `; ${program}` : ""}; ${readings}; measured ${signed(t.measured.values[i])}, residual `
     + `${signed(residual[i])} ± ${digits(t.u.values[i] * now.s, 2)} ${data.unit}${state}`;
+}
+
+/** `MS_A_1 touch 37, line 412`: where a touch stands in its program; "" where the run has no such. */
+export function programmed(touches, i) {
+  const { programs, program, number, programLine } = touches;
+  const name = programs.length ? programs[program.values[i]] : "";
+  if (!name) return "";
+  const line = programLine.values[i];
+  return `${name}${number.values[i] ? ` touch ${number.values[i]}` : ""}${line ? `, line ${line}` : ""}`;
 }

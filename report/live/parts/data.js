@@ -5,36 +5,41 @@ const KINDS = {
   i2: Int16Array, u2: Uint16Array, i1: Int8Array, u1: Uint8Array,
 };
 
-function bytes(text) {
-  const plain = atob(text), out = new Uint8Array(plain.length);
-  for (let i = 0; i < plain.length; i++) out[i] = plain.charCodeAt(i);
-  return out;
+/** Bytes of an element with base64, inflated. */
+async function inflated(id) {
+  const plain = atob(document.getElementById(id).textContent), own = new Uint8Array(plain.length);
+  for (let i = 0; i < plain.length; i++) own[i] = plain.charCodeAt(i);
+  const stream = new Blob([own]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new Response(stream).arrayBuffer();
 }
 
 /** Doubles of which only the upper bytes were kept. */
 function lengthened(kept, each) {
   const out = new Uint8Array(8 * kept.length / each);
-  for (let i = 0; i < kept.length; i++) out[8 * Math.floor(i / each) + 8 - each + i % each] = kept[i];
+  for (let i = 0, to = 8 - each; i < kept.length; to += 8) {
+    for (let k = 0; k < each; k++) out[to + k] = kept[i++];
+  }
   return new Float64Array(out.buffer);
 }
 
 /** One packed array: { values, shape, unit, name }; whole numbers with a grain become Float32. */
-export function unpacked(packed) {
-  const own = bytes(packed.base64), Kind = KINDS[packed.kind];
-  let values = Kind ? new Kind(own.buffer) : lengthened(own, Number(packed.kind[1]));
+function unpacked(packed, all) {
+  const own = all.slice(packed.from, packed.from + packed.bytes), Kind = KINDS[packed.kind];
+  let values = Kind ? new Kind(own) : lengthened(new Uint8Array(own), Number(packed.kind[1]));
   if (packed.grain !== 1) values = Float32Array.from(values, v => v * packed.grain);
   return { values, shape: packed.shape, unit: packed.unit, name: packed.name };
 }
 
 /** A tree of JSON in which every packed array has become a typed one. */
-export function decoded(tree) {
-  if (Array.isArray(tree)) return tree.map(decoded);
+function decoded(tree, all) {
+  if (Array.isArray(tree)) return tree.map(one => decoded(one, all));
   if (tree === null || typeof tree !== "object") return tree;
-  if (typeof tree.base64 === "string") return unpacked(tree);
-  return Object.fromEntries(Object.entries(tree).map(([key, value]) => [key, decoded(value)]));
+  if (typeof tree.bytes === "number") return unpacked(tree, all);
+  return Object.fromEntries(Object.entries(tree).map(([key, one]) => [key, decoded(one, all)]));
 }
 
-/** The data of this page, from its element of type application/json. */
-export function pageData(id = "live-data") {
-  return decoded(JSON.parse(document.getElementById(id).textContent));
+/** The data of this page. */
+export async function pageData() {
+  const all = await inflated("live-arrays");
+  return decoded(JSON.parse(document.getElementById("live-data").textContent), all);
 }

@@ -2,6 +2,8 @@
 
 import { Solver, cubicWeights } from "./solver.js";
 
+const MOST_KEPT = 200;  // sets of which the errors are kept
+
 export class EffectBoard {
   /** data: of `report/run_view/run_data.py`, decoded. */
   constructor(data) {
@@ -9,6 +11,7 @@ export class EffectBoard {
     this.solver = new Solver(data.reduced);
     this.estimate = data.estimate.values;
     this.known = new Map(data.known.map(k => [k.on.join("\n"), k]));
+    this.kept = new Map();  // errors of sets: steps of a ladder come again after the next switch
     let first = 0;
     this.switches = data.switches.map(one => {
       const made = { ...one, first, at: one.inner ? one.inner.present : 0, gain: null };
@@ -65,17 +68,26 @@ export class EffectBoard {
     last.set(this.estimate.length, 1);
     for (const one of on) {
       const parts = this.mixes(one);
-      if (one.gain === null) {
+      if (one.gain === null && !one.isFixed) {
         own.push([one, columns.length]);
         columns.push(...parts);
       } else {
+        const amounts = this.amounts(one);
         parts.forEach((part, k) => part.forEach(([i, w]) => {
-          last.set(i, (last.get(i) || 0) - one.gain * one.pinned[k] * w);
+          last.set(i, (last.get(i) || 0) - amounts[k] * w);
         }));
       }
     }
     columns.push([...last]);
     return { columns, own };
+  }
+
+  /** Amounts of an effect that is on, in units of the prior; found: of the fit, if they are free. */
+  amounts(one, found = null) {
+    if (one.isFixed) return [one.gain ?? 1];
+    if (one.gain !== null) return one.pinned.map(v => one.gain * v);
+    const place = found.own.find(([other]) => other === one)[1];
+    return found.estimate.slice(place, place + one.amounts.length);
   }
 
   get on() {
@@ -90,6 +102,16 @@ export class EffectBoard {
 
   /** Errors of a set; of sets that were fitted to the touches the figures of that fit. */
   errors(on = this.on) {
+    const state = on.map(one => [one.name, one.value, one.gain, one.gain && [...one.pinned]]);
+    const key = JSON.stringify(state);
+    if (!this.kept.has(key)) {
+      if (this.kept.size > MOST_KEPT) this.kept.clear();
+      this.kept.set(key, this.solved(on));
+    }
+    return this.kept.get(key);
+  }
+
+  solved(on) {
     const { columns, own } = this.columns(on), found = this.solver.errors(columns);
     const known = this.isPlain(on) && this.known.get(on.map(one => one.name).sort().join("\n"));
     if (known) Object.assign(found, { fitted: known.fitted, heldOut: known.heldOut });
@@ -105,11 +127,7 @@ export class EffectBoard {
 
   /** Fixes the amounts of an effect at a multiple of what is fitted now; null: fitted again. */
   pull(one, gain) {
-    if (gain !== null && one.gain === null) {
-      const { own, estimate } = this.errors();
-      const place = own.find(([other]) => other === one)[1];
-      one.pinned = estimate.slice(place, place + one.amounts.length);
-    }
+    if (gain !== null && one.gain === null) one.pinned = this.amounts(one, this.errors());
     one.gain = gain;
   }
 
@@ -124,11 +142,10 @@ export class EffectBoard {
   }
 
   /** What an effect does to the residuals as it is fitted now, geometry refitted. */
-  contribution(one, { own, estimate }) {
-    const weights = new Map(), place = own.find(([other]) => other === one)?.[1];
+  contribution(one, found) {
+    const weights = new Map(), amounts = this.amounts(one, found);
     this.mixes(one).forEach((part, k) => {
-      const amount = one.gain === null ? estimate[place + k] : one.gain * one.pinned[k];
-      part.forEach(([i, w]) => weights.set(i, (weights.get(i) || 0) + amount * w));
+      part.forEach(([i, w]) => weights.set(i, (weights.get(i) || 0) + amounts[k] * w));
     });
     return this.summed(weights, 0);
   }
@@ -146,14 +163,13 @@ export class EffectBoard {
   }
 
   /** Amount of an effect now over the one that was found; 0 where it is off. */
-  share(one, { own, estimate }) {
+  share(one, now) {
     if (!one.isOn) return 0;
-    const found = this.estimate.subarray(one.first, one.first + one.amounts.length);
-    const place = own.find(([other]) => other === one)?.[1];
     let [dot, square] = [0, 0];
-    found.forEach((v, k) => {
-      dot += v * (one.gain === null ? estimate[place + k] : one.gain * one.pinned[k]);
-      square += v * v;
+    this.amounts(one, now).forEach((amount, k) => {
+      const found = this.estimate[one.first + k];
+      dot += found * amount;
+      square += found * found;
     });
     return square ? dot / square : 0;
   }

@@ -54,6 +54,10 @@ void main() {
 precision highp float; in vec3 tint; out vec4 seen; uniform float opacity; uniform highp uint first;
 void main() { seen = vec4(tint, first > 0u ? 1.0 : opacity); }`];
 
+const THIN = [POINTS[0], LINES[1]];
+const MANY = 3000;  // segments from which they are one pixel wide: a renderer without a graphics card
+// takes 20 times longer for a strip each
+
 const NAMES = ["place", "eye", "colour", "sun", "shade", "opacity", "mixed", "first", "size",
   "screen", "lift"];
 
@@ -79,7 +83,8 @@ function built(gl, [vertex, fragment]) {
 export class GlDrawer {
   constructor(gl) {
     this.gl = gl;
-    this.programs = { mesh: built(gl, MESH), points: built(gl, POINTS), lines: built(gl, LINES) };
+    this.programs = { mesh: built(gl, MESH), points: built(gl, POINTS), lines: built(gl, LINES),
+      thin: built(gl, THIN) };
     this.quad = this.buffer(new Float32Array([0, -1, 1, -1, 0, 1, 1, 1]));
     gl.enable(gl.DEPTH_TEST);
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
@@ -135,7 +140,8 @@ export class GlDrawer {
   }
 
   layer(layer, camera, ratio, first) {
-    const { gl } = this, { program, uniforms, at } = this.programs[layer.kind];
+    const { gl } = this, kind = layer.kind === "lines" && layer.count > MANY ? "thin" : layer.kind;
+    const { program, uniforms, at } = this.programs[kind];
     const [wide, high] = [gl.canvas.width, gl.canvas.height];
     gl.useProgram(program);
     for (let k = 0; k < 4; k++) {
@@ -148,7 +154,7 @@ export class GlDrawer {
     gl.uniform1f(uniforms.size, layer.size * ratio);
     gl.uniform1ui(uniforms.first, first);
     gl.uniform1f(uniforms.lift, camera.lift());
-    this[layer.kind](layer, { uniforms, at, camera, wide, high });
+    this[kind](layer, { uniforms, at, camera, wide, high });
     layer.changed.clear();
   }
 
@@ -179,6 +185,14 @@ export class GlDrawer {
     this.attribute(at("b"), segments, { stride: 24, offset: 12, divisor: 1 });
     this.colours(at("c"), layer, 1);
     gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, layer.count);
+  }
+
+  thin(layer, { at }) {
+    const { gl } = this;
+    this.attribute(at("p"), this.sent(layer, "positions", () => layer.positions));
+    const both = this.sent(layer, "colours", () => twice(layer.colours));
+    this.attribute(at("c"), both, { type: gl.UNSIGNED_BYTE });
+    gl.drawArrays(gl.LINES, 0, 2 * layer.count);
   }
 
   colours(place, layer, divisor) {
@@ -229,6 +243,16 @@ export class GlDrawer {
       gl.framebufferRenderbuffer(gl.FRAMEBUFFER, slot, gl.RENDERBUFFER, made);
     }
   }
+}
+
+/** The colour of each segment for both of its ends. */
+function twice(colours) {
+  const out = new Uint8Array(2 * colours.length);
+  for (let i = 0; i < colours.length; i++) {
+    const at = i + 3 * Math.floor(i / 3);
+    out[at] = out[at + 3] = colours[i];
+  }
+  return out;
 }
 
 /** The code nearest to the middle of a square of pixels; points and lines win over bodies. */

@@ -4,7 +4,9 @@ import { OrbitCamera } from "./camera.js";
 import { Painter } from "./painter.js";
 import { GlDrawer } from "./gl_drawer.js";
 
-const MOST = 2000;
+// Directions in which the ends of a scene are looked for: to corners, edges and faces of a cube.
+const WAYS = [-1, 0, 1].flatMap(x => [-1, 0, 1].flatMap(y => [-1, 0, 1].map(z => [x, y, z])))
+  .filter(way => way.some(v => v));
 const IDENTITY = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
 
 /** "#rrggbb" as three shares of 1. */
@@ -37,16 +39,17 @@ export class View3D {
   /**
    * @param canvas Element; it is given a tab stop and keys.
    * @param options camera: options of OrbitCamera; ground: colour behind, "#rrggbb";
-   *   isDrawn: true to do without WebGL (for tests and for machines that have none).
+   *   isSmooth: false for edges in steps, which a renderer without a graphics card draws in half of
+   *   the time; isDrawn: true to do without WebGL (for tests and for machines that have none).
    */
-  constructor(canvas, { camera = {}, ground = "#ffffff", isDrawn = false } = {}) {
+  constructor(canvas, { camera = {}, ground = "#ffffff", isSmooth = true, isDrawn = false } = {}) {
     this.canvas = canvas;
     this.layers = [];
     this.ground = ground;
     this.camera = new OrbitCamera(camera);
     this.afterDraw = () => {};
     this.isWaiting = false;
-    const wanted = { antialias: true, preserveDrawingBuffer: true };
+    const wanted = { antialias: isSmooth, preserveDrawingBuffer: true };
     const gl = isDrawn ? null : canvas.getContext("webgl2", wanted);
     this.drawer = gl ? new GlDrawer(gl) : new Painter(canvas.getContext("2d"));
     this.isGl = Boolean(gl);
@@ -98,13 +101,12 @@ export class View3D {
     this.request();
   }
 
-  /** Looks at all that is there; at most `MOST` points of every layer decide. */
+  /** Looks at all that is there: the ends of every layer in some directions decide. */
   fit() {
     const points = [];
     for (const layer of this.layers) {
       const values = layer.corners || layer.positions, m = layer.place;
-      const step = 3 * Math.ceil(values.length / 3 / MOST);
-      for (let i = 0; i < values.length; i += step) {
+      for (const i of values.length ? ends(values) : []) {
         for (let k = 0; k < 3; k++) {
           points.push(m[k] * values[i] + m[4 + k] * values[i + 1] + m[8 + k] * values[i + 2]
             + m[12 + k]);
@@ -172,4 +174,16 @@ export class View3D {
     const x = 0.5 * canvas.clientWidth * (1 + clip[0] / clip[2]);
     return [x, 0.5 * canvas.clientHeight * (1 - clip[1] / clip[2])];
   }
+}
+
+/** Where the points begin that lie farthest in each direction, every one once. */
+function ends(values) {
+  const far = new Float64Array(WAYS.length).fill(-Infinity), at = new Int32Array(WAYS.length);
+  for (let i = 0; i < values.length; i += 3) {
+    for (let k = 0; k < WAYS.length; k++) {
+      const [x, y, z] = WAYS[k], reach = x * values[i] + y * values[i + 1] + z * values[i + 2];
+      if (reach > far[k]) [far[k], at[k]] = [reach, i];
+    }
+  }
+  return new Set(at);
 }

@@ -1,4 +1,4 @@
-"""What would decide a diagnosis that names nothing: nearest effects, and touches to repeat.
+"""What a residual depends on, and what would decide where nothing is named.
 
 A pattern that no effect of the library describes well still has a nearest one, and a table of
 positions of the axis that it depends on describes whatever repeats over that axis. Noise larger
@@ -10,21 +10,41 @@ from collections.abc import Sequence
 import numpy as np
 
 from matstd.diagnosis.accuracy import Repeatability
+from matstd.diagnosis.answer.steps import named_probability
 from matstd.diagnosis.answer.verdict import Candidate, Dependence, Offer
-from matstd.diagnosis.evidence import ScaledEffect, quiet
+from matstd.diagnosis.evidence import (
+    EffectSet,
+    Grid,
+    Progress,
+    ScaledEffect,
+    quiet,
+    score_all,
+    signatures,
+)
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression import GrossErrors, f_probability
-from matstd.diagnosis.search import DiagnosisTask, follows_driver, refined_named, tables_along
+from matstd.diagnosis.regression import GrossErrors
+from matstd.diagnosis.residual import Structure, find_structure
+from matstd.diagnosis.search import (
+    DiagnosisTask,
+    SearchState,
+    follows_driver,
+    most_evident,
+    refined_named,
+    tables_along,
+    unrecorded,
+)
 from matstd.twin.library import parse_effect
 from matstd.twin.record import IntArray
+
+MAX_DEPENDENCES = 2
+"""Most patterns that `depends_on` reports, one after the other."""
 
 MAX_TRIED = 6
 """Library effects, the best ones by themselves, that are tried beside what was found."""
 
 MAX_NAMED = 3
 """Effects that are named."""
-
 
 MAX_REPEATED = 6
 """Touches to repeat: three times each they give twelve degrees of freedom."""
@@ -64,14 +84,6 @@ def nearest(
     return tuple((likely or [o for o in offers if o.effect in certain])[:MAX_NAMED])
 
 
-def named_probability(before: Fit, after: Fit) -> float:
-    """Probability by chance of the fall that a named effect brings: no scan is paid for."""
-    k = max(after.solution.effective_parameters - before.solution.effective_parameters, 0.5)
-    scale = (before.noise.factor / after.noise.factor) ** 2
-    drop = before.solution.objective * scale - after.solution.objective
-    return float(f_probability(drop, k, after.solution.objective, after.solution.dof))
-
-
 def to_repeat(fit: Fit, repeats: Repeatability) -> IntArray:
     """Rows to repeat where the noise would have to be doubtfully large; empty where it need not.
 
@@ -89,3 +101,51 @@ def to_repeat(fit: Fit, repeats: Repeatability) -> IntArray:
     first = np.sort(np.unique(places, axis=0, return_index=True)[1])
     rows = [*worst[first], *np.delete(worst, first)]
     return np.array([row for row in rows if fit.used[row]][:MAX_REPEATED], dtype=np.int64)
+
+
+def structures(final: SearchState, progress: Progress) -> tuple[Structure, ...]:
+    """What the residual varies with at the start, each pattern freed of those before."""
+    complement = final.smooth.complement
+    out: list[Structure] = []
+    A = np.zeros((len(complement.residual), 0))
+    found: Sequence[Structure] = final.at_start
+    while found:
+        if not any(s.columns is not None for s in found):
+            return (*out, found[0])
+        best = most_evident(found)
+        out.append(best)
+        if len(out) == MAX_DEPENDENCES or best.columns is None:
+            break
+        A = np.hstack([A, best.columns])
+        found = find_structure(EffectSet(complement, A), progress, final.smooth)
+    return tuple(out)
+
+
+def dependences(found: Sequence[Structure]) -> tuple[Dependence, ...]:
+    """Variables of some structures, each once, with the smallest probability."""
+    out: dict[str, Dependence] = {}
+    for structure in found:
+        for variable in structure.variables:
+            known = out.get(variable)
+            if known is None or structure.p_value < known.p_value:
+                out[variable] = Dependence(variable, structure.p_value, structure)
+    return tuple(out.values())
+
+
+def odds_against_drift(state: SearchState) -> dict[str, float]:
+    """Log odds for every effect that follows a driver against one that was not recorded, by name.
+
+    The most likely law of such a driver stands in its place, with any smooth course in time.
+    """
+    complement, members = state.pool.complement, state.chosen.members
+    led = [m for m in members if follows_driver(m.effect)]
+    rivals = unrecorded(complement.touches) if led else []
+    if not rivals:
+        return {}
+    drifts = signatures(complement, [Grid(one, (one,), 1) for one in rivals], 1)
+    out = {}
+    for member in led:
+        others = state.search.evaluate(state.chosen.others(member)).effects
+        best = float(score_all(others, drifts).evidence.max())
+        out[member.effect.name] = state.chosen.effects.evidence - best
+    return out

@@ -1,0 +1,108 @@
+"""Balls alone: those that identify best, and further balls between them that prove.
+
+A touch on a ball that identifies shares the calibration of that ball with the model. Balls that
+prove are of their own, as far from all others as the base allows: they show what the machine does
+between the balls that its model rests on.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from matstd.artefact.body import DatumSphere, Standard, check
+from matstd.artefact.brief import PlacementOptions
+from matstd.artefact.layout import Blank, balls_fit, holes_on
+from matstd.artefact.place.body_choice import assembled
+from matstd.artefact.place.identifying import Base, Identifying
+from matstd.artefact.reach import Requests
+from matstd.artefact.worth import (
+    BallPlaces,
+    Criterion,
+    chosen_touches_on,
+    repaired_touches,
+    touches_to_choose_from,
+)
+from matstd.twin.errors import NotBuildable, NotReachable
+from matstd.twin.frames import Array
+
+CANDIDATES_PER_TOUCH = 4
+"""Touches on the balls that prove from which each is chosen."""
+
+
+def balls_alone(
+    criterion: Criterion, places: BallPlaces, bases: Sequence[Base], options: PlacementOptions
+) -> Identifying:
+    """The best balls with as many that prove as faces are wanted, or as many as fit.
+
+    Raises:
+        NotBuildable: No ball that proves fits beside those that identify.
+    """
+    refused: list[str] = []
+    for base in bases:
+        beside = _most_apart(base.balls, places, options.patches)
+        for count in range(len(beside), 0, -1):
+            try:
+                made = _standing([*base.balls, *beside[:count]], places.blank, options)
+                return _identifying(criterion, made, base, options)
+            except (NotBuildable, NotReachable) as error:
+                refused.append(str(error))
+    why = refused[-1] if refused else "no place is left"
+    raise NotBuildable(f"no balls that prove beside those that identify: {why}")
+
+
+def proving_on_balls(
+    criterion: Criterion, standard: Standard, poses: Array, count: int
+) -> Requests:
+    """Possible touches on the balls that prove, at some table poses.
+
+    Raises:
+        NotReachable: Fewer than `count` can be made.
+    """
+    balls = tuple(ball for ball in standard.spheres if ball.proves)
+    wanted = CANDIDATES_PER_TOUCH * count
+    tried = touches_to_choose_from(criterion.reach, standard, balls, poses, wanted)
+    if len(tried) < count:
+        raise NotReachable(
+            f"{len(tried)} touches can be made on the balls that prove, {count} are wanted"
+        )
+    return tried
+
+
+def _standing(balls: list[DatumSphere], blank: Blank, options: PlacementOptions) -> Standard:
+    """A standard of balls, with its screws.
+
+    Raises:
+        NotBuildable: No room for the screws, or a limit that is violated.
+    """
+    made = assembled(blank, options.name, options.serial, [], balls, holes_on(blank, balls))
+    check(made, blank.limits)
+    return made
+
+
+def _most_apart(balls: Sequence[DatumSphere], places: BallPlaces, count: int) -> list[DatumSphere]:
+    """Candidate balls that can be touched, each as far as possible from all before it."""
+    there = [*balls, *(places.balls[k] for k in np.unique(places.group))]
+    centre, fits = np.stack([ball.centre for ball in there]), balls_fit(there, places.blank)
+    chosen = list(range(len(balls)))
+    for _ in range(count):
+        apart = np.linalg.norm(centre[:, None] - centre[chosen], axis=-1).min(axis=1)
+        apart[~fits[:, chosen].all(axis=1)] = -np.inf
+        apart[chosen] = -np.inf
+        best = int(np.argmax(apart))
+        if not np.isfinite(apart[best]):
+            break
+        chosen.append(best)
+    return [replace(there[k], proves=True) for k in chosen[len(balls) :]]
+
+
+def _identifying(
+    criterion: Criterion, made: Standard, base: Base, options: PlacementOptions
+) -> Identifying:
+    """The touches of the best balls, as far as the new ones leave them, improved."""
+    choice, own = options.choice, tuple(ball for ball in made.spheres if not ball.proves)
+    here, poses = criterion.on(made), np.unique(base.touches.rotary, axis=0)
+    tried = touches_to_choose_from(criterion.reach, made, own, poses, choice.touches)
+    begin, _ = repaired_touches(here, tried, base.touches, choice)
+    chosen, nearness = chosen_touches_on(here, tried, choice, begin=begin)
+    return Identifying(standard=made, poses=poses, tried=tried, chosen=chosen, nearness=nearness)
