@@ -16,7 +16,7 @@ from matstd.twin.words import listed
 PLAIN = "Bodies are drawn from the chain, not to scale."
 _ASSUMED = (
     "No errors are given. Listed are those that this machine can have, each linear over its travel "
-    "in the size expected of its class; all are switched off at first."
+    "in the size expected of its class; all are switched off at first: switch them on one by one."
 )
 _NAMED = 3
 """Errors that the box at the head names."""
