@@ -4,11 +4,16 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import chdtri
 
-from matstd.diagnosis.evidence import EffectSet, ScaledEffect, Signatures, projected
+from matstd.diagnosis.evidence import (
+    EffectSet,
+    ScaledEffect,
+    Signatures,
+    needed_lengths,
+    projected,
+)
 from matstd.diagnosis.fit import inner_unit
-from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.search import Search
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, inner_values
 from matstd.twin.record import Touches
@@ -57,8 +62,9 @@ def detectable(
 ) -> tuple[Detectable, ...]:
     """Smallest detectable size of every candidate, with the other found effects in the model.
 
-    The non-centrality that passes the corrected threshold in four of five runs, over the squared
-    signature per unit of prior, averaged over the directions of the effect's parameters.
+    The squared length of a signature that the search finds in four of five runs, under this name or
+    under one that does nearly the same, over the squared signature per unit of prior, averaged over
+    the directions of the effect's parameters.
 
     Args:
         touches: Number of touches of the run, where set and pool are an even choice of them.
@@ -70,18 +76,25 @@ def detectable(
         rest = projected(pool.complement, [f for f in found if f is not one])
         own = np.array([v.name == one.effect.name for v in pool.variants], dtype=bool)
         mean[own] = _surviving(EffectSet(pool.complement, rest), pool)[0][own]
-    needed = _needed(pool)
-    scale = share * effects.objective / max(effects.dof, 1.0)
+    middle = np.array([_middle(pool, mean, k) for k in range(len(pool.names))], dtype=np.int64)
+    if not len(middle):
+        return ()
+    beside, dof = effects.whiten(pool.C), max(effects.dof, 1.0)
+    needed = needed_lengths(pool, middle, Search(pool).prior, beside, dof)
+    scale = share * effects.objective / dof
     with np.errstate(divide="ignore"):
-        length = np.sqrt(needed * scale / np.maximum(mean, 1e-300))
-    out = []
-    for index in range(len(pool.names)):
-        own_variants = np.flatnonzero(pool.owner == index)
-        order = own_variants[np.argsort(length[own_variants])]
-        middle = int(order[len(order) // 2])
-        survives = mean[middle] / whole[middle] if whole[middle] > 0.0 else 0.0
-        out.append(_one(pool, middle, float(length[middle]), max(float(survives), 0.0)))
-    return tuple(out)
+        length = np.sqrt(needed * scale / np.maximum(mean[middle], 1e-300))
+    survives = np.maximum(mean[middle] / np.maximum(whole[middle], 1e-300), 0.0)
+    return tuple(
+        _one(pool, int(v), float(one), float(own))
+        for v, one, own in zip(middle, length, survives, strict=True)
+    )
+
+
+def _middle(pool: Signatures, mean: Array, candidate: int) -> int:
+    """The point of the grid of a candidate with the median signature."""
+    own = np.flatnonzero(pool.owner == candidate)
+    return int(own[np.argsort(-mean[own], kind="stable")[len(own) // 2]])
 
 
 def _surviving(effects: EffectSet, pool: Signatures) -> tuple[Array, Array]:
@@ -96,17 +109,6 @@ def _surviving(effects: EffectSet, pool: Signatures) -> tuple[Array, Array]:
     return mean, whole
 
 
-def _needed(pool: Signatures) -> Array:
-    """Non-centrality that every variant needs, (V,)."""
-    k = pool.width.astype(float)
-    threshold = chdtri(k, POLICY.false_alarm / (pool.tries[pool.owner] * pool.tried))
-    # k + L - POLICY.detection_power sqrt(2 k + 4 L) = threshold, a quadratic in sqrt(2 k + 4 L)
-    root = 2.0 * POLICY.detection_power + np.sqrt(
-        4.0 * POLICY.detection_power**2 + 4.0 * threshold - 2.0 * k
-    )
-    return np.asarray((root**2 - 2.0 * k) / 4.0)
-
-
 def _one(pool: Signatures, variant: int, length: float, survives: float) -> Detectable:
     """Smallest size of one candidate at one point of its grid.
 
@@ -114,27 +116,16 @@ def _one(pool: Signatures, variant: int, length: float, survives: float) -> Dete
         length: Of its parameters, in units of their prior standard deviations.
         survives: Share of its signature that the model cannot imitate.
     """
-    effect = pool.variants[variant]
-    first = effect.parameters[0]
-    scanned = tuple(_scans(effect, pool.complement.touches))
-    if not length < MAX_SIZE_RATIO:
-        return Detectable(
-            effect=effect,
-            size=None,
-            unit=first.unit,
-            largest=None,
-            survives=survives,
-            scanned=scanned,
-        )
+    effect, visible = pool.variants[variant], length < MAX_SIZE_RATIO
     C = pool.complement.columns([effect]) * pool.complement.u[:, None]
-    largest = length * float(np.sqrt((C**2).sum(axis=1).max()))
+    first, touch = effect.parameters[0], float(np.sqrt((C**2).sum(axis=1).max()))
     return Detectable(
         effect=effect,
-        size=length * first.sd,
+        size=length * first.sd if visible else None,
         unit=first.unit,
-        largest=largest,
+        largest=length * touch if visible else None,
         survives=survives,
-        scanned=scanned,
+        scanned=tuple(_scans(effect, pool.complement.touches)),
     )
 
 

@@ -5,6 +5,7 @@ of all that the model can imitate, and `EffectSet`, a set of them in the model, 
 its held-out errors and the scores of every further effect. Nothing is refitted.
 """
 
+from matstd.diagnosis.evidence.detection import needed_lengths
 from matstd.diagnosis.evidence.effect_signatures import (
     Grid,
     Progress,
@@ -40,6 +41,7 @@ __all__ = [
     "addition",
     "blocks",
     "log_evidence",
+    "needed_lengths",
     "period_of",
     "projected",
     "quiet",

@@ -15,12 +15,12 @@ from matstd.diagnosis.files.parts_table import parts_table, promise_table, repea
 from matstd.diagnosis.files.trend_table import trend_table
 from matstd.diagnosis.fit import Fit, file_unit
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.residual import Condition, Region, Side
+from matstd.diagnosis.residual import Condition, Region, Side, Wrong
 from matstd.twin.files import reading_columns
 from matstd.twin.numbers import significant
 from matstd.twin.record import Touches
 from matstd.twin.text import csv_text
-from matstd.twin.units import UM
+from matstd.twin.units import UM, URAD
 
 FORMAT = "diagnosis/1"
 COMPARISON = "comparison/1"
@@ -192,10 +192,24 @@ def conditions_text(conditions: Sequence[Condition]) -> str:
     return " and ".join(parts)
 
 
+def _wrong(wrong: Wrong) -> dict[str, Any]:
+    names = ("size_um", "uncertainty_um")
+    if wrong.is_angular:
+        names = ("size_urad", "uncertainty_urad")
+    unit = URAD if wrong.is_angular else UM
+    return {
+        "carrier": wrong.carrier,
+        names[0]: significant(wrong.size / unit),
+        names[1]: significant(wrong.u / unit),
+        "cannot_be_told_from": list(wrong.alike),
+    }
+
+
 def _where(found: Sequence[Region]) -> list[dict[str, Any]]:
     return [
         {
             "region": conditions_text(region.conditions),
+            "error": None if region.wrong is None else _wrong(region.wrong),
             "mean_um": _um(region.mean),
             "mean_u_um": _um(region.u),
             "rms_um": _um(region.rms),

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from matstd.diagnosis.laws.space import MIN_OWN, Space
+from matstd.diagnosis.residual import Bearer, bearers
 from matstd.twin.frames import Array
-from matstd.twin.laws import Carrier, Driver, carrier_of, curve_columns, drivers
-from matstd.twin.machine import Family
+from matstd.twin.laws import Driver, curve_columns, drivers
 
 LENGTHS = (0.03, 0.1, 0.3)
 """Correlation lengths of curves, as shares of the range."""
@@ -31,22 +31,11 @@ SURFACE_LENGTH = 0.2
 DOMAIN_MARGIN = 0.1
 """Share of the range by which the domain of a curve exceeds the values on either side."""
 
-ALIKE = 0.99999
-"""Cosine of carriers that no touch of this run distinguishes."""
-
 FAST_WAVES = 1200
 """Frequencies up to which sines of a reading are scanned, per range and half."""
 
 CURVE_CHARGE = 4.0
 """Log evidence that size and length of a curve cost."""
-
-
-class Bearer(NamedTuple):
-    """A carrier with its columns, and others that do the same at every touch."""
-
-    carrier: Carrier
-    C: Array  # over the uncertainty, rows used, (N, count)
-    alike: tuple[Carrier, ...]
 
 
 class Found(NamedTuple):
@@ -85,35 +74,12 @@ class Field:
 def field_of(space: Space) -> Field:
     """Carriers and variables of the touches of a run."""
     variables = tuple(drivers(space.touches))
+    standard = ("shift", "tilt", "growth") if space.touches.instrument.has_standard else ()
     return Field(
-        bearers=tuple(_bearers(space)),
+        bearers=tuple(bearers(space.touches, space.white, (*standard, "bias"))),
         drivers=variables,
         x={d.name: d.values(space.touches) for d in variables},
     )
-
-
-def _bearers(space: Space) -> list[Bearer]:
-    """Every carrier once; those with equal columns are kept as alike of the first."""
-    chain, touches = space.touches.chain, space.touches
-    names = [s.name for s in chain.symbols if s.family is Family.COMPONENT]
-    if touches.instrument.has_standard:
-        names += ["shift", "tilt", "growth"]
-    names += ["bias"]
-    firsts: list[tuple[Carrier, Array, list[Carrier]]] = []
-    for name in names:
-        carrier = carrier_of(name, chain)
-        C = space.white(carrier.columns(touches))
-        size = np.linalg.norm(C)
-        if size < 1e-12 * np.sqrt(len(C)):
-            continue
-        for _, other, alike in firsts:
-            same = other.shape == C.shape
-            if same and abs(float((other * C).sum())) > ALIKE * size * np.linalg.norm(other):
-                alike.append(carrier)
-                break
-        else:
-            firsts.append((carrier, C, []))
-    return [Bearer(carrier, C, tuple(alike)) for carrier, C, alike in firsts]
 
 
 def singles(space: Space, field: Field) -> list[Found]:

@@ -5,7 +5,14 @@ residual and a `Remark` for everything noteworthy; `partial` is what the run sho
 A new test is a module beside `waves` and `crowds`, called by `structure`.
 """
 
-from matstd.diagnosis.residual.failing_regions import Condition, Region, Side, regions
+from matstd.diagnosis.residual.boxes import Condition, Side
+from matstd.diagnosis.residual.carriers import Bearer, bearers
+from matstd.diagnosis.residual.failing_regions import (
+    Region,
+    Wrong,
+    observed_error,
+    regions,
+)
 from matstd.diagnosis.residual.mean_displacements import has_poses, pose_vectors
 from matstd.diagnosis.residual.partial_residuals import MIN_VIEW, Partial, Seen, partial
 from matstd.diagnosis.residual.pattern_tests import PatternTests
@@ -20,6 +27,7 @@ from matstd.diagnosis.residual.structure import Shape, Structure, find_structure
 
 __all__ = [
     "MIN_VIEW",
+    "Bearer",
     "Condition",
     "Partial",
     "PatternTests",
@@ -29,11 +37,14 @@ __all__ = [
     "Shape",
     "Side",
     "Structure",
+    "Wrong",
+    "bearers",
     "binned",
     "directions",
     "find_structure",
     "groups",
     "has_poses",
+    "observed_error",
     "partial",
     "pose_vectors",
     "rank_variables",

@@ -1,313 +1,315 @@
-"""Regions where a model fails: boxes of a few conditions, honest about chance.
+"""Regions where a model fails, by what carries the error: boxes of a few conditions.
 
-A user who reads "wrong by 8 µm where B > 60 deg" knows where to look. Every condition on one
-variable, and every pair of them, is a box; its worth is the likelihood that a mean (or a scatter)
-of its own gains, less what it costs to choose it among so many. The best box is drawn on one half
-of the table poses and judged on the other, its touches are set aside, and the next is looked for.
+A user who reads "EBY is off by 14 µrad where 20 mm < Y < 120 mm" knows where to look. Every
+component error of every axis (and the standard, and the probe) is supposed wrong by a constant
+within a box of readings. Its column is the Jacobian of the touch times one inside the box, freed of
+what the fitted model imitates, so that an error whose deviation changes sign with the normal, or
+which a free set-up takes up in part, is seen as well as any other. The box with the most evidence
+is reported, put into the model, and the next is looked for.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from enum import Enum
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.special import ndtr
 
+from matstd.diagnosis.evidence import ResidualSpace
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.regression import BoolArray, f_tail
-from matstd.diagnosis.residual.patterns import variables
+from matstd.diagnosis.regression import BoolArray, f_probability, f_tail
+from matstd.diagnosis.residual.boxes import (
+    MAX_SHARE,
+    MIN_TOUCHES,
+    Bounded,
+    Box,
+    Condition,
+    best_box,
+    bounded,
+    rows_in,
+    square_sums,
+    summed,
+)
+from matstd.diagnosis.residual.carriers import Bearer, bearers
+from matstd.diagnosis.residual.partial_residuals import MIN_VIEW
+from matstd.diagnosis.residual.patterns import FULL_BELOW
 from matstd.twin.frames import Array
+from matstd.twin.laws import carrier_of
 from matstd.twin.numbers import rms
+from matstd.twin.record import IntArray
 
-MAX_CONDITIONS = 3
-"""Most conditions that are joined."""
+MIN_OWN = 0.02
+"""Share of the square of a region's column that the model must leave: of a region as wide as the
+travel the model imitates nearly all, and the rest rests on its errors of second order."""
 
-MIN_TOUCHES = 12
-"""Fewest touches of a region in either half of the poses."""
-
-MAX_CUTS = 16
-"""Thresholds that are tried for a variable."""
-
-
-class Side(Enum):
-    """On which side of its bound a condition holds; the values are those of the files."""
-
-    BELOW = "<"
-    FROM = ">="
-    IS = "="
+PARTS = ("shift-x", "shift-y", "shift-z", "bias")
+"""Carriers beside the components of the axes: the standard, and the reading along the normal."""
 
 
-class Condition(NamedTuple):
-    """One condition on a column of the run file: `B_deg >= 60`, `feature = pad4`."""
+class Wrong(NamedTuple):
+    """What is wrong in a region.
 
-    variable: str
-    side: Side
-    bound: float | str
+    Attributes:
+        carrier: A component error, or one of `PARTS`.
+        alike: Others that the touches of the region do not distinguish from it.
+        size: By how much it is wrong, mm or rad.
+        u: Standard uncertainty of the size, from the noise.
+        is_angular: Whether it is an angle.
+    """
+
+    carrier: str
+    alike: tuple[str, ...]
+    size: float
+    u: float
+    is_angular: bool
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Region:
-    """Touches that a model predicts wrongly: on average, or worse than others with both signs.
+    """Touches that a model predicts wrongly: one error is off there, or they scatter more.
 
     Attributes:
-        conditions: All of them hold in it; bounds in the unit of the column, at most one of each
-            side for a column.
+        conditions: All of them hold in it; bounds in the unit of the column, one of each side for
+            a column.
         rows: Touches in it, (N,).
-        mean: Mean residual over those poses that had no say in drawing the region, mm.
-        rms: Root mean square residual over the same poses, mm.
-        p_value: Probability of such a mean, or of a scatter so much larger than that of the other
-            touches, by chance, over the same poses, all regions together.
+        wrong: The error that is off; None where touches scatter more than others.
+        mean: Mean residual of the touches in it, along the normal, mm.
         u: Standard uncertainty of the mean, from the noise, mm.
+        rms: Root mean square residual of the same, mm.
+        p_value: Probability of such an error, or of a scatter so much larger than that of the other
+            touches, by chance, for all regions and carriers that were tried.
     """
 
     conditions: tuple[Condition, ...]
     rows: BoolArray
+    wrong: Wrong | None
     mean: float
+    u: float
     rms: float
     p_value: float
-    u: float
 
 
 def regions(fit: Fit, cured: Fit | None = None, most: int = 6) -> tuple[Region, ...]:
-    """Regions of a run where the mean residual is not zero, what stands out most first.
+    """Regions of a run in which one error is not what the model has, the most evident first.
 
-    Each is without the touches of those before it. Where no mean stands out, since what is wrong
-    has both signs everywhere, regions where the residual is larger than elsewhere.
-
-    Every condition on one column and every pair of them is tried, since a free set-up may leave
-    nothing of a misfit in either column alone; a third is joined where it says more. One half of
-    the table poses draws the regions, the other half judges them, so that a threshold chosen by
-    chance is found out.
+    Each is looked for beside those before it. Where there is none, regions where the residual
+    scatters more than elsewhere.
 
     Args:
         cured: The same with the effects that it lacked. What they explain then draws the regions:
-            so few numbers, that are known not to be chance, need no half of the poses to judge
-            them, and the residuals of all do.
+            so few numbers are known not to be chance.
 
     Reference:
         Friedman and Fisher, Bump hunting in high-dimensional data, Statistics and Computing 9
         (1999) 123-143.
     """
-    known = {k: v for k, v in _explaining(fit).items() if (v != v[0]).any()}
-    draws, judges = _halves(fit) if cured is None else (fit.used, fit.used)
-    offers = _offers(known, draws)
-    if not offers:
-        return ()
-    inside = np.stack([_holds(known[c.variable], c) for c in offers])
-    u = fit.u if cured is None else cured.u
-    z = _even(fit) / u
-    drawing = z if cured is None else (fit.residual - cured.residual) / u
-    squares = z**2 if cured is None else 1.0 + drawing**2
-    for kind, values in ((_BY_MEAN, drawing), (_BY_SIZE, squares)):
-        # a region that the judging half rejects is removed too, so that the search goes on
-        left = fit.used
-        found: list[Region] = []
-        for _ in range(most):
-            box = _best_box(inside, values, draws & left, judges & left, kind)
-            if box is None:
-                break
-            rows = np.all(inside[list(box)], axis=0) & left
-            region = _judged(fit, [offers[i] for i in box], u, (rows, judges & left), kind, most)
-            if region is not None:
-                found.append(region)
-            left = left & ~rows
-        if found:
-            return tuple(found)
-    return ()
+    space = ResidualSpace.of(fit)
+    if len(space.u) > FULL_BELOW:
+        space = space.thinned(FULL_BELOW)
+    known = tuple(bounded(space))
+    drawn = None if cured is None else _explained(space, fit, cured)
+    return tuple(_wrong(fit, space, known, drawn, most)) or tuple(_loud(fit, space, known, most))
 
 
-def _even(fit: Fit) -> Array:
-    """Residuals with the share given back that the fit takes from each row in use, (N,), mm."""
-    out = fit.residual.copy()
-    out[fit.used] /= np.sqrt(np.maximum(1.0 - fit.solution.leverage, 1e-6))
-    return out
+def _explained(space: ResidualSpace, fit: Fit, cured: Fit) -> Array:
+    """What the missing effects explain of a residual, (n + P,), in units of the noise beside them.
+
+    Free of the model as a residual is.
+    """
+    part = (fit.residual - cured.residual)[space.used][:, None] / space.u[:, None]
+    if space.whitener is not None:
+        part = space.whitener((fit.residual - cured.residual)[:, None])
+    return space.project(part)[:, 0] * (fit.noise.factor / cured.noise.factor)
 
 
-def _mean_worth(sums: Array, counts: Array, values: Array) -> Array:
-    """Log likelihood that a mean of its own gains a region."""
-    return 0.5 * sums**2 / np.maximum(counts, 1.0)
-
-
-def _size_worth(sums: Array, counts: Array, values: Array) -> Array:
-    """Log likelihood that a larger variance of its own gains a region; sums are of squares."""
-    count, total = len(values), float(values.sum())
-    others = np.maximum(count - counts, 1.0)
-    here = np.maximum(sums / np.maximum(counts, 1.0), 1e-12)
-    there = np.maximum((total - sums) / others, 1e-12)
-    gained = count * np.log(total / count) - counts * np.log(here) - others * np.log(there)
-    return np.where((here > there) & (count - counts >= MIN_TOUCHES), 0.5 * gained, 0.0)
-
-
-def _mean_chance(z: Array, others: Array) -> float:
-    """Probability of such a mean in noise, either sign."""
-    return 2.0 * float(ndtr(-abs(float(z.sum())) / np.sqrt(len(z))))
-
-
-def _size_chance(z: Array, others: Array) -> float:
-    """Probability of such a variance beside that of the others, F test."""
-    ratio = float(np.mean(z**2) / np.mean(others**2)) if len(others) else 0.0
-    return float(f_tail(ratio, len(z), len(others)))
-
-
-@dataclass(frozen=True, slots=True)
-class _Kind:
-    """How a region stands out.
+class _Constant(NamedTuple):
+    """One carrier, off by a constant in a region.
 
     Attributes:
-        worth: Log likelihood gained, from sums and numbers of touches in boxes and all values.
-        chance: Probability of a region's normalised residuals beside those of the others.
+        column: Of the carrier, all touches, (N,), mm per mm or rad.
+        drawing: What draws the region, (n + P,); None for the residual.
     """
 
-    worth: Callable[[Array, Array, Array], Array]
-    chance: Callable[[Array, Array], float]
+    space: ResidualSpace
+    column: Array
+    drawing: Array | None
+
+    def gains(self, rows: BoolArray, variable: Bounded) -> Array:
+        """As of `Measure`."""
+        space, labels = self.space, np.arange(variable.count)
+        C = _white(space, (rows * self.column)[:, None] * (variable.bins[:, None] == labels))
+        U = space.Q[: len(C)].T @ C
+        whole = C.T @ C
+        along = C.T @ (space.residual if self.drawing is None else self.drawing)[: len(C)]
+        # sums over the square of bins i to k, from a table of sums
+        own = square_sums(whole - U.T @ U)
+        enough = summed(np.bincount(variable.bins[space.used & rows], minlength=variable.count))
+        sound = (
+            (enough >= MIN_TOUCHES)
+            & (enough <= MAX_SHARE * len(space.u))
+            & (own > MIN_OWN * square_sums(whole))
+        )
+        sound &= variable.is_offered
+        drop = np.where(sound, summed(along) ** 2 / np.where(sound, own, 1.0), 0.0)
+        return _gain(space, drop) if self.drawing is None else 0.5 * drop
 
 
-_BY_MEAN = _Kind(_mean_worth, _mean_chance)
-_BY_SIZE = _Kind(_size_worth, _size_chance)
+def _white(space: ResidualSpace, columns: Array) -> Array:
+    """Columns of all touches (N, K) over the noise, rows in use, (n, K)."""
+    if space.whitener is not None:
+        return space.whitener(columns)
+    return np.asarray(columns[space.used] / space.u[:, None])
 
 
-def _judged(
+def _gain(space: ResidualSpace, drop: Array) -> Array:
+    """Log likelihood gained by a fall of the squared residual, the noise free."""
+    r = space.residual
+    whole = float(r @ r)
+    return -0.5 * space.dof * np.log(np.maximum(1.0 - drop / max(whole, 1e-300), 1e-12))
+
+
+def _wrong(
     fit: Fit,
-    conditions: Sequence[Condition],
-    noise: Array,
-    who: tuple[BoolArray, BoolArray],
-    kind: _Kind,
-    count: int,
-) -> Region | None:
-    """A region as those poses see it that had no say in drawing it; None if it may be chance."""
-    rows, judges = who
-    seen, z = rows & judges, _even(fit) / noise
-    p = min(1.0, kind.chance(z[seen], z[judges & ~rows]) * count)
-    if p >= POLICY.false_alarm:
-        return None
-    r = fit.residual[seen]
-    u = float(np.sqrt(np.sum(noise[seen] ** 2)) / len(r))
+    space: ResidualSpace,
+    known: Sequence[Bounded],
+    drawn: Array | None,
+    most: int,
+) -> Iterator[Region]:
+    """Regions in which an error is off by a constant, each beside those before it."""
+    others = PARTS if space.touches.instrument.has_standard else PARTS[-1:]
+    offered = bearers(space.touches, lambda C: _white(space, C), others)
+    columns = [b.carrier.columns(space.touches)[:, 0] for b in offered]
+    for _ in range(most):
+        measures = [_Constant(space, column, drawn) for column in columns]
+        found = best_box(measures, known, len(fit.used))
+        if found is None:
+            return
+        rows = rows_in(known, found.box)
+        inside = [_white(space, (rows * c)[:, None]) for c in columns]
+        c = space.project(inside[found.measure])[:, 0]
+        own, along = float(c @ c), float(c @ space.residual)
+        left = float(space.residual @ space.residual)
+        drop = along**2 / own
+        p = float(f_probability(drop, 1.0, left - drop, space.dof - 1.0))
+        p = min(1.0, p * (found.tried if drawn is None else most))
+        if p >= POLICY.false_alarm or drop < POLICY.material_share * left:
+            return
+        bearer = offered[found.measure]
+        wrong = Wrong(
+            carrier=bearer.carrier.name,
+            alike=_alike(space, offered, inside, found.measure),
+            size=along / own,
+            u=float(np.sqrt((left - drop) / max(space.dof - 1.0, 1.0) / own)),
+            is_angular=bearer.carrier.is_angular,
+        )
+        yield _region(fit, known, found.box, wrong, p)
+        direction = c / np.sqrt(own)
+        if drawn is not None:
+            drawn = drawn - direction * (direction @ drawn)
+        space = replace(
+            space,
+            Q=np.column_stack([space.Q, direction]),
+            residual=space.residual - direction * (direction @ space.residual),
+            dof=space.dof - 1.0,
+        )
+
+
+def _alike(
+    space: ResidualSpace, offered: Sequence[Bearer], inside: Sequence[Array], best: int
+) -> tuple[str, ...]:
+    """Carriers that explain a region as well as the best one, within odds of 100 to 1."""
+    drops = []
+    for C in inside:
+        c = space.project(C)[:, 0]
+        own = float(c @ c)
+        ok = own > MIN_OWN * float((C**2).sum())
+        drops.append(float(c @ space.residual) ** 2 / own if ok else 0.0)
+    gains = _gain(space, np.array(drops))
+    near = np.flatnonzero(gains > gains[best] - POLICY.log_odds_alike)
+    order = sorted(near, key=lambda k: (k != best, -gains[k]))
+    names = [b.name for k in order for b in (offered[k].carrier, *offered[k].alike)]
+    return tuple(names[1:])
+
+
+class _Scatter(NamedTuple):
+    """A larger variance in a region.
+
+    Attributes:
+        squares: Of the residual over its own standard deviation, (N,); zero where not in use.
+        used: Touches in use, (N,).
+    """
+
+    squares: Array
+    used: BoolArray
+
+    def gains(self, rows: BoolArray, variable: Bounded) -> Array:
+        """As of `Measure`."""
+        own, k = variable.bins[rows & self.used], variable.count
+        counts = summed(np.bincount(own, minlength=k))
+        sums = summed(np.bincount(own, self.squares[rows & self.used], minlength=k))
+        count, total = float(self.used.sum()), float(self.squares[self.used].sum())
+        others = np.maximum(count - counts, 1.0)
+        here = np.maximum(sums / np.maximum(counts, 1.0), 1e-12)
+        there = np.maximum((total - sums) / others, 1e-12)
+        gained = count * np.log(total / count) - counts * np.log(here) - others * np.log(there)
+        enough = np.minimum(counts, count - counts) >= MIN_TOUCHES
+        return np.where((here > there) & enough & variable.is_offered, 0.5 * gained, 0.0)
+
+
+def _loud(fit: Fit, space: ResidualSpace, known: Sequence[Bounded], most: int) -> Iterator[Region]:
+    """Regions in which touches scatter more than elsewhere, each without those before it."""
+    own = np.sqrt(np.maximum(1.0 - fit.solution.leverage, 1e-6))
+    squares = np.zeros(len(fit.used))
+    squares[fit.used] = (fit.residual[fit.used] / own / fit.u[fit.used]) ** 2
+    left = fit.used.copy()
+    for _ in range(most):
+        if not squares[left].any():
+            return
+        found = best_box([_Scatter(squares, left)], known, len(fit.used))
+        if found is None:
+            return
+        rows = rows_in(known, found.box) & left
+        inside, outside = squares[rows], squares[left & ~rows]
+        ratio = float(inside.mean() / max(outside.mean(), 1e-12))
+        p = min(1.0, float(f_tail(ratio, len(inside), len(outside))) * found.tried)
+        if p >= POLICY.false_alarm:
+            return
+        yield _region(fit, known, found.box, None, p)
+        left &= ~rows
+
+
+def _region(fit: Fit, known: Sequence[Bounded], box: Box, wrong: Wrong | None, p: float) -> Region:
+    """A box as a region."""
+    rows = rows_in(known, box)
+    r = fit.residual[rows & fit.used]
     return Region(
-        conditions=_tightest(conditions),
+        conditions=tuple(c for v in sorted(box) for c in known[v].conditions(*box[v])),
         rows=rows,
+        wrong=wrong,
         mean=float(r.mean()),
+        u=float(np.sqrt(np.sum(fit.u[rows & fit.used] ** 2)) / len(r)),
         rms=rms(r),
         p_value=p,
-        u=u,
     )
 
 
-def _explaining(fit: Fit) -> dict[str, NDArray[Any]]:
-    """Variables and labels that a user can find on the machine, (N,) each.
+def observed_error(fit: Fit, region: Region) -> tuple[IntArray, Array, Array]:
+    """What touches say of the error that is off in a region: its partial residuals.
 
-    Temperatures only where time is not known: they follow it.
+    The residual with the region in the model, divided by the deviation along the normal per unit of
+    the error, plus its size inside.
+
+    Returns:
+        Rows that see it well enough (M,), the error there (M,), mm or rad, and their weights (M,).
     """
-    known: dict[str, NDArray[Any]] = dict(variables(fit.run.touches))
-    if "time_s" in known:
-        known = {k: v for k, v in known.items() if not k.startswith("T_")}
-    t = fit.run.touches
-    setups = np.array([s.name for s in t.setups])[t.setup]
-    return known | {"feature": t.feature, "setup": setups}
-
-
-def _halves(fit: Fit) -> tuple[BoolArray, BoolArray]:
-    """Touches in use of every other table pose, and those of the rest."""
-    t = fit.run.touches
-    label = np.unique(np.column_stack([t.setup, t.pose]), axis=0, return_inverse=True)[1]
-    odd = label.reshape(-1) % 2 == 1
-    if label.max() < 3:  # too few poses: every other touch
-        odd = np.arange(len(t)) % 2 == 1
-    return fit.used & odd, fit.used & ~odd
-
-
-def _offers(known: dict[str, NDArray[Any]], draws: BoolArray) -> list[Condition]:
-    """Every condition on one column that is tried."""
-    out: list[Condition] = []
-    for name, values in known.items():
-        if values.dtype.kind == "U":
-            out += [Condition(name, Side.IS, str(label)) for label in np.unique(values)]
-            continue
-        for cut in _cuts(values[draws]):
-            out += [Condition(name, Side.BELOW, cut), Condition(name, Side.FROM, cut)]
-    return out
-
-
-def _holds(values: NDArray[Any], condition: Condition) -> BoolArray:
-    """Touches that meet a condition, (N,)."""
-    if condition.side is Side.IS:
-        return np.asarray(values == condition.bound)
-    below = values < condition.bound
-    return np.asarray(below if condition.side is Side.BELOW else ~below)
-
-
-def _best_box(
-    inside: BoolArray, values: Array, draws: BoolArray, judges: BoolArray, kind: _Kind
-) -> tuple[int, ...] | None:
-    """Conditions of the region that stands out most, or None if chance could do as well.
-
-    Its worth is the log likelihood gained by what is its own, less the log of the number of regions
-    of as many conditions that were tried.
-
-    Args:
-        inside: Touches that meet each condition, (C, N).
-        values: Of which a region's sum is taken, (N,).
-        draws: Touches that draw, (N,).
-        judges: Touches that judge, (N,).
-    """
-    drawn, judged = inside[:, draws].astype(float), inside[:, judges].astype(float)
-    here = values[draws]
-    if not len(here):
-        return None
-
-    def worth(sums: Array, counts: Array, others: Array) -> Array:
-        enough = (counts >= MIN_TOUCHES) & (others >= MIN_TOUCHES)
-        return np.where(enough, kind.worth(sums, counts, here), 0.0)
-
-    both = worth((drawn * here) @ drawn.T, drawn @ drawn.T, judged @ judged.T)
-    both = both - np.log(len(inside)) * (2.0 - np.eye(len(inside)))
-    i, j = np.unravel_index(int(np.argmax(both)), both.shape)
-    box, best = tuple(dict.fromkeys((int(i), int(j)))), float(both[i, j])
-    while len(box) < MAX_CONDITIONS:
-        part = np.all(drawn[list(box)] > 0.0, axis=0)
-        other = np.all(judged[list(box)] > 0.0, axis=0)
-        sums, counts = drawn[:, part] @ here[part], drawn[:, part].sum(axis=1)
-        more = worth(sums, counts, judged[:, other].sum(axis=1))
-        gained = more - np.log(len(inside)) * (len(box) + 1.0)
-        k = int(np.argmax(gained))
-        if gained[k] <= best:
-            break
-        box, best = (*box, k), float(gained[k])
-    return box if best > 0.0 else None
-
-
-def _cuts(values: Array) -> list[float]:
-    """Round thresholds between the quantiles of some values."""
-    unique = np.unique(values)
-    if len(unique) < 2:
-        return []
-    at = np.unique(np.linspace(0, len(unique) - 2, MAX_CUTS).astype(int))
-    return [_round_between(float(unique[i]), float(unique[i + 1])) for i in at]
-
-
-def _round_between(low: float, high: float) -> float:
-    """The number with the fewest digits in (low, high].
-
-    Example:
-        >>> _round_between(2391.7, 2405.1)
-        2400.0
-    """
-    middle = 0.5 * (low + high)
-    for digits in range(-6, 12):
-        rounded = round(middle, digits)
-        if low < rounded <= high:
-            return float(rounded) + 0.0  # no negative zero
-    return high
-
-
-def _tightest(conditions: Sequence[Condition]) -> tuple[Condition, ...]:
-    """Conditions of which none follows from another, column by column, lower bounds first."""
-    out = []
-    for name in dict.fromkeys(c.variable for c in conditions):
-        own = [c for c in conditions if c.variable == name]
-        for side, tightest in ((Side.IS, min), (Side.FROM, max), (Side.BELOW, min)):
-            bounds = [c.bound for c in own if c.side is side]
-            out += [Condition(name, side, tightest(bounds))] if bounds else []
-    return tuple(out)
+    assert region.wrong is not None
+    wrong, touches = region.wrong, fit.run.touches
+    space = ResidualSpace.of(fit)
+    lever = carrier_of(wrong.carrier, touches.chain).columns(touches)[:, 0]
+    own = space.project(_white(space, (region.rows * lever)[:, None]))[: len(space.u), 0]
+    rows = np.flatnonzero(space.used)
+    left = (space.residual[: len(rows)] - wrong.size * own) * space.u
+    seen = np.abs(lever[rows]) >= MIN_VIEW * float(np.quantile(np.abs(lever[rows]), 0.99))
+    rows, left = rows[seen], left[seen]
+    values = left / lever[rows] + wrong.size * region.rows[rows]
+    return rows, values, (lever[rows] / fit.run.u[rows]) ** 2

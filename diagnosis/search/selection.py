@@ -123,7 +123,7 @@ class Search:
         key = tuple(sorted(m.key for m in chosen.members))
         if key not in self._known:
             scores = score_all(chosen.effects, self.pool, self._inside(chosen))
-            scores = replace(scores, evidence=scores.evidence + self._prior + chosen.prior)
+            scores = replace(scores, evidence=scores.evidence + self.prior + chosen.prior)
             # a drift that would not stand must not hide a law that does
             chance = self._is_unrecorded & (scores.p * self.pool.tried >= POLICY.false_alarm)
             order = np.argsort(-np.where(chance, -np.inf, scores.evidence), kind="stable")
@@ -168,7 +168,7 @@ class Search:
         return np.array([is_unrecorded(v) for v in self.pool.variants], dtype=bool)
 
     @cached_property
-    def _prior(self) -> Array:
+    def prior(self) -> Array:
         """Log prior of every variant, (V,)."""
         pool = self.pool
         _, first = np.unique(pool.owner, return_index=True)

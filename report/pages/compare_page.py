@@ -77,7 +77,7 @@ def write_compare_page(
         key=_key(found),
         sections=[
             _opening(found, reported or {}),
-            region_section(found.where, "Where the model fails"),
+            region_section(found.fit, found.where, "Where the model fails"),
             Section(pictures=on_standard(found.run.touches, ("measured − predicted", found.fit))),
             *geometry_sections(found.run.touches, found.geometry),
             *_patterns(found, title, rng),

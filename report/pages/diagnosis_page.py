@@ -229,7 +229,7 @@ def _unexplained(result: Diagnosis, rng: np.random.Generator) -> list[Section]:
     return [
         dependence_section(result, "Unexplained residual"),
         Section(pictures=pattern_pictures(result.fit, result.left, rng)),
-        region_section(result.where),
+        region_section(result.fit, result.where),
     ]
 
 
@@ -238,7 +238,7 @@ def _residuals(result: Diagnosis) -> Sequence[Section]:
     title = "Where the starting model fails"
     out = [Section(title)]
     if not is_open(result):
-        out = [dependence_section(result, title), region_section(result.where)]
+        out = [dependence_section(result, title), region_section(result.start, result.where)]
     out += residual_sections("before", result.start)
     if len(result.steps) > 1:
         out += [Section("Residual of the final model"), *residual_sections("after", result.fit)]

@@ -8,16 +8,17 @@ from matstd.diagnosis.answer import Diagnosis, GroupResidual
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.residual import Region, Structure, has_poses, rank_variables
 from matstd.report.layout import Picture, Section, Table
-from matstd.report.numbers import capital, digits, p_value, plural, signed, span
+from matstd.report.numbers import capital, digits, p_value, plural, span
 from matstd.report.plots import (
     draw_normal_plot,
     draw_on_standard,
     draw_over_variables,
     draw_pattern,
     draw_pose_arrows,
+    draw_region,
     is_spread,
 )
-from matstd.report.words import region_words, structure_words
+from matstd.report.words import region_sentence, structure_words
 from matstd.twin.frames import Array
 from matstd.twin.record import Run, Touches
 from matstd.twin.units import UM
@@ -30,6 +31,15 @@ FIRST, WHOLE = 12, 40
 
 PATTERNS = 3
 """Patterns that are drawn at most."""
+
+REGIONS = 2
+"""Regions that are drawn."""
+
+_REGION = (
+    "Residual of each touch divided by its lever on this error, the region (shaded) in the model, "
+    "over each variable that bounds the region; only touches within its other bounds. Dots: means "
+    "with standard errors. Line: the size found."
+)
 
 DEPENDENCES = 8
 """Variables that a table lists with their patterns; further ones are named below it."""
@@ -103,24 +113,26 @@ def pattern_pictures(
     return out
 
 
-def region_section(found: Sequence[Region], title: str = "") -> Section:
-    """Regions in which a model fails."""
+def region_section(fit: Fit, found: Sequence[Region], title: str = "") -> Section:
+    """Regions in which a model fails, with the error over what bounds them."""
     if not found:
-        words = "No region stands out: the residual is similar everywhere or changes its sign."
+        words = "No region stands out: no error of one component is limited to a part of the run."
         return Section(title, sentences=[words])
     cells: dict[str, Callable[[Region], str]] = {
-        "region": lambda r: region_words(r.conditions),
-        "touches": lambda r: str(int(r.rows.sum())),
-        "mean, µm": lambda r: signed(r.mean / UM, r.u / UM),
-        "rms, µm": lambda r: f"{r.rms / UM:.2f}",
+        "error and region": region_sentence,
+        "residual there, µm rms": lambda r: f"{r.rms / UM:.2f}",
         "probability by chance": lambda r: p_value(r.p_value),
     }
     caption = (
-        "Regions whose mean residual differs from zero (± standard uncertainty) or whose residuals "
-        "are larger than elsewhere. Each was found on half of the poses and tested on the other "
-        "half, without the touches of the regions above it"
+        "Errors of one component that are off in a part of the run (± standard uncertainty), each "
+        "beside those above it; the probability counts all components and regions that were tried"
     )
-    return Section(title, table=Table.of(found, cells, caption))
+    drawn = [
+        Picture(f"{PICTURES}/region_{k}.png", f"{capital(region_sentence(r))}. {_REGION}", picture)
+        for k, r in enumerate(found[:REGIONS])
+        if (picture := draw_region(fit, r)) is not None
+    ]
+    return Section(title, table=Table.of(found, cells, caption), pictures=drawn)
 
 
 def dependence_section(result: Diagnosis, title: str = "") -> Section:

@@ -10,6 +10,7 @@ from matstd.report.plots.pattern_pictures import draw_pattern
 from matstd.report.plots.plan_pictures import draw_order, draw_touches
 from matstd.report.plots.proof_picture import draw_proof
 from matstd.report.plots.reach_picture import draw_reach, draw_room
+from matstd.report.plots.region_picture import draw_region
 from matstd.report.plots.residual_pictures import draw_normal_plot, draw_over_variables
 from matstd.report.plots.setup_picture import draw_setup
 from matstd.report.plots.spatial_pictures import draw_on_standard, draw_pose_arrows, is_spread
@@ -29,6 +30,7 @@ __all__ = [
     "draw_pose_arrows",
     "draw_proof",
     "draw_reach",
+    "draw_region",
     "draw_rivals",
     "draw_room",
     "draw_setup",

@@ -59,7 +59,7 @@ def draw_pattern(fit: Fit, found: Structure, rng: np.random.Generator) -> Figure
     if len(x) == 1:
         limit = robust_limit(r, 0.99)
         for ax, values in zip(axes, both, strict=True):
-            _course(ax, x[0], values, weight, limit)
+            course(ax, x[0], values, weight, limit)
         axes[0].set_ylabel(f"residual along {word} in µm")
     else:
         label = f"mean residual of {NEIGHBOURS} neighbours along {word}, µm"
@@ -116,7 +116,7 @@ def _map(x: Array, r: Array, weight: Array) -> Array:
     return np.asarray((weight[near] * r[near]).sum(axis=1) / weight[near].sum(axis=1))
 
 
-def _course(ax: Any, x: Array, r: Array, weight: Array, limit: float) -> None:
+def course(ax: Any, x: Array, r: Array, weight: Array, limit: float) -> None:
     """Touches and means over one variable."""
     shown = kept(len(r))
     ax.axhline(0.0, color=SOFT, lw=0.8)

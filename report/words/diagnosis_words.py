@@ -8,13 +8,15 @@ import numpy as np
 from matstd.diagnosis.answer import Comparison, Detectable, Step
 from matstd.diagnosis.fit import SINE_PREFIX, Fit, Reported, Role
 from matstd.diagnosis.remarks import EffectOfOtherRun
-from matstd.diagnosis.residual import Condition, Shape, Side, Structure
+from matstd.diagnosis.residual import Condition, Region, Shape, Side, Structure, Wrong
 from matstd.report.effects import words_of_name
 from matstd.report.numbers import (
     condition,
     digits,
     microns,
     noun,
+    plural,
+    signed,
     span,
     unit_words,
     with_uncertainty,
@@ -23,7 +25,7 @@ from matstd.report.words.remark_words import memory_words
 from matstd.twin.library import title_of
 from matstd.twin.numbers import rms
 from matstd.twin.record import Run
-from matstd.twin.units import UM
+from matstd.twin.units import UM, URAD
 from matstd.twin.words import listed
 
 _WORDS = {
@@ -39,6 +41,15 @@ _WORDS = {
 
 _GROUPS = ("feature", "pose", "setup")
 """Columns that number rows without an order."""
+
+_PARTS = {
+    "bias": "the reading along the normal",
+    **{f"shift-{c}": f"the place of the standard along {c} of the table" for c in "xyz"},
+}
+"""Carriers of an error that are no component of an axis."""
+
+MOST_ALIKE = 4
+"""Carriers that are named beside the first."""
 
 ALL_NUMBERS = 7
 """Numbers of an effect that are written out; of more, only those that sum them up."""
@@ -135,6 +146,33 @@ def region_words(conditions: Sequence[Condition]) -> str:
         low, high = own.get(Side.FROM, -math.inf), own.get(Side.BELOW, math.inf)
         parts.append(condition(name, float(low), float(high)))
     return " and ".join(parts)
+
+
+def wrong_words(wrong: Wrong) -> str:
+    """The error that is off in a region, and by how much: `EBY off by +14.20 ± 0.61 µrad`."""
+    unit, name = (URAD, "µrad") if wrong.is_angular else (UM, "µm")
+    carrier = _PARTS.get(wrong.carrier, wrong.carrier)
+    return f"{carrier} off by {signed(wrong.size / unit, wrong.u / unit, name)}"
+
+
+def carriers_alike(wrong: Wrong) -> str:
+    """Other errors that may be it: `EBX, EBZ or 3 others`."""
+    names = [_PARTS.get(name, name) for name in wrong.alike]
+    if len(names) > MOST_ALIKE:
+        names = [*names[: MOST_ALIKE - 1], f"{len(names) - MOST_ALIKE + 1} others"]
+    return listed(names, "or")
+
+
+def region_sentence(region: Region) -> str:
+    """A region: the error and by how much it is off, or the scatter, and where."""
+    where = region_words(region.conditions)
+    where = where if where.startswith(("on ", "in ")) else f"where {where}"
+    if region.wrong is None:
+        what = f"residuals are larger than elsewhere: {microns(region.rms)} rms"
+    else:
+        what, alike = wrong_words(region.wrong), carriers_alike(region.wrong)
+        where += f" (or {alike}, not distinguished there)" if alike else ""
+    return f"{what} {where}; {plural(int(region.rows.sum()), 'touch')}"
 
 
 def structure_words(found: Structure) -> str:

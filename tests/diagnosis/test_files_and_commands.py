@@ -27,7 +27,7 @@ STEP = {"effect", "kind", "parameters", "uncertainty", "p_value", "rms_um", "tes
 STEP |= {"chi2_ratio", "cannot_be_told_from"}
 KEYS = {
     "candidates": {"effect", "kind", "p_value", "rms_um", "test_rms_um"},
-    "where": {"region", "mean_um", "mean_u_um", "rms_um", "touches"},
+    "where": {"region", "error", "mean_um", "mean_u_um", "rms_um", "touches"},
     "depends_on": {"variable", "p_value"},
     "next_measurement": {"tells_apart", "touches"},
 }
@@ -168,8 +168,11 @@ def test_limits_and_regions_of_the_contract(table) -> None:
     assert by_name["backlash(B)"] == {"effect", "smallest_um", "smallest_urad"}
     assert all(0 < w["touches"] <= 780 and w["region"] for w in table["where"])
     assert "time_s" in [d["variable"] for d in table["depends_on"] if d["p_value"] < 1e-20]
-    assert all(abs(w["mean_um"]) > 3.0 * w["mean_u_um"] for w in table["where"])
-    assert max(abs(w["mean_um"]) for w in table["where"]) > table["u_um"]
+    for region in table["where"]:
+        keys = {k.removesuffix("_um").removesuffix("_urad"): v for k, v in region["error"].items()}
+        assert set(keys) == {"carrier", "size", "uncertainty", "cannot_be_told_from"}
+        assert abs(keys["size"]) > 3.0 * keys["uncertainty"] > 0.0
+    assert max(w["rms_um"] for w in table["where"]) > table["u_um"]
 
 
 def test_a_machine_that_warms_up_in_minutes_fails_in_the_first_of_them(warmed) -> None:

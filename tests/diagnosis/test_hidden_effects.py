@@ -167,8 +167,8 @@ def test_below_the_limit_nothing_is_claimed_and_the_limit_is_reported(case, diag
 def test_limits_are_those_of_visibility(case, diagnosed) -> None:
     """A reversal of the size reported as smallest has a signal-to-noise between 4 and 12.
 
-    Found in four of five runs by a chi-square test whose threshold pays for some hundred
-    candidates: sqrt(chi2(1e-3 / 400, 1)) = 4.7, and 0.84 for the power.
+    By the chi-square test alone, whose threshold pays for some hundred candidates, it would be
+    sqrt(chi2(1e-3 / 400, 1)) = 4.7, and 0.84 for the power.
     """
     run, truth = case(2, "hsm600u", ("backlash(X)",))
     (hidden,) = truth["hidden"]

@@ -4,16 +4,33 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from simulator import probe, run_text
+from simulator_case import read_back
+from simulator_experiment import MACHINES, STATED_NOISE, random_experiment
+from simulator_laws import local_law
 
 from matstd.diagnosis.files.diagnosis_file import conditions_text
 from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.residual.failing_regions import Condition, Side, regions
+from matstd.diagnosis.residual.boxes import Condition, Side
+from matstd.diagnosis.residual.failing_regions import observed_error, regions
 from matstd.report.words.diagnosis_words import region_words
+from matstd.twin.laws import carrier_of
+from matstd.twin.library import ordinary_model
 from matstd.twin.model.model import Model
-from matstd.twin.units import DEG, UM
+from matstd.twin.record import with_commanded
+from matstd.twin.units import UM, URAD
 
 KEY = (2, "hsm600u")
-SIGMAS = 4.0
+
+
+class Readings:
+    """Readings as a law of the simulator asks for them."""
+
+    def __init__(self, q) -> None:
+        self.q = q
+
+    def __len__(self) -> int:
+        return len(next(iter(self.q.values())))
 
 
 @pytest.fixture
@@ -29,23 +46,44 @@ def fit_with(case):
     return made
 
 
-def test_a_box_of_two_conditions_is_found_with_its_mean(case, fit_with) -> None:
+def test_a_box_of_two_conditions_is_found_with_its_error(case, fit_with) -> None:
+    """EBY off by 25 µrad in a corner: the deviation changes its sign with the normal."""
     t = case(*KEY).run.touches
-    box = (t.reading("B") < -40.0 * DEG) & (t.reading("C") > 100.0 * DEG)
-    fit = fit_with(np.where(box, 6.0 * UM, 0.0))
+    box = (t.reading("X") >= 10.0) & (t.reading("Y") < -5.0)
+    lever = carrier_of("EBY", t.chain).columns(t)[:, 0]
+    fit = fit_with(np.where(box, 25.0 * URAD * lever, 0.0))
     first = regions(fit)[0]
+    assert first.wrong is not None
+    assert "EBY" in (first.wrong.carrier, *first.wrong.alike)
     assert {(c.variable, c.side) for c in first.conditions} == {
-        ("B_deg", Side.BELOW),
-        ("C_deg", Side.FROM),
+        ("X_mm", Side.FROM),
+        ("Y_mm", Side.BELOW),
     }
     assert (first.rows & box).sum() > 0.85 * (first.rows | box).sum()
-    # a set-up takes some of it: reported is what the residual has, over the poses that judge
-    judges = np.unique(np.column_stack([t.setup, t.pose]), axis=0, return_inverse=True)[1] % 2 == 0
-    seen = first.rows & fit.used & judges.reshape(-1)
-    assert first.mean == pytest.approx(fit.residual[seen].mean())
-    assert first.u == pytest.approx(0.6 * UM / np.sqrt(seen.sum()) * fit.noise.factor, rel=1e-6)
-    assert first.mean > SIGMAS * first.u
+    assert first.wrong.size == pytest.approx(25.0 * URAD, abs=4.0 * first.wrong.u)
     assert first.p_value < 1e-9
+    rows, observed, weight = observed_error(fit, first)
+    for inside, size in ((box[rows], 25.0 * URAD), (~box[rows], 0.0)):
+        mean = np.average(observed[inside], weights=weight[inside])
+        assert mean == pytest.approx(size, abs=2.0 * URAD)
+
+
+@pytest.mark.parametrize("index", [0, 4, 12])
+def test_a_local_law_of_the_simulator_is_found_by_its_carrier(index) -> None:
+    """Its own formula beside all geometric errors of a machine, exactly simulated."""
+    rng = np.random.default_rng([1, index])
+    label = ("hsm600u", "fork", "hsm600u")[index % 3]
+    e = random_experiment(rng, label)
+    effect, carrier, part = local_law(rng, e.machine)
+    effect.amplitude = 40.0 if carrier[1] in "XYZ" else 150.0
+    noise = rng.normal(0.0, STATED_NOISE, len(e.time))
+    run = with_commanded(read_back(run_text(e, probe(e, [effect], noise), False), MACHINES[label]))
+    first = regions(fit_run(run, ordinary_model(run.touches.chain)))[0]
+    assert first.wrong is not None
+    assert carrier in (first.wrong.carrier, *first.wrong.alike)
+    readings = {a: run.touches.reading(a) for a in run.touches.chain.programmed_axes}
+    where = part(Readings(readings)) >= 0.5
+    assert (first.rows & where).sum() > 0.5 * (first.rows | where).sum()
 
 
 @pytest.mark.parametrize("seed", range(12))

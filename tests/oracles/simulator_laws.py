@@ -197,3 +197,47 @@ def drawn(rng, experiment, family, signal_to_noise, ordinary, label):
         "amplitude": round(float(effect.amplitude), 4),
         "signal_to_noise": round(float(per_unit * effect.amplitude), 2),
     }
+
+
+def local_law(rng, machine):
+    """A law that acts in one part of the travels: effect, carrier, and how much of it where.
+
+    Returns:
+        `Hidden`, the component error that it adds to, and a function of the state that is 1 where
+        the law is whole and 0 where it does not act.
+    """
+    own = machine.axis(str(rng.choice(machine.programmed)))
+    carrier = f"E{rng.choice(list('XYZABC'))}{own.name}"
+    linear = [machine.axis(name) for name in rng.permutation(machine.linear)]
+    one, other = linear[0], linear[1]
+    if own.rotary:
+        turn = rng.uniform(0.0, 2.0 * np.pi)
+
+        def part(s):
+            return (np.cos(s.q[own.name] - turn) > 0.5).astype(float)
+
+    elif rng.uniform() < 0.5:
+        shape = rng.choice(["zone", "hose"])
+        along = own if shape == "zone" else one
+
+        def part(s):
+            x = s.q[along.name]
+            low, high = np.quantile(x, (0.1, 0.9))
+            middle, width = 0.5 * (low + high) + place * (high - low), 0.15 * (high - low)
+            distance = np.abs(x - middle) / width
+            return np.clip(2.0 - distance, 0.0, 1.0) if shape == "zone" else np.exp(-(distance**2))
+
+        place = rng.uniform(-0.35, 0.35)
+    else:
+        signs = rng.choice([-1.0, 1.0], 2)
+
+        def part(s):
+            out = np.ones(len(s))
+            for axis, sign in zip((one, other), signs, strict=True):
+                x = s.q[axis.name]
+                distance = sign * (x - np.median(x)) / np.ptp(x)
+                out = out / (1.0 + np.exp(-distance / 0.03))
+            return out
+
+    law = component(carrier, (), (), part)
+    return Hidden(f"?local({carrier})", "unknown", law.act), carrier, part

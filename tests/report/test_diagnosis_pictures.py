@@ -29,7 +29,7 @@ from matstd.report.plots.spatial_pictures import (
 from matstd.report.style import save
 from matstd.report.words.diagnosis_words import (
     named_value,
-    region_words,
+    region_sentence,
     structure_words,
 )
 from matstd.report.words.verdict_words import verdict_sentence
@@ -365,8 +365,7 @@ def test_page_of_a_comparison_has_its_numbers(warm, tmp_path):
     line = found.run.line[found.worst]
     assert f"line {line}" in text
     for region in found.where:
-        assert region_words(region.conditions) in text
-        assert f"{region.mean / UM:+.2f}" in text
+        assert region_sentence(region) in text
     for group in (*found.poses, *found.features):
         row = f"{group.name} {group.touches} {group.mean / UM:+.2f} {group.rms / UM:.2f}"
         assert row in text

@@ -10,9 +10,6 @@ from matstd.options import add_measured, asked_printer, pitches, starting_model
 if TYPE_CHECKING:
     from matstd.api.diagnosing import Comparison
 
-MIN_UNCERTAINTIES = 2.0
-"""Standard uncertainties from which a region is off on average, and does not merely scatter."""
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
@@ -50,13 +47,12 @@ def _report(args: argparse.Namespace, found: Comparison, arm: str) -> None:
     """The comparison in words, beside what the model promised, or what it was learnt with."""
     from matstd.console import say
     from matstd.report.geometry import console_lines
-    from matstd.report.numbers import microns, signed
     from matstd.report.verdict import promise_words, repeatability_words
     from matstd.report.words import (
         comparison_sentence,
         learnt_lines,
         promise_sentence,
-        region_words,
+        region_sentence,
         remark_sentence,
     )
     from matstd.twin.units import UM
@@ -72,10 +68,7 @@ def _report(args: argparse.Namespace, found: Comparison, arm: str) -> None:
     if found.promise is not None:
         say(f"- error to expect: {promise_words(found.promise)}")
     for region in found.where:
-        mean = signed(region.mean / UM, region.u / UM, "µm")
-        is_off = abs(region.mean) > MIN_UNCERTAINTIES * region.u
-        size = mean if is_off else f"{microns(region.rms)} rms"
-        say(f"{region_words(region.conditions)}: {size} ({int(region.rows.sum())} touches)")
+        say(f"- {region_sentence(region)}")
     for line, is_first in console_lines(found.run.touches, found.geometry, found.faults):
         say(f"- {line}", style="bold" if is_first else None)
     for line in filter(None, [arm, *map(remark_sentence, found.remarks)]):
