@@ -1,9 +1,12 @@
 """How long `matstd design` takes on every kind of machine, and a refusal for want of reach.
 
     python benchmarks/design_machines.py [NAME ...]
+    python benchmarks/design_machines.py --like [KIND ...]
 
-Wanted: each of the eight under 240 s on two idle cores, the refusal under 5 s. Wall and processor
-time are printed, so that a busy machine shows.
+The second goes the way of a new user for each kind of machine that `matstd new machine --like`
+offers: machine file, proposed project, design. Each gives a design or a refusal in one line.
+Wanted of the first: each of the eight under 240 s on two idle cores, the refusal under 5 s. Wall
+and processor time are printed, so that a busy machine shows.
 """
 
 import os
@@ -26,12 +29,46 @@ NAMES = (
     "machines/upright",
 )
 
+TABLES = {
+    "trunnion": "500",
+    "swivel-45": "630",
+    "two-tables": "320",
+    "fork-portal": "3000 2000",
+    "turn-mill": "315",
+    "three-axis": "900 500",
+    "horizontal": "500 500",
+    "micro": "80",
+    "cmm": "900 1200",
+}
+"""Diameter or sides of the table, mm, that the template of each kind states."""
+
+
+def matstd(*words: str) -> subprocess.CompletedProcess[str]:
+    """A command of the tool."""
+    command = [sys.executable, "-m", "matstd", *words]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+def first_day(kind: str, folder: Path) -> bool:
+    """Print what a new user gets for a kind of machine; whether it is a design or one refusal."""
+    machine, project = str(folder / "machine.toml"), folder / "project.toml"
+    matstd("new", "machine", "--like", kind, "-o", machine)
+    size = TABLES[kind].split()
+    begun = matstd("new", "project", "--machine", machine, "--table-mm", *size, "-o", str(project))
+    if begun.returncode:
+        said = begun.stderr.strip().splitlines()
+        print(f"{kind}: {' '.join(said)}", flush=True)
+        return begun.returncode == 2 and len(said) == 1
+    code, wall, used, said = timed(project, folder / "out")
+    programs = len(list((folder / "out" / "programs").glob("*.H")))
+    print(f"{kind}: {wall:.0f} s ({used:.0f} s processor), {programs} programs; {said}", flush=True)
+    return code == 0 and programs > 0
+
 
 def timed(project: Path, out: Path) -> tuple[int, float, float, str]:
     """Exit code, wall and processor seconds of one design, its last line."""
     start, before = time.perf_counter(), os.times()
-    command = [sys.executable, "-m", "matstd", "design", str(project), "-o", str(out)]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    done = matstd("design", str(project), "-o", str(out))
     wall, after = time.perf_counter() - start, os.times()
     used = after.children_user + after.children_system
     used -= before.children_user + before.children_system
@@ -42,7 +79,12 @@ def timed(project: Path, out: Path) -> tuple[int, float, float, str]:
 def main() -> None:
     """Print the times."""
     print(f"Python {platform.python_version()}, {platform.machine()}, {os.cpu_count()} cores")
-    failed = []
+    failed: list[str] = []
+    if sys.argv[1:2] == ["--like"]:
+        for kind in sys.argv[2:] or TABLES:
+            with tempfile.TemporaryDirectory() as folder:
+                failed += [kind] * (not first_day(kind, Path(folder)))
+        sys.exit(f"failed: {', '.join(failed)}" if failed else 0)
     with tempfile.TemporaryDirectory() as folder:
         for name in sys.argv[1:] or NAMES:
             code, wall, used, said = timed(

@@ -5,7 +5,7 @@
 
 Runs every design (minutes each) and records when its stages report; prints the share of every
 stage, and the estimate at half time over what was left, with the shares of `matstd design` and
-with those of the other recorded designs.
+with those of the other recorded designs of machines of its kind.
 """
 
 import argparse
@@ -21,18 +21,21 @@ ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
 
 import matstd  # noqa: E402  (found through the path above)
-from matstd.commands.standard.design import PLAN  # noqa: E402
+from matstd.commands.standard.design import LINEAR_PLAN, PLAN  # noqa: E402
 from matstd.time_left import TimeLeft  # noqa: E402
 
 Events = list[tuple[float, str, int, int]]
 """Seconds since the beginning, stage, done, total; the last one ends the run."""
 
+PLANS = {True: PLAN, False: LINEAR_PLAN}
+"""The plan by whether the machine has a rotary axis."""
+
 EVERY = 1.0
 """Seconds between two looks at the time left."""
 
 
-def recorded(path: Path) -> Events:
-    """Reports of one design."""
+def recorded(path: Path) -> tuple[bool, Events]:
+    """Whether the machine of a project has a rotary axis, and the reports of its design."""
     events: Events = []
     begun = time.process_time()  # a busy machine changes nothing; the kernel works beside
 
@@ -40,9 +43,10 @@ def recorded(path: Path) -> Events:
         events.append((time.process_time() - begun, stage, done, total))
 
     with tempfile.TemporaryDirectory() as folder:
-        matstd.Project.read(path).design(Path(folder) / "out", progress=note)
+        project = matstd.Project.read(path)
+        project.design(Path(folder) / "out", progress=note)
     events.append((time.process_time() - begun, "end", 1, 1))
-    return events
+    return bool(project.brief.chain.rotary_axes), events
 
 
 def shares(events: Events) -> dict[str, float]:
@@ -56,9 +60,9 @@ def shares(events: Events) -> dict[str, float]:
     return {name: value / events[-1][0] for name, value in out.items()}
 
 
-def replayed(events: Events, known: dict[str, float]) -> tuple[float, int]:
+def replayed(events: Events, known: dict[str, float], usual: float) -> tuple[float, int]:
     """Estimate over truth at half time, and how often the time left rose."""
-    left = TimeLeft(known, PLAN.usual)
+    left = TimeLeft(known, usual)
     end = events[-1][0]
     at_half, rises, last, k = np.nan, 0, np.inf, 0
     for now in np.arange(EVERY, end, EVERY):
@@ -81,22 +85,26 @@ def main() -> None:
     parser.add_argument("--record", type=Path)
     parser.add_argument("--replay", nargs="*", type=Path, default=[])
     args = parser.parse_args()
-    runs: dict[str, Events] = {}
+    runs: dict[str, tuple[bool, Events]] = {}
     for file in args.replay:
-        runs |= {name: [tuple(e) for e in es] for name, es in json.loads(file.read_text()).items()}
+        for name, (turns, events) in json.loads(file.read_text(encoding="utf-8")).items():
+            runs[name] = turns, [tuple(event) for event in events]
     for path in args.projects:
-        runs[path.stem] = recorded(path)
+        runs[path.parent.name if path.stem == "project" else path.stem] = recorded(path)
         if args.record:
             args.record.write_text(json.dumps(runs), encoding="utf-8")
-    for name, events in runs.items():
+    for name, (turns, events) in runs.items():
         own = shares(events)
-        others = [shares(es) for other, es in runs.items() if other != name]
+        others = [
+            shares(es) for other, (kind, es) in runs.items() if other != name and kind is turns
+        ]
         mean = {s: float(np.mean([o[s] for o in others])) for s in own} if others else own
         print(
             f"{name}: {events[-1][0]:.0f} s: " + ", ".join(f"{s} {v:.3f}" for s, v in own.items())
         )
-        for what, known in (("shares of the tool", PLAN.shares), ("of the other runs", mean)):
-            ratio, rises = replayed(events, dict(known))
+        plan = PLANS[turns]
+        for what, known in (("shares of the tool", plan.shares), ("of its kind", mean)):
+            ratio, rises = replayed(events, dict(known), plan.usual)
             print(f"  {what}: at half time {ratio:.2f} of what was left, {rises} rises")
 
 

@@ -1,7 +1,7 @@
 """Effects that no model has: balls, small faces, a plane and a wavy face, touched or scanned.
 
     OMP_NUM_THREADS=1 python benchmarks/wavy_face.py [--project machines/vertical] [--poses 1]
-        [--touches 300] [--size MM] [--slope DEG] [--form-um U]
+        [--touches 300] [--size MM] [--slope DEG] [--turn DEG] [--form-um U]
 
 For every layout the signal (root of the noncentrality) and the power at 5 % risk of effects of 2 µm
 rms: fields over all linear axes (40 and 25 mm) and short errors of one axis (40 and 20 mm), along
@@ -161,6 +161,7 @@ def main() -> None:
     parser.add_argument("--size", type=float, default=240.0, help="side of plane and wavy face, mm")
     parser.add_argument("--slope", type=float, default=51.0, help="of the wavy face, degrees")
     parser.add_argument("--wavelength", type=float, default=60.0, help="of the wavy face, mm")
+    parser.add_argument("--turn", type=float, default=45.0, help="of its waves against x, degrees")
     parser.add_argument("--form-um", type=float, default=0.3, help="of the calibrated faces")
     parser.add_argument("--at-random", action="store_true", help="touches anywhere, not chosen")
     args = parser.parse_args()
@@ -187,7 +188,7 @@ def main() -> None:
         bench.show(f"13 balls + {len(some)} {name}", both, bench.some(both, args.touches))
     limits = replace(brief.blank.limits, max_slope=60.0 * DEG)
     side = (0.5 * args.size, 0.5 * args.size)
-    wave = Wave((0.0, 0.0), side, args.wavelength, args.slope * DEG)
+    wave = Wave((0.0, 0.0), side, args.wavelength, args.slope * DEG, turn=args.turn * DEG)
     face = wavy_face("FF1", replace(brief.blank, limits=limits), wave)
     for name, one in (("plane", flat(face)), ("wavy face", face)):
         both = replace(body, patches=(one,))

@@ -21,7 +21,7 @@ without the touches. `task` evaluates visits to calibrated features for a user's
 runs. `drift` has laws of thermal drift from logs.
 
 Where to add things: a test for structure is a module of `residual` and a `Shape`; something a user
-should know about a run is a record in `remarks`, its sentence in `matstd.report.words`; a
+should know about a run is a member of `remarks.What`, its sentence in `matstd.report.words`; a
 new effect needs nothing here.
 """
 

@@ -44,6 +44,11 @@ def add_output(parser: argparse.ArgumentParser, name: str = "OUT", force: str = 
     parser.add_argument("--force", action="store_true", help=force or usual)
 
 
+def add_several(parser: argparse.ArgumentParser, option: str, word: str, meaning: str) -> None:
+    """An option with one or more words, which may be given more than once."""
+    parser.add_argument(option, metavar=word, action="extend", nargs="+", default=[], help=meaning)
+
+
 def add_effects(parser: argparse.ArgumentParser) -> None:
     """The option --effects."""
     parser.add_argument(
@@ -80,6 +85,11 @@ def add_measured(parser: argparse.ArgumentParser, without: str) -> None:
     """
     add_start(parser, without)
     add_pitch(parser)
+    add_results(parser)
+
+
+def add_results(parser: argparse.ArgumentParser) -> None:
+    """The user's effects, the page and the folder of results."""
     add_effects(parser)
     parser.add_argument(
         "--standard",
@@ -142,13 +152,11 @@ def add_start(parser: argparse.ArgumentParser, without: str) -> None:
 
 def add_pitch(parser: argparse.ArgumentParser) -> None:
     """The option --pitch."""
-    parser.add_argument(
+    add_several(
+        parser,
         "--pitch",
-        metavar="AXIS=MM",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="pitch of the screw or scale of an axis; the search for periodic errors "
+        "AXIS=MM",
+        "pitch of the screw or scale of an axis; the search for periodic errors "
         "includes it and its whole fractions and prefers it to similar periods",
     )
 

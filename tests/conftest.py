@@ -29,25 +29,29 @@ pytest_plugins = ["bench", "browser", "firefox", "machines", "standards", "runs"
 
 LONGEST = (
     "matstd/test_design.py",
+    "test_door.py",
     "diagnosis/test_hidden_effects.py",
-    "diagnosis/test_several_runs.py",
     "report/test_diagnosis_pictures.py",
-    "test_examples_diagnosis.py",
-    "diagnosis/test_one_set.py",
     "diagnosis/test_files_and_commands.py",
+    "diagnosis/test_several_runs.py",
+    "diagnosis/test_laws.py",
+    "probe_paths/test_simulate.py",
     "matstd/test_measure_commands.py",
-    "matstd/test_sensitivity_command.py",
-    "test_examples_runs.py",
-    "diagnosis/test_prediction.py",
-    "report/test_scenes.py",
+    "test_examples.py",
     "cad_out/test_export.py",
     "diagnosis/test_periods.py",
-    "probe_paths/test_simulate.py",
-    "test_formats.py",
-    "test_examples.py",
-    "matstd/test_design_machines.py",
+    "report/test_scenes.py",
+    "test_examples_diagnosis.py",
+    "diagnosis/test_prediction.py",
+    "diagnosis/test_other_run.py",
+    "report/test_live_page.py",
+    "matstd/test_seat.py",
+    "diagnosis/test_description_faults.py",
+    "test_examples_runs.py",
+    "matstd/test_reach.py",
+    "diagnosis/test_rivals.py",
 )
-"""Files of more than ten seconds: begun first, so that no worker waits for one of them at the end;
+"""Files of more than five seconds: begun first, so that no worker waits for one of them at the end;
 left to itself, xdist begins with the files of most tests."""
 
 
@@ -78,6 +82,7 @@ def pytest_report_header() -> str:
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """The longest files first, the others in their order."""
     rank = {Path(__file__).parent / name: k for k, name in enumerate(LONGEST)}
+    assert all(path.exists() for path in rank), "LONGEST names a file that is gone"
     items.sort(key=lambda item: rank.get(item.path, len(rank)))
 
 

@@ -52,7 +52,18 @@ DRAWING = {"matplotlib", "pyvista", "vtk"}
 KERNEL = {
     f"cad_out/kernel/{name}.py"
     for name in (
-        ["assembly", "exchange", "faces", "letters", "pmi", "primitives", "reader", "solid", "xcaf"]
+        [
+            "assembly",
+            "exchange",
+            "faces",
+            "letters",
+            "parts",
+            "pmi",
+            "primitives",
+            "reader",
+            "solid",
+            "xcaf",
+        ]
     )
 }
 MAX_FILES = 16

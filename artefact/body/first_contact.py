@@ -18,7 +18,7 @@ from matstd.twin.units import NM
 
 _EDGE_PITCH = 0.5  # mm, of the samples of a trimmed edge
 _PIECE = 16  # samples of an edge that share one bounding sphere
-_BLOCK = 2_000_000  # numbers in memory at once during the search of the edges
+_NUMBERS_AT_ONCE = 2_000_000  # numbers in memory at once during the search of the edges
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +187,7 @@ def _edge_entry(patch: FreeformPatch, p: Array, d: Array, radius: float, latest:
             uv[:, fixed], uv[:, free] = side, s
             points = patch.point(uv)
             near = _near_in_time(points, p, d, radius, latest)
-            for some in np.array_split(near, len(near) * len(s) * 3 // _BLOCK + 1):
+            for some in np.array_split(near, len(near) * len(s) * 3 // _NUMBERS_AT_ONCE + 1):
                 samples = sphere_entry(points, p[some, None], d[some, None], radius)
                 first, vertex = _parabola_vertex(samples, s)
                 refined = np.empty((len(some), 2))

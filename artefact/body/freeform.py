@@ -21,7 +21,7 @@ LEAST_OVERHANG = 1.0
 """Smallest extension of a patch that is read from a file, mm."""
 
 _GRID_PITCH = 2.0  # of the start grid, mm; finer than half the smallest concave radius allowed
-_BLOCK = 4_000_000  # numbers in memory at once during the search of start points
+_NUMBERS_A_BLOCK = 4_000_000  # numbers in memory at once during the search of start points
 
 
 class ErrorShare(NamedTuple):
@@ -205,7 +205,7 @@ class FreeformPatch:
         near = np.flatnonzero(np.isfinite(sphere_entry(centre, start, d, reach + radius)))
         # steep faces leave gaps between nodes: a node counts when the ball nearly touches it
         fat, offset = np.hypot(radius, 2.0 * _GRID_PITCH), nodes - centre
-        for some in np.array_split(near, len(near) * len(nodes) // _BLOCK + 1):
+        for some in np.array_split(near, len(near) * len(nodes) // _NUMBERS_A_BLOCK + 1):
             to_centre = np.einsum("ni,ni->n", centre - start[some], d[some])
             foot = start[some] + to_centre[:, None] * d[some] - centre
             # relative to the foot of the centre on the ball's line, so that squares lose no digits

@@ -15,7 +15,7 @@ from matstd.artefact.feasibility.room import (
     mass_per_face,
     room_among,
 )
-from matstd.artefact.feasibility.standing import check_beside, check_seat
+from matstd.artefact.feasibility.standing import check_beside, check_seat, stands
 from matstd.artefact.feasibility.touched import (
     in_the_way,
     is_from_side,
@@ -39,6 +39,7 @@ __all__ = [
     "mass_per_face",
     "mutually_probeable",
     "room_among",
+    "stands",
     "touches_on",
     "untouchable_faces",
 ]

@@ -34,7 +34,7 @@ nut of a ball screw averages over."""
 SIZE = 2.0 * UM
 """Root mean square of an effect over the volume of the standard, mm."""
 
-FALSE_ALARM = 0.05
+FALSE_FINDING = 0.05
 """Probability of finding one where there is none."""
 
 FORM_LENGTH = 6.0
@@ -99,7 +99,7 @@ class HiddenPower:
         effects: Kinds of effects, K of them.
         signal: Root of the mean noncentrality of each, (K,): in how many standard deviations it
             would show to a test that knew it.
-        power: Probability of detection by the test of smooth fields, at a risk of `FALSE_ALARM`,
+        power: Probability of detection by the test of smooth fields, at a risk of `FALSE_FINDING`,
             (K,).
     """
 
@@ -271,7 +271,7 @@ def _field_test(criterion: Criterion, at: _At, with_power: bool) -> FieldTest:
         form = form_columns(criterion.body, at.measured.touches, criterion.calibration.form)
         B = np.concatenate([B, at.decorrelated(form)], axis=1)
     F = at.any_field() if with_power else SIZE * at.lever
-    return field_test(B, at.decorrelated(F), FALSE_ALARM)
+    return field_test(B, at.decorrelated(F), FALSE_FINDING)
 
 
 def form_columns(body: Standard, touches: Requests, u: float) -> Array:

@@ -16,7 +16,7 @@ from matstd.twin.units import DEG
 CONTROL = 8
 """Control heights of a patch in u and v: enough for one wave, too few for ripples."""
 
-_MARGIN = 1.15
+_LIMIT_MARGIN = 1.15
 """Safety factor on the limits of curvature and slope, which are evaluated on grids."""
 
 _MAX_SLOPE = 60.0 * DEG  # of any face: a ball-end cutter can still finish it
@@ -26,7 +26,7 @@ _PITCH = 2.5  # mm, of the grid on which shapes are scaled
 
 def steepest_slope(limits: Limits) -> float:
     """Largest slope dh/du of a face, with a margin."""
-    return float(np.tan(min(limits.max_slope, _MAX_SLOPE) / _MARGIN))
+    return float(np.tan(min(limits.max_slope, _MAX_SLOPE) / _LIMIT_MARGIN))
 
 
 def smooth_heights(
@@ -82,7 +82,7 @@ def _strength(
     flat = replace(j.plus(j, -1.0), hu=plane[0] + 0.0 * j.hu, hv=plane[1] + 0.0 * j.hv)
     left = steepest_slope(limits) - float(np.hypot(*plane))
     high = min(left / float(np.hypot(j.hu, j.hv).max()), tallest / float(np.abs(j.h).max()))
-    radius = _MARGIN * limits.min_concave_radius
+    radius = _LIMIT_MARGIN * limits.min_concave_radius
     return bent_to(lambda f: flat.plus(j, f).curvature, high, radius)
 
 

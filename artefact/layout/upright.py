@@ -64,6 +64,8 @@ _LEDGE = 1.0  # mm of the plate outside the fillet of a foot
 _HOLE_GAP = 6.0  # mm between counterbore and body: fillet of its foot, and the key
 _WALL = 5.0  # mm between a counterbore and the outline
 _MIN_HOLE_DISTANCE = 60.0  # mm, smallest distance of two holes: closer ones let the standard rock
+# a plate on three of its corners swings at 427 Hz, with a screw amid a side at 755
+_ROUND_MIDDLE = 5.0  # times the distance of the middle from a side counts as that of two holes
 _STEP = 7.0  # mm, grid of candidate holes
 _MAX_DRAWS = 50  # random draws per place
 
@@ -203,7 +205,7 @@ def _widest_radius(ball: DatumSphere) -> float:
 def holes_on(
     blank: Blank, balls: Sequence[DatumSphere] = (), faces: Sequence[FreeformPatch] = ()
 ) -> tuple[MountingHole, ...]:
-    """Three screw holes as far apart as base, table, slots, balls and faces allow.
+    """Three screw holes as far apart, round the middle, as base, table, slots and features allow.
 
     Two are on one slot, the third on another; the slots run along x, one through the middle. The
     standard rests on the pads round its holes, and three pads never rock.
@@ -237,12 +239,35 @@ def holes_on(
             f"and table (diameter {2 * limits.table_radius:g} mm) with {slots}",
             binding=["slots"] if limits.slot_pitch else [],
         )
-    first, last = np.unravel_index(np.argmax(least + 1e-3 * (legs[0] + legs[1])), least.shape)
+    round_middle = np.where(
+        least < _MIN_HOLE_DISTANCE, 0.0, np.minimum(least, _ROUND_MIDDLE * _inner(pair, third))
+    )
+    worth = round_middle + 1e-3 * (legs[0] + legs[1])
+    worth[least < _MIN_HOLE_DISTANCE] = -np.inf
+    first, last = np.unravel_index(np.argmax(worth), worth.shape)
     (x, y), bore = pair[first], (fit.hole_radius, fit.bore_radius, fit.bore_depth)
     return tuple(
         MountingHole(f"HOLE{i}", float(a), float(b), *bore)
         for i, (a, b) in enumerate([(-x, y), (x, y), third[last]], 1)
     )
+
+
+def _inner(pair: Array, third: Array) -> Array:
+    """Distance of the middle from the nearest side of every triangle, (P, T), mm; 0 outside.
+
+    Args:
+        pair: The right one of two holes that mirror each other in x, (P, 2).
+        third: (T, 2).
+    """
+    x, y = pair[:, :1], pair[:, 1:]
+    out = np.abs(y) * (np.sign(third[:, 1] - y) == -np.sign(y))
+    for begin in (x, -x):  # the sides to the third hole
+        across, up = third[:, 0] - begin, third[:, 1] - y
+        # seen from a hole of the pair, the middle and the other hole lie on one side of it
+        middle, other = across * (0.0 - y) - up * (0.0 - begin), -up * (-2.0 * begin)
+        inside = np.maximum(np.sign(other) * middle, 0.0) / np.maximum(np.hypot(across, up), 1e-9)
+        out = np.minimum(out, inside)
+    return np.asarray(out)
 
 
 def least_gap(limits: Limits) -> float:

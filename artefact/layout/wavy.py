@@ -21,7 +21,7 @@ from matstd.twin.frames import Array, pose
 from matstd.twin.units import DEG
 
 _POLES_PER_WAVE = 9.0  # of the control net: straight flanks need more than a sine
-_MARGIN = 1.03  # on slope and radius: evaluated on a grid of a twentieth of the wave
+_GRID_MARGIN = 1.03  # on slope and radius: evaluated on a grid of a twentieth of the wave
 _GRID = 20.0  # points of that grid in a wave
 _LOWEST = 10.0  # mm between base and the lowest valley: fillet, and room for the ball
 
@@ -80,8 +80,11 @@ def _wave_heights(wave: Wave, limits: Limits) -> Array:
         flat.jet(one.grid(wave.wavelength / _GRID)),
         one.jet(one.grid(wave.wavelength / _GRID)),
     )
-    steepest = np.tan(min(wave.slope, limits.max_slope) / _MARGIN)
-    high, radius = float(steepest / np.hypot(j.hu, j.hv).max()), _MARGIN * limits.min_concave_radius
+    steepest = np.tan(min(wave.slope, limits.max_slope) / _GRID_MARGIN)
+    high, radius = (
+        float(steepest / np.hypot(j.hu, j.hv).max()),
+        _GRID_MARGIN * limits.min_concave_radius,
+    )
     if radius * plane.plus(j, high).curvature[:, 0].max() <= 1.0:
         return h * high
     return h * bent_to(lambda f: plane.plus(j, f).curvature, high, radius)

@@ -5,7 +5,7 @@ that it shows least (`matstd.artefact.hidden`). The largest face comes first tha
 the balls enough: they identify, and may cost no more than 2 % against balls alone.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -33,6 +33,7 @@ from matstd.artefact.worth import (
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
+from matstd.twin.units import DEG
 
 _RIMS = (42.0, 46.0, 50.0, 55.0, 60.0, 65.0, 70.0, 80.0, 90.0, 100.0, 110.0)
 """Mm between the sides of face and base, the largest face first: a post with its fillet and room
@@ -44,6 +45,7 @@ balls alone: a larger face shows more of what no model has."""
 
 _LEAST_HALF = 40.0  # mm, of a face that is worth its block
 _WAVELENGTHS, _FLATNESS = (45.0, 60.0, 80.0), (0.0, 0.9)
+_TURNS = (0.0, 22.5 * DEG)  # against x, tried for the best wave, which is turned by 45 degrees
 _SOME = 3  # every third identifying touch stands for all while waves are compared
 
 PROOF_POSES = 6
@@ -123,32 +125,57 @@ def _best_wave(
             f"no wavy face of {2 * _LEAST_HALF:g} mm fits on a base of "
             f"{2 * blank.base.half_size[0]:g} x {2 * blank.base.half_size[1]:g} mm beside balls"
         )
-    best, most, refused = None, 0.0, ""
-    poses = spread_poses(all_poses, PROOF_POSES)
-    balls = base.touches[::_SOME]
-    bare = _bare(blank, base)
-    for wave in _waves(size, blank):
-        try:
-            face = wavy_face("FF1", blank, wave)
-        except NotBuildable as error:
-            refused = str(error)
-            continue
-        body = replace(bare, patches=(face,))
-        here, count = criterion.plain.on(body), options.choice.proof
-        tried = _some_touches(criterion, face, poses, count)
-        given = single(balls, criterion.noise)
-        try:
-            touches = showing_on_body(here, body, tried, given, effects_at, count)
-        except NotReachable as error:
-            refused = str(error)
-            continue
-        lots = [given, measurement_on(criterion, body, touches, options.scan)]
-        signal = hidden_power(here, measured_together(lots), effects_at, False).least_signal
-        if signal > most:
-            best, most = wave, signal
+    poses, given = spread_poses(all_poses, PROOF_POSES), base.touches[::_SOME]
+
+    def signal_of(wave: Wave) -> float:
+        body = replace(_bare(blank, base), patches=(wavy_face("FF1", blank, wave),))
+        return _signal(criterion, body, given, poses, options, effects_at)
+
+    best, most, refused = _strongest(_waves(size, blank), signal_of)
     if best is None:
         raise NotBuildable(f"no wavy face: {refused}")
-    return best
+    turned, more, _ = _strongest([replace(best, turn=turn) for turn in _TURNS], signal_of)
+    return turned if turned is not None and more > most else best
+
+
+def _strongest(
+    waves: Iterable[Wave], signal_of: Callable[[Wave], float]
+) -> tuple[Wave | None, float, str]:
+    """The wave with the largest signal, that signal, and why another cannot be built."""
+    best, most, refused = None, 0.0, ""
+    for wave in waves:
+        try:
+            signal = signal_of(wave)
+        except (NotBuildable, NotReachable) as error:
+            refused = str(error)
+            continue
+        if signal > most:
+            best, most = wave, signal
+    return best, most, refused
+
+
+def _signal(
+    criterion: Criterion,
+    body: Standard,
+    given: Requests,
+    poses: Array,
+    options: PlacementOptions,
+    effects_at: Array,
+) -> float:
+    """Signal of the effect that a body with one wavy face shows least.
+
+    Args:
+        given: Touches on its balls.
+
+    Raises:
+        NotReachable: Too few places of the face can be touched.
+    """
+    here, count = criterion.plain.on(body), options.choice.proof
+    on_balls = single(given, criterion.noise)
+    tried = _some_touches(criterion, body.patches[0], poses, count)
+    touches = showing_on_body(here, body, tried, on_balls, effects_at, count)
+    lots = [on_balls, measurement_on(criterion, body, touches, options.scan)]
+    return hidden_power(here, measured_together(lots), effects_at, False).least_signal
 
 
 def _waves(size: tuple[float, float], blank: Blank) -> Iterator[Wave]:

@@ -13,7 +13,7 @@ _MAX_THIN_RADIUS = (
     4.0  # mm: up to this radius a cylinder is a row of balls on its axis, beyond it is wrapped
 )
 _WRAP_RATIO = 0.3  # radius of the wrapping balls, in radii of the cylinder
-_BLOCK = 200_000  # balls looked at together
+_BALLS_OF_LOT = 200_000  # balls looked at together
 _PIECES = 6  # short cylinders in which the balls of a probe are gathered
 
 
@@ -168,7 +168,9 @@ def _room(
     bodies = list(standard.bodies.values())
     middles, hulls = (np.array(one) for one in zip(*(body.hull for body in bodies), strict=True))
     across = _across(axis)
-    for some in np.array_split(np.arange(len(centre)), len(centre) * len(places) // _BLOCK + 1):
+    for some in np.array_split(
+        np.arange(len(centre)), len(centre) * len(places) // _BALLS_OF_LOT + 1
+    ):
         points = centre[some, None] + places @ across[some]  # (n, K, 3)
         to_middle = _to_points(middles, centre[some], axis[some], places, radii)
         first, least = np.argmin(to_middle, axis=1), to_middle - hulls

@@ -12,7 +12,7 @@ from matstd.twin.frames import Array, pose
 from matstd.twin.sampling import grid_points
 
 _OF_SIDE = 0.37  # of the plate's thickness, that letters on a side take: two lines have room
-_MARGIN = 1.5  # mm round a line of text
+_TEXT_MARGIN = 1.5  # mm round a line of text
 _AWAY = 14.0  # mm from a body that its number may stand
 
 
@@ -161,8 +161,8 @@ class _Plate:
         inside = (places[:, None] + box).reshape(-1, 2)
         base = self.standard.base
         rim = -outline_distance(inside, base.half_size, base.corner_radius)
-        free = (plan_room(self.standard, inside) >= _MARGIN) & (rim >= 3.0)
+        free = (plan_room(self.standard, inside) >= _TEXT_MARGIN) & (rim >= 3.0)
         out = free.reshape(len(places), -1).all(axis=1)
         for at, other in self.taken:
-            out &= (np.abs(places - at) >= half + other + _MARGIN).any(axis=1)
+            out &= (np.abs(places - at) >= half + other + _TEXT_MARGIN).any(axis=1)
         return np.asarray(out)

@@ -72,7 +72,7 @@ def build_solid(standard: Standard, details: Details) -> Solid:
         NotBuildable: The kernel's result is not one valid solid, or has lost a face.
     """
     surfaces = {patch.name: spline_surface(patch) for patch in standard.patches}
-    parts = [_column(patch, surfaces[patch.name], standard.base) for patch in standard.patches]
+    parts = [column_solid(patch, surfaces[patch.name], standard.base) for patch in standard.patches]
     parts += [_post(sphere, details.seats[sphere.name]) for sphere in standard.spheres]
     if standard.core is not None:
         core, low = standard.core, 0.5 * standard.base.thickness
@@ -81,10 +81,10 @@ def build_solid(standard: Standard, details: Details) -> Solid:
     merged = ShapeUpgrade_UnifySameDomain(body, True, True, False)
     merged.Build()
     body = _blended(_only_solid(merged.Shape(), standard.name), standard)
-    tools = [tool for hole in standard.holes for tool in _hole(hole, standard.base)]
-    tools += [_flat(side, standard.base) for side in details.sides.values() if side.flat]
+    tools = [tool for hole in standard.holes for tool in hole_cuts(hole, standard.base)]
+    tools += [flat_cut(side, standard.base) for side in details.sides.values() if side.flat]
     tools += [bore_solid(bore) for bore in details.bores]
-    tools += [_relief(details.pads, standard.base)] if details.pads else []
+    tools += [relief_cut(details.pads, standard.base)] if details.pads else []
     if tools:
         body = boolean(BRepAlgoAPI_Cut(), [body], tools, "drilling the holes")
     plain = _finished(body, standard.name)
@@ -121,7 +121,7 @@ def _knot_arrays(knots: Array) -> tuple[Any, Any]:
     return distinct, multiplicity
 
 
-def _column(patch: FreeformPatch, surface: Any, base: Base) -> Any:
+def column_solid(patch: FreeformPatch, surface: Any, base: Base) -> Any:
     """Prism of the face, trimmed by the pad's box and cut off in mid-base."""
     face = BRepBuilderAPI_MakeFace(surface, _FACE_TOLERANCE).Face()
     span = float(patch.heights.max() - patch.heights.min())
@@ -188,14 +188,15 @@ def _is_foot(points: Array, standard: Standard) -> bool:
     return False
 
 
-def _hole(hole: MountingHole, base: Base) -> list[Any]:
+def hole_cuts(hole: MountingHole, base: Base) -> list[Any]:
+    """Material that is removed for a screw to the table and its head."""
     through = cone(hole.x, hole.y, -1.0, base.thickness + 1.0, hole.radius, hole.radius)
     floor = base.thickness - hole.bore_depth
     bore = cone(hole.x, hole.y, floor, base.thickness + 1.0, hole.bore_radius, hole.bore_radius)
     return [through, bore]
 
 
-def _flat(side: Side, base: Base) -> Any:
+def flat_cut(side: Side, base: Base) -> Any:
     """Material that is removed from a round side for a flat."""
     far = 2.0 * max(base.half_size)
     low, high = np.array([-far, -far, -1.0]), np.array([far, far, base.thickness])
@@ -207,7 +208,7 @@ def _flat(side: Side, base: Base) -> Any:
     return box(low.tolist(), high.tolist())
 
 
-def _relief(pads: tuple[Pad, ...], base: Base) -> Any:
+def relief_cut(pads: tuple[Pad, ...], base: Base) -> Any:
     """Material that is removed from the underside between the pads."""
     a, b = (half + 1.0 for half in base.half_size)
     slab = box([-a, -b, -1.0], [a, b, RELIEF])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from matstd.artefact.body import Standard, read_standard
 from matstd.cad_out.details import details_of
+from matstd.cad_out.making import joints_of
 from matstd.cad_out.meshes import (
     Mesh,
     Piece,
@@ -27,10 +28,11 @@ from matstd.twin.errors import NotBuildable
 
 if TYPE_CHECKING:
     from matstd.cad_out.kernel.assembly import Product
+    from matstd.cad_out.kernel.exchange import Origin
     from matstd.cad_out.kernel.solid import Solid
 
 STANDARD, STEP, MESH, FACTS = "standard.toml", "standard.step", "mesh.npz", "facts.json"
-FACES = "standard-faces.step"
+FACES, SHOP_PARTS = "standard-faces.step", "standard-parts.step"
 SCENES = ("standard.3mf", "standard.glb")
 """Names of the files through which the two processes speak."""
 
@@ -56,14 +58,42 @@ def build(folder: str, chord: float, author: str, organisation: str) -> None:
     origin, name = Origin(design, author, organisation), whole_name(standard)
     write_step(place / STEP, products, name, origin)
     write_step(place / FACES, face_products(solid), f"{name} FACES", origin)
+    parts = _write_parts(standard, products, place / SHOP_PARTS, origin)
     mesh, farthest = _mesh(standard, solid, chord)
     np.savez(place / MESH, corners=mesh.corners, triangles=mesh.triangles, owner=mesh.owner)
     pieces = _pieces(standard, products, mesh)
     write_3mf(place / SCENES[0], standard.name, pieces)
     write_glb(place / SCENES[1], pieces)
     volumes = {product.name: product.volume for product in products}
-    facts = {"volumes": volumes, "body_chord_error": farthest}
+    facts = {"volumes": volumes, "body_chord_error": farthest, "parts": parts}
     (place / FACTS).write_text(json.dumps(facts), encoding="utf-8")
+
+
+def _write_parts(
+    standard: Standard, products: Sequence[Product], path: Path, origin: Origin
+) -> dict[str, int]:
+    """The standard as plate, studs and blocks, re-read; none where it cannot be made of parts.
+
+    Returns:
+        How often each part is there, by name.
+    """
+    from matstd.cad_out.kernel.assembly import whole_name
+    from matstd.cad_out.kernel.exchange import write_step
+    from matstd.cad_out.kernel.parts import parts_of
+    from matstd.cad_out.kernel.reader import read_step
+
+    details = details_of(standard)
+    try:
+        joints = joints_of(standard, details)
+    except NotBuildable:
+        return {}
+    bought = [replace(one, tolerances=(), notes=(), drawn={}) for one in products[1:]]
+    parts = parts_of(standard, details, joints, [replace(b, diameter=None) for b in bought])
+    write_step(path, parts, f"{whole_name(standard)} SHOP_PARTS", origin)
+    found, wanted = read_step(path), sum(len(part.places) for part in parts)
+    if found.solids != wanted or not found.is_valid or not found.is_closed:
+        raise NotBuildable(f"{path.name}: {found.solids} solids of {wanted}, or one not closed")
+    return dict(found.products)
 
 
 def _pieces(standard: Standard, products: Sequence[Product], mesh: Mesh) -> list[Piece]:

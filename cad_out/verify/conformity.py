@@ -79,6 +79,7 @@ class Conformity:
         names: Faces that carry a name in the file.
         missing: Faces that should and do not, or are not parts in the file of single faces.
         missing_details: Workshop details that found no room, in words.
+        parts: How often each part of `standard-parts.step` is there; none where a face leans.
         untold: Tolerances, notes and drawn signs that a reader does not find as designed.
         face_deviation: Largest distance from the design by face, in both STEP files, without any
             CAD kernel.
@@ -110,6 +111,7 @@ class Conformity:
     names: tuple[str, ...]
     missing: tuple[str, ...]
     missing_details: tuple[str, ...]
+    parts: dict[str, int]
     untold: tuple[str, ...]
     face_deviation: dict[str, float]
     area_error: dict[str, float]
@@ -255,6 +257,7 @@ def measure(
             *(f"{name} by itself" for name in wanted if name not in {*alone, *balls}),
         ),
         missing_details=details.missing,
+        parts=built["parts"],
         untold=missing_annotations(standard, details, entities, found),
         face_deviation={name: max(one[name] for one in apart) for name in apart[0]},
         area_error=area_errors(standard, face_areas(corners, triangles, owner)),

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import Standard, write_standard
-from matstd.cad_out.kernel import FACES, FACTS, MESH, SCENES, STANDARD, STEP, run_kernel
+from matstd.cad_out.kernel import FACES, FACTS, MESH, SCENES, SHOP_PARTS, STANDARD, STEP, run_kernel
 from matstd.cad_out.meshes import Mesh, write_stl
 from matstd.cad_out.verify.conformity import Conformity, measure, refuse_faults, write_conformity
 from matstd.twin.errors import DesignError
@@ -62,6 +62,10 @@ def export_standard(
         write_conformity(place / CONFORMITY, conformity)
         for name in (STEP, FACES, STL, *SCENES, CONFORMITY):
             (place / name).replace(out_dir / name)
+        if conformity.parts:
+            (place / SHOP_PARTS).replace(out_dir / SHOP_PARTS)
+        else:  # a former design may have been of parts
+            (out_dir / SHOP_PARTS).unlink(missing_ok=True)
     finally:
         shutil.rmtree(place, ignore_errors=True)
     return conformity

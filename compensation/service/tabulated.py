@@ -23,7 +23,7 @@ MAX_INTERPOLATION = 2.0 * NM
 """What straight lines between the points of one table may leave at its middles, mm at the tip."""
 
 _POSES = 12  # random ones at which an effect is asked on what it depends
-_FEWEST = 17  # points of a table along a reading
+_FEWEST_PLACES = 17  # points of a table along a reading
 _MOST = {1: 4097, 2: 513}  # most points, by the number of readings
 _SAME = 1e-15  # mm or rad: by which an error differs that does not depend on a reading
 
@@ -73,7 +73,7 @@ class ErrorTable:
         Raises:
             DesignError: It would need more points than a table may have.
         """
-        counts, table = np.full(len(self.axes), _FEWEST), self
+        counts, table = np.full(len(self.axes), _FEWEST_PLACES), self
         while True:
             table = replace(table, counts=tuple(map(int, counts))).following(None)
             left = np.array([table._at_middles(k) for k in range(len(counts))])

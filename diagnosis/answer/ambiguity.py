@@ -30,9 +30,6 @@ the class is, and a second, since the first may be the effect itself."""
 MAX_RIVALS = 40
 """Most rivals that are refined, the most likely first; a larger class would not help a reader."""
 
-OWN_SENSOR_BONUS = 2.0
-"""Log odds in favour of a sensor that bears the letter of the axis on which it acts."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rival:
@@ -108,7 +105,7 @@ def plausibility(effects: Sequence[Effect], touches: Touches) -> dict[str, float
     drivers = [traits(original_of(e)).driver for e in effects]
     labels = [(e.kind, d in touches.temperature) for e, d in zip(effects, drivers, strict=True)]
     return {
-        e.name: OWN_SENSOR_BONUS * (is_sensor and driver.endswith(_axis(e)))
+        e.name: POLICY.log_odds_own_sensor * (is_sensor and driver.endswith(_axis(e)))
         - chosen * follows_driver(e)
         - float(np.log(labels.count((kind, is_sensor))))
         for e, driver, (kind, is_sensor) in zip(effects, drivers, labels, strict=True)

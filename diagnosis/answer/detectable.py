@@ -116,27 +116,16 @@ def _one(pool: Signatures, variant: int, length: float, survives: float) -> Dete
         length: Of its parameters, in units of their prior standard deviations.
         survives: Share of its signature that the model cannot imitate.
     """
-    effect = pool.variants[variant]
-    first = effect.parameters[0]
-    scanned = tuple(_scans(effect, pool.complement.touches))
-    if not length < MAX_SIZE_RATIO:
-        return Detectable(
-            effect=effect,
-            size=None,
-            unit=first.unit,
-            largest=None,
-            survives=survives,
-            scanned=scanned,
-        )
+    effect, visible = pool.variants[variant], length < MAX_SIZE_RATIO
     C = pool.complement.columns([effect]) * pool.complement.u[:, None]
-    largest = length * float(np.sqrt((C**2).sum(axis=1).max()))
+    first, touch = effect.parameters[0], float(np.sqrt((C**2).sum(axis=1).max()))
     return Detectable(
         effect=effect,
-        size=length * first.sd,
+        size=length * first.sd if visible else None,
         unit=first.unit,
-        largest=largest,
+        largest=length * touch if visible else None,
         survives=survives,
-        scanned=scanned,
+        scanned=tuple(_scans(effect, pool.complement.touches)),
     )
 
 

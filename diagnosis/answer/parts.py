@@ -12,7 +12,7 @@ import numpy as np
 
 from matstd.diagnosis.accuracy import Repeatability
 from matstd.diagnosis.answer.ambiguity import Rival
-from matstd.diagnosis.answer.steps import Step, is_significant
+from matstd.diagnosis.answer.steps import Step
 from matstd.diagnosis.faults import DescriptionFault
 from matstd.diagnosis.geometry import GeometryRow, LearntGeometry
 from matstd.diagnosis.policy import POLICY
@@ -136,7 +136,7 @@ def verdict_parts(
         assert step.effect is not None
         explained = float(np.sqrt(max(before**2 - own**2, 0.0)))
         is_large = explained > POLICY.headline_noise_share * repeats.stated
-        is_certain = is_significant(step) and step.p_value < POLICY.false_alarm
+        is_certain = step.is_significant and step.p_value < POLICY.false_alarm
         named.append(
             NamedEffect(
                 effect=step.effect,

@@ -46,7 +46,6 @@ MAX_TRIED = 6
 MAX_NAMED = 3
 """Effects that are named."""
 
-
 MAX_REPEATED = 6
 """Touches to repeat: three times each they give twelve degrees of freedom."""
 

@@ -12,7 +12,7 @@ from matstd.diagnosis.answer.alike import periods_alike
 from matstd.diagnosis.answer.ambiguity import ConfusionClass, confusion_class
 from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.residual import find_structure
-from matstd.diagnosis.search import SearchState, Verified, refined
+from matstd.diagnosis.search import EffectSubset, SearchState, Verified, refined
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -20,8 +20,8 @@ class ReportedSet:
     """A set of effects with its tests.
 
     Attributes:
-        state: Of the search, its members the effects as reported.
-        classes: What each cannot be distinguished from, none of it in the set.
+        state: Of the search, its members the effects as reported, what explains most first.
+        classes: What each cannot be distinguished from, none of it in the set; in the same order.
         tests: Of every member with the others in place, by the name of the effect.
     """
 
@@ -39,9 +39,10 @@ def reported_set(final: SearchState) -> ReportedSet:
     Args:
         final: Result of the search; of a set that was chosen by prediction nothing is exchanged.
     """
-    state, search = final, final.search
+    search = final.search
+    state = replace(final, chosen=_by_worth(final))
     classes = []
-    for i, sized in enumerate(final.effects):
+    for i, sized in enumerate(state.effects):
         if sized.effect.name in final.chances:
             classes.append(ConfusionClass(sized, (), ()))
             continue
@@ -58,6 +59,15 @@ def reported_set(final: SearchState) -> ReportedSet:
     names = state.chosen.names
     tests = {v.member.effect.name: v for v in search.verify(state.chosen)}
     return ReportedSet(state, tuple(c.beside(names) for c in classes), tests)
+
+
+def _by_worth(state: SearchState) -> EffectSubset:
+    """The set in the order in which its members explain most, one after the other."""
+    chosen = state.search.evaluate(())
+    while left := [m for m in state.chosen.members if not any(m is k for k in chosen.members)]:
+        larger = (state.search.evaluate((*chosen.members, m)) for m in left)
+        chosen = max(larger, key=lambda one: one.effects.evidence)
+    return chosen
 
 
 def _with(state: SearchState, i: int, sized: ScaledEffect) -> SearchState:

@@ -10,10 +10,8 @@ from matstd.diagnosis.answer.reported_set import ReportedSet, reported_set, with
 from matstd.diagnosis.answer.sizes import sizes
 from matstd.diagnosis.evidence import (
     MIN_OWN_SHARE,
-    EffectSet,
     ResidualSpace,
     ScaledEffect,
-    projected,
 )
 from matstd.diagnosis.fit import Fit, Reported, Role
 from matstd.diagnosis.policy import POLICY
@@ -52,9 +50,36 @@ class Step:
     confusion: ConfusionClass | None
 
     @property
+    def name(self) -> str:
+        """Of the effect; empty for the starting model."""
+        return "" if self.effect is None else self.effect.name
+
+    @property
     def is_named(self) -> bool:
         """Whether the user named the effect; else the diagnosis found it."""
         return self.effect is not None and self.confusion is None
+
+    @property
+    def size(self) -> Reported | None:
+        """The number that says how large the effect is."""
+        return next((n for n in self.reported if n.role is Role.SIZE), None)
+
+    @property
+    def worth(self) -> float:
+        """Size over its standard uncertainty; infinite where there is no such number."""
+        size = self.size
+        return np.inf if size is None or not size.u else abs(size.value) / size.u
+
+    @property
+    def is_certain(self) -> bool:
+        """Whether chance is so improbable that the uncertainty of the size says nothing."""
+        is_sized = self.effect is None or len(self.effect.parameters) <= MAX_SIZED_PARAMETERS
+        return self.p_value < (POLICY.certain_p if is_sized else POLICY.close_p)
+
+    @property
+    def is_significant(self) -> bool:
+        """Whether an effect exceeds its own uncertainty, or needs not to."""
+        return self.is_certain or self.worth >= POLICY.significant_ratio
 
 
 def significant_effects(
@@ -81,41 +106,19 @@ def _steps(
     gross: GrossErrors,
 ) -> tuple[Step, ...]:
     """The error falling: the starting model, named effects, found effects by their worth."""
-    final, classes = tested.state, tested.classes
-    names = [s.effect.name for s in final.effects]
-    p_values = [final.chances.get(n, tested.tests[n].p_value) for n in names]
-    order = _by_worth(final)
-    effects: Sequence[ScaledEffect] = [*added, *(final.effects[i] for i in order)]
-    first = task.fit((), gross)
+    state, first = tested.state, task.fit((), gross)
     # the reported inner parameters are those that are drawn and saved
-    numbers, effects = sizes(task, effects, gross, ResidualSpace.of(first))
+    numbers, effects = sizes(task, (*added, *state.effects), gross, ResidualSpace.of(first))
+    classes = (*(None for _ in added), *tested.classes)
     out = [Step(effect=None, fit=first, p_value=1.0, reported=(), confusion=None)]
-    for k, sized in enumerate(effects):
-        fit = task.fit(effects[: k + 1], gross)
-        i = order[k - len(added)] if k >= len(added) else -1
-        p = p_values[i] if i >= 0 else named_probability(out[-1].fit, fit)
-        confusion = classes[i] if i >= 0 else None
-        out.append(
-            Step(effect=sized.effect, fit=fit, p_value=p, reported=numbers[k], confusion=confusion)
-        )
+    for k, (confusion, reported) in enumerate(zip(classes, numbers, strict=True)):
+        effect, fit = effects[k].effect, task.fit(effects[: k + 1], gross)
+        if confusion is None:
+            p = named_probability(out[-1].fit, fit)
+        else:
+            p = state.chances.get(effect.name, tested.tests[effect.name].p_value)
+        out.append(Step(effect=effect, fit=fit, p_value=p, reported=reported, confusion=confusion))
     return tuple(out)
-
-
-def _by_worth(final: SearchState) -> list[int]:
-    """Order in which the found effects explain most, one after the other."""
-    complement = final.pool.complement
-    left = list(range(len(final.effects)))
-    order: list[int] = []
-    while left:
-
-        def worth(i: int) -> float:
-            A = projected(complement, [final.effects[j] for j in (*order, i)])
-            return EffectSet(complement, A).evidence
-
-        best = max(left, key=worth)
-        order.append(best)
-        left.remove(best)
-    return order
 
 
 def named_probability(before: Fit, after: Fit) -> float:
@@ -166,14 +169,11 @@ def not_significant(steps: Sequence[Step]) -> tuple[Noticed, ...]:
     """Effects added by name whose size is within its own uncertainty."""
     out = []
     for step in steps:
-        size = _size(step.reported)
-        if step.effect is None or not step.is_named or size is None or size.u is None:
-            continue
-        if abs(size.value) < POLICY.significant_ratio * size.u:
-            name = step.effect.name
+        size = step.size
+        if step.is_named and size is not None and step.worth < POLICY.significant_ratio:
             numbers = {"value": size.value, "u": size.u, "unit": size.unit}
             what = What.NOT_SIGNIFICANT
-            out.append(noticed(what, effect=name, quantity=size.quantity, **numbers))
+            out.append(noticed(what, effect=step.name, quantity=size.quantity, **numbers))
     return tuple(out)
 
 
@@ -186,47 +186,20 @@ def weakest(steps: Sequence[Step], is_weighed: bool) -> str | None:
     """
     out, least = None, POLICY.significant_ratio
     for step in steps:
-        size = _size(step.reported)
-        if step.effect is None:
-            continue
-        worth = np.inf if size is None or not size.u else abs(size.value) / size.u
-        if not _is_possible(step):
+        worth = step.worth
+        if not _is_possible(step) or (not is_weighed and step.p_value >= POLICY.false_alarm):
             worth = 0.0
-        elif is_weighed:
-            worth = worth if step.p_value > POLICY.chance_of_member else np.inf
-        elif step.p_value >= POLICY.false_alarm:
-            worth = 0.0
-        elif step.p_value < _certain(step.effect):
+        elif step.p_value <= POLICY.chance_of_member if is_weighed else step.is_certain:
             continue
         if worth < least:
-            out, least = step.effect.name, worth
+            out, least = step.name, worth
     return out
 
 
 def _is_possible(step: Step) -> bool:
     """Whether no coefficient of expansion is of a body that shrinks when it warms."""
-    for n in step.reported:
-        if n.unit == EXPANSION:
-            margin = POLICY.impossible_ratio * (n.u or 0.0)
-            if n.value < POLICY.expansion_least / n.factor - margin:
-                return False
-    return True
-
-
-def is_significant(step: Step) -> bool:
-    """Whether an effect exceeds its own uncertainty, or needs not to."""
-    size = _size(step.reported)
-    if size is None or not size.u or step.effect is None or step.p_value < _certain(step.effect):
-        return True
-    return abs(size.value) >= POLICY.significant_ratio * size.u
-
-
-def _certain(effect: Effect) -> float:
-    """Probability by chance below which an effect stands whatever the uncertainty of its size."""
-    is_sized = len(effect.parameters) <= MAX_SIZED_PARAMETERS
-    return POLICY.certain_p if is_sized else POLICY.close_p
-
-
-def _size(numbers: Sequence[Reported]) -> Reported | None:
-    """The number that says how large an effect is."""
-    return next((n for n in numbers if n.role is Role.SIZE), None)
+    return all(
+        n.value >= POLICY.expansion_least / n.factor - POLICY.impossible_ratio * (n.u or 0.0)
+        for n in step.reported
+        if n.unit == EXPANSION
+    )

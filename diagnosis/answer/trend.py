@@ -55,11 +55,6 @@ class RunErrors:
         return self.rms is None
 
 
-LOCATION_BONUS = 1.0
-"""A location error is reported even if it is less clear than another effect by so many standard
-uncertainties: odds of the root of e."""
-
-
 @dataclass(frozen=True, slots=True)
 class SingleChange:
     """What changed into a run, if nothing else of the geometry did.
@@ -140,7 +135,7 @@ def single_change(fit: Fit, run: int) -> SingleChange | None:
     clear = np.abs(value) / u
     # a slope of a straightness and a squareness are one thing: the user's word is the second
     is_place = np.array([original_of(tried[i]).kind == "location" for i in seen])
-    best = int(np.argmax(clear + LOCATION_BONUS * is_place))
+    best = int(np.argmax(clear + POLICY.location_lead * is_place))
     if clear[best] <= MIN_CLEAR_CHANGE:
         return None
     effect = original_of(tried[seen[best]])

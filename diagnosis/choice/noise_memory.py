@@ -19,11 +19,6 @@ from matstd.diagnosis.search import WHOLE_BELOW, DiagnosisTask, SearchState, sea
 from matstd.twin.model import Effect
 from matstd.twin.record import Run
 
-MIN_INDEPENDENT = 15.0
-"""Independent observations that a run must hold for its memory to be known: the length of a memory
-is uncertain by about the root of two over their number, 37 % here."""
-
-
 CHOSEN_ROWS = 3000
 """Rows of the choice: a wave of an eighth of the noise is found in so many."""
 
@@ -42,7 +37,7 @@ def memory_of(fit: Fit) -> tuple[Memory, float]:
 
 def is_noise(memory: Memory, rows: int) -> bool:
     """Whether a run of so many rows holds enough of a memory to call it one of the noise."""
-    return rows >= MIN_INDEPENDENT * memory.per_independent
+    return rows >= POLICY.memory_independent * memory.per_independent
 
 
 def with_noise_memory(

@@ -8,7 +8,7 @@ with the smallest plain root mean square of those errors is then followed on all
 figure, which has paid for the choice, is the error that is stated.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -37,14 +37,13 @@ from matstd.twin.numbers import rms
 from matstd.twin.record import IntArray, Touches
 from matstd.twin.thermal import drives, field
 
-MIN_ROWS_PER_INDEPENDENT = 4.0
-"""Touches for one independent observation from which a residual is no longer nearly white."""
-
 MAX_SETS_PER_BLOCK = 300.0
 """Sets that the search of one block may try: a fifth of what a whole diagnosis may."""
 
-UNRECORDED = "unrecorded driver"
-"""The way that follows no sensor: a smooth course in time, as the search found it."""
+NOTHING, UNRECORDED, TWO_TIMES = "nothing", "unrecorded driver", "two time constants"
+SINGLE, FIELD = "single effects", "thermal field"
+"""Ways, the simplest first; an unrecorded driver is a smooth course in time, as the search found
+it, and follows no sensor."""
 
 MAX_ROWS = 4000
 """Most rows used to judge ways of choosing, since each block needs a search of its own."""
@@ -91,7 +90,83 @@ class Choice:
     is_ended: bool = False
 
 
-Chooser = Callable[[DiagnosisTask, GrossErrors], tuple[ScaledEffect, ...]]
+@dataclass(frozen=True, slots=True, eq=False)
+class _Ways:
+    """Ways of choosing that the candidates leave open.
+
+    Attributes:
+        added: What the user added, which is in every set.
+        drifts: Laws of drivers that were not recorded.
+        single: Candidates but the field.
+        warm: A field of all drives.
+        groups: Rows of the run in every block.
+        budgets: Of searches, so that a limit that was met is reported.
+    """
+
+    added: tuple[ScaledEffect, ...]
+    gross: GrossErrors
+    drifts: tuple[ScaledEffect, ...]
+    single: tuple[Effect, ...]
+    warm: Effect | None
+    groups: tuple[IntArray, ...]
+    budgets: list[Budget]
+
+    @property
+    def names(self) -> list[str]:
+        """All of them, the simplest first."""
+        has_lags = {"thermal-lag", "thermal-static"} <= {e.kind for e in self.single}
+        is_open = {
+            NOTHING: True,
+            UNRECORDED: bool(self.drifts),
+            TWO_TIMES: has_lags,
+            SINGLE: bool(self.single),
+            FIELD: self.warm is not None,
+        }
+        return [name for name, is_so in is_open.items() if is_so]
+
+    def followed(self, name: str, task: DiagnosisTask) -> tuple[ScaledEffect, ...]:
+        """The set to which a way leads in a task."""
+        if name == TWO_TIMES:
+            return bodies(task, self.added, self.gross)
+        if name == SINGLE:
+            return self._single_effects(task)
+        if name == FIELD and self.warm is not None:
+            return (sized_field(task, self.added, self.gross, self.warm, self.groups),)
+        return self.drifts if name == UNRECORDED else ()
+
+    def judged(
+        self, name: str, task: DiagnosisTask, found: tuple[ScaledEffect, ...] | None = None
+    ) -> ChoiceRule:
+        """A way with its error of every block, predicted by a choice made without it.
+
+        Args:
+            found: A set that stays what it is, in the place of such a choice.
+        """
+        errors = []
+        for group in self.groups:
+            part = without(task, group)
+            effects = self.followed(name, part) if found is None else found
+            left = part.fit((*self.added, *effects), self.gross).residual[group]
+            errors.append(rms(left))
+        whole = self.followed(name, task) if found is None else found
+        return ChoiceRule(name, whole, np.array(errors), np.array([len(g) for g in self.groups]))
+
+    def _single_effects(self, task: DiagnosisTask) -> tuple[ScaledEffect, ...]:
+        """Single effects by search, then those with inner parameters once more beside themselves.
+
+        Each must lower the error of blocks left out.
+        """
+        complement = ResidualSpace.of(task.fit(self.added, self.gross))
+        found: tuple[ScaledEffect, ...] = ()
+        more: list[Effect] = []
+        for _ in range(2):
+            library = Library.of(complement, [*self.single, *more])
+            self.budgets.append(Budget(MAX_SETS_PER_BLOCK))
+            found = best_set(library, found, self.budgets[-1])[1].sized
+            more = [a for s in found if (a := repeat(s.effect)) is not None]
+            if not more:
+                break
+        return prune_by_held_out_error(complement, found, self.groups)
 
 
 def chosen_by_prediction(
@@ -106,48 +181,46 @@ def chosen_by_prediction(
     There is where structure is left, or noise with memory that is larger than stated, what is left
     is slow, and the run recorded something that may drive it.
     """
-    remembers = task.memory is not None
-    is_open = bool(final.remains)
-    if remembers:
-        is_open = (
-            task.fit((*added, *final.effects), final.base.gross).noise.factor
-            > POLICY.memory_loud_noise
-        )
+    remembers, gross = task.memory is not None, final.base.gross
+    noise = task.fit((*added, *final.effects), gross).noise.factor
+    is_open = noise > POLICY.memory_loud_noise if remembers else bool(final.remains)
     if not is_open or not drives(task.run.touches):
         return None
     # ways are compared in white noise: a memory would absorb what they are to explain
     task = replace(task, memory=None)
-    fit = task.fit((*added, *final.effects), final.base.gross)
+    fit = task.fit((*added, *final.effects), gross)
     memory, gain = memory_of(fit)
-    if gain < POLICY.memory_gain or memory.per_independent < MIN_ROWS_PER_INDEPENDENT:
+    if gain < POLICY.memory_gain or memory.per_independent < POLICY.memory_touches:
         return None
     task = thinned(task, fit)
-    fit = task.fit((*added, *final.effects), final.base.gross)
-    groups = blocks(fit, memory_of(fit)[0])
-    budgets: list[Budget] = []
-    choosers = _choosers(added, final.drifts, candidates, groups, budgets)
-    gross = final.base.gross
+    fit = task.fit((*added, *final.effects), gross)
+    ways = _Ways(
+        added=added,
+        gross=gross,
+        drifts=final.drifts,
+        single=tuple(e for e in candidates if not traits(e).is_shrunk),
+        warm=next((e for e in candidates if traits(e).is_shrunk), None),
+        groups=blocks(fit, memory_of(fit)[0]),
+        budgets=[],
+    )
     rules = []
-    for done, (name, chooser) in enumerate(choosers.items()):
-        progress(done / len(choosers), "choice by prediction")
-        errors = _errors(task, added, gross, groups, chooser)
-        counts = np.array([len(g) for g in groups])
-        # the choice is made anew without each block, so that its error pays for the choice
-        rules.append(ChoiceRule(name, chooser(task, gross), errors, counts))
+    for done, name in enumerate(ways.names):
+        progress(done / len(ways.names), "choice by prediction")
+        rules.append(ways.judged(name, task))
     best = clearly_best(rules, lambda rule: rule.error)
     if best.name == UNRECORDED:
         return None
     if remembers:
-        errors = _errors(task, added, gross, groups, lambda task, gross: final.effects)
-        if best.error > POLICY.error_share_beside_memory * replace(best, errors=errors).error:
+        searched = ways.judged(SINGLE, task, final.effects)
+        if best.error > POLICY.error_share_beside_memory * searched.error:
             return None
     left = memory_of(task.fit((*added, *best.effects), gross))
     return Choice(
         rules=tuple(rules),
         best=best,
-        blocks=len(groups),
+        blocks=len(ways.groups),
         memory=left[0] if left[1] >= POLICY.memory_gain else None,
-        is_ended=any(b.is_spent for b in budgets),
+        is_ended=any(b.is_spent for b in ways.budgets),
     )
 
 
@@ -155,46 +228,6 @@ def candidate_effects(touches: Touches) -> list[Effect]:
     """All effects that a diagnosis may find in a run: proposals of the library, field of drives."""
     warm = field(touches)
     return [*proposals(touches), *([warm] if warm is not None else [])]
-
-
-def _choosers(
-    added: tuple[ScaledEffect, ...],
-    drifts: tuple[ScaledEffect, ...],
-    candidates: Sequence[Effect],
-    groups: Sequence[IntArray],
-    budgets: list[Budget],
-) -> dict[str, Chooser]:
-    """The ways that the candidates leave open, the simplest first; budgets of searches are kept."""
-    single = [e for e in candidates if not traits(e).is_shrunk]
-    warm = next((e for e in candidates if traits(e).is_shrunk), None)
-    out: dict[str, Chooser] = {"nothing": lambda task, gross: ()}
-    if drifts:
-        out[UNRECORDED] = lambda task, gross: drifts
-    if {"thermal-lag", "thermal-static"} <= {e.kind for e in single}:
-        out["two time constants"] = lambda task, gross: bodies(task, added, gross)
-    if single:
-        out["single effects"] = lambda task, gross: single_effects(
-            task, added, gross, single, groups, budgets
-        )
-    if warm is not None:
-        out["thermal field"] = lambda task, gross: (sized_field(task, added, gross, warm, groups),)
-    return out
-
-
-def _errors(
-    task: DiagnosisTask,
-    added: tuple[ScaledEffect, ...],
-    gross: GrossErrors,
-    groups: Sequence[IntArray],
-    chooser: Chooser,
-) -> Array:
-    """Error of every block, predicted by a choice made without it, (B,), mm."""
-    out = []
-    for group in groups:
-        part = without(task, group)
-        effects = chooser(part, gross)
-        out.append(rms(part.fit((*added, *effects), gross).residual[group]))
-    return np.array(out)
 
 
 def thinned(task: DiagnosisTask, fit: Fit) -> DiagnosisTask:
@@ -213,30 +246,3 @@ def without(task: DiagnosisTask, rows: IntArray) -> DiagnosisTask:
     split = np.array(task.run.split, dtype="U5")
     split[rows] = "test"
     return replace(task, run=replace(task.run, split=split))
-
-
-def single_effects(
-    task: DiagnosisTask,
-    added: tuple[ScaledEffect, ...],
-    gross: GrossErrors,
-    candidates: Sequence[Effect],
-    groups: Sequence[IntArray],
-    budgets: list[Budget],
-) -> tuple[ScaledEffect, ...]:
-    """Single effects by search, then those with inner parameters once more beside themselves.
-
-    Args:
-        groups: Rows of the run in every block; each effect must lower the error of blocks left out.
-        budgets: Those of its searches join them, so that a limit that was met is reported.
-    """
-    complement = ResidualSpace.of(task.fit(added, gross))
-    found: list[ScaledEffect] = []
-    more: list[Effect] = []
-    for _ in range(2):
-        library = Library.of(complement, [*candidates, *more])
-        budgets.append(Budget(MAX_SETS_PER_BLOCK))
-        found = list(best_set(library, found, budgets[-1])[1].sized)
-        more = [a for s in found if (a := repeat(s.effect)) is not None]
-        if not more:
-            break
-    return prune_by_held_out_error(complement, found, groups)

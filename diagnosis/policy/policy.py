@@ -33,6 +33,10 @@ class Policy:
         log_odds_alike: Log odds below which two explanations are not distinguished: 100 to 1.
         log_odds_ruled_out: Log odds by which a rival on a coarse grid is behind beyond what a finer
             one could mend.
+        log_odds_own_sensor: Log odds in favour of a sensor that bears the letter of the axis on
+            which it acts, for ties.
+        location_lead: Standard uncertainties by which a location error may be less clear than
+            another single change and is named all the same: odds of the root of e.
         significant_ratio: Standard uncertainties from which a size is significant (GUM, k = 2).
         headline_noise_share: Size of an effect over the stated noise below which no headline names
             it: a tenth of the noise is not worth a compensation.
@@ -53,12 +57,18 @@ class Policy:
             stated. Scatter of a hundred touches does not reach so low.
         memory_gain: Gain of log likelihood by which noise with memory must beat white noise: a
             chance of 6e-5, since twice the gain is chi-squared with one degree of freedom.
+        memory_independent: Independent observations that a run must hold for its memory to be
+            known: its length is uncertain by about the root of two over their number, 37 % here.
+        memory_touches: Touches for one independent observation from which a residual is no longer
+            nearly white.
         memory_noise: Noise over the stated one above which a wandering residual is no noise.
         memory_noise_alone: The same if no effect is beside it: users misjudge their noise by less,
             and an error that follows the order of probing looks the same.
         memory_loud_noise: Noise with memory over the stated one from which it may have a cause.
         p_beside_memory: Probability by chance below which a pattern is reported beside noise with
             memory, since a residual of real parts never follows a memory exactly.
+        jump_share: Share of the squared residual that a jump in a run without times must hold: half
+            of the standard deviation or so.
         detection_power: Standard deviations of the statistic of each test above its threshold at
             the size that is called detectable, 85 %: an effect is found only if it exceeds chance
             and is ahead of its rivals, which both happens in four of five runs.
@@ -75,6 +85,8 @@ class Policy:
     log_odds_unrecorded: float = 1.5
     log_odds_alike: float = 4.605170185988092  # log 100
     log_odds_ruled_out: float = 15.0
+    log_odds_own_sensor: float = 2.0
+    location_lead: float = 1.0
     significant_ratio: float = 2.0
     headline_noise_share: float = 0.1
     chance_of_member: float = 0.05
@@ -86,10 +98,13 @@ class Policy:
     noise_ratio_open: float = 1.5
     noise_ratio_covered: float = 0.7
     memory_gain: float = 8.0
+    memory_independent: float = 15.0
+    memory_touches: float = 4.0
     memory_noise: float = 3.0
     memory_noise_alone: float = 2.0
     memory_loud_noise: float = 1.3
     p_beside_memory: float = 1e-4
+    jump_share: float = 0.2
     detection_power: float = 1.05
 
     @property

@@ -21,7 +21,7 @@ from matstd.twin.record import IntArray, Touches
 MAX_ROWS_MEMORY = 2500
 """Most rows that a memory is estimated from; more would not improve it and take long."""
 
-NOISE_PASSES = 3
+MEMORY_PASSES = 3
 """Turns in which the size of the noise settles."""
 
 MAX_CORRELATION = 0.9995
@@ -227,7 +227,7 @@ def _marginal(X: Array, y: Array, log_det: float) -> float:
     """
     n, s = len(y), 1.0
     G, g, square = X.T @ X, X.T @ y, float(y @ y)
-    for remaining in reversed(range(NOISE_PASSES + 1)):
+    for remaining in reversed(range(MEMORY_PASSES + 1)):
         M = G / s**2
         M[np.diag_indices_from(M)] += 1.0
         low = cho_factor(M, lower=True, check_finite=False)

@@ -10,9 +10,6 @@ from matstd.diagnosis.regression import f_probability, solve
 from matstd.twin.frames import Array
 from matstd.twin.record import Instrument, IntArray
 
-MIN_SHARE = 0.2
-"""Share of the squared residual that it must hold: half of the standard deviation or so."""
-
 MIN_MOMENTS = 20
 """Moments (rows of the file, or poses) from which a run has a before and an after."""
 
@@ -22,7 +19,7 @@ COMPONENTS = 3
 PRIOR_SD = 10.0
 """What is believed of it, mm."""
 
-NOISE_PASSES = 4
+SETTLING_PASSES = 4
 """Times that the noise is found anew with it; three settle it."""
 
 
@@ -68,7 +65,7 @@ def jump_in_order(fit: Fit) -> JumpInOrder | None:
     k = int(np.argmax(fall))
     share, dof = min(fall[k] / fit.solution.objective, 1.0), len(first) - 2 * COMPONENTS
     p = float(f_probability(share, COMPONENTS, 1.0 - share, dof)) * len(fall)
-    if p > POLICY.close_p or share < MIN_SHARE:
+    if p > POLICY.close_p or share < POLICY.jump_share:
         return None
     after = np.arange(len(line)) >= first[k + 1]
     X, y = fit.X[fit.used][order], fit.y[fit.used][order]
@@ -82,7 +79,7 @@ def _size(X: Array, y: Array, N: Array, independent: int) -> tuple[float, float]
     With the displacement the noise is smaller: it is found anew, and so is the rest.
     """
     factor = 1.0
-    for _ in range(NOISE_PASSES):
+    for _ in range(SETTLING_PASSES):
         found = solve(np.column_stack([X, PRIOR_SD * N]) / factor, y / factor)
         factor *= float(np.sqrt(found.objective / max(found.dof, 1.0)))
     step = PRIOR_SD * found.phi[-COMPONENTS:]

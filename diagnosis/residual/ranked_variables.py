@@ -12,7 +12,7 @@ from matstd.twin.record import Touches
 MAX_BINS = 12
 """Bins of a variable, of equally many touches each."""
 
-MIN_TOUCHES = 6
+MIN_TOUCHES_OF_BIN = 6
 """Touches of a bin, at least."""
 
 MAX_LABELS = 16
@@ -51,7 +51,7 @@ def binned(
     if len(distinct) <= most:
         label = np.searchsorted(distinct, values)
     else:
-        count = int(np.clip(len(values) // MIN_TOUCHES, 1, most))
+        count = int(np.clip(len(values) // MIN_TOUCHES_OF_BIN, 1, most))
         edges = np.unique(np.quantile(values, np.linspace(0.0, 1.0, count + 1)[1:-1]))
         label = np.searchsorted(edges, values, side="right")
     w = np.bincount(label, weight)

@@ -2,13 +2,13 @@
 
 In: a `DiagnosisTask` (run, starting model, prior) and candidates. Out: a `SearchState`: the best
 set of which every member stands, refined, and the structure that it leaves. `search_loop` has the
-idea and the way through, `selection` the moves, `members` the tests, `offers` what a finding asks
-for, `screening` what makes long runs affordable, `edges` gross errors that are none.
+idea and the way through, `selection` the moves, `members` the tests, `further_parts` what a finding
+asks for, `screening` what makes long runs affordable, `edges` gross errors that are none.
 """
 
+from matstd.diagnosis.search.further_parts import tables_along
 from matstd.diagnosis.search.members import EffectSubset, Member, Verified, explained
 from matstd.diagnosis.search.missing_driver import follows_driver, unrecorded
-from matstd.diagnosis.search.offers import tables_along
 from matstd.diagnosis.search.refine import refined, refined_set
 from matstd.diagnosis.search.screening import MOST_SETS, WHOLE_BELOW, Budget, Library
 from matstd.diagnosis.search.search_loop import (

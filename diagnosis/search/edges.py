@@ -9,7 +9,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.special import gammaln
 
 from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.fit import Fit
@@ -82,20 +81,13 @@ def _edges(touches: Touches, instants: Array) -> Iterator[tuple[IntArray, bool]]
 def _by_chance(touches: int, gross: int, length: int, found: int) -> float:
     """Probability that of some gross errors anywhere so many or more lie in one short row.
 
-    Hypergeometric: ``sum_j C(length, j) C(touches - length, gross - j) / C(touches, gross)``.
-
     Example:
         >>> round(_by_chance(4, 2, 2, 2) * 6, 9)
         1.0
     """
-    j = np.arange(found, min(length, gross) + 1)
-    log = _log_choose(length, j) + _log_choose(touches - length, gross - j)
-    return float(np.exp(log - _log_choose(touches, np.array(gross))).sum())
+    from scipy.stats import hypergeom  # half a second, and few runs need it
 
-
-def _log_choose(n: int, k: IntArray) -> Array:
-    """Logarithm of the number of choices of k of n."""
-    return np.asarray(gammaln(n + 1.0) - gammaln(k + 1.0) - gammaln(n - k + 1.0))
+    return float(hypergeom.sf(found - 1, touches, gross, length))
 
 
 def restore_predicted_outliers(

@@ -2,8 +2,8 @@
 
 **Parts.** Whatever may explain a run stands in one list: every effect of the library at every point
 of the grid of its inner parameters; tables of positions, further periods and periods of several
-sines, once a finding asks for them (`offers`); laws of drivers that were not recorded; patterns
-without a name; and touches that are set aside as gross errors.
+sines, once a finding asks for them (`further_parts`); laws of drivers that were not recorded;
+patterns without a name; and touches that are set aside as gross errors.
 
 **Score.** All are weighed in one projection: what the geometric model could do as well is taken out
 of them, and the evidence of a set, with what was believed before, charges it for its freedom
@@ -52,9 +52,9 @@ from matstd.diagnosis.search.edges import (
     unexplained_near_slip,
     without,
 )
+from matstd.diagnosis.search.further_parts import WiderSearch, further_periods, one_period, tables
 from matstd.diagnosis.search.members import EffectSubset, Member, by_blocks, by_time
 from matstd.diagnosis.search.missing_driver import is_unrecorded, unrecorded
-from matstd.diagnosis.search.offers import Offer, further_periods, one_period, tables
 from matstd.diagnosis.search.screening import Budget, Library, joined_shortlists
 from matstd.diagnosis.search.selection import Search
 from matstd.diagnosis.search.task import DiagnosisTask
@@ -182,27 +182,28 @@ def searched(
     """
     known = {e.name for e in candidates}
     begun = {s.effect.name for s in start}
-    stated = [e for e in candidates if traits(e).is_table and e.name not in begun]
-    offered = [e for e in candidates if e not in stated]
+    is_stated = [traits(e).is_table and e.name not in begun for e in candidates]
+    stated = [e for e, table in zip(candidates, is_stated, strict=True) if table]
+    offered = [e for e, table in zip(candidates, is_stated, strict=True) if not table]
     offered += [s.effect for s in start if s.effect.name not in known]
     state = _settled(task, added, offered, progress, start)
     tried: set[frozenset[str]] = set()
     while True:
-        for offer in _offers(state, offered, stated if not start else None):
-            if offer.new in tried:
+        for wider in _wider(state, offered, stated if not start else None):
+            if wider.new in tried:
                 continue
-            tried.add(offer.new)
-            other = _settled(task, added, offer.candidates, progress, offer.start or start)
-            if _is_taken(offer, other) and other.held_out < offer.share * state.held_out:
-                state, offered = other, [*offer.candidates]
+            tried.add(wider.new)
+            other = _settled(task, added, wider.candidates, progress, wider.start or start)
+            if _is_taken(wider, other) and other.held_out < wider.share * state.held_out:
+                state, offered = other, [*wider.candidates]
                 break
         else:
             return state
 
 
-def _offers(
+def _wider(
     state: SearchState, offered: Sequence[Effect], stated: Sequence[Effect] | None
-) -> Iterator[Offer]:
+) -> Iterator[WiderSearch]:
     """What a finding asks for, the simplest first; no tables in the whole of a long run."""
     complement = state.library.complement
     yield from one_period(complement, state.effects, offered)
@@ -213,10 +214,10 @@ def _offers(
         yield from tables(complement.touches, depends_on, stated, offered)
 
 
-def _is_taken(offer: Offer, state: SearchState) -> bool:
+def _is_taken(wider: WiderSearch, state: SearchState) -> bool:
     """Whether a set has what was offered, and as it may."""
-    taken = len(offer.new & state.chosen.names)
-    return taken == 1 and not state.remains if offer.is_alone else taken > 0
+    taken = len(wider.new & state.chosen.names)
+    return taken == 1 and not state.remains if wider.is_alone else taken > 0
 
 
 def _settled(

@@ -25,7 +25,7 @@ _LINE = r"line|scan|pass|track|bahn|zeile"
 _TIME = r"(?:t|time|zeit|timestamp)(?:[\s_]*[\[(]?(?:ms|sec|s)[\])]?)?"
 _DEFLECTION = r"d|deflection|auslenkung|signal|w"
 _SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "": 1.0}
-_FEWEST = 10  # points of a scan
+_FEWEST_POINTS = 10  # points of a scan
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,8 +70,8 @@ def read_scan_log(path: str | Path, unit: str = "mm", names: Sequence[str] = ())
         raise BadFile(
             path, "header", f"{', '.join(sheet.columns)}", f"a column {missing}; with --columns too"
         )
-    if len(sheet) < _FEWEST:
-        raise BadFile(path, "table", f"{len(sheet)} points", f"{_FEWEST} or more of a scan")
+    if len(sheet) < _FEWEST_POINTS:
+        raise BadFile(path, "table", f"{len(sheet)} points", f"{_FEWEST_POINTS} or more of a scan")
     position = np.column_stack([_lengths(sheet, found[letter], unit) for letter in "xyz"])
     apart = [_column(sheet, f"d{letter}") for letter in "xyz"]
     if None not in apart:

@@ -13,11 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.brief import Brief, project_text, read_project
-from matstd.artefact.feasibility import check_seat, feasibility
+from matstd.artefact.feasibility import check_seat, feasibility, stands
 from matstd.twin.errors import BadFile, DesignError, NotBuildable, NotReachable
 from matstd.twin.files import read_machine
 from matstd.twin.frames import Array, fixed_xyz
 from matstd.twin.machine import Chain, table_to_tool
+from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
 USUAL, LARGEST, LEAST = 320.0, 400.0, 160.0
@@ -48,6 +49,13 @@ ROOM = 1.25
 UPRIGHT, ON_ITS_SIDE = (0.0, 0.0, 0.0), (-90.0, 0.0, 0.0)
 """Ways to stand that are tried: on a face that looks along Z, or along Y; degrees."""
 
+STEP_OF_PLACE, PLACES = 10.0, 3
+"""Between two places of a second set-up, mm, and how many are tried with the reach of the machine
+(1.5 s of processor each)."""
+
+_GRID = 200
+"""Points a side by which areas are counted: to 1 %."""
+
 ROUNDING = 1e-6
 """By which a travel may miss a whole millimetre or degree."""
 
@@ -61,7 +69,10 @@ class Proposal:
         brief: The same, resolved.
         table: Sides of the table, or its diameter, mm.
         is_assumed: Whether the size of the table was derived from the travels.
-        larger: Side of the next base that would be possible, mm; None where there is none.
+        larger: Side of the largest base that passes the same checks, mm; None where none larger
+            than this one does.
+        other_place: Farthest place of a second set-up along x of the table that passes them, mm; 0
+            where there is none.
     """
 
     text: str
@@ -69,6 +80,7 @@ class Proposal:
     table: tuple[float, ...]
     is_assumed: bool
     larger: float | None
+    other_place: float
 
     @property
     def base(self) -> float:
@@ -76,26 +88,12 @@ class Proposal:
         return 2.0 * float(self.brief.blank.base.half_size[0])
 
     def share_of_table(self, base: float) -> float:
-        """Share of the face of the table under a base, at most 1."""
+        """Share of the face of the table under a base in its middle."""
         a, b = self.table[0], self.table[-1]
-        area = 0.25 * np.pi * a * a if len(self.table) == 1 else a * b
-        return min(1.0, base * base / area)
-
-    @property
-    def other_place(self) -> float:
-        """Farthest place of a second set-up along x of the table, mm; 0 where there is none."""
-        farthest = np.floor(0.5 * (self.table[0] - self.base) / 10.0) * 10.0
-        setup = self.brief.setup
-        for place in np.arange(farthest, 0.0, -10.0):
-            T = setup.T_table_artefact.copy()
-            T[0, 3] += place
-            moved = replace(setup, T_table_artefact=T)
-            try:
-                check_seat(replace(self.brief, setups=(moved,)))
-            except BadFile:
-                continue
-            return float(place)
-        return 0.0
+        x, y = np.meshgrid(*((np.arange(_GRID) + 0.5) / _GRID - 0.5 for _ in "xy"))
+        on = np.hypot(x, y) <= 0.5 if len(self.table) == 1 else np.full(x.shape, True)
+        under = (np.abs(x) * a <= 0.5 * base) & (np.abs(y) * b <= 0.5 * base)
+        return float((on & under).sum() / on.sum())
 
 
 def propose(machine: Path, named: str, table: tuple[float, ...] | None = None) -> Proposal:
@@ -124,14 +122,17 @@ def propose(machine: Path, named: str, table: tuple[float, ...] | None = None) -
         except (NotReachable, NotBuildable, BadFile) as error:
             first = first or error
             continue
-        larger = [side for side in _bases(size, LARGEST) if side > base]
+        larger = [side for side in _bases(size, LARGEST) if side > max(base, USUAL)]
+        tried = (_tables(chain, side, length, turn, size, machine) for side in larger)
+        fits = (side for side, t in zip(larger, tried, strict=True) if _passes(t, machine))
         text = _head(named) + project_text({**made, "": {**made[""], "machine": named}})
         return Proposal(
             text=text,
             brief=brief,
             table=size,
             is_assumed=table is None,
-            larger=larger[0] if larger else None,
+            larger=next(fits, None),
+            other_place=_other_place(brief, 0.5 * (size[0] - base)),
         )
     raise DesignError(f"{machine}: no standard from {LEAST:g} mm up can be probed here: {first}")
 
@@ -172,6 +173,34 @@ def _checked(tables: Mapping[str, Mapping[str, object]], machine: Path) -> Brief
     check_seat(brief)
     feasibility(brief).check()
     return brief
+
+
+def _passes(tables: Mapping[str, Mapping[str, object]], machine: Path) -> bool:
+    try:
+        _checked(tables, machine)
+    except (NotReachable, NotBuildable, BadFile):
+        return False
+    return True
+
+
+def _other_place(brief: Brief, beside: float) -> float:
+    """Farthest place along x of the table, up to one beside the edge, mm; 0 for none.
+
+    The seat binds as a rule, so every centimetre is tried with it, and few with the reach.
+    """
+    places = np.arange(np.floor(beside / STEP_OF_PLACE) * STEP_OF_PLACE, 0.0, -STEP_OF_PLACE)
+    seats = [place for place in places if stands(brief, _moved(brief, place))]
+    for place in seats[:: max(1, len(seats) // PLACES)]:
+        there = replace(brief, setups=(_moved(brief, place),))
+        if feasibility(there).refusal is None:
+            return float(place)
+    return 0.0
+
+
+def _moved(brief: Brief, along: float) -> Setup:
+    T = brief.setup.T_table_artefact.copy()
+    T[0, 3] += along
+    return replace(brief.setup, T_table_artefact=T)
 
 
 def _tables(
@@ -233,7 +262,8 @@ def workspace(
         else:
             inside = np.clip(found[:, linear.index(name)], low, high)
             low, high = inside.min(), inside.max()
-        yield name, [float(np.ceil(low - ROUNDING)), float(np.floor(high + ROUNDING))]
+        # + 0.0: no minus before a zero in the file
+        yield name, [float(np.ceil(low - ROUNDING)) + 0.0, float(np.floor(high + ROUNDING)) + 0.0]
 
 
 def _readings(

@@ -31,7 +31,7 @@ from matstd.twin.units import DEG
 TOUCHES = 20
 """Touches of the search; about five minutes of machine time."""
 
-_FEWEST = 9
+_FEWEST_TOUCHES = 9
 """Fewer touches cannot distinguish a false place from the true one: six numbers are sought."""
 
 _TRIED, _DETERMINED = 60, 0.6
@@ -42,7 +42,7 @@ base, and determine 0.5; for 10 mm and 3 degrees, 1.0."""
 _NOISE = 0.03
 """Standard uncertainty of a touch of a search, the errors of the machine included, mm."""
 
-_MARGIN = 3.0
+_FREE_BESIDE = 3.0
 """Kept free beside the ball's way and under the body besides everything else, mm."""
 
 _UPRIGHT = np.cos(1.0 * DEG)
@@ -81,12 +81,12 @@ def plan_search(
         raise NotReachable("the standard does not stand upright where programs begin and end")
     # largest rise or drop of each place within the spread
     lift = spread.distance + np.linalg.norm(place, axis=1) * np.sin(spread.angle)
-    top = high + lift + probe.radius + _MARGIN
-    path = float((top - low + lift).max()) + _MARGIN
+    top = high + lift + probe.radius + _FREE_BESIDE
+    path = float((top - low + lift).max()) + _FREE_BESIDE
     start = apply(T, np.column_stack([place, top]))
     # sideways above the highest place of all, lifted as far as the corner of the base can be
     lift = spread.distance + np.linalg.norm(standard.base.half_size) * np.sin(spread.angle)
-    above = apply(T, np.append(place[0], relief.top.max() + lift + probe.radius + _MARGIN))
+    above = apply(T, np.append(place[0], relief.top.max() + lift + probe.radius + _FREE_BESIDE))
     q = np.repeat(q, len(place) + 1, axis=0)
     q = inverse_linear(chain, np.concatenate([start, above[None]]), q, probe.length)
     height = float(np.ceil(q[-1, chain.axis_index("Z")]))
@@ -102,19 +102,19 @@ def _places(
     """Places (N, 2) that are safe within the spread, and the surface heights under each, mm."""
     sin, base = np.sin(spread.angle), standard.base.thickness
     # where the standard leans, what is high moves sideways from what is low
-    beside = _MARGIN + (float(relief.top.max()) - base) * sin
+    beside = _FREE_BESIDE + (float(relief.top.max()) - base) * sin
     is_bad = relief.top <= NOWHERE
     begins = [end for end, _ in probe.stack]
     radii = [*(radius for _, radius in probe.stack[1:]), probe.nose_radius]
     for begin, radius in zip(begins, radii, strict=True):
         step = _most(relief.top, radius + beside) - relief.ball
-        is_bad |= step > begin - _MARGIN - radius * sin
+        is_bad |= step > begin - _FREE_BESIDE - radius * sin
     room = ndimage.distance_transform_cdt(~is_bad, metric="chessboard") * PITCH
     xy = relief.x0 + PITCH * np.moveaxis(np.indices(is_bad.shape), 0, -1)
     side = spread.distance + (np.linalg.norm(xy, axis=-1) + base + begins[0]) * sin
     ij = np.argwhere(room > side + probe.radius)
     place = relief.x0 + ij * PITCH
-    if len(place) < _FEWEST:
+    if len(place) < _FEWEST_TOUCHES:
         raise NotReachable(
             f"a search from above finds no places where a stylus of {begins[0]:g} mm comes down to "
             f"something wherever the standard stands within {spread.distance:g} mm and "

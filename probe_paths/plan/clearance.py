@@ -22,7 +22,7 @@ from matstd.twin.record import IntArray, Labels, Setup
 SMALLEST_GAP = 0.5
 """Least gap between the probe and any obstacle while it is positioned, mm."""
 
-_BLOCK = 200  # moves per block, to bound memory: each meets every body with every piece
+_MOVES_A_BLOCK = 200  # moves per block, to bound memory: each meets every body with every piece
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +89,7 @@ class ToolClearance:
             )
             axis = turn(T, T_table_tool[:, :3, 2])
             rows = np.flatnonzero(bodies.on == on)
-            for some in np.array_split(np.arange(len(begin)), len(begin) // _BLOCK + 1):
+            for some in np.array_split(np.arange(len(begin)), len(begin) // _MOVES_A_BLOCK + 1):
                 place = (begin[some], axis[some], (end - begin)[some])
                 skip = None if spared is None else spared[np.ix_(some, rows)]
                 limit = np.minimum(best[some].min(axis=1), enough)

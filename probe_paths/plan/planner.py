@@ -32,7 +32,7 @@ from matstd.twin.machine import Chain, table_to_tool
 from matstd.twin.record import IntArray, Labels, Setup
 from matstd.twin.units import DEG
 
-_MARGIN = 0.011  # mm: gaps are found to 0.01, readings in programs are rounded to 0.0001
+_GAP_MARGIN = 0.011  # mm: gaps are found to 0.01, readings in programs are rounded to 0.0001
 _ANCHOR_SPARE = 5.0 * DEG  # an anchor stays away from where the ball ends above its stem
 
 
@@ -252,7 +252,7 @@ def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
     above = touches.start[rows].copy()
     above[:, z] = height[rows]
     clearance = task.clearance
-    start, enough = touches.start[rows], max(SMALLEST_GAP + _MARGIN, o.smallest_gap)
+    start, enough = touches.start[rows], max(SMALLEST_GAP + _GAP_MARGIN, o.smallest_gap)
     direction = np.zeros(start.shape)
     direction[:, [task.chain.axis_index(name) for name in LINEAR]] = touches.direction[rows]
     looks = stroke_gaps(
@@ -266,7 +266,7 @@ def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
     )
     down = clearance.swept_gap(above, start, enough=enough)
     for stage, (gap, nearest) in (*looks.items(), (Stage.WAY_IN, down)):
-        least = stage.least_gap(task.probe.radius) + _MARGIN
+        least = stage.least_gap(task.probe.radius) + _GAP_MARGIN
         least = max(least, o.smallest_gap) if stage is Stage.TOUCH else least
         for i in np.flatnonzero(gap < least):
             # the first reason stands

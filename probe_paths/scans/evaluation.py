@@ -51,7 +51,7 @@ _AVERAGED = 0.2  # mm; a curvature of 1/8 mm moves the mean of such an arc by 0.
 _BELIEVED = 10.0  # mm: the same before the fit
 _LARGEST_STEP, _USUAL_STEPS = 2.0, 10.0  # mm between points of a line; and median steps
 _BESIDE = 0.5  # mm that foot points may lie beyond the trimmed edge
-_FEWEST = 4  # points of a stretch that becomes a row
+_POINTS_A_ROW = 4  # points of a stretch that becomes a row
 _ALIKE = np.linspace(0.0, 0.98, 99)  # correlations of neighbours that are tried
 _LEAST_U = 0.01 * UM  # of a row
 _ROUNDS = 20
@@ -330,7 +330,7 @@ def _stretches(line: IntArray, place: Array) -> list[IntArray]:
         count = max(1, round(along[-1] / STRETCH))
         part = np.minimum((along / max(along[-1], 1e-9) * count).astype(int), count - 1)
         out += [rows[part == k] for k in range(count)]
-    return [rows for rows in out if len(rows) >= _FEWEST]
+    return [rows for rows in out if len(rows) >= _POINTS_A_ROW]
 
 
 def _mean_at(gap: Array, place: Array, middle: int) -> float:
@@ -352,7 +352,7 @@ def _noise(
     correlations, the residuals have the covariance ``s^2 M R M``; r and s are those with which its
     trace and its sum beside the diagonal are those found.
     """
-    k = max(int(_usual(groups)), _FEWEST)
+    k = max(int(_usual(groups)), _POINTS_A_ROW)
     some = np.array([gap[rows[:k]] for rows in groups if len(rows) >= k])
     shapes = np.vander(np.linspace(-1.0, 1.0, k), 3)
     M = np.eye(k) - shapes @ np.linalg.pinv(shapes)

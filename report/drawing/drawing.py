@@ -27,6 +27,7 @@ from matstd.report.drawing.sections import (
     draw_screw,
     draw_seat,
     engraving_words,
+    joint_words,
     section_of,
 )
 from matstd.report.drawing.sheet import A1, A2, Paper, Sheet, View
@@ -216,7 +217,8 @@ def _of_features(
         edge = top.at([[0.0, standard.base.half_size[1]]])[0]
         # above the frame of datum C, which stands 22 to 28 mm above three quarters of the side
         above = max(6.0, 30.0 - 0.25 * top.scale * standard.base.half_size[1])
-        words = f"{len(standard.patches)} x FF"
+        count = len(standard.patches)
+        words = f"{count} x FF" if count > 1 else patch.name
         _attached(sheet, (tip[0] - 18.0, edge[1] + above), tolerances[patch.name], tip, words)
     if standard.spheres:
         ball = max(standard.spheres, key=lambda one: float(one.centre[2]))
@@ -330,6 +332,7 @@ def _notes(sheet: Sheet, top: float, standard: Standard, details: Details) -> No
     sheet.text(x, top, "Notes", size=3.0)
     words = [*notes_of(standard, details), engraving_words()]
     words += [f"Omitted for lack of space: {what}." for what in details.missing]
+    words += joint_words(standard, details)
     faces = ", ".join(f"{letter} = {face}" for letter, face in DATUMS.items())
     words.append(f"Names of faces as in standard.step: {faces}; that model is the definition.")
     for number, note in enumerate(words, 1):

@@ -4,7 +4,9 @@ import numpy as np
 
 from matstd.artefact.body import BLEND, FreeformPatch, Standard, min_concave_radius
 from matstd.cad_out.details import CUTTER, DEPTH, RELIEF, Details, glue_gap
+from matstd.cad_out.making import joints_of
 from matstd.report.drawing.sheet import HATCH, THIN, WIDE, Sheet, View
+from matstd.twin.errors import NotBuildable
 from matstd.twin.units import DEG
 
 BALL_CUT, HOLE_CUT, FACE_CUT = "D", "E", "F"
@@ -134,6 +136,32 @@ def engraving_words() -> str:
         f"Lettering: dots {DEPTH:g} deep, ball-ended cutter Ø{2.0 * CUTTER:g}; "
         "never on a datum's touches."
     )
+
+
+_TORQUES = {4.0: 2.8, 5.0: 5.5, 6.0: 9.5, 8.0: 23.0, 10.0: 46.0, 12.0: 79.0}
+"""Tightening torques of class 8.8 at a friction of 0.12 (VDI 2230-1, table A1), N m."""
+
+
+def joint_words(standard: Standard, details: Details) -> list[str]:
+    """How the parts of the second construction are joined; empty where it does not exist."""
+    try:
+        joints = joints_of(standard, details)
+    except NotBuildable:
+        return []
+    threads = sorted({stud.thread for stud in joints.studs})
+    words = "Of parts (standard-parts.step): "
+    studs = [f"M{d:g} {0.5 * _TORQUES[d]:.0f} N m" for d in threads]
+    if studs:
+        words += (
+            f"studs turned, shoulder square to the thread 0.01, through holes vent; "
+            f"{', '.join(studs)} (half of VDI 2230, class 8.8) with thread lock"
+        )
+    for d in sorted({block.thread for block in joints.blocks}):
+        words += (
+            f"; blocks on three pads flat 0.005 CZ, screws M{d:g} from below "
+            f"{_TORQUES[d]:.0f} N m; calibrate when joined"
+        )
+    return [f"{words}."]
 
 
 def _ratio(scale: float) -> str:

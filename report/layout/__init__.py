@@ -4,7 +4,7 @@ A `Page` is a verdict with key figures and a list of `Section`s: sentences, a ta
 `write_page` renders every page by one template and writes its tables beside it.
 """
 
-from matstd.report.layout.html import picture, write_page
+from matstd.report.layout.html import marked, picture, write_page
 from matstd.report.layout.pdf import Printer, printer, write_pdf
 from matstd.report.layout.section import (
     Heading,
@@ -25,6 +25,7 @@ __all__ = [
     "Printer",
     "Section",
     "Table",
+    "marked",
     "picture",
     "printer",
     "write_page",

@@ -6,12 +6,8 @@ readings, and the page multiplies the exact kinematics itself (`live/parts/kinem
 """
 
 from matstd.report.machine.error_series import ErrorFunction, error_functions
-from matstd.report.machine.machine_page import (
-    ShownMachine,
-    machine_data,
-    machine_html,
-    shown_lines,
-)
+from matstd.report.machine.machine_page import machine_data, machine_html
+from matstd.report.machine.machine_words import ShownMachine, shown_lines
 from matstd.report.machine.meshes import body_meshes, drawing_triangles, thinned
 from matstd.report.machine.played import Played, played_part, played_probing
 from matstd.report.machine.probing_page import PLAYBACK, write_playback

@@ -1,22 +1,26 @@
 """The page on which a machine moves: its data, its words, one file that loads nothing."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from matstd.report.layout import marked
 from matstd.report.live import TREE, packed, scripted, style
 from matstd.report.machine.chain_bodies import Letter, chain_bodies
 from matstd.report.machine.error_series import ErrorFunction
+from matstd.report.machine.machine_words import (
+    ShownMachine,
+    machine_lead,
+    machine_meaning,
+    machine_next,
+    machine_notes,
+)
 from matstd.report.machine.played import Played
 from matstd.report.machine.solids import Drawn
-from matstd.report.numbers import microns, plural
 from matstd.twin.machine import Chain, Family, parse_symbol
 from matstd.twin.units import UM
-from matstd.twin.words import listed
 
-PLAIN = "Bodies are drawn from the chain, not to scale."
 _LEAST_GRAIN = 0.05
 """Of the corners of bodies, mm."""
 _REACH = 32_000
@@ -27,43 +31,6 @@ _HELP = (
     "Drag the picture to turn it, with Shift to move it, wheel to zoom; or Tab to it and use the "
     "arrow keys, + and -."
 )
-_ASSUMED = (
-    "No errors are given. Listed are those that this machine can have, each linear over its travel "
-    "in the size expected of its class; switch them on."
-)
-_OWN_BODIES = "Bodies of {} are from your files."
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class ShownMachine:
-    """What a page of a machine shows.
-
-    Attributes:
-        length: Of the tool at first, mm.
-        duration: Over which the errors hold after the time of their state, s.
-        errors: As functions of the readings.
-        source: Where they are from; empty where none are given.
-        is_assumed: Whether sizes are those expected of the classes.
-        bodies: Beside the plain ones, or in place of them.
-        replaced: Links whose plain bodies are left out.
-        from_files: Links whose bodies are from the user's files.
-        program: That is played, if any.
-        datum: Readings and tool length of the preset, to which deviations may refer.
-        remarks: Sentences on the model.
-    """
-
-    chain: Chain
-    length: float
-    duration: float
-    errors: Sequence[ErrorFunction] = ()
-    source: str = ""
-    is_assumed: bool = False
-    bodies: Sequence[Drawn] = ()
-    replaced: Sequence[str] = ()
-    from_files: Sequence[str] = ()
-    program: Played | None = None
-    datum: tuple[np.ndarray, float] | None = None
-    remarks: Sequence[str] = ()
 
 
 def machine_html(shown: ShownMachine) -> str:
@@ -77,62 +44,16 @@ def machine_html(shown: ShownMachine) -> str:
     return environment.get_template("machine.html").render(
         title=f"{chain.name} in motion",
         heading=chain.name,
-        lead=_lead(shown),
-        notes=_notes(shown),
+        lead=machine_lead(shown),
+        means=marked(machine_meaning(shown)),
+        next=marked(machine_next(shown)),
+        notes=machine_notes(shown),
         picture=f"{chain.name}, {chain.notation}, with its tool point",
         help=_HELP,
         has_program=shown.program is not None,
         style=style(),
         script=scripted("machine", _data(shown, bodies, letters)),
     )
-
-
-def shown_lines(shown: ShownMachine) -> list[str]:
-    """What is on the page, for the console: counts, then what is left out."""
-    chain = shown.chain
-    count = plural(len(shown.errors), "error")
-    out = [f"{chain.name}: {count}" + (f" of {shown.source}" if shown.source else "")]
-    if shown.program is not None:
-        played = shown.program
-        out[0] += f", {plural(len(played), 'position')} of {listed(list(played.names[:3]))}"
-    return [*out, *(f"- {note}" for note in _own_notes(shown))]
-
-
-def _lead(shown: ShownMachine) -> str:
-    """What is seen, in a sentence or two."""
-    words = [f"Kinematic chain {shown.chain.notation}."]
-    if shown.program is not None:
-        words.append(f"Plays {listed(list(shown.program.names[:3]))}.")
-    if shown.source:
-        words.append(f"Errors of {shown.source}.")
-    words.append(PLAIN)
-    if shown.from_files:
-        words.append(_OWN_BODIES.format(listed(list(shown.from_files))))
-    return " ".join(words)
-
-
-def _notes(shown: ShownMachine) -> list[str]:
-    """What the user should know of the errors and of the machine."""
-    return [*_own_notes(shown), *shown.chain.remarks]
-
-
-def _own_notes(shown: ShownMachine) -> list[str]:
-    """The same without what the machine file leaves open."""
-    out = [_ASSUMED] if shown.is_assumed else []
-    out += [] if shown.errors or shown.is_assumed else ["No errors are given."]
-    missing = [one.name for one in shown.errors if one.left_out]
-    if missing:
-        out.append(
-            f"Not on this page: {listed(missing)}. They depend on more than three readings at once."
-        )
-    worst = max((s.off for one in shown.errors for s in one.series), default=0.0)
-    if worst > 0.01 * UM:
-        names = [e.name for e in shown.errors if any(s.off > 0.01 * UM for s in e.series)]
-        out.append(
-            f"Steps or kinks of {listed(names)} are drawn smoothed, by up to {microns(worst)} at "
-            "the poses that were checked."
-        )
-    return [*out, *shown.remarks]
 
 
 def _data(shown: ShownMachine, bodies: Sequence[Drawn], letters: Sequence[Letter]) -> TREE:

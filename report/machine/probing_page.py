@@ -11,7 +11,8 @@ from matstd.probe_paths.emit import ProgramSet
 from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.plan import TouchPlan
 from matstd.report.machine.error_series import ErrorFunction, error_functions
-from matstd.report.machine.machine_page import ShownMachine, machine_html
+from matstd.report.machine.machine_page import machine_html
+from matstd.report.machine.machine_words import ShownMachine
 from matstd.report.machine.played import played_probing
 from matstd.report.machine.set_up import SetUp, set_up_bodies, with_clearance
 from matstd.twin.files import write_whole

@@ -7,7 +7,7 @@ from matstd.artefact.worth import CriterionOptions
 from matstd.cad_out.making import FIRST_MODE, ROUGHNESS, SAG, Cutting, FaceHint, Making, Stiffness
 from matstd.cad_out.verify import Conformity
 from matstd.report.layout import Heading, Section, Table
-from matstd.report.numbers import digits, percent, um
+from matstd.report.numbers import digits, percent, plural, um
 from matstd.report.pages.design_result import Design
 from matstd.report.task import modulus_words, price_lines
 from matstd.twin.units import DEG, UM
@@ -134,6 +134,7 @@ def cad_sections(c: Conformity) -> list[Section]:
         ],
         ["volume", f"{c.volume / 1e3:.3f} cm³ re-read, {c.volume_built / 1e3:.3f} cm³ built"],
         ["mass", f"{c.mass:.2f} kg"],
+        *([["of parts", _parts_words(c)]] if c.parts else []),
         *(
             [["faces against design", f"{at_most(c.worst_face[1])}, {_HOW_FACES}"]]
             if c.face_deviation
@@ -153,6 +154,15 @@ def cad_sections(c: Conformity) -> list[Section]:
     return [
         Section(fold="CAD files, measured after writing", is_for_screen=True, table=Table((), rows))
     ]
+
+
+def _parts_words(c: Conformity) -> str:
+    """What the file of the second construction holds."""
+    kinds = {kind: sum(kind in name for name in c.parts) for kind in ("STUD", "BLOCK")}
+    return (
+        f"standard-parts.step: plate, {plural(kinds['STUD'], 'stud')} and "
+        f"{plural(kinds['BLOCK'], 'block')}, balls and screws; every solid valid and closed"
+    )
 
 
 def at_most(deviation: float) -> str:

@@ -75,7 +75,6 @@ def run_data(
         "curves": [_curve(law, c) for law, own in (curves or {}).items() for c in own],
         "isPrediction": findings.is_prediction,
         "body": _body(fit.run.touches, findings.body),
-        "isTrueBody": findings.body is not None,
         "switches": [_switch(s, findings.sizes.get(s.effect.name, "")) for s in board.switches],
         "estimate": packed(board.estimate, "f8"),
         "known": [

@@ -15,7 +15,7 @@ from matstd.artefact.hidden.smooth_effects import (
 from matstd.artefact.hidden.touches_that_show import _Choice, showing_touches
 from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.wavy import Wave, wavy_face
-from matstd.artefact.place.wavy_proof import showing_on_face, square_of
+from matstd.artefact.place.wavy_proof import showing_on_body, square_of
 from matstd.artefact.worth import each_at, face_grid
 from matstd.artefact.worth.calibration import Calibration
 from matstd.artefact.worth.touch_choice import touches_at
@@ -58,7 +58,7 @@ def test_gains_are_those_of_the_whole_measurement(scene):
 
 def test_chosen_touches_show_more_than_even_ones(scene):
     here, body, tried, given, at = scene
-    chosen = showing_on_face(here, body, tried, given, at, 30)
+    chosen = showing_on_body(here, body, tried, given, at, 30)
     even = tried[np.linspace(0, len(tried) - 1, 30).astype(int)]
     least = [
         hidden_power(here, measured_together([given, touched(one, UM)]), at, False).least_signal
@@ -84,4 +84,4 @@ def test_areas_with_too_few_places_leave_their_share_to_others(scene):
 def test_too_few_places_are_refused(scene):
     here, body, tried, given, at = scene
     with pytest.raises(NotReachable, match="20 places of the wavy face can be touched, 21 wanted"):
-        showing_on_face(here, body, tried[:20], given, at, 21)
+        showing_on_body(here, body, tried[:20], given, at, 21)

@@ -11,6 +11,7 @@ from matstd.artefact.body.standard import Base
 from matstd.artefact.hidden.scan_lines import Scan, scanned
 from matstd.artefact.hidden.scan_path import scan_path, write_scan_path
 from matstd.artefact.layout.blank import Blank
+from matstd.artefact.layout.upright import holes_on
 from matstd.artefact.layout.wavy import Wave, wavy_face
 from matstd.artefact.place.family import (
     Family,
@@ -162,3 +163,12 @@ def test_a_gap_in_a_line_begins_a_new_one(criterion):
     assert line.max() > 2 * whole[1].max()
     steps = np.linalg.norm(np.diff(points.point, axis=0), axis=1)
     assert steps[np.diff(line) == 0].max() < 1.5 * 2.5 / np.cos(45.0 * DEG)
+
+
+def test_screws_stand_round_the_middle():
+    """On three corners of a square the middle lies on a side, and the fourth corner swings."""
+    wide = replace(BLANK, base=Base((160.0, 160.0)))
+    a, b, c = (np.array([hole.x, hole.y]) for hole in holes_on(wide))
+    for p, q in ((a, b), (b, c), (c, a)):
+        (x, y), (u, v) = p, q - p
+        assert abs(x * v - y * u) / np.hypot(u, v) > 55.0

@@ -68,6 +68,17 @@ def test_volume_is_that_of_textbook_formulas(upright, built):
     assert built[1].volume == pytest.approx(by_hand, rel=2e-5)
 
 
+def test_the_parts_are_read_again(upright, built):
+    place, conformity, _ = built
+    kinds = {name: sum(name in part for part in conformity.parts) for name in ("STUD", "BLOCK")}
+    assert kinds == {"STUD": len(upright.spheres), "BLOCK": len(upright.patches)}
+    assert conformity.parts["PLATE"] == 1
+    assert conformity.parts["SPH1"] == 1
+    text = (place / "standard-parts.step").read_text()
+    assert "PRODUCT('PLATE'" in text
+    assert "PRODUCT('SPH1 STUD'" in text
+
+
 def test_the_stl_has_no_needles(built):
     trimesh = pytest.importorskip("trimesh")
     place, conformity, _ = built
@@ -216,7 +227,7 @@ def test_chord_error_of_a_triangle_on_a_sphere_is_its_sagitta(upright):
 def test_same_standard_gives_the_same_bytes(upright, built, tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONHASHSEED", "77")
     cad_out.verify.export_standard(upright, tmp_path, chord=0.02)
-    for name in FILES:
+    for name in (*FILES, "standard-parts.step"):
         assert (tmp_path / name).read_bytes() == (built[0] / name).read_bytes()
     reported = json.loads((tmp_path / "conformity.json").read_text())
     assert reported["faults"] == []

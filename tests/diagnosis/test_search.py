@@ -16,8 +16,10 @@ from matstd.diagnosis.evidence.effect_signatures import (
 from matstd.diagnosis.evidence.evidence import EffectSet, addition
 from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.search.further_parts import further_periods, tables
 from matstd.diagnosis.search.refine import refined
 from matstd.diagnosis.search.screening import MOST_SETS, Library, joined_shortlists
+from matstd.diagnosis.search.search_loop import clearly_best
 from matstd.diagnosis.search.selection import Search
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.library.ordinary import ordinary_model
@@ -150,6 +152,48 @@ def test_what_a_coarse_grid_leaves_is_no_second_effect(planted) -> None:
     (member,) = found.members
     assert all(abs(member.effect.tuning["tau"] / g - 1.0) > 1e-6 for g in grid)
     assert next(iter(member.effect.tuning.values())) == pytest.approx(tau, abs=MINUTE)
+
+
+def test_a_member_that_only_mops_up_falls_once_the_other_is_refined(planted) -> None:
+    """A lag at the wrong time constant leaves what a second lag of the same component takes up."""
+    space = planted({"thermal-lag(EZZ)": ((1500.0,), 5.0)})
+    search = search_in(space, ("thermal-lag(EZZ)", "thermal-lag(EZX)", "backlash(X)"))
+    lag, other = library(space, ("thermal-lag(EZZ)", "thermal-lag(EZX)"))
+    wrong, mop = ScaledEffect(lag.tuned(1100.0), 4.0), ScaledEffect(other.tuned(4000.0), 1.0)
+    both = search.evaluate([search.placed(wrong), search.placed(mop)])
+    alone = search.evaluate([search.placed(wrong)])
+    assert both.evidence > alone.evidence + POLICY.log_evidence_gain
+    assert names_of(search.needed(both)) == {"thermal-lag(EZZ)"}
+
+
+def test_a_later_way_must_predict_clearly_better() -> None:
+    share = POLICY.error_share
+    assert clearly_best([1.0, share + 1e-6], float) == 1.0
+    assert clearly_best([1.0, share - 1e-6], float) == share - 1e-6
+    assert clearly_best([1.0, 0.9, 0.89, 0.8], float) == 0.8
+
+
+def test_further_periods_are_asked_for_one_by_one_up_to_four(planted) -> None:
+    space = planted({})
+    (wave,) = library(space, ("periodic(EXX)",))
+    found, offered, names = [ScaledEffect(wave.tuned(10.0))], [wave], []
+    while wider := next(further_periods(space, found, offered), None):
+        names += wider.new
+        offered = list(wider.candidates)
+    assert names == [f"periodic(EXX)#{k}" for k in (2, 3, 4)]
+    assert not list(further_periods(space, [ScaledEffect(e) for e in library(space)], offered))
+
+
+def test_tables_that_only_a_remainder_asks_for_stand_alone(planted) -> None:
+    touches = planted({}).touches
+    stated = [parse_effect("position-table(EXX)", touches.chain)]
+    first, second = tables(touches, ["X_mm", "time_s"], stated, [])
+    assert (first.new, first.is_alone) == ({"position-table(EXX)"}, False)
+    assert "position-table(EYX)" in second.new
+    assert not first.new & second.new
+    assert second.is_alone
+    assert first.share == second.share == POLICY.error_share
+    assert not list(tables(touches, ["time_s"], [], []))
 
 
 def test_a_shortlist_of_a_long_run_is_a_value(planted, monkeypatch) -> None:

@@ -37,7 +37,7 @@ def test_a_machine_without_errors_lists_what_it_can_have(tmp_path, capsys):
     assert code == 0
     said = capsys.readouterr().out
     assert "49 errors" in said  # 71 without eleven of the spindle and eleven of set-up
-    assert "all are switched off" in said
+    assert "switch them on" in said
     assert "not to scale" in out.read_text(encoding="utf-8")
     # an earlier page is not overwritten unasked
     assert shown(tmp_path)[0] == 2

@@ -7,7 +7,7 @@ import time
 import numpy as np
 import pytest
 
-from matstd.commands.standard.design import PLAN
+from matstd.commands.standard.design import LINEAR_PLAN, PLAN
 from matstd.progress import _whole
 from matstd.time_left import TimeLeft
 
@@ -68,7 +68,9 @@ def test_a_stage_that_the_plan_does_not_know_changes_nothing():
 
 
 def test_the_shares_of_a_design_are_shares():
-    assert sum(PLAN.shares.values()) == pytest.approx(1.0)
+    for plan in (PLAN, LINEAR_PLAN):
+        assert sum(plan.shares.values()) == pytest.approx(1.0)
+    assert list(PLAN.shares) == list(LINEAR_PLAN.shares)
 
 
 def test_a_line_shows_the_stage_the_share_of_the_whole_and_the_time_left():

@@ -9,7 +9,7 @@ from browser import faults, opened, page_data, requests
 
 import matstd
 from matstd.compensation.field import MachineErrors, State
-from matstd.report.machine import ShownMachine, error_functions, machine_html
+from matstd.report.machine import Played, ShownMachine, error_functions, machine_html
 from matstd.report.machine.chain_bodies import chain_bodies
 from matstd.report.machine.error_series import series_at
 from matstd.report.machine.meshes import body_meshes, thinned
@@ -442,3 +442,58 @@ def test_the_data_are_those_of_the_machine(page, machine):
     found = page_data(text)
     assert [k["name"] for k in found["machine"]["links"]] == [k.name for k in machine.chain.links]
     assert len(found["symbols"]) == 71
+
+
+def boxed(html):
+    """Words of the box at the head."""
+    box = html.partition('<dl class="box">')[2].partition("</dl>")[0]
+    return box.replace("\xa0", " ").replace("<code>", "`").replace("</code>", "`")
+
+
+def test_the_box_states_what_the_errors_do_and_what_to_do(machine):
+    functions = error_functions(machine, LENGTH, SHIFT)
+    shown = ShownMachine(chain=machine.chain, length=LENGTH, duration=SHIFT, errors=functions)
+    largest = max(functions, key=lambda one: one.size)
+    said = boxed(machine_html(shown))
+    assert f"tool 150 mm): {title_of(largest)}" in said
+    assert f"{len(functions) - 3} other errors less each." in said
+    assert "`--program` plays" in said
+    assumed = boxed(machine_html(replace(shown, is_assumed=True)))
+    assert "not those of yours" in assumed
+    assert "`matstd show MACHINE.toml --model model.toml`" in assumed
+
+
+def title_of(one):
+    return f"displacement of the line of {one.name[-1]} along {one.name[1]} [{one.name}]"
+
+
+@pytest.mark.parametrize(
+    ("gap", "words"),
+    [
+        ([4.0, 2.5, 9.0], ("keeps 2.50 mm clear of every body; VICE is nearest, at line 7 of P1",
+                           "follow the set-up sheet")),
+        ([4.0, -0.5, 9.0], ("runs into VICE at line 7 of P1", "Do not run these programs")),
+        (None, ("Without", "`--standard STANDARD.toml`")),
+    ],
+)  # fmt: skip
+def test_the_box_of_a_playback_names_the_nearest_body(machine, gap, words):
+    count, whole = len(machine.chain.axes), np.arange(3)
+    played = Played(
+        names=("P1",),
+        texts=("",),
+        time=whole.astype(float),
+        q=np.zeros((3, count)),
+        sides=np.zeros((3, count), dtype=int),
+        length=np.full(3, LENGTH),
+        line=np.array([3, 7, 9]),
+        which=np.zeros(3, dtype=int),
+        touch=whole,
+        features=({1: "SPH1", 2: "SPH2"},),
+        clearance=None if gap is None else np.array(gap),
+        nearest=None if gap is None else np.array(["BASE", "VICE", "BASE"]),
+    )
+    shown = ShownMachine(chain=machine.chain, length=LENGTH, duration=SHIFT, program=played)
+    said = boxed(machine_html(shown))
+    first, then = words
+    assert then in said
+    assert (first in said) is (gap is not None)

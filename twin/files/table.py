@@ -29,7 +29,7 @@ MIN_HEATED_SHARE = 0.1
 KELVIN = (240.0, 350.0)
 """Readings that all lie between are those of a room in kelvin."""
 
-_BLOCK = 1 << 15
+_BYTES_A_BLOCK = 1 << 15
 """Bytes that are converted at once: more of them leave the cache (2^20: 1.5 times as long)."""
 
 _PLAIN = b"0123456789+-.eE, \t\n"
@@ -58,7 +58,7 @@ def _only_numbers(data: bytes, start: int, columns: int) -> Array | None:
     """
     parts = []
     while start < len(data):
-        stop = data.find(b"\n", start + _BLOCK) + 1 or len(data)
+        stop = data.find(b"\n", start + _BYTES_A_BLOCK) + 1 or len(data)
         block = data[start:stop].rstrip(b"\n")
         if block.translate(None, _PLAIN):  # what JSON would take for true, text or a list
             return None

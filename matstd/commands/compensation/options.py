@@ -2,12 +2,7 @@
 
 import argparse
 
-from matstd.options import add_effects
-
-
-def _several(parser: argparse.ArgumentParser, name: str, metavar: str, meaning: str) -> None:
-    """An option that takes one value or more, and none where it is not given."""
-    parser.add_argument(name, metavar=metavar, nargs="+", default=[], help=meaning)
+from matstd.options import add_effects, add_several
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:
@@ -24,7 +19,7 @@ def add_model(parser: argparse.ArgumentParser) -> None:
 
 def add_state(parser: argparse.ArgumentParser) -> None:
     """Datum, tool, workspace, state, switches."""
-    _several(
+    add_several(
         parser,
         "--datum",
         "AXIS=READING",
@@ -37,14 +32,14 @@ def add_state(parser: argparse.ArgumentParser) -> None:
         required=True,
         help="length of the datum tool, from the spindle gauge point to the tip",
     )
-    _several(
+    add_several(
         parser,
         "--within",
         "AXIS=LOW:HIGH",
         "workspace for which the result is evaluated (mm, degrees; default: the whole travel)",
     )
     add_driven(parser)
-    _several(
+    add_several(
         parser,
         "--switch",
         "WORD=FACTOR",
@@ -69,13 +64,13 @@ def add_driven(parser: argparse.ArgumentParser) -> None:
         default=0.0,
         help="minutes since the machine was switched on",
     )
-    _several(
+    add_several(
         parser,
         "--temperature",
         "SENSOR=DEGC",
         "sensor temperatures; effects with a time lag are taken as settled at them",
     )
-    _several(
+    add_several(
         parser,
         "--value",
         "COLUMN=NUMBER",
@@ -104,13 +99,13 @@ def add_driven(parser: argparse.ArgumentParser) -> None:
 
 def add_program(parser: argparse.ArgumentParser) -> None:
     """What a part program leaves open: its tools, M functions of the machine."""
-    _several(
+    add_several(
         parser,
         "--tool",
         "TOOL=MM",
         "tool lengths by number or name (default: the length of the datum tool)",
     )
-    _several(
+    add_several(
         parser,
         "--tool-radius",
         "TOOL=MM",

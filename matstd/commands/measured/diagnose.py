@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.options import add_measured, asked_printer, pitches, starting_model
+from matstd.options import add_measured, add_several, asked_printer, pitches, starting_model
 
 if TYPE_CHECKING:
     from matstd.api.diagnosing import Diagnosis
@@ -25,7 +25,6 @@ LISTS = (
     ("--only", "KIND", "search only for effects of these kinds or names"),
     ("--without", "KIND", "do not search for effects of these kinds or names"),
 )
-"""Options with one or more words, which may be given more than once."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -38,9 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "order of time",
     )
     for option, word, meaning in LISTS:
-        parser.add_argument(
-            option, metavar=word, action="extend", nargs="+", default=[], help=meaning
-        )
+        add_several(parser, option, word, meaning)
     parser.add_argument(
         "--auto",
         action="store_true",

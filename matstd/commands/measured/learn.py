@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.options import add_measured, asked_printer, pitches, starting_model
+from matstd.options import add_measured, add_several, asked_printer, pitches, starting_model
 
 if TYPE_CHECKING:
     from matstd.api.learning import LearntLaws
@@ -24,14 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="RUN2.csv",
         help="another run of the machine, in which the law is tried; nothing is learnt from it",
     )
-    parser.add_argument(
-        "--add",
-        metavar="EFFECT",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="effects that are in the model besides",
-    )
+    add_several(parser, "--add", "EFFECT", "effects that are in the model besides")
     add_measured(parser, "model in which a law is missing (default: the ordinary geometric model)")
 
 

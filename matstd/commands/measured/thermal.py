@@ -7,9 +7,6 @@ import argparse
 from matstd.options import add_output
 from matstd.twin.errors import DesignError
 
-STEP = 5.0
-"""Between two rows, min: machines drift in tens of minutes; shorter steps add no information."""
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
@@ -41,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--step-min",
         metavar="MIN",
         type=float,
-        default=STEP,
+        default=5.0,
         help="time step of the laws, minutes (5)",
     )
     parser.add_argument(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.options import add_effects, add_output, add_pdf, asked_printer
+from matstd.options import add_results, add_several, asked_printer
 
 if TYPE_CHECKING:
     from matstd.api.trending import Trend
@@ -20,20 +20,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="folder with at least three runs of one machine on one standard, or with their "
         "diagnoses or model files; or the files themselves",
     )
-    parser.add_argument(
-        "--add",
-        metavar="EFFECT",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="effects that are fitted to every run beside the geometry, and charted",
-    )
-    add_effects(parser)
-    parser.add_argument(
-        "--no-report", action="store_true", help="do not write the report page and its figures"
-    )
-    add_pdf(parser)
-    add_output(parser)
+    meaning = "effects that are fitted to every run beside the geometry, and charted"
+    add_several(parser, "--add", "EFFECT", meaning)
+    add_results(parser)
 
 
 def run(args: argparse.Namespace) -> int:

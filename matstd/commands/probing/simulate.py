@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from matstd.options import add_body, add_effects, add_output
+from matstd.options import add_body, add_effects, add_output, add_several
 
 if TYPE_CHECKING:
     from matstd.artefact.body import Standard
@@ -143,13 +143,11 @@ def add_planted(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--noise-um", type=float, default=1.0, help="standard deviation of one touch, µm (1.0)"
     )
-    parser.add_argument(
+    add_several(
+        parser,
         "--add",
-        metavar="EFFECT=SIZE",
-        action="extend",
-        nargs="+",
-        default=[],
-        help="simulate these effects, each size with its unit: "
+        "EFFECT=SIZE",
+        "simulate these effects, each size with its unit: "
         "'thermal-lag(EZZ)=25um,tau=18min', 'backlash(X)=3um', 'drift=X=2um/h'",
     )
     add_effects(parser)

@@ -88,7 +88,7 @@ function ladder() {
     rungs.push({ name: `+ ${on[k - 1].title}`, ...(last ? now : board.errors(on.slice(0, k))) });
   }
   rungs[rungs.length - 1].isNow = true;
-  if (!now.isAsFound) rungs.push({ name: data.isPrediction ? "as predicted" : "as found", ...board.asFound() });
+  if (hasOwn && !now.isAsFound) rungs.push({ name: data.isPrediction ? "as predicted" : "as found", ...board.asFound() });
   const most = 1.05 * Math.max(...rungs.map(r => Math.max(r.heldOut, r.fitted)), data.noise);
   showLadder(parts.ladder, { rungs, noise: data.noise, most, words, unit });
   const pinned = on.some(s => s.gain !== null);

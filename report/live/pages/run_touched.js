@@ -7,6 +7,7 @@ import { showTriad } from "../parts/triad.js";
 import { View3D, rgb } from "../parts/view3d.js";
 
 const MOST = 2.5;  // of the scale's end, the longest arrow
+const MANY = 5000;  // touches from which they are drawn small and plain
 const ARROW = 0.05;  // length of the arrow of the largest residual, over the size of the scene
 
 export class Touched {
@@ -31,14 +32,14 @@ export class Touched {
   }
 
   made() {
-    const { data } = this, t = data.touches, n = t.count;
-    this.view = new View3D(this.canvas, { camera: { turn: -1.1, tilt: 0.55 } });
+    const { data } = this, t = data.touches, n = t.count, isMany = n > MANY;
+    this.view = new View3D(this.canvas, { camera: { turn: -1.1, tilt: 0.55 }, isSmooth: !isMany });
     this.view.layers = [];
     this.body = data.body && this.view.mesh({ corners: data.body.values });
     this.dots = this.view.points({ positions: t.point.values, colours: new Uint8Array(3 * n),
-      size: n > 5000 ? 4 : 7 });
+      size: isMany ? 4 : 7 });
     this.view.fit();
-    this.arrows = this.view.lines({ positions: new Float32Array(6 * n), size: n > 5000 ? 1 : 2,
+    this.arrows = this.view.lines({ positions: new Float32Array(6 * n), size: isMany ? 1 : 2,
       colours: new Uint8Array(3 * n) });
     this.circle = this.view.points({ positions: new Float32Array(3), colours: new Uint8Array(3),
       size: 13, isVisible: false, isPickable: false });

@@ -2,6 +2,8 @@
 
 import { Solver, cubicWeights } from "./solver.js";
 
+const MOST_KEPT = 200;  // sets of which the errors are kept
+
 export class EffectBoard {
   /** data: of `report/run_view/run_data.py`, decoded. */
   constructor(data) {
@@ -9,6 +11,7 @@ export class EffectBoard {
     this.solver = new Solver(data.reduced);
     this.estimate = data.estimate.values;
     this.known = new Map(data.known.map(k => [k.on.join("\n"), k]));
+    this.kept = new Map();  // errors of sets: steps of a ladder come again after the next switch
     let first = 0;
     this.switches = data.switches.map(one => {
       const made = { ...one, first, at: one.inner ? one.inner.present : 0, gain: null };
@@ -99,6 +102,16 @@ export class EffectBoard {
 
   /** Errors of a set; of sets that were fitted to the touches the figures of that fit. */
   errors(on = this.on) {
+    const state = on.map(one => [one.name, one.value, one.gain, one.gain && [...one.pinned]]);
+    const key = JSON.stringify(state);
+    if (!this.kept.has(key)) {
+      if (this.kept.size > MOST_KEPT) this.kept.clear();
+      this.kept.set(key, this.solved(on));
+    }
+    return this.kept.get(key);
+  }
+
+  solved(on) {
     const { columns, own } = this.columns(on), found = this.solver.errors(columns);
     const known = this.isPlain(on) && this.known.get(on.map(one => one.name).sort().join("\n"));
     if (known) Object.assign(found, { fitted: known.fitted, heldOut: known.heldOut });

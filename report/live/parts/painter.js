@@ -2,7 +2,7 @@
 
 import { normalsOf } from "./normals.js";
 
-const MOST = 12000;  // triangles that a plain canvas paints in time; the others are left out
+const MOST = 30000;  // triangles that a plain canvas paints in time; the others are left out
 
 function byte(values) {
   return `rgb(${values.map(v => Math.round(Math.max(0, Math.min(255, v)))).join(",")})`;

@@ -10,14 +10,34 @@ function place(i, j, n) {
   return i <= j ? i * n - i * (i - 1) / 2 + j - i : j * n - j * (j - 1) / 2 + i - j;
 }
 
-/** T^T M T as a full matrix in rows; M: the triangle in `values` that begins at `first`. */
-export function mixed(values, first, n, columns) {
-  const k = columns.length, out = new Float64Array(k * k);
-  for (let a = 0; a < k; a++) {
-    for (let b = a; b < k; b++) {
+/** Which elements of a triangle of n rows make up the triangle of T^T M T, and with what weights. */
+function planned(columns, n) {
+  const at = [], by = [], ends = [];
+  columns.forEach((column, a) => columns.slice(a).forEach(other => {
+    for (const [i, w] of column) {
+      for (const [j, v] of other) {
+        at.push(place(i, j, n));
+        by.push(w * v);
+      }
+    }
+    ends.push(at.length);
+  }));
+  return { k: columns.length, at: Int32Array.from(at), by: Float64Array.from(by), ends };
+}
+
+/**
+ * T^T M T as a full matrix in rows; M: the sum of triangles, with their weights, that begin at
+ * `first`. Groups and steps of a ladder make this the inner loop: it holds nothing but numbers.
+ */
+function mixed(triangles, weights, first, { k, at, by, ends }) {
+  const out = new Float64Array(k * k);
+  for (let a = 0, m = 0, pair = 0; a < k; a++) {
+    for (let b = a; b < k; b++, pair++) {
       let sum = 0;
-      for (const [i, w] of columns[a]) {
-        for (const [j, v] of columns[b]) sum += w * v * values[first + place(i, j, n)];
+      for (; m < ends[pair]; m++) {
+        let value = 0;
+        for (let l = 0; l < triangles.length; l++) value += weights[l] * triangles[l][first + at[m]];
+        sum += by[m] * value;
       }
       out[a * k + b] = out[b * k + a] = sum;
     }
@@ -26,7 +46,7 @@ export function mixed(values, first, n, columns) {
 }
 
 /** Lower factor of Cholesky of a full matrix in rows. */
-export function factorised(S, k) {
+function factorised(S, k) {
   const L = new Float64Array(k * k);
   for (let i = 0; i < k; i++) {
     for (let j = 0; j <= i; j++) {
@@ -39,7 +59,7 @@ export function factorised(S, k) {
 }
 
 /** Solution of S x = b by its factor. */
-export function solved(L, k, b) {
+function solved(L, k, b) {
   const x = Float64Array.from(b);
   for (let i = 0; i < k; i++) {
     for (let m = 0; m < i; m++) x[i] -= L[i * k + m] * x[m];
@@ -85,15 +105,9 @@ export class Solver {
   }
 
   /** The named matrix of a set at a size of the noise; `weights`: of the terms, null for the first. */
-  matrix(name, columns, weights, size = this.size, first = 0) {
-    if (!weights) return mixed(this.first[name].values, first, size, columns);
-    let out = null;
-    weights.forEach((w, l) => {
-      const part = mixed(this.terms[l][name].values, first, size, columns);
-      if (!out) out = new Float64Array(part.length);
-      for (let i = 0; i < part.length; i++) out[i] += w * part[i];
-    });
-    return out;
+  matrix(name, plan, weights, first = 0) {
+    const triangles = (weights ? this.terms : [this.first]).map(term => term[name].values);
+    return mixed(triangles, weights || [1], first, plan);
   }
 
   number(name, weights) {
@@ -106,10 +120,10 @@ export class Solver {
    * c: of the set's columns in the residual; groups: error of each group left out.
    */
   errors(columns) {
-    const k = columns.length - 1, wide = k + 1;
+    const k = columns.length - 1, wide = k + 1, plan = planned(columns, this.size);
     let s = 1, weights = this.first ? null : this.shares(1), L, a, c;
     for (let left = MAX_PASSES - 1; left >= 0; left--) {
-      const G = this.matrix("G", columns, weights), H2 = this.matrix("H2", columns, weights);
+      const G = this.matrix("G", plan, weights), H2 = this.matrix("H2", plan, weights);
       const S = new Float64Array(k * k), whole = s * this.weight;
       for (let i = 0; i < k; i++) {
         for (let j = 0; j < k; j++) S[i * k + j] = G[i * wide + j] + (i === j ? whole ** 2 : 0);
@@ -124,10 +138,10 @@ export class Solver {
       s = better;
       weights = this.shares(s);
     }
-    const fitted = Math.sqrt(Math.max(quadratic(c, this.matrix("H1", columns, weights), wide), 0));
+    const fitted = Math.sqrt(Math.max(quadratic(c, this.matrix("H1", plan, weights), wide), 0));
     const spread = this.spread(L, k, s * this.weight);
     const held = this.isTested
-      ? this.ofTestRows(columns, c, weights) : this.leftOut(columns, c, L, k, weights);
+      ? this.ofTestRows(plan, c, weights) : this.leftOut(columns, plan, c, L, k, weights);
     return { fitted, s, estimate: a, spread, c, ...held };
   }
 
@@ -140,16 +154,16 @@ export class Solver {
     });
   }
 
-  ofTestRows(columns, c, weights) {
-    const square = quadratic(c, this.matrix("tested", columns, weights), columns.length);
+  ofTestRows(plan, c, weights) {
+    const square = quadratic(c, this.matrix("tested", plan, weights), plan.k);
     return { heldOut: Math.sqrt(Math.max(square, 0)), groups: [] };
   }
 
   /** Every group predicted by a fit to the others, and what that means for another run. */
-  leftOut(columns, c, L, k, weights) {
+  leftOut(columns, plan, c, L, k, weights) {
     const wide = k + 1, squares = [], { S } = this;
     for (let g = 0; g < this.groupSizes.length; g++) {
-      const F = this.matrix("F", columns, weights, this.size, g * this.triangle);
+      const F = this.matrix("F", plan, weights, g * this.triangle);
       const v = new Float64Array(k), own = new Float64Array(k * k);
       for (let i = 0; i < k; i++) {
         for (let j = 0; j < wide; j++) v[i] += F[i * wide + j] * c[j];
@@ -160,9 +174,8 @@ export class Solver {
       for (let i = 0; i < k; i++) square += v[i] * x[i];
       squares.push(square);
     }
-    const inner = columns.slice(0, k);
-    const H3 = k ? this.matrix("H3", inner, weights, this.size - 1) : new Float64Array(0);
-    const more = k ? traceSolved(L, k, H3, k) : 0;
+    const inner = planned(columns.slice(0, k), this.size - 1);
+    const more = traceSolved(L, k, this.matrix("H3", inner, weights), k);
     const newRun = this.number("newRun", weights) + this.weight ** 2 * more;
     const total = squares.reduce((sum, q) => sum + q, 0);
     return {

@@ -39,16 +39,17 @@ export class View3D {
   /**
    * @param canvas Element; it is given a tab stop and keys.
    * @param options camera: options of OrbitCamera; ground: colour behind, "#rrggbb";
-   *   isDrawn: true to do without WebGL (for tests and for machines that have none).
+   *   isSmooth: false for edges in steps, which a renderer without a graphics card draws in half of
+   *   the time; isDrawn: true to do without WebGL (for tests and for machines that have none).
    */
-  constructor(canvas, { camera = {}, ground = "#ffffff", isDrawn = false } = {}) {
+  constructor(canvas, { camera = {}, ground = "#ffffff", isSmooth = true, isDrawn = false } = {}) {
     this.canvas = canvas;
     this.layers = [];
     this.ground = ground;
     this.camera = new OrbitCamera(camera);
     this.afterDraw = () => {};
     this.isWaiting = false;
-    const wanted = { antialias: true, preserveDrawingBuffer: true };
+    const wanted = { antialias: isSmooth, preserveDrawingBuffer: true };
     const gl = isDrawn ? null : canvas.getContext("webgl2", wanted);
     this.drawer = gl ? new GlDrawer(gl) : new Painter(canvas.getContext("2d"));
     this.isGl = Boolean(gl);

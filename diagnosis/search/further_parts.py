@@ -33,11 +33,12 @@ MAX_PERIODS = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Offer:
-    """Candidates of a search of which some are new.
+class WiderSearch:
+    """A search with further candidates.
 
     Attributes:
-        new: Names of the new ones, of which the set must have one.
+        candidates: All of them.
+        new: Names of those that are new, of which the set must have one.
         start: A set to begin with.
         share: Held-out error with them, over that without, below which they are taken.
         is_alone: Whether only one of them may be taken, and only if nothing remains beside it.
@@ -52,7 +53,7 @@ class Offer:
 
 def one_period(
     complement: ResidualSpace, found: Sequence[ScaledEffect], offered: Sequence[Effect]
-) -> Iterator[Offer]:
+) -> Iterator[WiderSearch]:
     """Waves over one axis that are whole fractions of one period, as one error of that shape."""
     best = EffectSet(complement, projected(complement, found)).evidence + POLICY.log_evidence_gain
     start: tuple[ScaledEffect, ...] = ()
@@ -67,7 +68,7 @@ def one_period(
         gone = {s.effect.name for s in found} - {s.effect.name for s in start[:-1]}
         kept = (e for e in offered if e.name not in gone or traits(e).repetition == 1)
         comb = start[-1].effect
-        yield Offer((*kept, comb), frozenset([comb.name]), start)
+        yield WiderSearch((*kept, comb), frozenset([comb.name]), start)
 
 
 def _combs(complement: ResidualSpace, effect: Effect) -> Iterator[Effect]:
@@ -101,7 +102,7 @@ def _is_fraction(complement: ResidualSpace, effect: Effect, sines: Effect) -> bo
 
 def further_periods(
     complement: ResidualSpace, found: Sequence[ScaledEffect], offered: Sequence[Effect]
-) -> Iterator[Offer]:
+) -> Iterator[WiderSearch]:
     """A further period of every error that repeats: a screw and its encoder have two."""
     known = {e.name for e in offered}
     new: list[Effect] = []
@@ -110,7 +111,7 @@ def further_periods(
             copies = (repeat(effect, k) for k in range(2, MAX_PERIODS + 1))
             new += [c for c in copies if c is not None and c.name not in known][:1]
     if new:
-        yield Offer((*offered, *new), frozenset(e.name for e in new))
+        yield WiderSearch((*offered, *new), frozenset(e.name for e in new))
 
 
 def tables_along(touches: Touches, variables: Iterable[str]) -> Iterator[Effect]:
@@ -124,7 +125,7 @@ def tables_along(touches: Touches, variables: Iterable[str]) -> Iterator[Effect]
 
 def tables(
     touches: Touches, variables: Iterable[str], stated: Sequence[Effect], offered: Sequence[Effect]
-) -> Iterator[Offer]:
+) -> Iterator[WiderSearch]:
     """Tables, which say where an axis is wrong and not why.
 
     One is followed only where it predicts plainly better than what the laws came to: it can imitate
@@ -140,4 +141,4 @@ def tables(
     for new, is_alone in ((stated, False), (asked, True)):
         names = frozenset(e.name for e in new)
         if new and not names & {e.name for e in offered}:
-            yield Offer((*offered, *new), names, share=share, is_alone=is_alone)
+            yield WiderSearch((*offered, *new), names, share=share, is_alone=is_alone)
