@@ -72,7 +72,7 @@ class Policy:
         detection_power: Standard deviations of the statistic of each test above its threshold at
             the size that is called detectable, 91 %: an effect is found only if it exceeds chance
             and is ahead of its rivals and of drivers that were not recorded, which all happens in
-            four of five exactly simulated runs (at 1.05 in 71 % of 60).
+            four of five exactly simulated runs (at 1.05 in 71 % of 52).
     """
 
     false_alarm: float = 1e-3
