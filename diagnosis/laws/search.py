@@ -19,7 +19,6 @@ from matstd.diagnosis.laws.formulas import (
 )
 from matstd.diagnosis.laws.policy import LawPolicy
 from matstd.diagnosis.laws.screening import (
-    Bearer,
     Field,
     Found,
     curve_evidence,
@@ -31,6 +30,7 @@ from matstd.diagnosis.laws.screening import (
     waves_of,
 )
 from matstd.diagnosis.laws.space import Space
+from matstd.diagnosis.residual import Bearer
 from matstd.twin.laws import SHAPES, Driver, Factor, Law
 
 TOP_SINGLES, TOP_PAIRS, TOP_SQUARES = 14, 6, 2
