@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from matstd.diagnosis.laws.screening import Bearer, Field
+from matstd.diagnosis.laws.screening import Field
 from matstd.diagnosis.laws.space import MIN_OWN, Space
+from matstd.diagnosis.residual import Bearer
 from matstd.twin.frames import Array
 from matstd.twin.laws import SHAPES, Driver, Factor, Law, Shape, grid, shapes_of
 

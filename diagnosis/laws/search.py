@@ -19,7 +19,6 @@ from matstd.diagnosis.laws.formulas import (
 )
 from matstd.diagnosis.laws.policy import LawPolicy
 from matstd.diagnosis.laws.screening import (
-    Bearer,
     Field,
     Found,
     curve_evidence,
@@ -31,6 +30,7 @@ from matstd.diagnosis.laws.screening import (
     waves_of,
 )
 from matstd.diagnosis.laws.space import Space
+from matstd.diagnosis.residual import Bearer
 from matstd.twin.laws import SHAPES, Driver, Factor, Law
 
 TOP_SINGLES, TOP_PAIRS, TOP_SQUARES = 14, 6, 2
@@ -189,7 +189,7 @@ def _curves(
     """Laws without a formula: the best curves, alone or times a factor that a formula has."""
     out = []
     for f in one:
-        if len(np.unique(field.used(f.drivers[0], space))) > 2:
+        if f.length > 0.0:  # else the variable is a direction, or has two values
             law = with_curve(space, field, f.bearer, f.drivers[0], f.length, f.size)
             out.append(_curve_candidate(space, f.bearer, law, f.evidence - policy.tried_singles))
     products = [c for c in formulas if len(c.law.factors) == 2][:3]

@@ -31,6 +31,9 @@ from matstd.diagnosis.laws import (
 )
 from matstd.diagnosis.laws.learn import _by_rival as weighed
 from matstd.diagnosis.laws.library import LibraryEffect
+from matstd.diagnosis.laws.screening import field_of, singles
+from matstd.diagnosis.laws.search import _curves
+from matstd.diagnosis.laws.space import Space
 from matstd.report.laws import no_law_sentence
 from matstd.report.run_view import diagnosis_step
 from matstd.report.verdict import part_lines
@@ -143,6 +146,15 @@ def test_a_diagnosis_learns_the_law_of_what_remains(stylus, tmp_path) -> None:
     bare = diagnose(run, only=["backlash"], learn=False)
     assert bare.laws is None
     assert compare(second, found.model).rms < 0.9 * compare(second, bare.model).rms
+
+
+def test_no_curve_is_offered_over_a_direction(stylus) -> None:
+    """A temperature rises, falls or stays: three values, but no curve through them."""
+    space = Space.of(stylus[2].before)
+    field = field_of(space)
+    every = [f for f in singles(space, field) if f.drivers[0].nature == "sign"]
+    assert any(len(np.unique(field.used(f.drivers[0], space))) == 3 for f in every)
+    assert _curves(space, field, every, [], POLICY) == []
 
 
 @pytest.fixture(scope="module")
