@@ -99,7 +99,7 @@ def door_lines() -> list[str]:
         if getattr(thing, "__module__", "").startswith("matstd.api"):
             for method in methods(thing):
                 function = getattr(thing, method)  # a class method without its class
-                if inspect.isroutine(function) and not method.startswith("_"):
+                if callable(function) and not method.startswith("_"):
                     said = first_line(inspect.getdoc(function) or "")
                     lines.append(f"| `{signature(f'{name}.{method}', function)}` | {said} |")
             body = inspect.cleandoc(text).replace("\n", "\n    ")

@@ -72,9 +72,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         sys.stdout.flush()  # a disk that is full says so here, not when Python ends
         return code
     except BadArgument as error:  # named as the option, not as the argument of a function
-        option = str(error.facts["argument"]).replace("_", "-")
+        option = "--" + str(error.facts["argument"]).replace("_", "-")
+        forms = (option, option[1:3])  # --output and -o; what is neither is positional
+        is_option = any(word.partition("=")[0] in forms for word in arguments)
         text = str(error).partition(" ")[2]
-        print(f"matstd {args.command}: --{option} {text}", file=sys.stderr)
+        print(f"matstd {args.command}: {option + ' ' if is_option else ''}{text}", file=sys.stderr)
         return EXIT_BAD_INPUT
     except DesignError as error:
         print(f"matstd {args.command}: {error}", file=sys.stderr)

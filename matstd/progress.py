@@ -178,7 +178,7 @@ def _whole(out: TextIO, left: TimeLeft, period: float = PERIOD) -> Iterator[Prog
         stage = name
         left.report(name, done, total, time.monotonic())
 
-    with _told(out, period, lambda now: f"{stage}: {_percent(left, now)}"):
+    with _by_the_clock(out, period, lambda now: f"{stage}: {_percent(left, now)}"):
         yield show
 
 
@@ -234,12 +234,12 @@ def _lines(out: TextIO, period: float) -> Iterator[Progress]:
         raise_if_asked()
         state.report(stage, done, total, time.monotonic())
 
-    with _told(out, period, state.words):
+    with _by_the_clock(out, period, state.words):
         yield show
 
 
 @contextmanager
-def _told(out: TextIO, period: float, words: Callable[[float], str]) -> Iterator[None]:
+def _by_the_clock(out: TextIO, period: float, words: Callable[[float], str]) -> Iterator[None]:
     """A line by the clock while the block works."""
     begun, over = time.monotonic(), threading.Event()
 

@@ -15,7 +15,7 @@ from matstd.artefact.brief import PlacementOptions
 from matstd.artefact.layout import Blank, balls_fit, holes_on
 from matstd.artefact.place.body_choice import assembled
 from matstd.artefact.place.identifying import Base, Identifying
-from matstd.artefact.reach import Requests
+from matstd.artefact.reach import Mask, Requests
 from matstd.artefact.worth import (
     BallPlaces,
     Criterion,
@@ -26,6 +26,8 @@ from matstd.artefact.worth import (
 from matstd.twin.errors import NotBuildable, NotReachable
 from matstd.twin.frames import Array
 
+_MOST_COST = 1.02  # of a mean variance: 1 % of an error
+
 CANDIDATES_PER_TOUCH = 4
 """Touches on the balls that prove from which each is chosen."""
 
@@ -33,7 +35,10 @@ CANDIDATES_PER_TOUCH = 4
 def balls_alone(
     criterion: Criterion, places: BallPlaces, bases: Sequence[Base], options: PlacementOptions
 ) -> Identifying:
-    """The best balls with as many that prove as faces are wanted, or as many as fit.
+    """The best balls with as many that prove as faces are wanted, or fit, or hide few touches.
+
+    The largest number is taken that costs the criterion no more than `_MOST_COST` by a quick
+    choice of touches; of one set of balls at least one that proves, whatever it costs.
 
     Raises:
         NotBuildable: No ball that proves fits beside those that identify.
@@ -44,9 +49,12 @@ def balls_alone(
         for count in range(len(beside), 0, -1):
             try:
                 made = _standing([*base.balls, *beside[:count]], places.blank, options)
-                return _identifying(criterion, made, base, options)
+                tried, begin, value = _quick_choice(criterion, made, base, options)
             except (NotBuildable, NotReachable) as error:
                 refused.append(str(error))
+                continue
+            if count == 1 or not base.value or value <= _MOST_COST * base.value:
+                return _identifying(criterion, made, base, tried, begin, options)
     why = refused[-1] if refused else "no place is left"
     raise NotBuildable(f"no balls that prove beside those that identify: {why}")
 
@@ -81,8 +89,13 @@ def _standing(balls: list[DatumSphere], blank: Blank, options: PlacementOptions)
 
 
 def _most_apart(balls: Sequence[DatumSphere], places: BallPlaces, count: int) -> list[DatumSphere]:
-    """Candidate balls that can be touched, each as far as possible from all before it."""
-    there = [*balls, *(places.balls[k] for k in np.unique(places.group))]
+    """Candidate balls that can be touched, each as far as possible from all before it.
+
+    Only the lower half: a high post between the others hides their touches.
+    """
+    free = [places.balls[k] for k in np.unique(places.group)]
+    highest = np.median([ball.centre[2] for ball in free])
+    there = [*balls, *(ball for ball in free if ball.centre[2] <= highest)]
     centre, fits = np.stack([ball.centre for ball in there]), balls_fit(there, places.blank)
     chosen = list(range(len(balls)))
     for _ in range(count):
@@ -96,13 +109,25 @@ def _most_apart(balls: Sequence[DatumSphere], places: BallPlaces, count: int) ->
     return [replace(there[k], proves=True) for k in chosen[len(balls) :]]
 
 
-def _identifying(
+def _quick_choice(
     criterion: Criterion, made: Standard, base: Base, options: PlacementOptions
+) -> tuple[Requests, Mask, float]:
+    """Touches on the best balls that the new ones leave, a choice of them, and its value."""
+    own = tuple(ball for ball in made.spheres if not ball.proves)
+    poses, count = np.unique(base.touches.rotary, axis=0), options.choice.touches
+    tried = touches_to_choose_from(criterion.reach, made, own, poses, count)
+    return tried, *repaired_touches(criterion.on(made), tried, base.touches, options.choice)
+
+
+def _identifying(
+    criterion: Criterion,
+    made: Standard,
+    base: Base,
+    tried: Requests,
+    begin: Mask,
+    options: PlacementOptions,
 ) -> Identifying:
-    """The touches of the best balls, as far as the new ones leave them, improved."""
-    choice, own = options.choice, tuple(ball for ball in made.spheres if not ball.proves)
-    here, poses = criterion.on(made), np.unique(base.touches.rotary, axis=0)
-    tried = touches_to_choose_from(criterion.reach, made, own, poses, choice.touches)
-    begin, _ = repaired_touches(here, tried, base.touches, choice)
-    chosen, nearness = chosen_touches_on(here, tried, choice, begin=begin)
+    """The touches of a quick choice, improved."""
+    poses = np.unique(base.touches.rotary, axis=0)
+    chosen, nearness = chosen_touches_on(criterion.on(made), tried, options.choice, begin=begin)
     return Identifying(standard=made, poses=poses, tried=tried, chosen=chosen, nearness=nearness)

@@ -48,21 +48,22 @@ def needed_lengths(pool: Signatures, own: IntArray, prior: Array, E: Array, dof:
     chance = POLICY.false_alarm / (pool.tries[pool.owner[rivals]] * pool.tried)
     threshold = k * fdtri(k, dof, 1.0 - np.maximum(chance, 1e-15))
     alike = (share > ALIKE) | (pool.owner[rivals] == pool.owner[own][:, None])
-    rows, begin = np.arange(len(own)), threshold[np.searchsorted(rivals, own)]
+    begin = threshold[np.searchsorted(rivals, own)]
     out = np.full(len(own), np.inf)
     for factor in LENGTHS:
-        length = factor * begin
-        evidence = 0.5 * length[:, None] * share + prior[rivals]
+        left = np.flatnonzero(np.isinf(out))
+        length, part, rows = factor * begin[left], share[left], np.arange(len(left))
+        evidence = 0.5 * length[:, None] * part + prior[rivals]
         evidence = evidence - 0.5 * k * np.log1p(length[:, None] / k)
-        named = np.where(alike, evidence, -np.inf).argmax(axis=1)
-        explained = share[rows, named]
+        named = np.where(alike[left], evidence, -np.inf).argmax(axis=1)
+        explained = part[rows, named]
         seen = length * explained
         spread = np.sqrt((2.0 * k[named] + 4.0 * seen) * (1.0 + 0.5 * seen / dof))
         is_beyond = k[named] + seen - POLICY.detection_power * spread >= threshold[named]
-        ahead = evidence[rows, named][:, None] - np.where(alike, -np.inf, evidence)
-        apart = np.sqrt(length[:, None] * np.maximum(explained[:, None] - share, 0.0))
+        ahead = evidence[rows, named][:, None] - np.where(alike[left], -np.inf, evidence)
+        apart = np.sqrt(length[:, None] * np.maximum(explained[:, None] - part, 0.0))
         is_ahead = np.all(ahead >= POLICY.detection_power * apart, axis=1)
-        out = np.where(np.isinf(out) & is_beyond & is_ahead, length, out)
+        out[left] = np.where(is_beyond & is_ahead, length, np.inf)
     return out
 
 

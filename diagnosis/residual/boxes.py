@@ -63,15 +63,15 @@ class Bounded(NamedTuple):
     labels: tuple[str, ...] = ()
 
     @property
-    def count(self) -> int:
+    def size(self) -> int:
         """Number of bins."""
         return len(self.labels) or len(self.cuts) + 1
 
     @property
     def is_offered(self) -> BoolArray:
         """Whether bins i to k are a region, (B, B); of a label only single ones."""
-        square = np.ones((self.count, self.count), dtype=bool)
-        return np.eye(self.count, dtype=bool) if self.labels else np.triu(square)
+        square = np.ones((self.size, self.size), dtype=bool)
+        return np.eye(self.size, dtype=bool) if self.labels else np.triu(square)
 
     def inside(self, first: int, last: int) -> BoolArray:
         """Touches in some bins, both included, (N,)."""
@@ -84,7 +84,7 @@ class Bounded(NamedTuple):
             return
         if first > 0:
             yield Condition(self.name, Side.FROM, self.cuts[first - 1])
-        if last < self.count - 1:
+        if last < self.size - 1:
             yield Condition(self.name, Side.BELOW, self.cuts[last])
 
 
@@ -210,7 +210,7 @@ def rows_in(known: Sequence[Bounded], box: Box) -> BoolArray:
     return np.all([known[v].inside(*bins) for v, bins in box.items()], axis=0)
 
 
-def summed(parts: Array) -> Array:
+def summed(parts: Array | IntArray) -> Array:
     """Sums over bins i to k, both included, of parts (B,), (B, B)."""
     ends = np.concatenate([[0.0], np.cumsum(parts)])
     return np.asarray(ends[None, 1:] - ends[:-1, None])

@@ -136,14 +136,14 @@ class _Constant(NamedTuple):
 
     def gains(self, rows: BoolArray, variable: Bounded) -> Array:
         """As of `Measure`."""
-        space, labels = self.space, np.arange(variable.count)
+        space, labels = self.space, np.arange(variable.size)
         C = _white(space, (rows * self.column)[:, None] * (variable.bins[:, None] == labels))
         U = space.Q[: len(C)].T @ C
         whole = C.T @ C
         along = C.T @ (space.residual if self.drawing is None else self.drawing)[: len(C)]
         # sums over the square of bins i to k, from a table of sums
         own = square_sums(whole - U.T @ U)
-        enough = summed(np.bincount(variable.bins[space.used & rows], minlength=variable.count))
+        enough = summed(np.bincount(variable.bins[space.used & rows], minlength=variable.size))
         sound = (
             (enough >= MIN_TOUCHES)
             & (enough <= MAX_SHARE * len(space.u))
@@ -226,7 +226,7 @@ def _alike(
         drops.append(float(c @ space.residual) ** 2 / own if ok else 0.0)
     gains = _gain(space, np.array(drops))
     near = np.flatnonzero(gains > gains[best] - POLICY.log_odds_alike)
-    order = sorted(near, key=lambda k: (k != best, -gains[k]))
+    order = sorted(near.tolist(), key=lambda k: (k != best, -gains[k]))
     names = [b.name for k in order for b in (offered[k].carrier, *offered[k].alike)]
     return tuple(names[1:])
 
@@ -244,7 +244,7 @@ class _Scatter(NamedTuple):
 
     def gains(self, rows: BoolArray, variable: Bounded) -> Array:
         """As of `Measure`."""
-        own, k = variable.bins[rows & self.used], variable.count
+        own, k = variable.bins[rows & self.used], variable.size
         counts = summed(np.bincount(own, minlength=k))
         sums = summed(np.bincount(own, self.squares[rows & self.used], minlength=k))
         count, total = float(self.used.sum()), float(self.squares[self.used].sum())

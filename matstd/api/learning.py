@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 from pathlib import Path
 
 from matstd.api.diagnosing import named_effects
@@ -11,6 +12,7 @@ from matstd.api.standards import Probed, probed_body
 from matstd.diagnosis import laws
 from matstd.diagnosis.files import SavedModel, model_text, parsed_model
 from matstd.diagnosis.fit import prior_for
+from matstd.diagnosis.geometry import LearntGeometry, learnt_geometry
 from matstd.diagnosis.laws import SecondRun, learn_laws, second_run
 from matstd.diagnosis.search import DiagnosisTask, refined_named
 from matstd.report.laws import (
@@ -54,7 +56,13 @@ class LearntLaws(Saveable, laws.Learning):
         """Text of the model file, the laws in it."""
         made_with = f"material-standard {versions()['material-standard']}"
         promised = self.held_out[0].after if self.held_out else None
-        return model_text(self.after, self.title, None, made_with, promised)
+        known = [row for row in self.geometry.rows if row.is_determined]
+        return model_text(self.after, self.title, None, made_with, promised, determined=known)
+
+    @cached_property
+    def geometry(self) -> LearntGeometry:
+        """What the run says of the geometry, the laws in the model."""
+        return learnt_geometry(self.after)
 
     @property
     def model(self) -> SavedModel:

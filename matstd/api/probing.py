@@ -13,16 +13,16 @@ from matstd.artefact.body import Standard
 from matstd.diagnosis.remarks import body_sizes
 from matstd.effect_kinds import register_effects
 from matstd.probe_paths.campaign import (
-    FIRST_MORNING,
     Campaign,
     VirtualMachine,
     ball_changes,
     effective_radii,
     effects_over_record,
+    read_program_of,
     simulate_search,
 )
 from matstd.probe_paths.campaign import simulate as run_on_twin
-from matstd.probe_paths.control import ReadProgram, read_program, stated_probe
+from matstd.probe_paths.control import ReadProgram, stated_probe
 from matstd.probe_paths.language import read_dialect
 from matstd.report.words import ball_lines, remark_sentence
 from matstd.sensitivity.population import Population, drawn_errors
@@ -103,7 +103,7 @@ def virtual_machine(
         radius_error=probe.get("radius", 0.0),
         length_error=probe.get("length", 0.0),
         noise=noise,
-        begin=FIRST_MORNING if record is None else record.begin,
+        begin=VirtualMachine.begin if record is None else record.begin,
         dialect=read_dialect(control),
         temperature=_thermometers(record),
     )
@@ -222,9 +222,11 @@ def simulate(
     return Simulation(run, campaign, (*ball_lines(changes, radii=radii), *sizes, *run.remarks))
 
 
-def leaves_no_run(program: str | Path, machine: VirtualMachine) -> ReadProgram | None:
+def leaves_no_run(
+    program: str | Path, standard: Standard, machine: VirtualMachine
+) -> ReadProgram | None:
     """A search for the standard or a commissioning program, which leave a log alone; else None."""
-    read = read_program(program, machine.chain, dialect=machine.dialect)
+    read = read_program_of(standard, program, machine.chain, None, machine.dialect)
     return read if read.is_search or read.is_first else None
 
 

@@ -16,7 +16,7 @@ from matstd.probe_paths.campaign.ball_change import (
 )
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_points import foot_points
-from matstd.probe_paths.campaign.contact_solver import FIRST_MORNING, ContactSolver, VirtualMachine
+from matstd.probe_paths.campaign.contact_solver import ContactSolver, VirtualMachine
 from matstd.probe_paths.campaign.disturbances import effects_over_record, in_campaign
 from matstd.probe_paths.campaign.duration import probing_time
 from matstd.probe_paths.campaign.evaluation import ball_centres, evaluate, sag_remarks
@@ -28,10 +28,10 @@ from matstd.probe_paths.campaign.simulation import (
     simulate_search,
     visits,
 )
+from matstd.probe_paths.campaign.stamps import read_program_of
 from matstd.probe_paths.campaign.tolerance import setup_tolerance
 
 __all__ = [
-    "FIRST_MORNING",
     "BallChange",
     "Campaign",
     "ContactSolver",
@@ -51,6 +51,7 @@ __all__ = [
     "orders",
     "probing_time",
     "read_heights",
+    "read_program_of",
     "sag_remarks",
     "setup_tolerance",
     "simulate",

@@ -12,9 +12,9 @@ from matstd.probe_paths.campaign.as_programmed import with_program_lines
 from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.evaluation import evaluate
-from matstd.probe_paths.campaign.stamps import check_program_stamp
+from matstd.probe_paths.campaign.stamps import check_program_stamp, read_program_of
 from matstd.probe_paths.campaign.virtual_run import VirtualRun, run_programs
-from matstd.probe_paths.control import LogPart, ReadProgram, read_log, read_program
+from matstd.probe_paths.control import LogPart, ReadProgram, read_log
 from matstd.probe_paths.plan import Probe
 from matstd.twin.compute import Progress, silent
 from matstd.twin.record import Run
@@ -114,8 +114,7 @@ def visits(
     for done, program in enumerate(programs):
         if not isinstance(program, ReadProgram):
             progress("moves of the programs", done, len(programs))
-            program = read_program(program, chain, probe, dialect)
-            check_program_stamp(program, believed)
+            program = read_program_of(believed, program, chain, probe, dialect)
             check_moves(program, believed, chain)
         texts.append(program)
     out = []

@@ -4,13 +4,36 @@ Looked at before anything else: what follows from a wrong standard (a touch with
 in a post) would hide the cause.
 """
 
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
 from matstd.artefact.body import Standard
-from matstd.probe_paths.control import ReadProgram
-from matstd.probe_paths.plan import Heading, calibration_hash, stated_serial
-from matstd.twin.errors import DesignError
+from matstd.probe_paths.control import ReadProgram, read_program, stated_heading
+from matstd.probe_paths.language import Dialect
+from matstd.probe_paths.plan import Heading, Probe, calibration_hash, stated_serial
+from matstd.twin.errors import BadFile, DesignError
+from matstd.twin.machine import Chain
+
+
+def read_program_of(
+    standard: Standard, path: str | Path, chain: Chain, probe: Probe | None, dialect: Dialect
+) -> ReadProgram:
+    """A program that was written for a standard.
+
+    Raises:
+        BadFile: As of `read_program`.
+        DesignError: What the program was written for. Of a program for another machine this says
+            more than the first block that the machine cannot run.
+    """
+    try:
+        program = read_program(path, chain, probe, dialect)
+    except BadFile:
+        with suppress(BadFile):  # a head that cannot be read either
+            _check_name(path, stated_heading(path, dialect), standard)
+        raise
+    check_program_stamp(program, standard)
+    return program
 
 
 def check_program_stamp(program: ReadProgram, standard: Standard, believed: bool = True) -> None:

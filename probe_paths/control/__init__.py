@@ -6,7 +6,12 @@ takes (`ReadProgram`), and what one run of it logged (`LogPart`). Rules for sing
 """
 
 from matstd.probe_paths.control.clock import Clock, step_times
-from matstd.probe_paths.control.interpreter import interpret, read_program, stated_probe
+from matstd.probe_paths.control.interpreter import (
+    interpret,
+    read_program,
+    stated_heading,
+    stated_probe,
+)
 from matstd.probe_paths.control.log import BALL, FIRST, UNDATED, LogPart, read_log
 from matstd.probe_paths.control.motion import MAX_FEED
 from matstd.probe_paths.control.steps import (
@@ -40,6 +45,7 @@ __all__ = [
     "interpret",
     "read_log",
     "read_program",
+    "stated_heading",
     "stated_probe",
     "step_times",
 ]

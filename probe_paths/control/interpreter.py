@@ -68,11 +68,16 @@ def stated_probe(
     """The probe that a user states, mm; unstated values come from the program's head."""
     if radius is None and length is None:
         return None
-    head, _ = heading(read_blocks(_content(Path(path)), path, dialect), Path(path))
+    head = stated_heading(path, dialect)
     return Probe(
         head.probe.radius if radius is None else radius,
         head.probe.length if length is None else length,
     )
+
+
+def stated_heading(path: str | Path, dialect: Dialect | None = None) -> Heading:
+    """The head of a program, whatever machine its blocks are for."""
+    return heading(read_blocks(_content(Path(path)), path, dialect), Path(path))[0]
 
 
 def _content(path: Path) -> bytes:

@@ -36,7 +36,7 @@ def lengths(C, prior, tries=1):
 def test_without_rivals_it_is_the_power_of_the_f_test(tries) -> None:
     (length,) = lengths(np.eye(5)[:, :1], np.zeros(1), tries)
     threshold = f.isf(POLICY.false_alarm / (tries * TRIED), 1.0, DOF)
-    assert 0.83 < ncf.sf(threshold, 1.0, DOF, length) < 0.92
+    assert 0.88 < ncf.sf(threshold, 1.0, DOF, length) < 0.96
 
 
 @pytest.mark.parametrize("cosine", [0.6, 0.9])
@@ -49,7 +49,7 @@ def test_a_likelier_rival_that_does_less_than_alike_must_stay_behind(cosine) -> 
     r = np.random.default_rng(1).normal(size=(4000, 2)) + np.array([np.sqrt(length), 0.0])
     threshold = f.isf(POLICY.false_alarm / TRIED, 1.0, DOF)
     is_found = (r[:, 0] ** 2 > threshold) & (r[:, 0] ** 2 - (r @ rival) ** 2 > 2.0 * ahead)
-    assert 0.78 < is_found.mean() < 0.93
+    assert 0.8 < is_found.mean() < 0.96
 
 
 def test_a_rival_alike_counts_as_found() -> None:

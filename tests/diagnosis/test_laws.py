@@ -107,6 +107,10 @@ def test_the_command_writes_an_effect_that_the_other_commands_take(
     assert len(effect.read_text(encoding="utf-8").splitlines()) < 45
     ruff = [sys.executable, "-m", "ruff", "check", "-q", "--select", "E9,F", str(effect)]
     subprocess.run(ruff, check=True)
+    # what the run determines stands in the model, as in that of a diagnosis
+    determined = read_model(out / "model.toml").determined
+    assert determined
+    assert all(row.estimate.u > 0.0 for row in determined)
     model = ["--model", str(out / "model.toml"), "--no-report", "-o", str(tmp_path / "compared")]
     assert main(["compare", str(tmp_path / "two.csv"), *model]) == 0
     own = ["--effects", str(effect), "--no-report", "-o", str(tmp_path / "own")]

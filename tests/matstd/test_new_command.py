@@ -9,7 +9,7 @@ from matstd.artefact.reach.touchable import ProbeReach
 from matstd.artefact.worth.touch_criterion import random_touches
 from matstd.cli import main
 from matstd.commands.machine.new import MACHINES, TEMPLATES, template
-from matstd.stages.proposal import workspace
+from matstd.stages.proposal import Proposal, workspace
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.files.run_file import read_run
 from matstd.twin.library.catalogue import load_user_effects, parse_effect
@@ -165,6 +165,22 @@ def test_the_workspace_is_what_brings_the_tool_over_the_standard():
     assert found == {"X": [-190.0, 210.0], "Y": [-200.0, 200.0], "Z": [-340.0, -120.0]}
 
 
+@pytest.mark.parametrize(
+    ("table", "base", "share"),
+    [
+        ((1000.0, 500.0), 200.0, 0.08),
+        ((500.0,), 500.0 / np.sqrt(2.0), 2.0 / np.pi),
+        ((300.0,), 300.0, 1.0),
+        ((300.0, 200.0), 250.0, 250.0 / 300.0),
+    ],
+)
+def test_what_overhangs_covers_no_table(table, base, share):
+    made = Proposal(
+        text="", brief=None, table=table, is_assumed=False, larger=None, other_place=0.0
+    )
+    assert made.share_of_table(base) == pytest.approx(share, abs=0.01)
+
+
 def test_a_machine_that_is_too_small_is_reported_in_one_message(tmp_path, capsys):
     code, path = proposed("micro", tmp_path, "--table-mm", "40")
     assert code == 2
@@ -180,6 +196,10 @@ def test_a_machine_that_is_too_small_is_reported_in_one_message(tmp_path, capsys
         (["machine", "--machine", "m.toml"], "--machine m.toml: expected it with"),
         (["project", "--table-mm", "40"], "--table-mm 40: expected it with --machine alone"),
         (["project", "--machine", "m", "--table-mm", "0"], "--table-mm 0: expected a diameter"),
+        (
+            ["project", "--machine", "m", "--table-mm", "0.5"],
+            "--table-mm 0.5 (in metres?): expected",
+        ),
     ],
 )
 def test_options_that_do_not_belong_together_are_refused(words, expected, capsys):

@@ -167,6 +167,11 @@ def test_another_standard_is_refused(folder, small, capsys):
     write_standard(folder / "standard.toml", replace(small, name="L-2"))
     assert command(folder) == 2
     assert "was written for SMALL-1 (" in capsys.readouterr().err
+    # so is a program for another machine, whose blocks this one cannot run
+    program = folder / "programs" / "MS_A_1.H"
+    program.write_text(program.read_text().replace("L Z-1.0000", "L A-1.0000", 1))
+    assert command(folder) == 2
+    assert "was written for SMALL-1 (" in capsys.readouterr().err
 
 
 def evaluated(folder, *more, logs="logs"):

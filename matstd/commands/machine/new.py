@@ -32,6 +32,9 @@ MACHINES = (
 )
 """Kinds of machines with a template of their own."""
 
+IN_METRES = 10.0
+"""A table smaller than this, mm, is one in metres."""
+
 NEEDS_MACHINE = ("project", "run")
 """Kinds that name a machine file."""
 
@@ -105,6 +108,8 @@ def _check_table(args: argparse.Namespace) -> None:
     shown = " ".join(f"{value:g}" for value in size or ())
     if size is not None and (len(size) > 2 or min(size) <= 0.0):
         raise BadArgument("table_mm", shown, "a diameter or two sides in mm")
+    if size is not None and max(size) < IN_METRES:
+        raise BadArgument("table_mm", f"{shown} (in metres?)", "a diameter or two sides in mm")
     if size is not None and args.machine is None:
         raise BadArgument("table_mm", shown, "it with --machine alone")
 

@@ -74,7 +74,7 @@ def run(args: argparse.Namespace) -> int:
     refuse_to_overwrite(args.output, args.force)
     machine = planted_machine(args, args.machine, args.control, args.sensors)
     standard = read_standard(args.standard)
-    if program := leaves_no_run(args.programs[0], machine):
+    if program := leaves_no_run(args.programs[0], standard, machine):
         return _search(args, program, standard, machine)
     with stages() as show:
         found = simulate(
