@@ -13,7 +13,8 @@ does, `fit` estimates a model's parameters with it, `geometry` states what they 
 user. `accuracy` says how well the run repeats itself and what a model promises. `evidence` projects
 effects that are not in the model on what the fit leaves, and says how much a set of them explains;
 `faults` tries what users get wrong in a description. `residual` tests what is left for structure,
-and finds regions where a model fails. `laws` learns what is left as a law without a cause. `search`
+and finds regions where a model fails. `laws` learns what is left as a law without a cause,
+`next_visit` plans the visit that distinguishes it from its rivals. `search`
 finds sets of effects, `choice` takes the one that predicts best, `answer` turns it into a verdict
 with sizes and look-alikes. `reduced` keeps what the error of any set of effects follows from,
 without the touches. `task` evaluates visits to calibrated features for a user's measuring task.
@@ -36,6 +37,7 @@ PARTS = (
     "remarks",
     "residual",
     "laws",
+    "next_visit",
     "search",
     "choice",
     "answer",

@@ -232,7 +232,11 @@ RESULTS = {
         "diagnosis/files/fault_table.py",
         "diagnosis/files/parts_table.py",
     ],
-    "law.json": ["diagnosis/files/law_file.py", "diagnosis/laws/policy.py"],
+    "law.json": [
+        "diagnosis/files/law_file.py",
+        "diagnosis/files/plan_file.py",
+        "diagnosis/laws/policy.py",
+    ],
     "trend.json": ["diagnosis/charts/history_file.py"],
     "uncertainty.json": ["diagnosis/files/uncertainty_file.py"],
     "identification.json": ["report/identifiability/identification_file.py"],

@@ -9,12 +9,7 @@ from matstd.diagnosis.accuracy import promise, repeatability
 from matstd.diagnosis.answer.alike import period_value
 from matstd.diagnosis.answer.ambiguity import ConfusionClass
 from matstd.diagnosis.answer.detectable import detectable
-from matstd.diagnosis.answer.next_measurement import (
-    Plan,
-    candidate_targets,
-    candidate_touches,
-    plan,
-)
+from matstd.diagnosis.answer.next_measurement import Plan, plan
 from matstd.diagnosis.answer.parts import VerdictParts, verdict_parts
 from matstd.diagnosis.answer.remainder import (
     dependences,
@@ -48,6 +43,7 @@ from matstd.diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, qui
 from matstd.diagnosis.faults import description_faults
 from matstd.diagnosis.fit import Fit, Prior, prior_for
 from matstd.diagnosis.geometry import learnt_geometry
+from matstd.diagnosis.next_visit import candidate_targets, candidate_touches
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import GrossErrors
 from matstd.diagnosis.remarks import Remark, What, noticed, remarks

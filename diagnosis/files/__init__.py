@@ -5,7 +5,7 @@
 sentences from the caller: prose is made in `report`.
 """
 
-from matstd.diagnosis.files.diagnosis_file import comparison_table, diagnosis_table, plan_text
+from matstd.diagnosis.files.diagnosis_file import comparison_table, diagnosis_table
 from matstd.diagnosis.files.law_file import law_table
 from matstd.diagnosis.files.model_file import (
     SavedModel,
@@ -14,6 +14,7 @@ from matstd.diagnosis.files.model_file import (
     read_model,
 )
 from matstd.diagnosis.files.model_writer import model_of, model_text
+from matstd.diagnosis.files.plan_file import plan_text, visit_text
 from matstd.diagnosis.files.uncertainty_file import write_uncertainty
 
 __all__ = [
@@ -27,5 +28,6 @@ __all__ = [
     "parsed_model",
     "plan_text",
     "read_model",
+    "visit_text",
     "write_uncertainty",
 ]

@@ -12,14 +12,12 @@ from matstd.diagnosis.files.fault_table import fault_table
 from matstd.diagnosis.files.geometry_table import geometry_table
 from matstd.diagnosis.files.law_file import learnt_table
 from matstd.diagnosis.files.parts_table import parts_table, promise_table, repeatability_table
+from matstd.diagnosis.files.plan_file import planned
 from matstd.diagnosis.files.trend_table import trend_table
 from matstd.diagnosis.fit import Fit, file_unit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import Condition, Region, Side, Wrong
-from matstd.twin.files import reading_columns
 from matstd.twin.numbers import significant
-from matstd.twin.record import Touches
-from matstd.twin.text import csv_text
 from matstd.twin.units import UM, URAD
 
 FORMAT = "diagnosis/1"
@@ -252,27 +250,6 @@ def _plan(plan: Plan) -> dict[str, Any]:
     return {"tells_apart": list(plan.distinguishes), "touches": planned(plan.touches)}
 
 
-def planned(touches: Touches) -> list[dict[str, Any]]:
-    """Touches to be made, with the columns of a run file."""
-    names = reading_columns(touches.chain)
-    out = []
-    for i in range(len(touches)):
-        row: dict[str, Any] = {
-            "feature": str(touches.feature[i]),
-            "setup": touches.setups[touches.setup[i]].name,
-            "pose": int(touches.pose[i]),
-            "time_s": round(float(touches.time[i]), 1),
-        }
-        for axis in touches.chain.programmed_axes:
-            column, factor = names[axis]
-            row[column] = round(float(touches.reading(axis)[i]) / factor, 6)
-        row |= {f"p{c}_mm": round(float(touches.point[i, k]), 6) for k, c in enumerate("xyz")}
-        row |= {f"n{c}": round(float(touches.normal[i, k]), 9) for k, c in enumerate("xyz")}
-        row |= {f"dir{axis}": int(touches.last_move(axis)[i]) for axis in touches.chain.rotary_axes}
-        out.append(row)
-    return out
-
-
 def _group(group: GroupResidual) -> dict[str, Any]:
     return {
         "name": group.name,
@@ -281,10 +258,3 @@ def _group(group: GroupResidual) -> dict[str, Any]:
         "rms_um": _um(group.rms),
         "normalised_rms": significant(group.normalised),
     }
-
-
-def plan_text(plan: Plan) -> str:
-    """A plan as a table with the columns of a run file, for writing the program."""
-    rows = planned(plan.touches)
-    head = f"# to distinguish {plan.distinguishes[0]} from {plan.distinguishes[1]}\n"
-    return head + csv_text(rows[0], (row.values() for row in rows))

@@ -4,8 +4,10 @@ from typing import Any
 
 import numpy as np
 
+from matstd.diagnosis.files.plan_file import visit_table
 from matstd.diagnosis.fit import file_unit
 from matstd.diagnosis.laws import Estimate, Learning, LearntLaw, SecondRun, amplitudes, places
+from matstd.diagnosis.next_visit import VisitPlan
 from matstd.twin.laws import Law
 from matstd.twin.units import DEG, UM
 
@@ -15,7 +17,9 @@ _PLACES = {"mm": ("mm", 1.0), "rad": ("deg", DEG), "s": ("s", 1.0)}
 """Unit of a parameter of a shape in files, and one of it in the base unit."""
 
 
-def law_table(learning: Learning, run_name: str, second: SecondRun | None = None) -> dict[str, Any]:
+def law_table(
+    learning: Learning, run_name: str, visit: VisitPlan, second: SecondRun | None = None
+) -> dict[str, Any]:
     """Everything of `law.json`, in the units that stand in its names."""
     fit, policy = learning.after, learning.policy
     table: dict[str, Any] = {
@@ -32,6 +36,7 @@ def law_table(learning: Learning, run_name: str, second: SecondRun | None = None
             {"blocks": h.what, "without_um": h.before / UM, "with_um": h.after / UM}
             for h in learning.held_out
         ],
+        "next_visit": visit_table(visit),
         "policy": {name: getattr(policy, name) for name in policy.__dataclass_fields__},
     }
     if learning.refused is not None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, fields
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,9 @@ from matstd.api.saved import (
     FOUND,
     LAW,
     REPORT_FILES,
+    VISIT,
     Saveable,
+    next_visit,
     write_found_arm,
     write_learnt,
 )
@@ -32,6 +35,7 @@ from matstd.diagnosis.files import (
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry import learnt_geometry
 from matstd.diagnosis.laws import learn_remainder
+from matstd.diagnosis.next_visit import VisitPlan
 from matstd.report.pages import Printer, write_compare_page, write_diagnosis_page, write_pdf
 from matstd.report.run_view import Framed, comparison_view, diagnosis_view
 from matstd.report.words import (
@@ -73,7 +77,7 @@ class Diagnosis(Saveable, answer.Diagnosis):
     """
 
     sometimes = (
-        "next_measurement_*.csv", FOUND, EFFECT, LAW, "pictures/*.png", *REPORT_FILES
+        "next_measurement_*.csv", FOUND, EFFECT, LAW, VISIT, "pictures/*.png", *REPORT_FILES
     )  # fmt: skip
     before: SavedModel | None = None
     title: str = ""
@@ -120,6 +124,11 @@ class Diagnosis(Saveable, answer.Diagnosis):
 
         return compensate(self, **options)
 
+    @cached_property
+    def visit(self) -> VisitPlan | None:
+        """The visit that distinguishes learnt laws from their rivals; None without a law."""
+        return next_visit(self.laws) if self.laws and self.laws.laws else None
+
     def write(self, folder: Path) -> str:
         """Write diagnosis.json, model.toml and plans of touches; as of `Saveable`."""
         with deviations_in(self.run.touches.deviation_unit):
@@ -128,8 +137,8 @@ class Diagnosis(Saveable, answer.Diagnosis):
             write_whole(folder / "model.toml", self.model_text)
             for i, plan in enumerate(self.plans, start=1):
                 write_whole(folder / f"next_measurement_{i}.csv", plan_text(plan))
-            if self.laws is not None and self.laws.laws:
-                write_learnt(folder, self.laws, self.title)
+            if self.laws is not None and self.visit is not None:
+                write_learnt(folder, self.laws, self.title, self.visit)
             return write_found_arm(folder, self.fit, self.title)
 
     def live(self) -> Framed:
@@ -142,7 +151,7 @@ class Diagnosis(Saveable, answer.Diagnosis):
         """Write the page into an existing folder."""
         with deviations_in(self.run.touches.deviation_unit):
             rng = np.random.default_rng(0)
-            write_diagnosis_page(self, folder, self.title, rng, self.auto, self.body)
+            write_diagnosis_page(self, folder, self.title, rng, self.auto, self.body, self.visit)
             if printed_by is not None:
                 write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 

@@ -7,13 +7,14 @@ from pathlib import Path
 
 from matstd.api.diagnosing import named_effects
 from matstd.api.runs import GEOMETRY, Runs, StartingModel, read_run, starting_run
-from matstd.api.saved import EFFECT, REPORT_FILES, Saveable, write_learnt
+from matstd.api.saved import EFFECT, REPORT_FILES, VISIT, Saveable, next_visit, write_learnt
 from matstd.api.standards import Probed, probed_body
 from matstd.diagnosis import laws
 from matstd.diagnosis.files import SavedModel, model_text, parsed_model
 from matstd.diagnosis.fit import prior_for
 from matstd.diagnosis.geometry import LearntGeometry, learnt_geometry
 from matstd.diagnosis.laws import SecondRun, learn_laws, second_run
+from matstd.diagnosis.next_visit import VisitPlan
 from matstd.diagnosis.search import DiagnosisTask, refined_named
 from matstd.report.laws import (
     effect_text,
@@ -46,7 +47,7 @@ class LearntLaws(Saveable, laws.Learning):
         ((), '')
     """
 
-    sometimes = (EFFECT, "pictures/*.png", *REPORT_FILES)
+    sometimes = (EFFECT, VISIT, "pictures/*.png", *REPORT_FILES)
     second: SecondRun | None = None
     title: str = ""
     body: Array | None = None
@@ -74,10 +75,15 @@ class LearntLaws(Saveable, laws.Learning):
         """Text of `effect.py`; "" where no law was learnt."""
         return effect_text(self, self.title) if self.laws else ""
 
+    @cached_property
+    def visit(self) -> VisitPlan:
+        """The visit after which the odds between the laws and their rivals are largest."""
+        return next_visit(self)
+
     def write(self, folder: Path) -> str:
-        """Write law.json, model.toml and, with a law, effect.py; as of `Saveable`."""
+        """Write law.json, model.toml, effect.py of a law, next_visit.csv; as of `Saveable`."""
         with deviations_in(self.after.run.touches.deviation_unit):
-            write_learnt(folder, self, self.title, self.second)
+            write_learnt(folder, self, self.title, self.visit, self.second)
             write_whole(folder / "model.toml", self.model_text)
         return ""
 
@@ -91,7 +97,7 @@ class LearntLaws(Saveable, laws.Learning):
         """Write the page into an existing folder."""
         with deviations_in(self.after.run.touches.deviation_unit):
             live = learnt_view(self, self.title, self.body)
-            write_law_page(self, folder, self.title, self.second, live)
+            write_law_page(self, folder, self.title, self.visit, self.second, live)
             if printed_by is not None:
                 write_pdf(folder / "report.html", folder / "report.pdf", printed_by)
 

@@ -4,10 +4,13 @@ from abc import ABC, abstractmethod
 from pathlib import Path
 from typing import ClassVar
 
-from matstd.diagnosis.files import law_table
+import numpy as np
+
+from matstd.diagnosis.files import law_table, visit_text
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry import found_arm
 from matstd.diagnosis.laws import Learning, SecondRun
+from matstd.diagnosis.next_visit import VisitPlan, plan_visit
 from matstd.importers import machine_text
 from matstd.report.laws import effect_text
 from matstd.report.numbers import microns
@@ -18,8 +21,9 @@ from matstd.twin.files.whole import write_json
 REPORT_FILES = ("report.html", "report.pdf", "tables.xlsx", "tables/*.csv")
 """Files of a page that not every run of a command leaves."""
 
-EFFECT, LAW = "effect.py", "law.json"
-"""Files of a law that was learnt: as an effect of the user's own, and for other programs."""
+EFFECT, LAW, VISIT = "effect.py", "law.json", "next_visit.csv"
+"""Files of a law that was learnt: as an effect of the user's own, for other programs, and the
+touches that distinguish it from its rivals."""
 
 FOUND = "machine_found.toml"
 """Machine file of a serial arm with the lines of all joints as found."""
@@ -85,13 +89,22 @@ def write_found_arm(folder: Path, fit: Fit, title: str) -> str:
     )
 
 
-def write_learnt(folder: Path, laws: Learning, title: str, second: SecondRun | None = None) -> None:
-    """Write law.json and, with a law, effect.py.
+def next_visit(laws: Learning) -> VisitPlan:
+    """The visit that distinguishes laws from their rivals; the same plan every time."""
+    return plan_visit(laws, np.random.default_rng(0))
+
+
+def write_learnt(
+    folder: Path, laws: Learning, title: str, visit: VisitPlan, second: SecondRun | None = None
+) -> None:
+    """Write law.json and, with a law, effect.py; next_visit.csv where touches are planned.
 
     Args:
         title: Names of the runs.
         second: What a second run says of the laws.
     """
-    write_json(folder / LAW, law_table(laws, title, second))
+    write_json(folder / LAW, law_table(laws, title, visit, second))
     if laws.laws:
         write_whole(folder / EFFECT, effect_text(laws, title))
+    if text := visit_text(visit):
+        write_whole(folder / VISIT, text)

@@ -14,6 +14,7 @@ from matstd.report.laws.law_words import (
     second_run_sentence,
     size_words,
 )
+from matstd.report.laws.visit_words import visit_sentences
 
 __all__ = [
     "LawCurve",
@@ -29,5 +30,6 @@ __all__ = [
     "rival_sentence",
     "second_run_sentence",
     "size_words",
+    "visit_sentences",
     "write_law_page",
 ]

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.diagnosis.laws import Estimate, Learning, LearntLaw, SecondRun, amplitudes, places
+from matstd.diagnosis.next_visit import VisitPlan
 from matstd.report.laws.law_pictures import draw_before_after, draw_law
 from matstd.report.laws.law_words import (
     amplitude_words,
@@ -24,6 +25,7 @@ from matstd.report.laws.law_words import (
     second_run_sentence,
     variable_words,
 )
+from matstd.report.laws.visit_words import visit_section
 from matstd.report.layout import KeyFigure, LiveView, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import digits, microns, sentence
 from matstd.twin.units import UM
@@ -45,6 +47,7 @@ _NEXT = (
     "Try it on another run: `matstd compare RUN.csv --model model.toml --effects effect.py`; only "
     "then compensate with it."
 )
+_VISIT = "Probe `next_visit.csv` and learn from both runs, to distinguish the law from its rivals."
 _WITHOUT = "Record what could cause it (a temperature, a load, a speed) and probe again."
 _FOOT = (
     "Uncertainties are standard uncertainties (k = 1) of the fit with all parameters of the law; "
@@ -56,12 +59,14 @@ def write_law_page(
     learning: Learning,
     folder: str | Path,
     title: str,
+    visit: VisitPlan,
     second: SecondRun | None,
     live: LiveView | None = None,
 ) -> None:
     """Write `report.html` and its pictures into a folder.
 
     Args:
+        visit: That distinguishes the laws from their rivals.
         live: View in which the laws are switched; None for a page of pictures.
     """
     page = Page(
@@ -69,24 +74,26 @@ def write_law_page(
         heading=f"What the model leaves of {title}",
         lead=_lead(learning),
         means=_meaning(learning),
-        next=_NEXT if learning.laws else _WITHOUT,
+        next=_next(learning, visit),
         key=_key(learning, second),
-        sections=law_sections(learning, second),
+        sections=law_sections(learning, visit, second),
         foot=[_FOOT],
         live=live,
     )
     write_page(Path(folder) / PAGE, page)
 
 
-def law_sections(learning: Learning, second: SecondRun | None = None) -> list[Section]:
-    """What was learnt: every law with its picture and its rivals, and the error elsewhere."""
+def law_sections(
+    learning: Learning, visit: VisitPlan | None, second: SecondRun | None = None
+) -> list[Section]:
+    """What was learnt: every law with picture and rivals, the next visit, the error elsewhere."""
     if not learning.laws:
         return [Section(sentences=[no_law_sentence(learning)])]
     instead = instead_sentence(learning)
     out = [Section(sentences=[f"**{instead}**", _WHAT] if instead else [_WHAT])]
     for i, one in enumerate(learning.laws, start=1):
         out += _law_sections(learning, one, i)
-    return [*out, _held_out(learning, second)]
+    return [*out, *(visit_section(visit) if visit else []), _held_out(learning, second)]
 
 
 def _meaning(learning: Learning) -> str:
@@ -99,6 +106,12 @@ def _meaning(learning: Learning) -> str:
         "The law predicts touches that were not fitted. It is no cause: it holds where it was "
         "learnt, and a named effect with the same form may replace it."
     )
+
+
+def _next(learning: Learning, visit: VisitPlan) -> str:
+    if not learning.laws:
+        return _WITHOUT
+    return _NEXT if visit.touches is None else f"{_VISIT} {_NEXT}"
 
 
 def _lead(learning: Learning) -> str:

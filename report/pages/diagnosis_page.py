@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.diagnosis.answer import Diagnosis, Step, Verdict
+from matstd.diagnosis.next_visit import VisitPlan
 from matstd.report.effects import class_words, effect_cell
 from matstd.report.geometry import fault_sentences, geometry_sections
 from matstd.report.laws import law_sections
@@ -70,6 +71,7 @@ def write_diagnosis_page(
     rng: np.random.Generator,
     is_saved: bool = False,
     body: Array | None = None,
+    visit: VisitPlan | None = None,
 ) -> Path:
     """Write `report.html` and its pictures into a folder.
 
@@ -80,6 +82,7 @@ def write_diagnosis_page(
         rng: Shuffles residuals, to show what chance produces.
         is_saved: Whether the model file has what was found.
         body: Triangles of what was probed, where it is known.
+        visit: That distinguishes laws from their rivals, where laws were learnt.
     """
     fits = [("starting model", result.start)]
     fits += [("final model", result.fit)] if len(result.steps) > 1 else []
@@ -94,7 +97,7 @@ def write_diagnosis_page(
             *trend_sections(result.trend),
             _steps(result),
             *(_effect(result, i) for i in range(1, len(result.steps))),
-            *_learnt(result),
+            *_learnt(result, visit),
             Section(pictures=on_standard(result.run.touches, *fits)),
             *geometry_sections(result.run.touches, result.geometry),
             *(_unexplained(result, rng) if is_open(result) else ()),
@@ -215,12 +218,12 @@ def _effect(result: Diagnosis, i: int) -> Section:
     )
 
 
-def _learnt(result: Diagnosis) -> list[Section]:
+def _learnt(result: Diagnosis, visit: VisitPlan | None) -> list[Section]:
     """The laws of what remains, where they were looked for."""
     if result.laws is None:
         return []
     heading = "Learnt from what remains"
-    return [Section(heading), *law_sections(result.laws)]
+    return [Section(heading), *law_sections(result.laws, visit)]
 
 
 def _unexplained(result: Diagnosis, rng: np.random.Generator) -> list[Section]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from matstd.diagnosis.answer.next_measurement import APPROACH_CONE, candidate_touches
+from matstd.diagnosis.next_visit.offers import APPROACH_CONE, candidate_touches
 from matstd.twin.machine.kinematics import tip
 from matstd.twin.units import NM
 

@@ -199,22 +199,32 @@ def plan_pose(rng, machine, pads, stated, tilt, turned):
     return {k: v[rows] for k, v in q.items()}, pad[rows], (x[rows], y[rows])
 
 
-def temperatures(rng, t):
-    """Six sensors: the room, three scales, the spindle, the standard."""
+def from_cold(t):
+    """Share of a body's rise at times t, from a cold start on, by its time constant."""
+    return lambda tau: 1 - np.exp(-t / tau)
+
+
+def temperatures(rng, t, risen=None):
+    """Six sensors: the room, three scales, the spindle, the standard.
+
+    Args:
+        rng: Source of the phases of the weather.
+        t: Time from the first touch on, s.
+        risen: Share of a body's rise by its time constant; None for a cold start.
+    """
+    risen = risen or from_cold(t)
     phase = rng.uniform(0.0, 2.0 * np.pi, 4)
     ambient = 20.0 + 1.2 * np.sin(2 * np.pi * t / 18000.0 + phase[0]) + 3.6e-5 * t
     return {
         "ambient": ambient,
-        "scaleX": 20.0 + 2.5 * (1 - np.exp(-t / 3800.0)) + 0.5 * (ambient - 20.0),
+        "scaleX": 20.0 + 2.5 * risen(3800.0) + 0.5 * (ambient - 20.0),
         "scaleY": 20.0
-        + 3.0 * (1 - np.exp(-t / 5200.0))
+        + 3.0 * risen(5200.0)
         + 0.3 * (ambient - 20.0)
         + 0.3 * np.sin(2 * np.pi * t / 7100.0 + phase[1]),
         "scaleZ": 20.0 + 2.0 * np.sin(2 * np.pi * t / 8280.0 + phase[2]),
-        "spindle": 20.0 + 9.0 * (1 - np.exp(-t / 1440.0)),
-        "artefact": 20.0
-        + 0.8 * (1 - np.exp(-t / 7200.0))
-        + 0.5 * np.sin(2 * np.pi * t / 7540.0 + phase[3]),
+        "spindle": 20.0 + 9.0 * risen(1440.0),
+        "artefact": 20.0 + 0.8 * risen(7200.0) + 0.5 * np.sin(2 * np.pi * t / 7540.0 + phase[3]),
     }
 
 

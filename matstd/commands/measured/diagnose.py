@@ -142,13 +142,14 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     from matstd.console import console, say
     from matstd.report.effects import plan_words, rival_words
     from matstd.report.geometry import console_lines
-    from matstd.report.laws import law_notes
+    from matstd.report.laws import law_notes, visit_sentences
     from matstd.report.verdict import part_lines
     from matstd.report.words import remark_sentence, scanned_sentence, verdict_sentence
     from matstd.twin.words import in_own_unit
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
     notes = law_notes(result.laws) if result.laws else []
+    notes += visit_sentences(result.visit) if result.visit else []
     for line in (*(f"{name}: {words}" for name, words in part_lines(result)), *notes):
         say(f"- {line}")
     right = ("p", "fitted µm", "held out µm", "chi²/dof")
@@ -180,6 +181,7 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
         say(f"- next_measurement_{i}.csv would distinguish {plan_words(plan)}")
     first = "" if args.no_report else "report.html, "
     law = "effect.py (--effects), law.json, " if result.laws and result.laws.laws else ""
+    law += "next_visit.csv, " if result.visit and result.visit.touches else ""
     say(f"{args.output}: look at {first}{law}diagnosis.json, model.toml")
 
 

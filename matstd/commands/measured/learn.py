@@ -66,6 +66,7 @@ def _report(args: argparse.Namespace, found: LearntLaws) -> None:
         no_law_sentence,
         rival_sentence,
         second_run_sentence,
+        visit_sentences,
     )
     from matstd.report.numbers import sentence
 
@@ -77,10 +78,13 @@ def _report(args: argparse.Namespace, found: LearntLaws) -> None:
             say(f"- {second}")
     for line in law_notes(found):
         say(f"- {line}")
+    for line in visit_sentences(found.visit):
+        say(f"- {line}")
     if found.second is not None:
         say(f"- {second_run_sentence(found.second)}")
     for line in found.after.run.remarks:
         say(f"- {line}")
     first = "" if args.no_report else "report.html, "
     names = "effect.py (--effects), " if found.laws else ""
+    names += "" if found.visit.touches is None else "next_visit.csv, "
     say(f"{args.output}: look at {first}{names}law.json, model.toml")

@@ -1,0 +1,98 @@
+"""Laws that a run cannot decide between, each fitted in full, and what they predict of a visit."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.laws import Learning, LearntLaw
+from matstd.diagnosis.next_visit.discrimination import Predicted
+from matstd.twin.effects import setup_errors
+from matstd.twin.laws import Law
+from matstd.twin.model import Effect, columns
+from matstd.twin.record import Touches
+
+DECIDED = float(np.log(20.0))
+"""Log odds from which a law is decided against another."""
+
+MOST_RIVALS, MOST_ALIKE, MOST_SHAPES = 9, 6, 2
+"""Rivals of one law that a plan serves: of them carriers that do the same at every touch of the
+run, and other shapes of the same carrier and variables."""
+
+
+@dataclass(frozen=True, eq=False)
+class Hypothesis:
+    """One explanation of what a model leaves.
+
+    Attributes:
+        law: In it, of the laws that were learnt this one or a rival in its place.
+        log_odds: Of what was learnt against it.
+        fit: With everything that was learnt besides, and the displacements of inner parameters.
+    """
+
+    law: Effect
+    log_odds: float
+    fit: Fit
+
+    def own_effects(self, shared: int) -> tuple[Effect, ...]:
+        """Effects beyond the first ones of the model, with their displacements."""
+        return (*self.fit.model.effects[shared:], *self.fit.tangents)
+
+
+def predictions(found: Sequence[Hypothesis], visit: Touches) -> list[Predicted]:
+    """What every explanation predicts of a visit, over the noise of a touch.
+
+    Parameters are uncertain as the run leaves them, and the standard is clamped anew.
+    """
+    noise = float(np.median(found[0].fit.u))
+    effects = [one.fit.model.effects for one in found]
+    shared = next(
+        k for k, same in enumerate(zip(*effects, strict=False)) if len({*map(id, same)}) > 1
+    )
+    base = columns(effects[0][:shared], visit) / noise
+    clamped = setup_errors(visit)
+    sd = np.array([p.sd for e in clamped for p in e.parameters])
+    placed = columns(clamped, visit) * sd / noise
+    out = []
+    for one in found:
+        own = one.own_effects(shared)
+        C = np.hstack([base, columns(own, visit) / noise])
+        rows = np.concatenate([np.r_[one.fit.of_effect(e.name)] for e in own])
+        rows = np.concatenate([np.arange(base.shape[1]), rows])
+        out.append((C @ one.fit.theta[rows], np.hstack([C @ one.fit.spread[rows], placed])))
+    return out
+
+
+def hypotheses(learning: Learning) -> tuple[Hypothesis, ...]:
+    """What was learnt, then every explanation that the run has not decided against."""
+    laws = [one.law for one in learning.laws]
+    if not laws:
+        return ()
+    out = [Hypothesis(laws[0], 0.0, learning.tangent)]
+    for i, one in enumerate(learning.laws):
+        for rival, odds in undecided(one):
+            beside = [*laws[:i], rival, *laws[i + 1 :]]
+            fit = learning.beginning.fitted(beside, True, learning.after.gross)
+            out.append(Hypothesis(rival, odds, fit))
+    return tuple(out)
+
+
+def undecided(one: LearntLaw) -> list[tuple[Effect, float]]:
+    """Rivals of a law that its run has not decided against, with the odds against them."""
+    alike = [replace(one.law, carrier=carrier) for carrier in one.alike[:MOST_ALIKE]]
+    found: list[tuple[Effect, float]] = [(law, 0.0) for law in alike]
+    if one.library is not None and one.score - one.library.score < DECIDED:
+        found.append((one.library.effect, one.score - one.library.score))
+    near = [rival for rival in one.rivals if rival.log_odds < DECIDED]
+    seen = {_what(one.law)}
+    for rival in near:  # the nearest of every carrier and variables
+        if _what(rival.law) not in seen:
+            seen.add(_what(rival.law))
+            found.append((rival.law, rival.log_odds))
+    shapes = [r for r in near if _what(r.law) == _what(one.law) and r.law.name != one.law.name]
+    return [*found[:MOST_RIVALS], *((r.law, r.log_odds) for r in shapes[:MOST_SHAPES])]
+
+
+def _what(law: Law) -> tuple[str, ...]:
+    return (law.carrier.name, *sorted(f.driver.name for f in law.factors))

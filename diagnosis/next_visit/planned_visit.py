@@ -1,0 +1,295 @@
+"""Plans the visit that decides between a law and its rivals, and says how well it would."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from matstd.diagnosis.laws import Learning
+from matstd.diagnosis.next_visit.course import SCHEDULES, Course, Schedule, courses
+from matstd.diagnosis.next_visit.discrimination import (
+    Predicted,
+    greedy,
+    log_odds_drawn,
+    separation,
+)
+from matstd.diagnosis.next_visit.hypotheses import (
+    DECIDED,
+    Hypothesis,
+    hypotheses,
+    predictions,
+)
+from matstd.diagnosis.next_visit.offers import visiting_touches
+from matstd.diagnosis.regression import BoolArray
+from matstd.twin.compute import one_blas_thread
+from matstd.twin.frames import Array
+from matstd.twin.model import Effect
+from matstd.twin.record import IntArray, Run, Touches
+
+POSES, OFFERED_EACH, TOUCHES = 16, 24, 128
+"""Poses that are offered, touches at each, and touches of the plan: an hour on the machine."""
+
+EVENLY = 0.25
+"""Share of the touches that is spread over all poses whatever the rivals predict: the new set-ups
+are located by them, and a law that is none of the rivals shows there."""
+
+SEQUENCES = 2
+"""Sequences of poses that are tried with every schedule."""
+
+LEAST_SEPARATION = 3.0
+"""Standard deviations below which a rival is not distinguished: noise would decide."""
+
+ALIKE_BELOW = 0.1
+"""Standard deviations by all touches that are offered, below which two explanations are one class:
+some thousand such visits would be needed to distinguish them."""
+
+WEATHERS, DRAWS = 6, 40
+"""Courses of the sensors, and runs of each, by which the odds after a visit are simulated."""
+
+USUAL_PACE = 15.0
+"""Time from touch to touch where a run states no times, s."""
+
+
+class NoPlan(Enum):
+    """Why no visit is planned."""
+
+    NO_LAW = "no law was learnt"
+    DECIDED = "the run decides already: odds of 20 : 1 or more against every other explanation"
+    SAME = "every rival does the same at every touch that can be made"
+    FEW = "too few of the touched points can be touched again from a known side"
+    ALIKE = "no visit that was tried separates the rivals by three standard deviations"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RivalPower:
+    """What a planned visit does against one rival.
+
+    Attributes:
+        log_odds: Against it before the visit.
+        separation: Of its prediction from that of the law, standard deviations.
+        expected: Log odds against it after the visit, on average where the law holds.
+        power: Probability of odds of 20 : 1 at least, by simulated visits; None where the rival is
+            not distinguished.
+    """
+
+    effect: Effect
+    log_odds: float
+    separation: float
+    expected: float
+    power: float | None
+
+    @property
+    def is_distinguished(self) -> bool:
+        """Whether more than noise decides."""
+        return self.separation >= LEAST_SEPARATION
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class VisitPlan:
+    """The visit that decides best between a law and its rivals.
+
+    Attributes:
+        law: That the visit distinguishes from its rivals; None where none was learnt.
+        touches: In the order of probing, from time 0 on, sensors as they are expected; None where
+            no plan is made.
+        rivals: Explanations that the run has not decided against and a visit could.
+        alike: Those that do the same at every touch that was offered: one class with the law.
+        power: Probability that the true one of all explanations that are distinguished gets odds of
+            20 : 1 against each other one, each weighed by its odds before the visit; None where
+            nothing is distinguished.
+        refusal: Why there are no touches.
+    """
+
+    law: Effect | None = None
+    touches: Touches | None = None
+    schedule: Schedule = SCHEDULES[0]
+    rivals: tuple[RivalPower, ...] = ()
+    alike: tuple[Effect, ...] = ()
+    power: float | None = None
+    refusal: NoPlan | None = None
+
+    @property
+    def pause_after(self) -> int | None:
+        """Number of touches before the machine stands still; None without a pause."""
+        if self.touches is None or not self.schedule.pause:
+            return None
+        return int(np.argmax(np.diff(self.touches.time))) + 1
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Tried:
+    """Touches that are offered with one schedule, and what every explanation predicts there."""
+
+    schedule: Schedule
+    offers: Touches
+    predicted: Sequence[Predicted]
+    apart: Array
+
+    def of(self, rivals: IntArray) -> "_Tried":
+        """The same with some of the rivals."""
+        predicted = [self.predicted[0], *(self.predicted[int(k) + 1] for k in rivals)]
+        return replace(self, predicted=predicted, apart=self.apart[rivals])
+
+
+@one_blas_thread()
+def plan_visit(learning: Learning, rng: np.random.Generator) -> VisitPlan:
+    """The visit after which the odds between a law and its rivals are largest.
+
+    Sequences of poses are drawn and combined with every schedule; rivals are separated by what they
+    predict there, parameters and set-ups uncertain, sensors as they will be. Of the visit that
+    separates them best, the touches are chosen; its power is simulated with other weather.
+    """
+    return _planned(hypotheses(learning), learning.before.run, rng)
+
+
+def _planned(found: Sequence[Hypothesis], run: Run, rng: np.random.Generator) -> VisitPlan:
+    if not found:
+        return VisitPlan(refusal=NoPlan.NO_LAW)
+    law, visits = found[0].law, _Visits.of(run)
+    if len(found) < 2:
+        return VisitPlan(law, refusal=NoPlan.DECIDED)
+    tried = _tried(found, visits, rng)
+    if not tried:
+        return VisitPlan(law, refusal=NoPlan.FEW)
+    most = np.max([one.apart for one in tried], axis=0)
+    alike = tuple(found[int(k) + 1].law for k in np.flatnonzero(most < ALIKE_BELOW))
+    differ = np.flatnonzero(most >= ALIKE_BELOW)
+    if not len(differ):
+        return VisitPlan(law, alike=alike, refusal=NoPlan.SAME)
+    found, seen = [found[0], *(found[int(k) + 1] for k in differ)], most[differ] >= LEAST_SEPARATION
+    best = max((one.of(differ) for one in tried), key=lambda one: _worst(one.apart, seen))
+    picked = _picked(best.predicted, seen, best.offers.pose)
+    touches = visits.at(best.offers[picked], best.schedule)
+    rivals, power = _power(found, visits, touches, rng)
+    known = VisitPlan(law, schedule=best.schedule, rivals=rivals, alike=alike)
+    if power is None:
+        return replace(known, refusal=NoPlan.ALIKE)
+    return replace(known, touches=touches, power=power)
+
+
+def _tried(
+    found: Sequence[Hypothesis], visits: "_Visits", rng: np.random.Generator
+) -> list[_Tried]:
+    """Sequences of poses with every schedule; none where too few touches can be made."""
+    out = []
+    for _ in range(SEQUENCES):
+        drawn = visiting_touches(visits.run, POSES, OFFERED_EACH, rng)
+        if len(drawn) < TOUCHES:
+            continue
+        for schedule in SCHEDULES:
+            offers = visits.at(drawn, schedule, TOUCHES / len(drawn))
+            predicted = predictions(found, offers)
+            apart = np.array([separation(predicted[0], other) for other in predicted[1:]])
+            out.append(_Tried(schedule, offers, predicted, apart))
+    return out
+
+
+def _worst(apart: Array, seen: BoolArray) -> float:
+    """Of the rivals that some visit distinguishes the least separation."""
+    return float(np.min(apart[seen])) if seen.any() else float(np.max(apart))
+
+
+def _picked(predicted: Sequence[Predicted], seen: BoolArray, pose: IntArray) -> IntArray:
+    """Rows of the plan in their order: those that separate, and some at every pose."""
+    own, *others = predicted
+    served = [one for one, is_seen in zip(others, seen, strict=True) if is_seen] or others
+    n = len(pose)
+    evenly = np.unique(np.linspace(0, n - 1, int(EVENLY * TOUCHES)).astype(int))
+    best = greedy(own, served, TOUCHES - len(evenly))
+    return np.unique(np.concatenate([evenly, np.array(best, dtype=np.int64)]))
+
+
+def _power(
+    found: Sequence[Hypothesis],
+    visits: "_Visits",
+    touches: Touches,
+    rng: np.random.Generator,
+) -> tuple[tuple[RivalPower, ...], float | None]:
+    """What the plan does against every rival, and how often the true explanation is decided."""
+    predicted = predictions(found, touches)
+    apart = np.array([np.inf, *(separation(predicted[0], other) for other in predicted[1:])])
+    prior = np.array([one.log_odds for one in found])
+    weight = np.exp(-np.maximum(prior, 0.0))
+    is_seen = apart >= LEAST_SEPARATION
+    decided, odds = 0.0, []
+    for _ in range(WEATHERS):
+        predicted = predictions(found, visits.with_weather(touches, rng))
+        for true in np.flatnonzero(is_seen):
+            drawn = log_odds_drawn(predicted, int(true), DRAWS, rng) + prior - prior[true]
+            if true == 0:
+                odds.append(drawn)
+            beside = is_seen & (np.arange(len(found)) != true)
+            right = (drawn[:, beside] >= DECIDED).all(axis=1).mean()
+            decided += weight[true] * right / WEATHERS / weight[is_seen].sum()
+    of_law = np.concatenate(odds)
+    rivals = tuple(
+        RivalPower(
+            effect=one.law,
+            log_odds=one.log_odds,
+            separation=float(apart[k]),
+            expected=float(of_law[:, k].mean()),
+            power=float((of_law[:, k] >= DECIDED).mean()) if is_seen[k] else None,
+        )
+        for k, one in enumerate(found)
+        if k
+    )
+    return rivals, float(decided) if is_seen[1:].any() else None
+
+
+@dataclass(frozen=True, eq=False)
+class _Visits:
+    """What a visit of this machine would record besides its touches.
+
+    Attributes:
+        sensors: Course of every temperature sensor.
+        pace: Usual time from touch to touch, s.
+    """
+
+    run: Run
+    sensors: dict[str, Course]
+    pace: float
+
+    @classmethod
+    def of(cls, run: Run) -> "_Visits":
+        t = run.touches
+        steps = np.diff(np.sort(t.since_start[t.run == 0]))
+        pace = float(np.median(steps)) if np.any(steps > 0.0) else USUAL_PACE
+        return cls(run, dict(courses(t)), pace or USUAL_PACE)
+
+    def at(self, touches: Touches, schedule: Schedule, share: float = 1.0) -> Touches:
+        """Touches in their order with times and sensors as a schedule makes them.
+
+        Args:
+            share: Of the touches that the plan will keep.
+        """
+        pace = share * self.pace
+        time = schedule.times(touches.pose, pace)
+        stop = schedule.pause_start(touches.pose, pace)
+        warm = {name: c.at(time, schedule, stop) for name, c in self.sensors.items()}
+        t = self.run.touches
+        rows = self._rows_at(time)
+        return replace(
+            touches,
+            time=time,
+            temperature=warm,
+            value={name: value[rows] for name, value in t.value.items()},
+            spindle_rpm=None if t.spindle_rpm is None else t.spindle_rpm[rows],
+            force=None if t.force is None else t.force[rows],
+        )
+
+    def _rows_at(self, time: Array) -> IntArray:
+        """Rows of the run at these times, for columns of the user's own, speed and load."""
+        since = self.run.touches.since_start
+        order = np.argsort(since, kind="stable")
+        at = np.searchsorted(since[order], np.mod(time, max(float(np.ptp(since)), 1.0)))
+        return np.asarray(order[np.minimum(at, len(order) - 1)], dtype=np.int64)
+
+    def with_weather(self, touches: Touches, rng: np.random.Generator) -> Touches:
+        """The same visit on another day."""
+        shift = float(rng.uniform(0.0, np.ptp(self.run.touches.since_start) or 1.0))
+        warm = {
+            name: touches.temperature[name] + c.weather_at(touches.time, shift)
+            for name, c in self.sensors.items()
+        }
+        return replace(touches, temperature=warm)

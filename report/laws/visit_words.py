@@ -1,0 +1,115 @@
+"""The next visit in words: what it distinguishes, its schedule, its power, or why there is none."""
+
+import numpy as np
+
+from matstd.diagnosis.next_visit import NoPlan, RivalPower, VisitPlan
+from matstd.report.laws.law_words import carrier_words, formula_words, odds_words
+from matstd.report.layout import Section, Table
+from matstd.report.numbers import digits, span
+from matstd.twin.laws import Law
+from matstd.twin.model import Effect
+from matstd.twin.words import listed
+
+FILE = "next_visit.csv"
+
+_HOW = (
+    "Touch the points in the order of the file, in the set-ups of the run and with the "
+    "temperatures recorded; then learn from both runs. The command writes no probing program for "
+    "it."
+)
+
+
+def visit_sentences(plan: VisitPlan) -> list[str]:
+    """What a visit would decide and how it is made, or why none would decide; none without law."""
+    if plan.refusal is NoPlan.NO_LAW or plan.law is None:
+        return []
+    alike = _alike_sentence(plan)
+    if plan.touches is None:
+        return [line for line in (_refusal_sentence(plan), alike) if line]
+    return [line for line in (_touches_sentence(plan), _power_sentence(plan), alike) if line]
+
+
+def visit_section(plan: VisitPlan) -> list[Section]:
+    """The next visit on a page."""
+    said = visit_sentences(plan)
+    if not said:
+        return []
+    rows = [_row(one) for one in plan.rivals]
+    head = ("rival", "odds against it now", "separation", "odds of 20 : 1 after the visit")
+    table = Table(head, rows, "What the visit does where the law holds") if rows else None
+    how = [_HOW] if plan.touches is not None else []
+    return [Section("The next visit", sentences=[*said, *how], table=table)]
+
+
+def _row(one: RivalPower) -> list[str]:
+    power = "not distinguished" if one.power is None else f"{100 * one.power:.0f} %"
+    apart = f"{digits(one.separation, 2)} standard deviations"
+    return [_name(one.effect), odds_words(one.log_odds), apart, power]
+
+
+def _name(effect: Effect) -> str:
+    return formula_words(effect) if isinstance(effect, Law) else effect.name
+
+
+def _short(effect: Effect, law: Effect | None) -> str:
+    """The carrier alone where all else is as in the law."""
+    if isinstance(effect, Law) and isinstance(law, Law) and effect.factors == law.factors:
+        return carrier_words(effect.carrier)
+    return _name(effect)
+
+
+def _touches_sentence(plan: VisitPlan) -> str:
+    t = plan.touches
+    assert t is not None
+    poses = len(np.unique(t.pose))
+    return (
+        f"Next visit ({FILE}): {len(t)} touches in {poses} poses within {span(float(t.time[-1]))}, "
+        f"{_schedule_words(plan)}."
+    )
+
+
+def _schedule_words(plan: VisitPlan) -> str:
+    """`from a cold machine, with a pause of 60.0 min after touch 64`."""
+    s = plan.schedule
+    parts = ["from a cold machine"]
+    if s.warm_up:
+        parts = [f"after the machine has moved for {span(s.warm_up)}"]
+    if plan.pause_after is not None:
+        parts.append(f"with a standstill of {span(s.pause)} after touch {plan.pause_after}")
+    if s.slowness != 1.0:
+        parts.append(f"{s.slowness:g} times as slow from touch to touch as the run")
+    return ", ".join(parts)
+
+
+def _power_sentence(plan: VisitPlan) -> str:
+    seen = [f"{_name(r.effect)} ({digits(r.separation, 2)} σ)" for r in plan.rivals
+            if r.is_distinguished]  # fmt: skip
+    left = [_name(r.effect) for r in plan.rivals if not r.is_distinguished]
+    words = f"It distinguishes the law from {listed(seen, 'and')}"
+    if left:
+        words += f", not from {listed(left, 'or')}"
+    power = 100 * (plan.power or 0.0)
+    return (
+        f"{words}. In {power:.0f} % of simulated visits the true one of those that it "
+        "distinguishes gets odds of 20 : 1."
+    )
+
+
+def _alike_sentence(plan: VisitPlan) -> str:
+    if not plan.alike:
+        return ""
+    names = listed([_short(effect, plan.law) for effect in plan.alike], "and")
+    return (
+        f"One class with the law, since they do the same at every touch that can be made: {names}."
+    )
+
+
+def _refusal_sentence(plan: VisitPlan) -> str:
+    assert plan.refusal is not None
+    if plan.refusal is not NoPlan.ALIKE:
+        return f"No next visit is planned: {plan.refusal.value}."
+    best = max(plan.rivals, key=lambda one: one.separation)
+    return (
+        f"No next visit is planned: {plan.refusal.value}; the best reaches "
+        f"{digits(best.separation, 2)} against {_name(best.effect)}."
+    )

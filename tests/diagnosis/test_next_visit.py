@@ -1,0 +1,150 @@
+"""The next visit distinguishes explanations that a run cannot, or says why none would."""
+
+import csv
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from simulator_case import read_back
+from simulator_experiment import MACHINES
+from simulator_laws import law_case
+
+from matstd.api.saved import write_learnt
+from matstd.diagnosis.files import visit_text
+from matstd.diagnosis.laws import learn_laws
+from matstd.diagnosis.laws.beginning import Beginning
+from matstd.diagnosis.next_visit import NoPlan, Schedule, plan_visit
+from matstd.diagnosis.next_visit.course import TIME_CONSTANTS, Course
+from matstd.diagnosis.next_visit.discrimination import greedy, log_odds_drawn, separation
+from matstd.diagnosis.next_visit.hypotheses import Hypothesis
+from matstd.diagnosis.next_visit.planned_visit import LEAST_SEPARATION
+from matstd.diagnosis.next_visit.planned_visit import _planned as planned
+from matstd.report.laws import visit_sentences
+from matstd.twin.library import parse_effect
+from matstd.twin.record import without_copies
+from matstd.twin.units import UM
+
+
+def known(*mean):
+    return np.array(mean, dtype=float), np.zeros((len(mean), 1))
+
+
+def test_separation_counts_what_the_other_explanation_cannot_make_up_for() -> None:
+    assert separation(known(3.0, 4.0), known(0.0, 0.0)) == pytest.approx(5.0)
+    loose = np.zeros(2), np.array([[np.sqrt(3.0)], [0.0]])  # variance 1 + 3 at the first touch
+    assert separation(known(3.0, 4.0), loose) == pytest.approx(np.sqrt(9.0 / 4.0 + 16.0))
+
+
+def test_touches_are_chosen_for_the_rival_that_is_separated_least() -> None:
+    own, others = known(0, 0, 0, 0), [known(5, 0, 1, 4.9), known(0, 2, 1, 0)]
+    assert sorted(greedy(own, others, 2)) == [0, 1]
+    # a rival that knows the common part of both touches learns it from the first
+    common = np.zeros(2), np.full((2, 1), 1e3)
+    assert separation(known(7.0, 7.0), common) < 0.01
+    assert separation(known(7.0, -7.0), common) == pytest.approx(7.0 * np.sqrt(2.0), rel=1e-4)
+
+
+def test_expected_log_odds_are_half_the_squared_separation() -> None:
+    drawn = log_odds_drawn([known(3.0, 4.0), known(0.0, 0.0)], 0, 4000, np.random.default_rng(1))
+    assert np.all(drawn[:, 0] == 0.0)
+    assert drawn[:, 1].mean() == pytest.approx(12.5, abs=0.3)
+    assert drawn[:, 1].std() == pytest.approx(5.0, rel=0.06)
+
+
+def test_a_sensor_is_forecast_through_warm_up_and_standstill() -> None:
+    tau = 10000.0 * TIME_CONSTANTS[12]
+    time = np.linspace(0.0, 10000.0, 300)
+    course = Course.of(time, 21.0 - 5.0 * np.expm1(-time / tau))
+    assert (course.start, course.rise, course.tau) == pytest.approx((21.0, 5.0, tau))
+    zero, never = np.zeros(1), np.inf
+    assert course.at(zero, Schedule(), never) == pytest.approx(21.0)
+    warm = 21.0 + 5.0 * (1.0 - np.exp(-2.0))
+    assert course.at(zero, Schedule(warm_up=2.0 * tau), never) == pytest.approx(warm)
+    # stands still for tau after tau: (1 - 1/e) / e of the rise is left
+    rest = Schedule(pause=tau)
+    left = 21.0 + 5.0 * (1.0 - np.exp(-1.0)) * np.exp(-1.0)
+    assert course.at(np.array([2.0 * tau + 1e-9]), rest, tau) == pytest.approx(left, abs=1e-3)
+
+
+def test_a_schedule_stops_amid_the_poses() -> None:
+    time = Schedule(pause=100.0, slowness=2.0).times(np.array([0, 0, 1, 1]), 5.0)
+    assert time.tolist() == [0.0, 10.0, 120.0, 130.0]
+
+
+@pytest.fixture(scope="module")
+def warm():
+    """A run on which the reading of the probe follows the spindle's temperature."""
+    text, *_ = law_case(np.random.default_rng(8), "hmc1995", None, poses=3)
+    run = without_copies(read_back(text, MACHINES["hmc1995"]))
+    rise = run.touches.temperature["spindle"] - 20.0
+    return run, replace(run, deviation=run.deviation + 1.0 * UM * rise)
+
+
+def explanations(run, *names):
+    start = Beginning.of_run(run)
+    laws = [parse_effect(name, run.touches.chain) for name in names]
+    return [Hypothesis(law, 0.0, start.fitted([law])) for law in laws]
+
+
+def test_a_visit_distinguishes_a_temperature_from_time(warm) -> None:
+    """A warm-up before the first touch leaves time as it is and takes the rise away."""
+    run = warm[1]
+    found = explanations(run, "law(bias,lin T-spindle)", "law(bias,settling time)")
+    plan = planned(found, run, np.random.default_rng(0))
+    assert plan.refusal is None
+    (rival,) = plan.rivals
+    assert rival.separation > LEAST_SEPARATION
+    assert plan.power > 0.9
+    assert rival.power > 0.9
+    assert plan.schedule.warm_up > 0.0 or plan.schedule.pause > 0.0
+    t = plan.touches
+    assert np.all(np.diff(t.time) > 0.0)
+    if plan.schedule.warm_up:
+        assert t.temperature["spindle"].min() > 28.0
+    rows = list(csv.DictReader(visit_text(plan).splitlines()[1:]))
+    assert [float(row["time_s"]) for row in rows] == pytest.approx(t.time, abs=0.06)
+    assert {"feature", "setup", "pose", "px_mm", "nx", "X_mm"} <= set(rows[0])
+    said = visit_sentences(plan)
+    assert f"{len(t)} touches" in said[0]
+    assert "σ" in said[1]
+
+
+def test_carriers_that_do_the_same_are_a_class_and_no_rivals(warm) -> None:
+    run = warm[1]
+    found = explanations(run, "law(EZX,lin T-spindle)", "law(EZZ,lin T-spindle)")
+    plan = planned(found, run, np.random.default_rng(0))
+    assert plan.refusal is NoPlan.SAME
+    assert (plan.touches, plan.power, plan.rivals) == (None, None, ())
+    assert [law.name for law in plan.alike] == ["law(EZZ,lin T-spindle)"]
+    refusal, alike = visit_sentences(plan)
+    assert "every rival does the same" in refusal
+    assert alike.endswith("EZZ.")
+
+
+def test_a_visit_below_three_sigmas_is_refused_with_the_best_one(warm) -> None:
+    run = warm[0]  # nothing is hidden: both explanations predict next to nothing
+    found = explanations(run, "law(EZX,quad X)", "law(EZX,lin T-spindle)")
+    plan = planned(found, run, np.random.default_rng(0))
+    assert plan.refusal is NoPlan.ALIKE
+    assert (plan.touches, plan.power) == (None, None)
+    (rival,) = plan.rivals
+    assert 0.0 < rival.separation < LEAST_SEPARATION
+    assert rival.power is None
+    assert "the best reaches" in visit_sentences(plan)[0]
+    assert visit_text(plan) == ""
+
+
+def test_without_rivals_there_is_nothing_to_plan(warm, tmp_path) -> None:
+    run = warm[0]
+    assert planned([], run, np.random.default_rng(0)).refusal is NoPlan.NO_LAW
+    one = explanations(run, "law(EZX,lin T-spindle)")
+    assert planned(one, run, np.random.default_rng(0)).refusal is NoPlan.DECIDED
+    empty = learn_laws(run)
+    plan = plan_visit(empty, np.random.default_rng(0))
+    assert plan.refusal is NoPlan.NO_LAW
+    write_learnt(tmp_path, empty, "run.csv", plan)
+    table = json.loads((tmp_path / "law.json").read_text(encoding="utf-8"))
+    assert table["next_visit"]["refusal"] == "no law was learnt"
+    assert table["next_visit"]["power"] is None
+    assert not (tmp_path / "next_visit.csv").exists()
