@@ -9,10 +9,10 @@ number in a result.
     layout  sections of a page, and how they become HTML, CSV and PDF
     live    data and scripts of pages that move
     effects titles of effects
+    laws    laws that were learnt, with their page and their Python file
     words   sentences, for pages and for the console
     geometry
             geometry of the machine, mistakes in its description
-    laws    laws that were learnt, with their page and their Python file
     identifiability
             what touches can determine, in words and in result files
     task    calibration of a standard, uncertainty of a measuring task
@@ -40,9 +40,9 @@ PARTS = (
     "layout",
     "live",
     "effects",
+    "laws",
     "words",
     "geometry",
-    "laws",
     "verdict",
     "identifiability",
     "task",

@@ -82,13 +82,16 @@ def _hardness(standard: Standard) -> str:
 def notes_of(standard: Standard, details: Details) -> tuple[str, ...]:
     """General notes, in ASCII."""
     glue = "Balls: degrease seat and ball, press into the countersink until metal meets metal, "
+    faces = (
+        "Freeform faces: B-splines of this model are the nominal; as milled, "
+        f"Ra {FACE_ROUGHNESS:g} um or finer, then calibrated."
+    )
     notes = [
         f"Dimensions in mm, at 20 degC. General tolerances ISO 22081: sizes +-{GENERAL / 2:g}, "
         f"profile of a surface {GENERAL:g} | A | B | C; feet R 3, other edges ISO 13715; Ra 3.2 um "
         "where nothing else is stated.",
         "Datum A: upper face; B: side at -y, targets B1 and B2; C: side at -x, target C1.",
-        "Freeform faces: B-splines of this model are the nominal; as milled, "
-        f"Ra {FACE_ROUGHNESS:g} um or finer, then calibrated.",
+        *([faces] if standard.patches else []),
         glue + "glue outside the circle of contact only. Two-component epoxy of low shrinkage "
         "(1 % or less), gap as in the section, open at its rim so that air escapes; cure 24 h at "
         "room temperature under a weight of 10 N, calibrate a week later.",

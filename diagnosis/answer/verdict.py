@@ -1,12 +1,12 @@
 """Result of a diagnosis: verdict, steps in which the error falls, and what stays open."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
-from matstd.diagnosis.accuracy import Promise
+from matstd.diagnosis.accuracy import Promise, promise
 from matstd.diagnosis.answer.detectable import Detectable
 from matstd.diagnosis.answer.next_measurement import Plan
 from matstd.diagnosis.answer.parts import VerdictParts
@@ -79,7 +79,7 @@ class Diagnosis(Tabular):
             and no repeats show it.
         steps: The error falling, effect by effect.
         parts: Geometry, named effects and remainder, each with its weight.
-        promise: Errors to expect of the last step, at the same touches and elsewhere.
+        promise: Errors to expect of the model that stands, at the same touches and elsewhere.
         promise_before: The same of the starting model.
         structure: What the residual of the starting model varies with.
         left: What the residual of the last step varies with; empty unless unexplained.
@@ -139,3 +139,29 @@ class Diagnosis(Tabular):
     def found(self) -> tuple[Effect, ...]:
         """Effects that were added."""
         return tuple(step.effect for step in self.steps if step.effect is not None)
+
+    @property
+    def withdrawn(self) -> tuple[Effect, ...]:
+        """Effects of `steps` in whose place laws stand, since they explain the run better."""
+        return () if self.laws is None else self.laws.instead_of
+
+    @property
+    def standing(self) -> Fit:
+        """The model with everything that stands: laws in the place of names withdrawn."""
+        return self.laws.after if self.laws is not None and self.withdrawn else self.fit
+
+    def with_laws(self, laws: Learning) -> Self:
+        """The same with laws of what remains.
+
+        Names that they explain better are withdrawn: none of them stands in a headline, the errors
+        to expect are those of the laws, and no plan distinguishes a name withdrawn from its rivals.
+        """
+        if not laws.instead_of:
+            return replace(self, laws=laws)
+        gone = {effect.name for effect in laws.instead_of}
+        named = tuple(
+            replace(one, is_headline=one.is_headline and one.effect.name not in gone)
+            for one in self.parts.named
+        )
+        parts = replace(self.parts, named=named)
+        return replace(self, laws=laws, parts=parts, promise=promise(laws.after), plans=())

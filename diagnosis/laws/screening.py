@@ -44,7 +44,7 @@ class Found(NamedTuple):
     bearer: Bearer
     drivers: tuple[Driver, ...]
     evidence: float
-    length: float  # correlation length, as a share of the domain
+    length: float  # correlation length, as a share of the domain; 0: no curve, a direction
     size: float  # of the curve, mm or rad
 
 

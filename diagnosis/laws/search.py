@@ -189,7 +189,7 @@ def _curves(
     """Laws without a formula: the best curves, alone or times a factor that a formula has."""
     out = []
     for f in one:
-        if len(np.unique(field.used(f.drivers[0], space))) > 2:
+        if f.length > 0.0:  # else the variable is a direction, or has two values
             law = with_curve(space, field, f.bearer, f.drivers[0], f.length, f.size)
             out.append(_curve_candidate(space, f.bearer, law, f.evidence - policy.tried_singles))
     products = [c for c in formulas if len(c.law.factors) == 2][:3]

@@ -130,6 +130,9 @@ def _placed(
     fit = fit_run(replace(run[used], split=split), model, known)
     deviation, far = np.full(len(run), np.nan), np.zeros(len(run), dtype=np.bool_)
     deviation[used], far[used] = fit.residual, fit.gross_test_rows
+    if estimates is not None:  # what the model itself does not know is no accident of a touch
+        u = np.linalg.norm(model.columns(run.touches) @ estimates.root, axis=1)
+        far[used] &= np.abs(fit.residual) > fit.gross.limit * u[used]
     return deviation, far
 
 

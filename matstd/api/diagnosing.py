@@ -1,7 +1,7 @@
 """What a model leaves of a run and what it lacks: results with files, page and compensation."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -216,7 +216,7 @@ def diagnose(
         progress(0.9, "a law of what remains")
         estimates = before.estimates if before else None
         laws = learn_remainder(found.steps[len(added)].fit, found.fit, estimates)
-        found = replace(found, laws=laws)
+        found = found.with_laws(laws)
     known = {f.name: getattr(found, f.name) for f in fields(found)}
     made: dict[str, Any] = {
         "before": before,

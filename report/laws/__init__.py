@@ -4,6 +4,7 @@ from matstd.report.laws.curves import LawCurve, law_curve
 from matstd.report.laws.effect_file import effect_text
 from matstd.report.laws.law_page import law_sections, write_law_page
 from matstd.report.laws.law_words import (
+    held_out_sentence,
     instead_sentence,
     law_notes,
     law_sentence,
@@ -18,6 +19,7 @@ from matstd.report.laws.visit_words import visit_sentences
 __all__ = [
     "LawCurve",
     "effect_text",
+    "held_out_sentence",
     "instead_sentence",
     "law_curve",
     "law_notes",

@@ -222,16 +222,16 @@ def library_sentence(one: LearntLaw) -> str:
 
 
 def instead_sentence(learning: Learning) -> str:
-    """That laws explain the run better than effects that were named; empty where they do not."""
+    """Names that are withdrawn, since laws explain the run better; empty for none."""
     if not learning.instead_of:
         return ""
     names = listed([effect.name for effect in learning.instead_of])
-    many = len(learning.laws) > 1
-    what = f"{len(learning.laws)} laws explain" if many else "One law explains"
+    many = len(learning.instead_of) > 1
+    laws = "the laws explain" if len(learning.laws) > 1 else "the law explains"
     return (
-        f"{what} the run better than {names}, also with a law beside "
-        f"{'them' if len(learning.instead_of) > 1 else 'it'}: odds "
-        f"{odds_words(learning.instead_odds)}. Those names may be imitations."
+        f"Withdrawn: {names}, which imitate{'' if many else 's'} a part of it; {laws} the run "
+        f"better than {'these names' if many else 'this name'}, also with a law beside "
+        f"{'them' if many else 'it'}: odds {odds_words(learning.instead_odds)}."
     )
 
 

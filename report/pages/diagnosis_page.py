@@ -9,7 +9,7 @@ from matstd.diagnosis.answer import Diagnosis, Step, Verdict
 from matstd.diagnosis.next_visit import VisitPlan
 from matstd.report.effects import class_words, effect_cell
 from matstd.report.geometry import fault_sentences, geometry_sections
-from matstd.report.laws import instead_sentence, law_sections
+from matstd.report.laws import law_sections
 from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import capital, digits, microns, p_value, sentence
 from matstd.report.pages.rival_sections import (
@@ -89,7 +89,7 @@ def write_diagnosis_page(
     page = Page(
         title=f"Diagnosis of {title}",
         heading=f"Diagnosis of {title}",
-        lead=_lead(result),
+        lead=verdict_sentence(result),
         key=_key(result),
         sections=[
             _parts(result),
@@ -118,11 +118,6 @@ def write_diagnosis_page(
     return path
 
 
-def _lead(result: Diagnosis) -> str:
-    instead = instead_sentence(result.laws) if result.laws else ""
-    return " ".join(filter(None, (verdict_sentence(result), instead)))
-
-
 def is_open(result: Diagnosis) -> bool:
     """Whether something remains that the diagnosis does not explain."""
     return result.verdict in (Verdict.UNEXPLAINED, Verdict.UNDECIDED)
@@ -134,7 +129,7 @@ def _key(result: Diagnosis) -> list[KeyFigure]:
     before, after = result.promise_before, result.promise
     fall = f"{before.elsewhere / UM:.2f} → " if len(steps) > 1 else ""
     held_out = int((result.run.split == "test").sum())
-    noise = result.fit.noise
+    noise = result.standing.noise
     return [
         KeyFigure(result.verdict.value, "verdict", look),
         KeyFigure(
@@ -166,7 +161,7 @@ def _notes(result: Diagnosis) -> Section:
 
 def _steps(result: Diagnosis) -> Section:
     """The error falling from step to step."""
-    rows = [_step(step) for step in result.steps]
+    rows = [_step(result, step) for step in result.steps]
     columns = ("step", "size ± standard uncertainty", "probability by chance")
     errors = ("fitted, µm", "held out, µm", "chi-square per degree of freedom")
     pictures = []
@@ -184,11 +179,12 @@ def _steps(result: Diagnosis) -> Section:
     )
 
 
-def _step(step: Step) -> list[str]:
+def _step(result: Diagnosis, step: Step) -> list[str]:
     if step.effect is None:
         return ["starting model", "", "", *figures(step.fit)]
     title, name = effect_cell(step)
-    cell = f"+ {title}\n`{name}`" if name else f"+ {title}"
+    sign = "withdrawn:" if step.effect in result.withdrawn else "+"
+    cell = f"{sign} {title}\n`{name}`" if name else f"{sign} {title}"
     return [cell, sizes(step, most=2), p_value(step.p_value), *figures(step.fit)]
 
 
@@ -206,6 +202,8 @@ def _effect(result: Diagnosis, i: int) -> Section:
         sentences.append(f"`{kind.formula}`\nTypical: {typical} ({kind.source}).")
     if step.is_named:
         sentences.append("Added by name.")
+    if step.effect in result.withdrawn:
+        sentences.append("Withdrawn: the learnt law explains the run better.")
     form = is_form(result.fit, step.effect)
     drawn = (
         draw_form(result.fit, step.effect)

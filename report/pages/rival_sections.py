@@ -228,6 +228,8 @@ def next_sections(result: Diagnosis) -> list[Section]:
 def _without_plan(result: Diagnosis) -> str:
     """What to measure where no effects compete, or no touch distinguishes them."""
     steps = result.steps[1:]
+    if result.withdrawn:
+        return "Touches that would distinguish the learnt law from its rivals."
     if result.verdict is Verdict.UNDECIDED:
         return "Repeat the touches that the verdict names."
     if result.verdict is Verdict.UNEXPLAINED and result.depends_on:

@@ -15,14 +15,20 @@ def diagnosis_step(result: Diagnosis, title: str, is_saved: bool = False) -> str
     if result.verdict is Verdict.UNDECIDED:
         what = plural(len(result.repeat), "touch") if len(result.repeat) else "some touches"
         return f"Repeat {what}; their scatter decides whether the residual is noise."
-    if result.verdict is Verdict.UNEXPLAINED and result.laws is not None and result.laws.laws:
+    is_unexplained = result.verdict is Verdict.UNEXPLAINED
+    if result.laws is not None and result.laws.laws and (is_unexplained or result.withdrawn):
+        until = (
+            "model.toml predicts with it until then."
+            if is_unexplained or is_saved
+            else f"`matstd diagnose {title} --auto` puts the law into model.toml until then."
+        )
         return (
             "Look for the cause of the learnt law, rename it in effect.py, and diagnose "
-            "again with `--effects effect.py`. model.toml predicts with it until then."
+            f"again with `--effects effect.py`. {until}"
         )
-    if result.verdict is Verdict.UNEXPLAINED and result.laws is not None:
+    if is_unexplained and result.laws is not None:
         return "Record what could cause it (a temperature, a load), and diagnose again."
-    if result.verdict is Verdict.UNEXPLAINED:
+    if is_unexplained:
         return (
             f"`matstd learn {title}` looks for a law of what remains. Where none holds, "
             "record what could cause it (a temperature, a load), and diagnose again."

@@ -19,6 +19,12 @@ def diagnosis_meaning(result: Diagnosis) -> str:
             f"The model describes the machine as far as this run shows: {touched}. It may be used "
             "to correct the machine in the state in which it was probed."
         )
+    if result.withdrawn:
+        return (
+            "Something acts on the machine that no effect of the library accounts for; effects of "
+            f"it only imitate the learnt law. Without the law predictions are off by {before} rms; "
+            f"with it {touched}."
+        )
     if result.verdict is Verdict.MISSING:
         count = plural(sum(s.effect is not None for s in result.steps), "effect")
         return (

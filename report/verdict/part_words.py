@@ -36,12 +36,14 @@ def part_lines(result: Diagnosis) -> list[tuple[str, str]]:
     parts = result.parts
     steps = {s.effect.name: s for s in result.steps if s.effect is not None}
     before = result.promise_before if steps else None
-    named = [_named(one, steps[one.effect.name]) for one in parts.named]
+    gone = result.withdrawn
+    named = [_named(one, steps[one.effect.name], one.effect in gone) for one in parts.named]
+    beside = "beside the names withdrawn " if gone else ""
     learnt = "" if result.laws is None else f"; {learnt_words(result.laws)}"
     return [
         ("geometry", _geometry(parts.geometry)),
         ("named effects", "; ".join(named) or _nothing_named(result)),
-        ("what remains", f"{_remains(parts.remains, parts.repeatability)}{learnt}"),
+        ("what remains", f"{beside}{_remains(parts.remains, parts.repeatability)}{learnt}"),
         ("repeatability", repeatability_words(parts.repeatability, parts.remains.scatter)),
         ("error to expect", promise_words(result.promise, before)),
     ]
@@ -67,14 +69,15 @@ def _rows(rows: Sequence[GeometryRow]) -> str:
     return f"{', '.join(words)} and {more} more" if more else listed(words)
 
 
-def _named(one: NamedEffect, step: Step) -> str:
+def _named(one: NamedEffect, step: Step, is_withdrawn: bool) -> str:
     """An effect with its size, its share, its probability by chance and its closest rival."""
     size = sizes(step, 2)
     weight = f"explains {percent(one.share)} of the excess ({microns(one.explained)} rms)"
-    doubt = "" if one.is_headline else ", not certain by itself"
+    doubt = "" if one.is_headline or is_withdrawn else ", not certain by itself"
     by_name = ", added by name" if step.is_named else ""
     inside = ", ".join(word for word in (size, weight, _chance(one.p_value)) if word)
-    return f"{effect_words(one.effect)}: {inside}{doubt}{by_name}{_rival(one)}"
+    gone = "withdrawn: " if is_withdrawn else ""
+    return f"{gone}{effect_words(one.effect)}: {inside}{doubt}{by_name}{_rival(one)}"
 
 
 def _chance(p: float) -> str:

@@ -5,7 +5,9 @@ from collections.abc import Sequence
 
 from matstd.diagnosis.answer import Diagnosis, Step, Verdict
 from matstd.diagnosis.fit import Fit
+from matstd.diagnosis.laws import Learning
 from matstd.report.effects import class_words
+from matstd.report.laws import held_out_sentence, instead_sentence, law_sentence
 from matstd.report.numbers import digits, microns
 from matstd.report.words.diagnosis_words import (
     noise_words,
@@ -131,6 +133,8 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
     others = [s for s in steps if not s.is_named]
     found = [_added(diagnosis, s, most) for s in others if s.effect and s.effect.name in certain]
     doubtful = len(others) - len(found)
+    if diagnosis.laws is not None and diagnosis.withdrawn:
+        return _of_law(diagnosis.laws, named)
     also = f" Added by name: {'; '.join(named)}." if named else ""
     them = "it" if len(steps) == 1 else "them"
     if diagnosis.verdict is Verdict.MISSING:
@@ -139,8 +143,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         return (
             f"The model lacks {what}: {'; '.join(found)}{more}.{also} With {them} "
             f"{_fall(diagnosis)}{_elsewhere(diagnosis)}; the noise is "
-            f"{noise_words(diagnosis.fit)}.{_imitated(diagnosis)}{_also_left(diagnosis)}"
-            f"{_covered(diagnosis)}"
+            f"{noise_words(diagnosis.fit)}.{_also_left(diagnosis)}{_covered(diagnosis)}"
         )
     if diagnosis.verdict is Verdict.UNEXPLAINED:
         return _unexplained_sentence(diagnosis, [*named, *found])
@@ -171,11 +174,19 @@ def _elsewhere(diagnosis: Diagnosis) -> str:
     return f" (at other places expect {microns(promise.elsewhere)})"
 
 
-def _imitated(diagnosis: Diagnosis) -> str:
-    """That a learnt law explains the run better than the names; empty where none does."""
-    if diagnosis.laws is None or not diagnosis.laws.instead_of:
-        return ""
-    return " A learnt law explains the run better: these names may imitate it."
+def _of_law(laws: Learning, added: Sequence[str]) -> str:
+    """The laws, the names that they withdraw, and the error with them.
+
+    Args:
+        added: Effects that the user named, which stand.
+    """
+    each = "; ".join(law_sentence(laws, one).removesuffix(".") for one in laws.laws)
+    what = "a law that the library does" if len(laws.laws) == 1 else "laws that the library does"
+    also = f" Added by name: {'; '.join(added)}." if added else ""
+    return (
+        f"The model lacks {what} not have: {each}. {instead_sentence(laws)}{also} "
+        f"{held_out_sentence(laws)} The noise is {noise_words(laws.after)}."
+    )
 
 
 def _also_left(diagnosis: Diagnosis) -> str:

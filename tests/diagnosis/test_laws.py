@@ -8,14 +8,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from simulator_case import read_back
-from simulator_experiment import MACHINES
-from simulator_laws import law_case
+from simulator import probe, run_text
+from simulator_case import Ordinary, read_back, visible_size
+from simulator_case import named as hidden_effect
+from simulator_experiment import MACHINES, STATED_NOISE, random_experiment
+from simulator_laws import drawn, law_case
 
 from matstd.api.diagnosing import compare, diagnose
 from matstd.cli import main
+from matstd.diagnosis import answer
 from matstd.diagnosis.answer import Verdict
-from matstd.diagnosis.files import model_of, model_text, read_model
+from matstd.diagnosis.files import diagnosis_table, model_of, model_text, read_model
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.laws import (
     POLICY,
@@ -28,8 +31,13 @@ from matstd.diagnosis.laws import (
 )
 from matstd.diagnosis.laws.learn import _by_rival as weighed
 from matstd.diagnosis.laws.library import LibraryEffect
+from matstd.diagnosis.laws.screening import field_of, singles
+from matstd.diagnosis.laws.search import _curves
+from matstd.diagnosis.laws.space import Space
 from matstd.report.laws import no_law_sentence
+from matstd.report.run_view import diagnosis_step
 from matstd.report.verdict import part_lines
+from matstd.report.words import verdict_sentence
 from matstd.twin.library import ordinary_model, parse_effect
 from matstd.twin.model import Model
 from matstd.twin.units import UM
@@ -142,6 +150,86 @@ def test_a_diagnosis_learns_the_law_of_what_remains(stylus, tmp_path) -> None:
     bare = diagnose(run, only=["backlash"], learn=False)
     assert bare.laws is None
     assert compare(second, found.model).rms < 0.9 * compare(second, bare.model).rms
+
+
+def test_no_curve_is_offered_over_a_direction(stylus) -> None:
+    """A temperature rises, falls or stays: three values, but no curve through them."""
+    space = Space.of(stylus[2].before)
+    field = field_of(space)
+    every = [f for f in singles(space, field) if f.drivers[0].nature == "sign"]
+    assert any(len(np.unique(field.used(f.drivers[0], space))) == 3 for f in every)
+    assert _curves(space, field, every, [], POLICY) == []
+
+
+@pytest.fixture(scope="module")
+def slipped(stylus):
+    """The stylus change, of which a search finds a slip of the set-up, and its law."""
+    run, learnt = stylus[1][0], stylus[2]
+    slip = [parse_effect("artefact-slip", run.touches.chain)]
+    searched = answer.diagnose(run, candidates=slip, rng=np.random.default_rng(0))
+    return searched, replace(learnt, instead_of=searched.found, instead_odds=np.log(1000.0))
+
+
+def test_the_headline_leads_with_the_law_and_withdraws_the_names(slipped) -> None:
+    searched, learnt = slipped
+    assert [effect.name for effect in searched.found] == ["artefact-slip"]
+    assert "slip of the set-up" in verdict_sentence(searched).partition(".")[0]
+    found = searched.with_laws(learnt)
+    said = verdict_sentence(found)
+    assert said.startswith("The model lacks a law that the library does not have: the reading of")
+    assert "a step over time" in said.partition(" Withdrawn: ")[0]
+    withdrawn = said.partition(" Withdrawn: ")[2]
+    assert withdrawn.startswith("artefact-slip, which imitates a part of it")
+    assert "odds 1000 : 1" in withdrawn
+    assert "slip" not in said.partition(" Withdrawn: ")[0]
+    assert dict(part_lines(found))["named effects"].startswith("withdrawn: slip of the set-up")
+    assert diagnosis_step(found, "run.csv").startswith("Look for the cause of the learnt law")
+    table = diagnosis_table(found)
+    law = learnt.laws[0].law.name
+    assert table["headline"] == {"effects": [], "laws": [law], "withdrawn": ["artefact-slip"]}
+    # what the search found stays where programs look for it
+    before = diagnosis_table(searched)
+    assert (table["verdict"], table["steps"]) == (before["verdict"], before["steps"])
+    assert [one["in_headline"] for one in table["parts"]["named"]] == [False]
+    # the error to expect is that of the law, which leaves the noise alone
+    assert found.promise.same < searched.promise.same
+    assert found.plans == ()
+
+
+def test_a_name_beside_which_a_law_stands_is_not_withdrawn(slipped) -> None:
+    searched, learnt = slipped
+    found = searched.with_laws(replace(learnt, instead_of=(), instead_odds=0.0))
+    assert found.withdrawn == ()
+    assert found.standing is found.fit
+    assert "Withdrawn" not in verdict_sentence(found)
+    headline = diagnosis_table(found)["headline"]
+    assert (headline["effects"], headline["withdrawn"]) == (["artefact-slip"], [])
+    assert headline["laws"] == [learnt.laws[0].law.name]
+
+
+@pytest.mark.slow
+def test_a_diagnosis_withdraws_an_imitation_and_keeps_an_effect_of_the_library(stylus) -> None:
+    """The slip imitates the stylus; growth of a scale that the simulator has beside it is none."""
+    found = diagnose(stylus[1][0], only=["artefact-slip"])
+    assert [effect.name for effect in found.withdrawn] == ["artefact-slip"]
+    assert found.parts.headline == ()
+    rng = np.random.default_rng(5)
+    experiment = random_experiment(rng, "hmc1995", 6)
+    still = np.zeros(len(experiment.time))
+    plain = run_text(experiment, probe(experiment, [], still), False)
+    ordinary = Ordinary(read_back(plain, MACHINES["hmc1995"]).touches)
+    law, _ = drawn(rng, experiment, "stylus", (30.0, 31.0), ordinary, "hmc1995")
+    grown = hidden_effect(rng, experiment.machine, "thermal-expansion(Y,scaleY)")
+    grown.amplitude = 30.0 / visible_size(experiment, grown, ordinary, STATED_NOISE)[0]
+    noise = rng.normal(0.0, STATED_NOISE, len(still))
+    text = run_text(experiment, probe(experiment, [grown, law], noise), False)
+    found = diagnose(read_back(text, MACHINES["hmc1995"]), only=["thermal-expansion"])
+    assert [effect.name for effect in found.found] == [grown.name]
+    assert found.laws.laws[0].law.name == "law(bias,step time)"
+    assert found.withdrawn == ()
+    assert [one.effect.name for one in found.parts.headline] == [grown.name]
+    size = found.steps[1].size
+    assert abs(abs(size.value) - grown.amplitude) < 4.0 * size.u
 
 
 @pytest.mark.slow

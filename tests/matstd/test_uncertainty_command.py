@@ -15,12 +15,17 @@ from matstd.artefact.body.standard_file import read_standard, write_standard
 from matstd.artefact.brief.task_file import Task
 from matstd.artefact.certify.task_places import curvature, like_task
 from matstd.cli import main
+from matstd.diagnosis.files import model_text
+from matstd.diagnosis.fit import fit_run
 from matstd.probe_paths.campaign.contact_solver import VirtualMachine
 from matstd.probe_paths.campaign.simulation import visits
 from matstd.twin.errors import DesignError
 from matstd.twin.files.run_file import read_run
 from matstd.twin.files.run_writer import write_run
 from matstd.twin.frames import pose, rotation
+from matstd.twin.library import parse_effect
+from matstd.twin.machine import Contribution
+from matstd.twin.model import Model
 from matstd.twin.units import DEG, UM
 
 MACHINE = Path(__file__).parents[2] / "tests" / "golden" / "make_programs.py"
@@ -234,3 +239,49 @@ def test_another_file_of_the_standard_than_the_run_was_evaluated_with_is_refused
         capsys.readouterr().err
     )
     assert not out.exists()
+
+
+def test_a_learnt_curve_corrects_where_it_has_been_alone(tmp_path: Path) -> None:
+    """A worn stretch of Z lifts the reading by a bump; the curve knows all of it, or one side."""
+    spec = importlib.util.spec_from_file_location("golden_programs", MACHINE)
+    golden = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(golden)
+    small, chain, rng = golden.standard(), golden.machine(), np.random.default_rng(6)
+    middle, width = -255.0, 20.0
+
+    def worn(touches):
+        out = Contribution.zeros(len(touches), len(touches.chain.links))
+        bump = np.exp(-(((touches.reading("Z") - middle) / width) ** 2))
+        return out._replace(bias=12.0 * UM * bump)
+
+    stands = [
+        VirtualMachine(
+            chain,
+            disturbance=worn,
+            noise=0.2 * UM,
+            setup_error=pose(rotation(rng.normal(0.0, 2e-4, 3)), rng.normal(0.0, 0.05, 3)),
+        )
+        for _ in range(4)
+    ]
+    write_standard(tmp_path / "standard.toml", small)
+    (tmp_path / "machine.toml").write_text(chain_text(chain))
+    made = visits(golden.programs().write(tmp_path / "programs"), small, stands, rng)
+    for k, one in enumerate(made):
+        write_run(tmp_path / f"v{k}.csv", one.run, "machine.toml")
+    first = read_run(tmp_path / "v3.csv")
+    z = first.touches.reading("Z")
+    budgets = {}
+    for name, rows in (("whole", z < np.inf), ("part", z < -272.0)):
+        part = first[rows]
+        low, high = part.touches.reading("Z").min(), part.touches.reading("Z").max()
+        curve = parse_effect("law(bias,curve Z)", chain).tuned(low, high, 0.1, 20.0 * UM)
+        fit = fit_run(part, Model(chain, (curve,)))
+        (tmp_path / f"{name}.toml").write_text(model_text(fit, "v3.csv"), encoding="utf-8")
+        assert call(tmp_path, "--model", str(tmp_path / f"{name}.toml")) == 0
+        plain, corrected = json.loads((tmp_path / "u.json").read_text())["budgets"]
+        budgets[name] = corrected
+    assert budgets["whole"]["U_um"] < 0.6 * plain["U_um"]
+    # beyond its touches the curve dies away, and the budget has the bump again
+    assert budgets["part"]["U_um"] > 0.8 * plain["U_um"]
+    # places that a model does not know are no gross errors
+    assert [one["places"] for one in (plain, *budgets.values())] == [plain["places"]] * 3

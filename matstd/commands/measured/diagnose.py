@@ -95,7 +95,7 @@ def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
     from matstd.next_steps import called
 
     model, again = Path(args.output) / "model.toml", f"{args.output}-2"
-    if found.laws and found.laws.instead_of:
+    if found.withdrawn:
         return _unexplained(args, found)
     if found.verdict is Verdict.MISSING and not args.auto:
         named = [step.effect.name for step in found.steps if step.effect is not None]
@@ -142,14 +142,12 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     from matstd.console import console, say
     from matstd.report.effects import plan_words, rival_words
     from matstd.report.geometry import console_lines
-    from matstd.report.laws import instead_sentence, law_notes, visit_sentences
+    from matstd.report.laws import law_notes, visit_sentences
     from matstd.report.verdict import part_lines
     from matstd.report.words import remark_sentence, scanned_sentence, verdict_sentence
     from matstd.twin.words import in_own_unit
 
     say(f"{result.verdict.value}: {verdict_sentence(result)}", style="bold")
-    if result.laws and (instead := instead_sentence(result.laws)):
-        say(instead, style="bold")
     notes = law_notes(result.laws) if result.laws else []
     notes += visit_sentences(result.visit) if result.visit else []
     for line in (*(f"{name}: {words}" for name, words in part_lines(result)), *notes):
@@ -159,10 +157,11 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     words = [Column(word, overflow="fold", max_width=CELL_WIDTH) for word in ("effect", "size")]
     table = Table(*words, *numbers, box=None)
     for step in result.steps:
-        table.add_row(*_row(step))
+        table.add_row(*_row(step, step.effect in result.withdrawn))
     console().print(table)
     for step in result.steps:
-        if step.effect is not None and (rivals := rival_words(step)):
+        is_found = step.effect is not None and step.effect not in result.withdrawn
+        if is_found and (rivals := rival_words(step)):
             say(f"- {rivals}")
     known = result.run.touches, result.geometry, result.faults, result.trend
     for line, is_first in console_lines(*known):
@@ -174,11 +173,10 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     ]
     for line in filter(None, said):
         say(f"- {line}")
-    if any(not s.is_named for s in result.steps[1:]) and not args.auto:
-        say(
-            "- model.toml holds only effects you named; --auto adds what was found, "
-            "--add NAME one of them"
-        )
+    is_short = result.learnt is result.steps[result.named].fit
+    if is_short and any(not s.is_named for s in result.steps[1:]):
+        more = "the law" if result.withdrawn else "what was found, --add NAME one of them"
+        say(f"- model.toml holds only effects you named; --auto adds {more}")
     for i, plan in enumerate(result.plans, start=1):
         say(f"- next_measurement_{i}.csv would distinguish {plan_words(plan)}")
     first = "" if args.no_report else "report.html, "
@@ -187,7 +185,7 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     say(f"{args.output}: look at {first}{law}diagnosis.json, model.toml")
 
 
-def _row(step: Step) -> tuple[str, ...]:
+def _row(step: Step, is_withdrawn: bool) -> tuple[str, ...]:
     """One step of the table: what was added, how large it is, and how far the error fell."""
     from rich.markup import escape
 
@@ -197,8 +195,11 @@ def _row(step: Step) -> tuple[str, ...]:
     from matstd.twin.units import UM
 
     first = enumerate(values(step)[:2])
+    cell = ["withdrawn:"] if is_withdrawn else []
     return (
-        escape("\n".join(filter(None, effect_cell(step)))) if step.effect else "starting model",
+        escape("\n".join(filter(None, (*cell, *effect_cell(step)))))
+        if step.effect
+        else "starting model",
         ", ".join(f"{name} {value}" if i else value for i, (name, value) in first),
         f"{step.p_value:.0e}" if step.effect is not None else "",
         f"{step.fit.rms / UM:.3f}",
