@@ -109,6 +109,7 @@ def test_keys_and_types_are_those_of_the_contract(table) -> None:
         "touches",
         "u_um",
         "verdict",
+        "headline",
         "parts",
         "repeatability",
         "promise",
