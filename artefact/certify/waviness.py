@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from matstd.twin.frames import Array
 
-WIDTH = 0.4
+WIDTH_OF_LINE = 0.4
 """Between the outermost points of one line, across it, mm."""
 
 GAP = 2.0
@@ -62,7 +62,7 @@ def _on_lines(along: Array, across: Array, length: float) -> NDArray[np.bool_]:
     for i in range(len(along)):
         if tried[i]:
             continue
-        here = np.abs(across - across[i]) < 0.5 * WIDTH
+        here = np.abs(across - across[i]) < 0.5 * WIDTH_OF_LINE
         tried |= here
         places = np.sort(along[here])
         if places[-1] - places[0] >= length and np.diff(places).max() <= GAP:

@@ -16,10 +16,10 @@ from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
-STEP = 10.0 * DEG
+TURN_STEP = 10.0 * DEG
 """Distance of the readings that are looked at: at 200 mm from the axis 17 mm, less than a clamp."""
 
-PLACES = 5
+TURN_PLACES = 5
 """Readings of a linear axis between a body and the table that are looked at."""
 
 ROUGH, FINE = 24, 256
@@ -91,7 +91,7 @@ def _poses(brief: Brief, body: Body) -> Array:
     for name in between(brief, body):
         low, high = brief.ranges[name]
         is_rotary = chain.link(name).kind == "rotary"
-        count = int(np.ceil((high - low) / STEP)) + 1 if is_rotary else PLACES
+        count = int(np.ceil((high - low) / TURN_STEP)) + 1 if is_rotary else TURN_PLACES
         steps.append(np.linspace(low, high, count if high > low else 1))
     q = np.zeros((int(np.prod([len(s) for s in steps])), len(chain.axes)))
     for name, values in zip(between(brief, body), np.meshgrid(*steps), strict=True):

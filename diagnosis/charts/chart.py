@@ -17,7 +17,7 @@ from matstd.diagnosis.geometry import Estimate
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
 
-WIDTH = 3.0
+SIGMAS_OF_LIMITS = 3.0
 """Half width of the limits in standard deviations."""
 
 MEDIAN_RANGE = 0.9539
@@ -89,7 +89,7 @@ class ControlChart:
 
     def limits(self, segment: Segment) -> tuple[float, float]:
         """Lower and upper control limit of a segment."""
-        half = WIDTH * self.sigma
+        half = SIGMAS_OF_LIMITS * self.sigma
         return segment.centre.value - half, segment.centre.value + half
 
     @property
@@ -129,7 +129,7 @@ def chart_of(
         i
         for part in segments
         for i in range(part.first, part.last + 1)
-        if abs(x[i] - part.centre.value) > WIDTH * sigma
+        if abs(x[i] - part.centre.value) > SIGMAS_OF_LIMITS * sigma
     ]
     return ControlChart(
         of=charted,

@@ -18,7 +18,7 @@ from matstd.twin.frames import Array
 ALIKE = 0.93**2
 """Share of a signature, as squares, that an effect must reproduce to be as right an answer."""
 
-POINTS = 5
+POINTS_OF_GRID = 5
 """Points of the grid of a rival that are compared."""
 
 LENGTHS = np.geomspace(0.5, 12.0, 48)
@@ -73,7 +73,7 @@ def _thinned(pool: Signatures) -> IntArray:
     def chosen() -> Iterator[IntArray]:
         for candidate in range(len(pool.names)):
             points = np.flatnonzero(pool.owner == candidate)
-            yield points[:: max(1, -(-len(points) // POINTS))]
+            yield points[:: max(1, -(-len(points) // POINTS_OF_GRID))]
 
     return np.concatenate([*chosen()]) if pool.names else np.zeros(0, dtype=np.int64)
 

@@ -27,7 +27,7 @@ from matstd.twin.laws import Carrier, Law
 from matstd.twin.model import Effect, Model, columns
 from matstd.twin.record import Run
 
-MIN_TOUCHES = 30
+MIN_TOUCHES_OF_LAW = 30
 """Fewer touches than this leave no law that could be distinguished from another."""
 
 
@@ -188,7 +188,7 @@ def learn_beside(
     white = replace(start, memory=None)
     current, refused, refusal = start.fit, None, None
     laws: list[LearntLaw] = []
-    for _ in range(policy.most_laws if int(current.used.sum()) >= MIN_TOUCHES else 0):
+    for _ in range(policy.most_laws if int(current.used.sum()) >= MIN_TOUCHES_OF_LAW else 0):
         searched = search_law(Space.of(current), policy)
         best = _learnt(searched)
         if best is None:

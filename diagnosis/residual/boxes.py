@@ -15,7 +15,7 @@ from matstd.twin.record import IntArray
 MAX_VARIABLES = 3
 """Most variables that bound a region."""
 
-MIN_TOUCHES = 12
+MIN_TOUCHES_OF_REGION = 12
 """Fewest touches of a region."""
 
 MAX_SHARE = 0.6

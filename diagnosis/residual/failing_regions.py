@@ -20,7 +20,7 @@ from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import BoolArray, f_probability, f_tail
 from matstd.diagnosis.residual.boxes import (
     MAX_SHARE,
-    MIN_TOUCHES,
+    MIN_TOUCHES_OF_REGION,
     Bounded,
     Box,
     Condition,
@@ -145,7 +145,7 @@ class _Constant(NamedTuple):
         own = square_sums(whole - U.T @ U)
         enough = summed(np.bincount(variable.bins[space.used & rows], minlength=variable.size))
         sound = (
-            (enough >= MIN_TOUCHES)
+            (enough >= MIN_TOUCHES_OF_REGION)
             & (enough <= MAX_SHARE * len(space.u))
             & (own > MIN_OWN * square_sums(whole))
         )
@@ -252,7 +252,7 @@ class _Scatter(NamedTuple):
         here = np.maximum(sums / np.maximum(counts, 1.0), 1e-12)
         there = np.maximum((total - sums) / others, 1e-12)
         gained = count * np.log(total / count) - counts * np.log(here) - others * np.log(there)
-        enough = np.minimum(counts, count - counts) >= MIN_TOUCHES
+        enough = np.minimum(counts, count - counts) >= MIN_TOUCHES_OF_REGION
         return np.where((here > there) & enough & variable.is_offered, 0.5 * gained, 0.0)
 
 

@@ -25,7 +25,7 @@ USUAL, LARGEST, LEAST = 320.0, 400.0, 160.0
 """Sides of a base, mm: the largest that is proposed unasked (24 kg), the largest that the gain is
 stated of, and the smallest there is."""
 
-STEP = 40.0
+SIZE_STEP = 40.0
 """Between two bases that are tried, mm."""
 
 HEIGHT, LEAST_HEIGHT = 220.0, 120.0
@@ -49,7 +49,7 @@ ROOM = 1.25
 UPRIGHT, ON_ITS_SIDE = (0.0, 0.0, 0.0), (-90.0, 0.0, 0.0)
 """Ways to stand that are tried: on a face that looks along Z, or along Y; degrees."""
 
-STEP_OF_PLACE, PLACES = 10.0, 3
+STEP_OF_PLACE, MOST_PLACES = 10.0, 3
 """Between two places of a second set-up, mm, and how many are tried with the reach of the machine
 (1.5 s of processor each)."""
 
@@ -160,8 +160,8 @@ def _assumed_table(chain: Chain) -> float:
 
 def _bases(table: tuple[float, ...], most: float) -> Iterator[float]:
     """Sides of bases that stand on a table, the largest first, mm."""
-    largest = min(most, np.floor(min(table) / STEP) * STEP)
-    yield from np.arange(largest, LEAST - 1.0, -STEP).tolist()
+    largest = min(most, np.floor(min(table) / SIZE_STEP) * SIZE_STEP)
+    yield from np.arange(largest, LEAST - 1.0, -SIZE_STEP).tolist()
 
 
 def _checked(tables: Mapping[str, Mapping[str, object]], machine: Path) -> Brief:
@@ -190,7 +190,7 @@ def _other_place(brief: Brief, beside: float) -> float:
     """
     places = np.arange(np.floor(beside / STEP_OF_PLACE) * STEP_OF_PLACE, 0.0, -STEP_OF_PLACE)
     seats = [place for place in places if stands(brief, _moved(brief, place))]
-    for place in seats[:: max(1, len(seats) // PLACES)]:
+    for place in seats[:: max(1, len(seats) // MOST_PLACES)]:
         there = replace(brief, setups=(_moved(brief, place),))
         if feasibility(there).refusal is None:
             return float(place)

@@ -12,7 +12,7 @@ from matstd.twin.laws import Driver, Law
 from matstd.twin.model import columns
 from matstd.twin.units import DEG, UM, URAD
 
-POINTS = 400
+CURVE_POINTS = 400
 """Points of a curve that are drawn."""
 
 BEYOND = 0.3
@@ -65,7 +65,7 @@ def law_curve(learning: Learning, law: Law, k: int) -> LawCurve:
     used = x[fit.used]
     label, per = axis_label(driver, used)
     beyond = BEYOND * float(np.ptp(used)) if law.factors[k].shape.word == "curve" else 0.0
-    grid = np.linspace(float(used.min()) - beyond, float(used.max()) + beyond, POINTS)
+    grid = np.linspace(float(used.min()) - beyond, float(used.max()) + beyond, CURVE_POINTS)
     if driver.nature == "sign":
         grid = np.array([-1.0, 1.0])
     value, u = curve_of(learning, law, k, grid)

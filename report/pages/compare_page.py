@@ -32,7 +32,7 @@ from matstd.twin.frames import Array
 from matstd.twin.units import UM
 
 PAGE = "report.html"
-PATTERNS = 12
+PATTERN_ROWS = 12
 """Patterns that the table lists."""
 
 _PREDICTED = (
@@ -143,7 +143,7 @@ def _patterns(found: Comparison, title: str, rng: np.random.Generator) -> list[S
     residuals = residual_sections("residual", found.fit, z)
     if not found.structure:
         return [Section(heading, sentences=[_NO_PATTERN]), *residuals]
-    rows = [[structure_words(s), p_value(s.p_value)] for s in found.structure[:PATTERNS]]
+    rows = [[structure_words(s), p_value(s.p_value)] for s in found.structure[:PATTERN_ROWS]]
     which = f"To identify the physical effect: `matstd diagnose {title} -o OUT`"
     return [
         Section(

@@ -29,7 +29,7 @@ PICTURES = "pictures"
 FIRST, WHOLE = 12, 40
 """Variables that are shown unfolded, and at most."""
 
-PATTERNS = 3
+PATTERN_PICTURES = 3
 """Patterns that are drawn at most."""
 
 REGIONS = 2
@@ -103,7 +103,7 @@ def pattern_pictures(
     out: list[Picture] = []
     seen: set[tuple[tuple[str, ...], float]] = set()
     for k, one in enumerate(found):
-        if (one.variables, one.period) in seen or len(out) >= PATTERNS:
+        if (one.variables, one.period) in seen or len(out) >= PATTERN_PICTURES:
             continue
         seen.add((one.variables, one.period))
         drawn = draw_pattern(fit, one, rng)

@@ -17,7 +17,7 @@ from matstd.report.verdict import part_lines
 from matstd.report.words import sizes, structure_words
 from matstd.twin.frames import Array
 
-PATTERNS = 2
+PATTERNS_IN_VIEW = 2
 """Patterns of a residual that are named."""
 
 _PLACE = Markup(
@@ -86,7 +86,7 @@ def _curves(learning: Learning) -> dict[str, list[LawCurve]]:
 
 def comparison_view(found: Comparison, title: str, body: Array | None = None) -> LiveView:
     """Of a comparison: no effect on."""
-    patterns = "; ".join(structure_words(s) for s in found.structure[:PATTERNS])
+    patterns = "; ".join(structure_words(s) for s in found.structure[:PATTERNS_IN_VIEW])
     findings = Findings(
         title,
         set_up_alone=_set_up_alone(found.geometry),

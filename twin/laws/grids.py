@@ -13,7 +13,7 @@ from matstd.twin.frames import Array
 from matstd.twin.laws.driver import Driver
 from matstd.twin.laws.shape import SHAPES, Shape
 
-PLACES = 24
+BUMP_PLACES = 24
 """Places over the range of a variable at which a bump, a kink or a step is tried."""
 
 EDGES = 18
@@ -80,7 +80,7 @@ def grid(shape: Shape, driver: Driver, x: Array) -> Array:
     is_time = driver.nature == "time"
     widths = span * np.geomspace(0.03, 1.0, 9)
     tails = span * np.geomspace(0.02, 3.0, 14)
-    between = _between(x, PLACES)
+    between = _between(x, BUMP_PLACES)
     made: dict[str, Iterator[tuple[float, ...]] | list[tuple[float, ...]]] = {
         "sign": [()],
         "lin": [(driver.zero, scale)],
@@ -93,11 +93,11 @@ def grid(shape: Shape, driver: Driver, x: Array) -> Array:
             for z in dict.fromkeys((start,) if is_time else (low, high, driver.zero))
             for p in (0.25, 0.4, 0.6, 0.8, 1.4, 1.7, 2.5, 3.0, 4.0)
         ],
-        "bump": product(np.linspace(low, high, PLACES), widths),
+        "bump": product(np.linspace(low, high, BUMP_PLACES), widths),
         "bump-before": product(between, widths[2:]),
         "bump-after": product(between, widths[2:]),
         "pulse": product((low, *between[::2]), widths),
-        "step": [(p,) for p in _between(x, 3 * PLACES)],
+        "step": [(p,) for p in _between(x, 3 * BUMP_PLACES)],
         "window": combinations(_edges(x), 2),
         "ramp": combinations(np.linspace(low, high, EDGES), 2),
         "plateau": [
