@@ -13,7 +13,7 @@ from matstd.api.saved import REPORT_FILES
 from matstd.artefact.body import Standard, read_standard
 from matstd.artefact.reach import DatumBall
 from matstd.options import SHEET, SHEET_FILES
-from matstd.probe_paths.campaign import ball_centres, checked_parts, evaluate
+from matstd.probe_paths.campaign import ball_centres, checked_parts, evaluate, read_program_of
 from matstd.probe_paths.control import (
     BALL,
     LogPart,
@@ -134,7 +134,7 @@ def replan(
     standard = read_standard(design / "standard.toml")
     files = programs_of(design)
     words = _dialect(control, files[0])
-    programs = [read_program(file, chain, dialect=words) for file in files]
+    programs = [read_program_of(standard, file, chain, None, words) for file in files]
     parts = [part for log in logs for part in read_log(log, chain.rotary_axes)]
     here, others = of_one_setup(programs, parts)
     setup, lines = _place(parts, standard, chain, words, spread)
