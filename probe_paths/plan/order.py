@@ -4,7 +4,8 @@ The order of the golden ratio's fractional parts spreads axis positions evenly o
 Touches within a pose follow a short way by 2-opt and Or-opt.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -37,6 +38,7 @@ class Visit:
         before: Readings just before it, overshot to the side, (R,), rad.
         rows: Requests to touch here, (M,).
         height: Reading of Z at which the probe moves sideways, mm.
+        stretch: Number of the stretch between standstills; each begins a program.
     """
 
     pose: int
@@ -45,6 +47,35 @@ class Visit:
     before: Array
     rows: IntArray
     height: float = 0.0
+    stretch: int = 0
+
+
+class StatedVisits(NamedTuple):
+    """Visits in a given order, from given sides.
+
+    Attributes:
+        number: Of the visit of every request, in their order, (N,).
+        side: Direction of the last motion of each rotary axis towards it, (N, R), -1 or 1.
+        stretch: Number of the stretch between standstills, (N,).
+    """
+
+    number: IntArray
+    side: Array
+    stretch: IntArray
+
+
+def stated_visits(
+    chain: Chain, rotary: Array, stated: StatedVisits, overshoot: float
+) -> list[Visit]:
+    """Visits in the order and from the sides that are stated; arguments and errors as `visits`."""
+    poses, belongs = np.unique(rotary, axis=0, return_inverse=True)
+    out = []
+    for number in np.unique(stated.number):
+        rows = np.flatnonzero(stated.number == number)
+        pose, side = int(belongs.reshape(-1)[rows[0]]), stated.side[rows[0]]
+        made = _visit(chain, pose, poses[pose], side, overshoot, rows)
+        out.append(replace(made, stretch=int(stated.stretch[rows[0]])))
+    return out
 
 
 def visits(chain: Chain, rotary: Array, overshoot: float, shortest_visit: int) -> list[Visit]:
