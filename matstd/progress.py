@@ -28,15 +28,11 @@ TIME_LEFT_TOLERANCE = 1.2
 
 
 class Plan(NamedTuple):
-    """Stages of a command as they were measured.
+    """Stages of a command as they were measured."""
 
-    Attributes:
-        shares: Share of the whole that every stage takes, in their order; they sum up to one.
-        usual: Duration of the whole, s.
-    """
-
+    # share of the whole that every stage takes, in their order; they sum up to one
     shares: Mapping[str, float]
-    usual: float
+    usual: float  # duration of the whole, s
 
 
 @dataclass(slots=True)

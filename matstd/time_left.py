@@ -24,17 +24,12 @@ PATIENCE = 3
 
 @dataclass(slots=True)
 class TimeLeft:
-    """How far a command is, and how long the rest takes.
+    """How far a command is, and how long the rest takes."""
 
-    Attributes:
-        shares: Share of the whole that every stage takes, in their order; they sum up to one.
-        usual: Duration of the whole where it was measured, s: the pace before there is one.
-        begun: When the command began, s.
-    """
-
+    # share of the whole that every stage takes, in their order; they sum up to one
     shares: Mapping[str, float]
-    usual: float
-    begun: float = 0.0
+    usual: float  # duration of the whole where it was measured, s: the pace before there is one
+    begun: float = 0.0  # when the command began, s
     stage: str = ""
     position: float = 0.0
     at: float = 0.0

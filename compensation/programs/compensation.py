@@ -32,38 +32,24 @@ MIN_LINE = 0.01
 
 @dataclass(frozen=True, eq=False)
 class Compensated:
-    """A program and its compensation, point by point in the order of the motion.
-
-    Attributes:
-        text: The compensated program.
-        motion: Index of the motion that every point belongs to, (N,).
-        elapsed: Time at every point since the program began, (N,), s.
-        q: Readings as they were commanded, (N, A).
-        added: What the compensation adds to them, as written, (N, A).
-        nominal: Tool point in the table frame as it should be, (N, 3), mm.
-        before: Deviation of the tool point from there without compensation, (N, 3), mm.
-        after: The same with it, rounded as it was written.
-        between: Largest distance of the tool point from the nominal path inside the line that ends
-            at every point, (N,), mm; nan where it is not checked (`off_path`).
-        tolerance: Tolerance to which lines were divided, mm.
-        u: Standard uncertainty of both from that of the model at some points, (M,), mm.
-        u_at: Those points, (M,).
-        unmoved: Lines of motions that stay as they are, since no place is known there.
-    """
+    """A program and its compensation, point by point in the order of the motion."""
 
     program: Program
-    text: str
-    motion: IntArray
-    elapsed: Array
-    q: Array
-    added: Array
-    nominal: Array
-    before: Array
-    after: Array
+    text: str  # the compensated program
+    motion: IntArray  # index of the motion that every point belongs to, (N,)
+    elapsed: Array  # time at every point since the program began, (N,), s
+    q: Array  # readings as they were commanded, (N, A)
+    added: Array  # what the compensation adds to them, as written, (N, A)
+    nominal: Array  # tool point in the table frame as it should be, (N, 3), mm
+    before: Array  # deviation of the tool point from there without compensation, (N, 3), mm
+    after: Array  # the same with it, rounded as it was written
+    # largest distance of the tool point from the nominal path inside the line that ends at every
+    # point, (N,), mm; nan where it is not checked (`off_path`)
     between: Array
-    tolerance: float
-    u: Array
-    u_at: IntArray
+    tolerance: float  # tolerance to which lines were divided, mm
+    u: Array  # standard uncertainty of both from that of the model at some points, (M,), mm
+    u_at: IntArray  # those points, (M,)
+    # lines of motions that stay as they are, since no place is known there
     unmoved: tuple[int, ...]
 
     @cached_property

@@ -23,22 +23,15 @@ _BESIDE = 1.0  # mm on either side, between which a slope is taken
 
 @dataclass(frozen=True)
 class Answer:
-    """What a control reads.
-
-    Attributes:
-        sent: Corrections of the three linear axes, and what they are worth.
-        k0: Corrections at the readings that were given, mm: those of `sent` once it has settled.
-        k1: How each changes with the reading of its own axis, mm/mm.
-        p0: Those readings, mm. Between two answers ``k0 + k1 (p - p0)`` goes on.
-        refused: Why the last readings were not understood; empty for none.
-    """
+    """What a control reads."""
 
     sequence: int
-    sent: Sent
+    sent: Sent  # corrections of the three linear axes, and what they are worth
+    # corrections at the readings that were given, mm: those of `sent` once it has settled
     k0: Point
-    k1: Point
-    p0: Point
-    refused: str
+    k1: Point  # how each changes with the reading of its own axis, mm/mm
+    p0: Point  # those readings, mm. Between two answers ``k0 + k1 (p - p0)`` goes on
+    refused: str  # why the last readings were not understood; empty for none
 
 
 class Service:

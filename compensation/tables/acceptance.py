@@ -21,20 +21,13 @@ class Acceptance:
     """The place where a table moves the tool point most, rotary axes as at the datum.
 
     An indicator is zeroed at the datum and read at this place against a gauge that is straight.
-
-    Attributes:
-        q: Readings, (A,).
-        without: Deviation of the tool point relative to the datum without the table, (3,), mm.
-        with_table: The same with it.
-        wrong_sign: The same where the control takes its values with the opposite sign.
-        u: Standard uncertainties from that of the model, (3,), mm.
     """
 
-    q: Array
-    without: Array
-    with_table: Array
-    wrong_sign: Array
-    u: Array
+    q: Array  # readings, (A,)
+    without: Array  # deviation of the tool point relative to the datum without the table, (3,), mm
+    with_table: Array  # the same with it
+    wrong_sign: Array  # the same where the control takes its values with the opposite sign
+    u: Array  # standard uncertainties from that of the model, (3,), mm
 
 
 def acceptance(

@@ -37,39 +37,26 @@ Tables = NamedTables | AxisTables
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """A control's tables.
+    """A control's tables."""
 
-    Attributes:
-        name: Word of the command line, and folder.
-        make: Tables of some errors, for some poses.
-        write: Texts by file name.
-        read: Tables and head from a folder.
-    """
-
-    name: str
-    make: Callable[[MachineErrors, Datum, Array], Tables]
-    write: Callable[[Any, Header], dict[str, str]]
-    read: Callable[[Path, Chain], tuple[Tables, Header]]
+    name: str  # word of the command line, and folder
+    make: Callable[[MachineErrors, Datum, Array], Tables]  # tables of some errors, for some poses
+    write: Callable[[Any, Header], dict[str, str]]  # texts by file name
+    read: Callable[[Path, Chain], tuple[Tables, Header]]  # tables and head from a folder
 
 
 @dataclass(frozen=True, eq=False)
 class VerifiedTables:
-    """Tables that were written, read back and simulated on the exact twin.
+    """Tables that were written, read back and simulated on the exact twin."""
 
-    Attributes:
-        format: Word of the format.
-        result: Before and after over the workspace, and what the format cannot hold.
-        interpolation: What interpolation and rounding leave at most, mm: over the workspace where
-            tables hold errors by name, on the lines through the datum where they hold axes.
-        by_name: Whether tables hold errors by name.
-        left_out: Axes whose table would raise the error beside the line through the datum.
-    """
-
-    format: str
+    format: str  # word of the format
     files: tuple[str, ...]
-    result: Result
+    result: Result  # before and after over the workspace, and what the format cannot hold
+    # what interpolation and rounding leave at most, mm: over the workspace where tables hold errors
+    # by name, on the lines through the datum where they hold axes
     interpolation: float
-    by_name: bool
+    by_name: bool  # whether tables hold errors by name
+    # axes whose table would raise the error beside the line through the datum
     left_out: tuple[str, ...]
     acceptance: Acceptance
 

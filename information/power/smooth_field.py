@@ -32,21 +32,13 @@ _RANK = 1e-9  # eigenvalue relative to the largest, below which a pattern is rou
 
 @dataclass(frozen=True, eq=False)
 class FieldTest:
-    """A test for a smooth field, made for some measurements.
+    """A test for a smooth field, made for some measurements."""
 
-    Attributes:
-        explained: ``Q``, (N, B).
-        patterns: ``p``, what is multiplied with the measurements, (N, M).
-        weight: ``l / (1 + l)`` of every pattern, (M,).
-        risk: Probability that it finds a field where there is none.
-        threshold: Of T.
-    """
-
-    explained: Array
-    patterns: Array
-    weight: Array
-    risk: float
-    threshold: float
+    explained: Array  # ``Q``, (N, B)
+    patterns: Array  # ``p``, what is multiplied with the measurements, (N, M)
+    weight: Array  # ``l / (1 + l)`` of every pattern, (M,)
+    risk: float  # probability that it finds a field where there is none
+    threshold: float  # of T
 
     def statistic(self, y: Array) -> Array:
         """T of measurements (N, K) in units of independent noise, (K,)."""

@@ -24,24 +24,17 @@ RAISED = 100.0
 
 @dataclass(frozen=True)
 class Companions:
-    """Programs that go with those of a plan.
+    """Programs that go with those of a plan."""
 
-    Attributes:
-        dry_run: Where the programs go, higher, without a touch.
-        raised: By how much, mm.
-        spread: Within which a search finds the standard.
-        search: For the standard; None where there can be none.
-        ball: Touches on one ball, before the programs and after them; None where there can be none.
-        first: One touch that a control is tried with; None where there is none.
-    """
-
-    dry_run: ProgramSet
-    raised: float
-    spread: Spread
-    search: ProgramSet | None = None
+    dry_run: ProgramSet  # where the programs go, higher, without a touch
+    raised: float  # by how much, mm
+    spread: Spread  # within which a search finds the standard
+    search: ProgramSet | None = None  # for the standard; None where there can be none
     no_search: str = ""
+    # touches on one ball, before the programs and after them; None where there can be none
     ball: ProgramSet | None = None
     no_ball: str = ""
+    # one touch that a control is tried with; None where there is none
     first: ProgramSet | None = None
 
     def write(self, folder: Path) -> None:

@@ -49,22 +49,14 @@ machine alone may cause, mm."""
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Where a standard stands.
-
-    Attributes:
-        shift: Shift of the standard from its assumed place, in its own frame, (3,), mm.
-        angles: About x, y and z of it, (3,), rad.
-        u: Standard uncertainties of both, (6,), mm and rad.
-        rms: Rms distance of the touches, mm.
-        next_rms: The same at the best of the other places, mm.
-    """
+    """Where a standard stands."""
 
     setup: Setup
-    shift: Array
-    angles: Array
-    u: Array
-    rms: float
-    next_rms: float
+    shift: Array  # shift of the standard from its assumed place, in its own frame, (3,), mm
+    angles: Array  # about x, y and z of it, (3,), rad
+    u: Array  # standard uncertainties of both, (6,), mm and rad
+    rms: float  # rms distance of the touches, mm
+    next_rms: float  # the same at the best of the other places, mm
 
 
 def find_standard(

@@ -7,15 +7,10 @@ from matstd.twin.units import DEG
 
 @dataclass(frozen=True)
 class Spread:
-    """Largest offset of the standard from its assumed place, either way in every direction.
+    """Largest offset of the standard from its assumed place, either way in every direction."""
 
-    Attributes:
-        distance: Along x, y and z of its own frame, mm.
-        angle: About each of them, rad.
-    """
-
-    distance: float = 20.0
-    angle: float = 5.0 * DEG
+    distance: float = 20.0  # along x, y and z of its own frame, mm
+    angle: float = 5.0 * DEG  # about each of them, rad
 
 
 SPREADS = tuple(Spread(d, a * DEG) for d, a in ((20.0, 5.0), (15.0, 4.0), (10.0, 3.0), (5.0, 2.0)))

@@ -10,14 +10,10 @@ from matstd.probe_paths.plan import TouchPlan
 
 @dataclass(frozen=True, eq=False)
 class Station:
-    """What one probe does in one clamping.
-
-    Attributes:
-        dialect: Words of the control, with the probe's tool.
-    """
+    """What one probe does in one clamping."""
 
     plan: TouchPlan
-    dialect: Dialect
+    dialect: Dialect  # words of the control, with the probe's tool
     programs: ProgramSet
 
     @property

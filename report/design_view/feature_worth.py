@@ -14,19 +14,12 @@ from matstd.twin.frames import Array
 
 
 class Feature(NamedTuple):
-    """A ball or a face, or the rest of the body.
+    """A ball or a face, or the rest of the body."""
 
-    Attributes:
-        name: Empty for the rest.
-        kind: `ball`, `face` or `body`.
-        colour: As `#rrggbb`.
-        corners: Artefact frame, (T, 3, 3), mm.
-    """
-
-    name: str
-    kind: str
-    colour: str
-    corners: Array
+    name: str  # empty for the rest
+    kind: str  # `ball`, `face` or `body`
+    colour: str  # as `#rrggbb`
+    corners: Array  # artefact frame, (T, 3, 3), mm
 
 
 def features_of(standard: Standard) -> list[Feature]:

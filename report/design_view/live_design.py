@@ -27,19 +27,13 @@ GRAIN = 0.05
 
 @dataclass(frozen=True, eq=False)
 class DesignScene:
-    """What the page of a design shows that moves.
-
-    Attributes:
-        plan: Touches of the first clamping and probe, in their order.
-        minutes: On the machine, by the name of the artefact.
-        field: Errors of the first simulated machine; None where there is no volume.
-    """
+    """What the page of a design shows that moves."""
 
     brief: Brief
     placement: Placement
-    plan: TouchPlan
-    minutes: Mapping[str, float]
-    field: ErrorField | None
+    plan: TouchPlan  # touches of the first clamping and probe, in their order
+    minutes: Mapping[str, float]  # on the machine, by the name of the artefact
+    field: ErrorField | None  # errors of the first simulated machine; None where there is no volume
 
 
 def design_live(scene: DesignScene) -> LiveView:

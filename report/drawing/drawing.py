@@ -49,21 +49,13 @@ _FLAT = 10_000.0  # mm: a ball of 3 mm cannot distinguish such a face from a pla
 
 @dataclass(frozen=True, slots=True)
 class Issuer:
-    """Who answers for a drawing.
+    """Who answers for a drawing."""
 
-    Attributes:
-        author: Responsible for the design.
-        organisation: Whom the author works for.
-        mass: Mass of body and balls, kg.
-        approved: Who approved the drawing.
-        date: Date of its issue.
-    """
-
-    author: str
-    organisation: str
-    mass: float
-    approved: str = "not stated"
-    date: str = "not stated"
+    author: str  # responsible for the design
+    organisation: str  # whom the author works for
+    mass: float  # mass of body and balls, kg
+    approved: str = "not stated"  # who approved the drawing
+    date: str = "not stated"  # date of its issue
 
 
 def write_drawing(folder: Path, standard: Standard, issuer: Issuer) -> None:

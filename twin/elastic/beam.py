@@ -18,21 +18,13 @@ SUPPORTS: tuple[Support, ...] = ("cantilever", "supported", "clamped")
 
 
 class Plane(NamedTuple):
-    """Bending in one plane: stiffness, and what it gives at a point, (N,) each.
+    """Bending in one plane: stiffness, and what it gives at a point, (N,) each."""
 
-    Attributes:
-        by_force: Deflection per force, and rotation per moment's unit work: mm/N.
-        coupled: Rotation per force, which is deflection per moment: 1/N.
-        by_moment: Rotation per moment: 1/(N mm).
-        own: Deflection under a uniform load, mm per N/mm.
-        own_rotation: Rotation under it, rad per N/mm.
-    """
-
-    by_force: Array
-    coupled: Array
-    by_moment: Array
-    own: Array
-    own_rotation: Array
+    by_force: Array  # deflection per force, and rotation per moment's unit work: mm/N
+    coupled: Array  # rotation per force, which is deflection per moment: 1/N
+    by_moment: Array  # rotation per moment: 1/(N mm)
+    own: Array  # deflection under a uniform load, mm per N/mm
+    own_rotation: Array  # rotation under it, rad per N/mm
 
 
 def bending(support: Support, x: Array, span: Array, EI: float, GA: float) -> Plane:

@@ -17,21 +17,15 @@ _ROUND = re.compile(rf"d{_NUMBER}(?:x{_NUMBER})?\Z")
 
 @dataclass(frozen=True)
 class Section:
-    """A doubly symmetric cross-section; the first direction is that of the width.
+    """A doubly symmetric cross-section; the first direction is that of the width."""
 
-    Attributes:
-        area: mm2.
-        bending: Second moments for deflection along the width and along the height, mm4.
-        shear_area: Areas that bear shear along the width and along the height, mm2.
-        torsion: Torsion constant, mm4.
-        depth: Largest extent, mm.
-    """
-
-    area: float
+    area: float  # mm2
+    # second moments for deflection along the width and along the height, mm4
     bending: tuple[float, float]
+    # areas that bear shear along the width and along the height, mm2
     shear_area: tuple[float, float]
-    torsion: float
-    depth: float
+    torsion: float  # torsion constant, mm4
+    depth: float  # largest extent, mm
 
 
 def section(word: str, poisson: float) -> Section | None:
