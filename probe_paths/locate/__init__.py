@@ -8,9 +8,8 @@ programs that are run beside those of a plan.
 
 from matstd.probe_paths.locate.again import planned_again
 from matstd.probe_paths.locate.beside import RAISED, Companions, companions
-from matstd.probe_paths.locate.find import Found, find_standard
+from matstd.probe_paths.locate.find import SPREADS, Found, Spread, find_standard
 from matstd.probe_paths.locate.search_plan import plan_search
-from matstd.probe_paths.locate.spread import SPREADS, Spread
 
 __all__ = [
     "RAISED",
