@@ -24,18 +24,12 @@ from matstd.twin.record import Run
 
 @dataclass(frozen=True, eq=False)
 class Rehearsal:
-    """What LinuxCNC measured.
-
-    Attributes:
-        u: Standard uncertainty of every touch, noise and latch, mm.
-        latched: How far each logged position lies beyond the twin's contact, (N,), mm.
-        modelled: How far it may at most, mm.
-    """
+    """What LinuxCNC measured."""
 
     run: Run
-    u: float
-    latched: Array
-    modelled: float
+    u: float  # standard uncertainty of every touch, noise and latch, mm
+    latched: Array  # how far each logged position lies beyond the twin's contact, (N,), mm
+    modelled: float  # how far it may at most, mm
 
 
 def rehearse(

@@ -50,17 +50,11 @@ _CLEAR, _WAYS = 1.0, 32  # mm between a circle and its name; directions that are
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """Where a view lies on the sheet.
+    """Where a view lies on the sheet."""
 
-    Attributes:
-        x: Place of the view's origin, mm of paper.
-        y: The same upwards, mm of paper.
-        scale: Paper by part.
-    """
-
-    x: float
-    y: float
-    scale: float
+    x: float  # place of the view's origin, mm of paper
+    y: float  # the same upwards, mm of paper
+    scale: float  # paper by part
 
     def at(self, points: Any) -> Array:
         """Points (N, 2) of the view on paper, mm."""
