@@ -159,10 +159,7 @@ class Conformity:
             ),
             (self.is_millimetre, "the STEP file is not in millimetres"),
             (not self.missing, f"faces without their name: {', '.join(self.missing)}"),
-            (
-                not self.not_as_designed,
-                f"not in the STEP file as meant: {', '.join(self.not_as_designed)}",
-            ),
+            (not self.not_as_designed, f"not as designed: {', '.join(self.not_as_designed)}"),
             (drift <= VOLUME_LIMIT, f"the volume changes by {drift:.1e} on re-reading"),
             (
                 deviation <= FACE_LIMIT,
