@@ -14,12 +14,7 @@ from matstd.report.geometry import copy_lines, fault_sentences
 from matstd.report.words import remark_sentence
 from matstd.twin import files
 from matstd.twin.errors import BadArgument, BadFile, DesignError, NotEnoughData
-from matstd.twin.library import (
-    kinds,
-    ordinary_model,
-    try_kind,
-    users_files,
-)
+from matstd.twin.library import kinds, ordinary_model, try_kind, users_files
 from matstd.twin.model import Model
 from matstd.twin.record import Run, joined
 

@@ -1,20 +1,15 @@
 """Control charts: values with uncertainties, mean, limits, steps and drift."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from datetime import timedelta
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from matstd.diagnosis.charts import ControlChart, History
 from matstd.report.charts.chart_words import chart_name
 from matstd.report.geometry import shown_unit
-from matstd.report.style import BLUE, INK, ORANGE, RED, SOFT, WASH, figure, plain
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from matstd.report.style import BLUE, INK, ORANGE, RED, SOFT, WASH, Figure, figure, plain
 
 ACROSS, HEIGHT = 2, 2.35
 """Charts side by side, and the height of a row, inch."""

@@ -1,23 +1,30 @@
 """Pictures of a compensation: over the workspace, error by error, along a program or path."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from matstd.compensation.field import Result, Share, UncorrectedError
 from matstd.compensation.programs import Compensated
 from matstd.report.numbers import with_uncertainty
-from matstd.report.style import BLUE, FAINT, INK, NEUTRAL, RED, SOFT, figure, nothing, plain, series
+from matstd.report.style import (
+    BLUE,
+    FAINT,
+    INK,
+    NEUTRAL,
+    RED,
+    SOFT,
+    Figure,
+    figure,
+    nothing,
+    plain,
+    series,
+)
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms_length
 from matstd.twin.sampling import spread_rows
 from matstd.twin.units import MINUTE, UM
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 LONGEST_NAME = 32
 """Letters of a label."""

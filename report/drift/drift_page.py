@@ -5,11 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.diagnosis.drift import (
-    DriftRecord,
-    IntArray,
-    Judged,
-)
+from matstd.diagnosis.drift import DriftRecord, IntArray, Judged
 from matstd.report.drift.drift_pictures import draw_drift, draw_laws
 from matstd.report.drift.drift_words import law_title, law_words, together, units_word
 from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page

@@ -1,21 +1,15 @@
 """Pictures of a thermal drift: measured and predicted, and the errors of all laws."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from matstd.diagnosis.drift import DriftRecord, IntArray, Judged
 from matstd.report.drift.drift_words import law_title, together
-from matstd.report.style import BLUE, FAINT, INK, NEUTRAL, WASH, figure, plain, series
+from matstd.report.style import BLUE, FAINT, INK, NEUTRAL, WASH, Figure, figure, plain, series
 from matstd.twin.frames import Array
 from matstd.twin.sampling import spread_rows
 from matstd.twin.units import HOUR
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 DRAWN_MOMENTS = 3000
 """Points of a curve that are drawn at most."""

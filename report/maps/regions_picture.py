@@ -1,21 +1,16 @@
 """Tornado of the variance shares: one chart a region, the errors that matter there."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from matstd.report.style import INK, axis_title, figure, nothing, plain, series
+from matstd.report.style import INK, Figure, axis_title, figure, nothing, plain, series
 from matstd.report.words import place_words
 from matstd.sensitivity.shares import Region, RegionTotals
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.units import UM
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _BARS = 8
 _COLUMNS = 3

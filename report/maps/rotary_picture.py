@@ -4,21 +4,16 @@ The linear axes follow, as they do under a program, so that the tool point stays
 workpiece; where their travel does not let them, nothing is drawn.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from matstd.report.style import LINE, figure, nothing, reading_label
+from matstd.report.style import LINE, Figure, figure, nothing, reading_label
 from matstd.sensitivity.first_order import covariance, normal_length, sensitivity
 from matstd.sensitivity.study import PointOverRotary, Study, points_over_rotary
 from matstd.twin.frames import Array
 from matstd.twin.machine import Symbol
 from matstd.twin.units import UM, URAD
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _SHOWN = 4  # maps in a row
 _STILL = 0.02  # relative range of S below which its map would be one colour

@@ -1,24 +1,28 @@
 """Maps of sensitivities and of the volumetric error, for reports (PNG)."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from matstd.report.maps.regions_picture import draw_regions
 from matstd.report.maps.rotary_picture import draw_rotary
 from matstd.report.maps.sensitivity_pictures import maps_of_S, overview
-from matstd.report.style import INK, axis_title, figure, nothing, plain, reading_label, save, series
+from matstd.report.style import (
+    INK,
+    Figure,
+    axis_title,
+    figure,
+    nothing,
+    plain,
+    reading_label,
+    save,
+    series,
+)
 from matstd.report.words import sampling_words, unsampled
 from matstd.sensitivity.shares import region_totals, regions
 from matstd.sensitivity.study import Study
 from matstd.twin.frames import Array
 from matstd.twin.units import DEG, UM
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _BARS = 24
 _BINS = 12

@@ -22,12 +22,7 @@ from matstd.report.pages.run_sections import (
 )
 from matstd.report.run_view import comparison_step, comparison_view
 from matstd.report.verdict import comparison_meaning, promise_words, repeatability_words
-from matstd.report.words import (
-    comparison_sentence,
-    learnt_lines,
-    remark_sentence,
-    structure_words,
-)
+from matstd.report.words import comparison_sentence, learnt_lines, remark_sentence, structure_words
 from matstd.twin.frames import Array
 from matstd.twin.units import UM
 

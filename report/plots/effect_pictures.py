@@ -1,18 +1,11 @@
 """Pictures of a diagnosis: the error falling, rival effects, and each effect alone."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from matstd.diagnosis.answer import (
-    Candidate,
-    ConfusionClass,
-    Diagnosis,
-    Step,
-)
+from matstd.diagnosis.answer import Candidate, ConfusionClass, Diagnosis, Step
 from matstd.diagnosis.fit import MIN_POSES, Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import BoolArray
@@ -29,6 +22,7 @@ from matstd.report.style import (
     ORANGE,
     RED,
     SOFT,
+    Figure,
     axis_of,
     figure,
     plain,
@@ -39,9 +33,6 @@ from matstd.twin.library import parse_effect
 from matstd.twin.model import Effect
 from matstd.twin.numbers import rms
 from matstd.twin.units import UM
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 MOST_BARS = 14
 """Rivals or candidates that get a bar."""

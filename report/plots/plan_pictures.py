@@ -1,20 +1,15 @@
 """Pictures of a plan: the set-up, where the standard is touched, how the table turns meanwhile."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, Plate
 from matstd.artefact.reach import table_face
 from matstd.probe_paths.plan import TouchPlan
-from matstd.report.style import BLUE, INK, RED, SOFT, figure, plain
+from matstd.report.style import BLUE, INK, RED, SOFT, Figure, figure, plain
 from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.units import DEG
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def draw_setup(plan: TouchPlan) -> Figure:

@@ -1,8 +1,6 @@
 """Pictures of a residual in space: on the standard, and table pose by table pose."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +16,7 @@ from matstd.report.style import (
     ORANGE,
     SOFT,
     WASH,
+    Figure,
     figure,
     plain,
     robust_limit,
@@ -25,9 +24,6 @@ from matstd.report.style import (
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 from matstd.twin.units import DEG, UM
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 EXTENT = 1.0
 """Touched points closer together than this (mm) are a place, not a standard."""

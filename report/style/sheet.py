@@ -16,6 +16,8 @@ from matstd.twin.words import in_own_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+else:  # matplotlib takes a second to load, and is loaded inside the functions that draw
+    Figure = Any
 
 INK, SOFT, LINE, WASH = "#1c2430", "#7d8794", "#d8dee6", "#f4f6f9"
 """Letters, what stands back, grids, and the ground of what is bare."""

@@ -4,13 +4,7 @@ import math
 from collections.abc import Sequence
 
 from matstd.diagnosis.accuracy import Promise, Repeatability, Scatter
-from matstd.diagnosis.answer import (
-    Diagnosis,
-    GeometryPart,
-    NamedEffect,
-    Remainder,
-    Step,
-)
+from matstd.diagnosis.answer import Diagnosis, GeometryPart, NamedEffect, Remainder, Step
 from matstd.diagnosis.geometry import GeometryRow
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import Shape

@@ -9,12 +9,7 @@ from matstd.diagnosis.laws import Learning
 from matstd.report.effects import class_words
 from matstd.report.laws import held_out_sentence, instead_sentence, law_sentence
 from matstd.report.numbers import digits, microns
-from matstd.report.words.diagnosis_words import (
-    noise_words,
-    sizes,
-    stated_noise,
-    structure_clause,
-)
+from matstd.report.words.diagnosis_words import noise_words, sizes, stated_noise, structure_clause
 from matstd.twin.units import DEG
 from matstd.twin.words import listed
 

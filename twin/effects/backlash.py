@@ -6,13 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from matstd.twin.fields import (
-    check_count,
-    component_symbol,
-    moving_axes,
-    read_axis,
-    refusal,
-)
+from matstd.twin.fields import check_count, component_symbol, moving_axes, read_axis, refusal
 from matstd.twin.machine import LETTERS, Chain, Family, Symbol
 from matstd.twin.model import Amounts, Declared, Kind, Title, Where
 from matstd.twin.record import Touches

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from matstd.commands.compensation.options import add_model, add_program, add_state
+from matstd.console import say
 from matstd.twin.errors import DesignError
 
 
@@ -23,7 +24,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write the table and the picture; the folder appears whole or not at all."""
     from matstd.commands.compensation.job import program_options, read_job
-    from matstd.console import say
     from matstd.report.compensation import share_lines
 
     if (args.program is None) == (args.poses is None):

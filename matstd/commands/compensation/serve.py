@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.commands.compensation.options import add_model, add_state
+from matstd.console import say
+from matstd.twin.units import NM, UM
 
 if TYPE_CHECKING:
     from matstd.api.compensating import Compensation
@@ -46,8 +49,6 @@ def run(args: argparse.Namespace) -> int:
 
     from matstd.commands.compensation.job import read_job
     from matstd.compensation.service import OutputLimits, serve
-    from matstd.console import say
-    from matstd.twin.units import UM
 
     limits = OutputLimits(args.most * UM, args.rate * UM, args.patience, args.hold)
     machine = read_job(args)
@@ -66,7 +67,6 @@ def run(args: argparse.Namespace) -> int:
 def _on_linuxcnc(ini: str, machine: Compensation, limits: OutputLimits) -> int:
     """Write the files of the control, answer its component until it is stopped."""
     import asyncio
-    from pathlib import Path
 
     from matstd.compensation.linuxcnc import (
         HAL_FILE,
@@ -75,7 +75,6 @@ def _on_linuxcnc(ini: str, machine: Compensation, limits: OutputLimits) -> int:
         serve_linuxcnc,
         write_control_files,
     )
-    from matstd.console import say
 
     control = Control(Path(ini))
     control.check(machine.errors.chain)
@@ -93,7 +92,6 @@ def _on_linuxcnc(ini: str, machine: Compensation, limits: OutputLimits) -> int:
 
 
 def _corrected(service: Service) -> str:
-    from matstd.twin.units import NM
     from matstd.twin.words import listed
 
     correction, sensors = service.correction, service.sensors

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from matstd.commands.compensation.options import add_driven, add_program
+from matstd.console import say, say_assumed
 from matstd.options import add_effects, add_output
 
 
@@ -57,7 +58,6 @@ def run(args: argparse.Namespace) -> int:
     """Write the page."""
     from matstd.api.showing import show
     from matstd.commands.compensation.job import machine_state, named_readings, program_options
-    from matstd.console import say, say_assumed
     from matstd.effect_kinds import register_effects
     from matstd.progress import stages
     from matstd.report.machine import shown_lines

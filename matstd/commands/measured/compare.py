@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from matstd.console import say
 from matstd.options import add_measured, asked_printer, pitches, starting_model
+from matstd.twin.units import UM
 
 if TYPE_CHECKING:
     from matstd.api.diagnosing import Comparison
@@ -45,7 +47,6 @@ def run(args: argparse.Namespace) -> int:
 
 def _report(args: argparse.Namespace, found: Comparison, arm: str) -> None:
     """The comparison in words, beside what the model promised, or what it was learnt with."""
-    from matstd.console import say
     from matstd.report.geometry import console_lines
     from matstd.report.verdict import promise_words, repeatability_words
     from matstd.report.words import (
@@ -55,7 +56,6 @@ def _report(args: argparse.Namespace, found: Comparison, arm: str) -> None:
         region_sentence,
         remark_sentence,
     )
-    from matstd.twin.units import UM
 
     saved = found.saved
     say(comparison_sentence(found), style="bold")

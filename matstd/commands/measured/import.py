@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from matstd.console import say, say_each
 from matstd.options import add_output, seen_from
+from matstd.twin.errors import DesignError
+from matstd.twin.units import UM
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from matstd.importers import Sheet
     from matstd.twin.machine import Chain
@@ -187,10 +190,6 @@ def _add_details(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the run file, and a machine file where none was given."""
-    from pathlib import Path
-
-    from matstd.console import say
-    from matstd.twin.errors import DesignError
     from matstd.twin.files import refuse_to_overwrite
 
     output = Path(args.output)
@@ -217,7 +216,6 @@ def run(args: argparse.Namespace) -> int:
 def _chosen(args: argparse.Namespace, path: str, names: Sequence[str]) -> Sheet:
     """The table that `--table` names, or of which most can be read; others are listed."""
     from matstd.commands.measured.kinds import readings_of
-    from matstd.console import say
     from matstd.importers import read_sheet
     from matstd.importers.sheets import listed_tables, most_read, read_tables
 
@@ -237,7 +235,6 @@ def _chosen(args: argparse.Namespace, path: str, names: Sequence[str]) -> Sheet:
 
 def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
     """Any table, by a mapping file."""
-    from matstd.console import say, say_each
     from matstd.importers import import_mapped
     from matstd.twin.files import read_machine, write_whole
 
@@ -253,15 +250,11 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
 
 def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> None:
     """A test of an axis, a circle, an arm, or lists of points."""
-    from pathlib import Path
-
     from matstd.commands.measured.kinds import arm, circle, points, positioning
-    from matstd.console import say
     from matstd.importers import machine_text, with_travels
     from matstd.importers.sheets import timed_by_rows
     from matstd.twin.files import refuse_to_overwrite, write_run, write_whole
     from matstd.twin.numbers import rms
-    from matstd.twin.units import UM
 
     if args.part or args.standard:
         measured, chain = points(args, sheets)
@@ -292,8 +285,6 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
 
 def _travels(stated: Sequence[Sequence[str]], chain: Chain) -> dict[str, tuple[float, float]]:
     """Travels of `--travel`, mm and rad."""
-    from matstd.twin.errors import DesignError
-
     out = {}
     for axis, *ends in stated:
         try:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 
+from matstd.console import say, say_each
 from matstd.options import add_output
 from matstd.twin.errors import DesignError
+from matstd.twin.units import HOUR, MINUTE, UM
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -77,10 +79,8 @@ def run(args: argparse.Namespace) -> int:
 def _compare(args: argparse.Namespace) -> int:
     """Laws beside one another, the chosen one with its file and page."""
     from matstd.api.drifting import SOMETIMES, learn_drift
-    from matstd.console import say, say_each
     from matstd.progress import stages
     from matstd.twin.files import results_folder
-    from matstd.twin.units import HOUR, MINUTE, UM
 
     with results_folder(args.output, args.force, SOMETIMES) as folder, stages() as show:
         found = learn_drift(
@@ -105,8 +105,6 @@ def _compare(args: argparse.Namespace) -> int:
 def _predict(args: argparse.Namespace) -> int:
     """The drift of a log by an earlier law, with what was probed meanwhile."""
     from matstd.api.drifting import predict_drift
-    from matstd.console import say, say_each
-    from matstd.twin.units import MINUTE, UM
 
     found = predict_drift(args.law, args.logs[0], args.probed, args.u_um * UM)
     found.save(args.output, args.force)

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.commands.probing.simulate import add_planted, planted_machine
+from matstd.console import say, say_each
 from matstd.options import add_output
+from matstd.twin.units import MINUTE, UM
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from matstd.probe_paths.emit import ProgramSet
 
 
@@ -34,17 +35,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Run the programs, keep the log whatever happens, evaluate it where all touches were made."""
-    from pathlib import Path
-
     import numpy as np
 
     from matstd.api.probing import save_run
     from matstd.api.replanning import programs_of
     from matstd.artefact.body import read_standard
-    from matstd.console import say, say_each
     from matstd.probe_paths.linuxcnc import installed, rehearse
     from matstd.twin.files.whole import claimed
-    from matstd.twin.units import MINUTE, UM
 
     user = installed(args.user)
     design = Path(args.design)

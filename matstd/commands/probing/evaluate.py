@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import argparse
 
+from matstd.console import say, say_assumed, say_each
 from matstd.options import add_body, add_output
+from matstd.twin.errors import BadArgument
+from matstd.twin.units import DEG, UM
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -93,11 +96,8 @@ def _scan_run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from matstd.api.evaluating import evaluate_scan_log
-    from matstd.console import say, say_each
-    from matstd.twin.errors import BadArgument
     from matstd.twin.frames import fixed_xyz, pose
     from matstd.twin.record import Setup
-    from matstd.twin.units import DEG, UM
 
     if len(args.logs) != 1 or args.radius_mm is None or args.length_mm is None:
         given = f"{len(args.logs)} files, radius {args.radius_mm}, length {args.length_mm}"
@@ -127,10 +127,8 @@ def run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from matstd.api.evaluating import evaluate
-    from matstd.console import say, say_assumed, say_each
     from matstd.twin.files import refuse_to_overwrite
     from matstd.twin.numbers import rms
-    from matstd.twin.units import UM
 
     refuse_to_overwrite(args.output, args.force)
     if args.scan:

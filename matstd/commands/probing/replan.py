@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 
+from matstd.console import say, say_each
 from matstd.options import SHEET, add_output, add_pdf, asked_printer
+from matstd.twin.units import DEG
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -45,9 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Find the place, plan, write programs and set-up sheet; the folder appears whole or not."""
     from matstd.api.replanning import OURS, replan
-    from matstd.console import say, say_each
     from matstd.twin.files import results_folder
-    from matstd.twin.units import DEG
 
     printed_by = asked_printer(args)
     angle = None if args.within_deg is None else args.within_deg * DEG

@@ -6,7 +6,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from matstd.console import say, say_assumed, say_each
 from matstd.options import add_body, add_effects, add_output, add_several
+from matstd.twin.errors import DesignError
+from matstd.twin.units import UM
 
 if TYPE_CHECKING:
     from matstd.artefact.body import Standard
@@ -65,11 +68,9 @@ def run(args: argparse.Namespace) -> int:
     """Write the run file; a touch without contact stops the program and writes nothing."""
     from matstd.api.probing import leaves_no_run, simulate
     from matstd.api.standards import read_standard
-    from matstd.console import say, say_assumed, say_each
     from matstd.progress import stages
     from matstd.twin.files import refuse_to_overwrite
     from matstd.twin.numbers import rms
-    from matstd.twin.units import UM
 
     refuse_to_overwrite(args.output, args.force)
     machine = planted_machine(args, args.machine, args.control, args.sensors)
@@ -116,8 +117,6 @@ def _search(
 ) -> int:
     """Write the log of a program that measures nothing and leaves no run file."""
     from matstd.api.probing import save_logs, simulate_log
-    from matstd.console import say
-    from matstd.twin.errors import DesignError
 
     if not args.logs or len(args.programs) > 1:
         raise DesignError(
@@ -171,7 +170,6 @@ def planted_machine(
     """The machine as it really is, with what the options of `add_planted` plant in it."""
     from matstd.api.probing import virtual_machine
     from matstd.effect_kinds import register_effects
-    from matstd.twin.units import UM
 
     register_effects(*args.effects)
     return virtual_machine(

@@ -5,7 +5,10 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from matstd.console import console, say, say_each
 from matstd.options import add_output
+from matstd.twin.errors import DesignError
+from matstd.twin.units import UM
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -91,11 +94,8 @@ def _add_uncertainties(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write the calibrated standard, or the program, whole or not at all."""
     from matstd.api.standards import as_designed, calibrate
-    from matstd.console import say, say_each
     from matstd.report.task import calibration_lines, verdict_lines
-    from matstd.twin.errors import DesignError
     from matstd.twin.files import refuse_to_overwrite
-    from matstd.twin.units import UM
 
     refuse_to_overwrite(args.output, args.force)
     nominal = as_designed(args.standard)
@@ -126,7 +126,6 @@ def run(args: argparse.Namespace) -> int:
 def _program(output: str, nominal: Standard, orientation: float) -> int:
     """Write the program for the CMM."""
     from matstd.api.standards import cmm_program
-    from matstd.console import say
     from matstd.twin.files import write_whole
 
     text = cmm_program(nominal, orientation)
@@ -140,7 +139,6 @@ def _show(verdicts: Sequence[Verdict]) -> None:
     """What conforms to the drawing and what does not, one row per characteristic."""
     from rich.table import Column, Table
 
-    from matstd.console import console
     from matstd.report.task import verdict_rows
 
     numbers = [Column(f"{word} µm", justify="right") for word in ("deviation", "allowed", "u")]

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
+from matstd.console import say_assumed, say_each
 from matstd.options import add_pdf
+from matstd.twin.errors import BadFile, DesignError
 from matstd.workers import add_scheduler
 
 _STUDY_ONLY = ("draws", "digits", "tolerance_um", "scheduler", "pdf")
@@ -47,9 +50,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write S as a table, or a study as a folder."""
-    from pathlib import Path
-
-    from matstd.twin.errors import BadFile, DesignError
     from matstd.twin.files import parse_toml, read_text
 
     path = Path(args.source)
@@ -66,7 +66,6 @@ def run(args: argparse.Namespace) -> int:
 def _table(args: argparse.Namespace) -> int:
     """One column a parameter: µm/µm, or µm/µrad for an angular one."""
     from matstd.api.machines import read_machine, sensitivities
-    from matstd.console import say_assumed
     from matstd.progress import stages
     from matstd.twin.files import refuse_to_overwrite
 
@@ -83,7 +82,6 @@ def _table(args: argparse.Namespace) -> int:
 def _study(args: argparse.Namespace) -> int:
     """Data, pictures and page of a study; the folder appears whole or not at all."""
     from matstd.api.designing import Project
-    from matstd.console import say_assumed, say_each
     from matstd.progress import stages
     from matstd.report.words import study_words
 

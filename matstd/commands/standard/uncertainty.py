@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from matstd.console import say, say_each
 from matstd.options import add_effects, add_output
 
 
@@ -39,7 +40,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Evaluate; the result is written whole or not at all."""
     from matstd.api.standards import uncertainty
-    from matstd.console import say, say_each
     from matstd.effect_kinds import register_effects
     from matstd.twin.files import refuse_to_overwrite
 
