@@ -14,11 +14,9 @@ from matstd.twin.errors import DesignError
 if TYPE_CHECKING:
     from matstd.report.pages import Printer
 
-SETUP, GEOMETRY = "setup", "geometry"
-"""Words of `--start`."""
+SETUP, GEOMETRY = "setup", "geometry"  # words of `--start`
 
-SHEET = "setup"
-"""Folder of the set-up sheet, and of the programs that are run before the others."""
+SHEET = "setup"  # folder of the set-up sheet, and of the programs that are run before the others
 
 SHEET_FILES = (
     f"{SHEET}/setup.pdf",

@@ -13,8 +13,7 @@ from matstd.twin.numbers import rms, rms_length
 from matstd.twin.record import Touches
 from matstd.twin.sampling import even_points
 
-RESULT_POSES = 256
-"""Poses of the figures: their rms is then known to some 4 %."""
+RESULT_POSES = 256  # poses of the figures: their rms is then known to some 4 %
 
 
 def sample_workspace(

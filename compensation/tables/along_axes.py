@@ -28,8 +28,7 @@ from matstd.twin.numbers import rms_length
 from matstd.twin.record import Touches
 from matstd.twin.units import NM
 
-MIN_GAIN = 50.0 * NM
-"""A table that lowers the rms error by less is not written, mm."""
+MIN_GAIN = 50.0 * NM  # a table that lowers the rms error by less is not written, mm
 
 
 @dataclass(frozen=True, eq=False)

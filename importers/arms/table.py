@@ -24,11 +24,9 @@ _CYCLE = re.compile(r"cycle|zyklus|\brep(lica\w*|eat\w*|etition\w*)?\b|trial", r
 _COUPLED = re.compile(r"J?(\d{1,2})\s*([+-])\s*J?(\d{1,2})\Z", re.IGNORECASE)
 
 
-MAX_FIXED_MOTION = 2.0
-"""Range (mm) of a fixed target in the frame of a tracker that drifts."""
+MAX_FIXED_MOTION = 2.0  # range (mm) of a fixed target in the frame of a tracker that drifts
 
-MIN_MOTION_RATIO = 20.0
-"""Least motion of the reflectors on the arm, in ranges of a fixed target."""
+MIN_MOTION_RATIO = 20.0  # least motion of the reflectors on the arm, in ranges of a fixed target
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,11 +4,9 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-Row = tuple[int, Sequence[str | float]]
-"""A line of the file with its cells."""
+Row = tuple[int, Sequence[str | float]]  # a line of the file with its cells
 
-MIN_EQUAL_NAMES = 0.5
-"""From this share of equal names two headers belong to parts of one table."""
+MIN_EQUAL_NAMES = 0.5  # from this share of equal names two headers belong to parts of one table
 
 _AXIS = re.compile(r"\b(?:axis|achse|axe|eje)\b\W*([XYZABC])\b", re.IGNORECASE)
 

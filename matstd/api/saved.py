@@ -25,8 +25,7 @@ EFFECT, LAW, VISIT = "effect.py", "law.json", "next_visit.csv"
 """Files of a law that was learnt: as an effect of the user's own, for other programs, and the
 touches that distinguish it from its rivals."""
 
-FOUND = "machine_found.toml"
-"""Machine file of a serial arm with the lines of all joints as found."""
+FOUND = "machine_found.toml"  # machine file of a serial arm with the lines of all joints as found
 
 
 class Saveable(ABC):

@@ -50,11 +50,9 @@ from matstd.twin.units import HOUR
 TOOL_LENGTH = 150.0
 """Of the tool that is drawn unless another is stated, mm."""
 
-DURATION = 8.0 * HOUR
-"""After the start over which drifts are shown at least, s: a shift."""
+DURATION = 8.0 * HOUR  # after the start over which drifts are shown at least, s: a shift
 
-_PROBING = re.compile(r"\bSTANDARD \S+ SETUP \S+")
-"""Stands in the head of every probing program."""
+_PROBING = re.compile(r"\bSTANDARD \S+ SETUP \S+")  # stands in the head of every probing program
 
 
 @dataclass(frozen=True, eq=False, repr=False)

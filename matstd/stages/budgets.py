@@ -22,8 +22,7 @@ from matstd.twin.model import Model
 from matstd.twin.record import Run
 from matstd.twin.units import UM, URAD
 
-UNCORRECTED = "as measured"
-"""Results that no model corrects."""
+UNCORRECTED = "as measured"  # results that no model corrects
 
 CLAMPING_SCATTER = (50.0 * UM, 200.0 * URAD)
 """How far from where it is believed a standard stands in a virtual visit, mm and rad: less than

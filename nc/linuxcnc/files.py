@@ -8,8 +8,7 @@ from pathlib import Path
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_text
 
-SYSTEMS = 9
-"""Coordinate systems G54 to G59.3."""
+SYSTEMS = 9  # coordinate systems G54 to G59.3
 
 
 def variables(offsets: Mapping[int, Sequence[float]]) -> str:

@@ -6,8 +6,7 @@ moment: the axes move on between the contact and the sample.
 
 import numpy as np
 
-SERVO_PERIOD = 1e-3
-"""Period of the servo thread of our machine, s."""
+SERVO_PERIOD = 1e-3  # period of the servo thread of our machine, s
 
 
 def latch_error(feed: float, period: float = SERVO_PERIOD, latency: float = 0.0) -> float:

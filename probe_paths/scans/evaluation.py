@@ -39,8 +39,7 @@ from matstd.twin.units import NM, UM
 STRETCH = 8.0
 """Length of line in one row, mm: less than half of the narrowest effect that is looked for."""
 
-LARGEST_GAP = 3.0
-"""Largest distance of a ball from its face after the set-up is fitted, mm."""
+LARGEST_GAP = 3.0  # largest distance of a ball from its face after the set-up is fitted, mm
 
 LARGEST_RMS = 0.1
 """Root mean square of the deviations with the set-up fitted, mm: no machine in use is that wrong,

@@ -11,11 +11,9 @@ from matstd.report.charts.chart_words import chart_name
 from matstd.report.geometry import shown_unit
 from matstd.report.style import BLUE, INK, ORANGE, RED, SOFT, WASH, Figure, figure, plain
 
-ACROSS, HEIGHT = 2, 2.35
-"""Charts side by side, and the height of a row, inch."""
+ACROSS, HEIGHT = 2, 2.35  # charts side by side, and the height of a row, inch
 
-MOST_TICKS = 8
-"""Dates that are written below a chart."""
+MOST_TICKS = 8  # dates that are written below a chart
 
 
 def draw_charts(found: History, charts: Sequence[ControlChart]) -> Figure:

@@ -24,17 +24,13 @@ class Paper:
         return self.width, self.height
 
 
-A2, A1 = Paper("A2", 594.0, 420.0), Paper("A1", 841.0, 594.0)
-"""Papers of drawings."""
+A2, A1 = Paper("A2", 594.0, 420.0), Paper("A1", 841.0, 594.0)  # papers of drawings
 
-WIDE, THIN = 0.5, 0.25
-"""Lines of ISO 128-2, mm."""
+WIDE, THIN = 0.5, 0.25  # lines of ISO 128-2, mm
 
-HATCH = "hatch"
-"""Filling of a cut solid (ISO 128-3)."""
+HATCH = "hatch"  # filling of a cut solid (ISO 128-3)
 
-LETTER_HEIGHT = 2.5
-"""Height of lettering, mm (ISO 3098-1); smaller letters do not survive a copy."""
+LETTER_HEIGHT = 2.5  # height of lettering, mm (ISO 3098-1); smaller letters do not survive a copy
 
 _POINT = 72.0 / 25.4  # points a millimetre
 _MARGIN, _BINDING = 10.0, 20.0

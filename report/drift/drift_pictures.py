@@ -11,8 +11,7 @@ from matstd.twin.frames import Array
 from matstd.twin.sampling import spread_rows
 from matstd.twin.units import HOUR
 
-DRAWN_MOMENTS = 3000
-"""Points of a curve that are drawn at most."""
+DRAWN_MOMENTS = 3000  # points of a curve that are drawn at most
 
 
 def draw_drift(

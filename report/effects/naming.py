@@ -12,8 +12,7 @@ from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Title, is_tunable
 from matstd.twin.words import listed
 
-NAMED = 4
-"""Bodies, titles or names that are written out; of more, the first ones."""
+NAMED = 4  # bodies, titles or names that are written out; of more, the first ones
 
 _BODIES = {"t": "the tool", "w": "the workpiece", "standard": "the standard", "probe": "the probe"}
 

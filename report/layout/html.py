@@ -19,8 +19,7 @@ from matstd.twin.files import write_whole
 from matstd.twin.versions import versions
 from matstd.twin.words import in_own_unit
 
-MIN_SECTIONS = 3
-"""Sections from which a page has a table of contents."""
+MIN_SECTIONS = 3  # sections from which a page has a table of contents
 
 _MARKS = (
     (re.compile(r"\*\*(.+?)\*\*"), r"<b>\1</b>"),
@@ -29,8 +28,7 @@ _MARKS = (
     (re.compile(r"\n"), "<br>"),
 )
 _NEARLY_WHITE = 248  # of 255
-PROSE = 60
-"""Characters from which a cell that begins with a number is a sentence, which is wrapped."""
+PROSE = 60  # characters from which a cell that begins with a number is a sentence, which is wrapped
 
 _NUMBER = re.compile(r"[<±+\-−]?\s?\d")
 

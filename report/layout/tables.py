@@ -8,8 +8,7 @@ from matstd.twin.files import write_whole, written_whole
 from matstd.twin.text import csv_text
 from matstd.twin.words import in_own_unit
 
-FOLDER, WORKBOOK = "tables", "tables.xlsx"
-"""Where they go, beside the page."""
+FOLDER, WORKBOOK = "tables", "tables.xlsx"  # where they go, beside the page
 
 _LONGEST = 31  # letters of a sheet's name, by the format
 _WIDEST = 60  # letters of a column before its text is cut off on the screen

@@ -20,8 +20,7 @@ from matstd.report.style import series
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Link
 
-TOOL_RADIUS, BALL_RADIUS = 4.0, 6.0
-"""Of the tool that is drawn, mm."""
+TOOL_RADIUS, BALL_RADIUS = 4.0, 6.0  # of the tool that is drawn, mm
 
 _NOSE_RADIUS, _NOSE = 45.0, 170.0  # of the spindle, mm: those of a spindle HSK 63
 _STEEL, _RAIL, _BED = "#aeb6c0", "#6b7685", "#d3d8de"
@@ -355,5 +354,4 @@ def _column(bed: Array, low: Array, high: Array) -> list[Array]:
     return [beam, block(foot, np.array([high[0] + 0.5 * _LEAST, back + deep, high[_UP]]))]
 
 
-_UP = 2
-"""Index of Z, along which the tool points on every machine."""
+_UP = 2  # index of Z, along which the tool points on every machine

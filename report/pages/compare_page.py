@@ -27,8 +27,7 @@ from matstd.twin.frames import Array
 from matstd.twin.units import UM
 
 PAGE = "report.html"
-PATTERN_ROWS = 12
-"""Patterns that the table lists."""
+PATTERN_ROWS = 12  # patterns that the table lists
 
 _PREDICTED = (
     "The machine is as estimated before this run; only the set-ups of the standard were estimated "

@@ -40,8 +40,7 @@ from matstd.twin.units import UM
 
 _STEP_FACE = "largest deviation of a STEP face from its design"
 
-MAPS = "sensitivity"
-"""Folder of the maps."""
+MAPS = "sensitivity"  # folder of the maps
 
 GREEN, YELLOW = 0.8, 0.5
 """Shares of a tolerance in which conformity can be proved from which it is green and yellow. Green:

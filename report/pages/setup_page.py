@@ -16,8 +16,7 @@ from matstd.report.plots import draw_setup
 from matstd.twin.frames import fixed_xyz_angles
 from matstd.twin.units import DEG, MINUTE
 
-PAGE, PICTURE = "setup.html", "setup.png"
-"""Names in the folder of the sheet."""
+PAGE, PICTURE = "setup.html", "setup.png"  # names in the folder of the sheet
 
 _REMEDY = {
     Label.OTHER_PROBE: "number and length of the probe in the tool table, to the ball's far pole",

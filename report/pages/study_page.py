@@ -34,8 +34,7 @@ _S_SCENES = 3
 _STILL = 0.02  # relative range of S in a volume below which its map would be one colour
 _ALIKE = 0.98  # correlation of two maps of S that show the same
 
-Shown = tuple[str, str]
-"""File and caption of a picture."""
+Shown = tuple[str, str]  # file and caption of a picture
 
 _VARIANCE = "Errors that make half of the variance, region by region (exact to first order)"
 

@@ -34,8 +34,7 @@ from matstd.twin.model import Effect
 from matstd.twin.numbers import rms
 from matstd.twin.units import UM
 
-MOST_BARS = 14
-"""Rivals or candidates that get a bar."""
+MOST_BARS = 14  # rivals or candidates that get a bar
 
 TEN = float(np.log(10.0))
 
@@ -43,8 +42,7 @@ SLOW, SCATTERED = 0.01, 0.3
 """Mean squared step over the variance, up to which a course is slow, and up to which it is one: a
 cycle of a dozen touches is in between."""
 
-ROW = 0.34
-"""Height of a bar with two lines of words, inch."""
+ROW = 0.34  # height of a bar with two lines of words, inch
 
 RATIO = 12.0
 """Between the largest and the smallest error of a fall, from which its scale is logarithmic."""

@@ -75,8 +75,7 @@ def _bounds(region: Region, name: str, values: Array) -> tuple[float, float]:
     return own.get(Side.FROM, float(values.min())), own.get(Side.BELOW, float(values.max()))
 
 
-NEIGHBOURS = 14
-"""Touches over which a map of two variables is averaged."""
+NEIGHBOURS = 14  # touches over which a map of two variables is averaged
 
 BINS = 24
 

@@ -25,8 +25,7 @@ from matstd.twin.record import IntArray
 from matstd.twin.sampling import spread_rows
 from matstd.twin.units import UM
 
-MOST_DRAWN = 4000
-"""Touches that are drawn as points; means are always over all."""
+MOST_DRAWN = 4000  # touches that are drawn as points; means are always over all
 
 COLUMNS = 4
 

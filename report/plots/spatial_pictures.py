@@ -25,14 +25,11 @@ from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 from matstd.twin.units import DEG, UM
 
-EXTENT = 1.0
-"""Touched points closer together than this (mm) are a place, not a standard."""
+EXTENT = 1.0  # touched points closer together than this (mm) are a place, not a standard
 
-UNSURE = 3.0
-"""Times the usual uncertainty of a pose's vector from which no arrow is drawn of it."""
+UNSURE = 3.0  # times the usual uncertainty of a pose's vector from which no arrow is drawn of it
 
-MOST_NAMED = 24
-"""Features whose names are written on the standard."""
+MOST_NAMED = 24  # features whose names are written on the standard
 
 
 def is_spread(touches: Touches) -> bool:

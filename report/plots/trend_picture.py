@@ -10,11 +10,9 @@ from matstd.report.geometry import quantity_name, shown_unit
 from matstd.report.style import BLUE, INK, RED, Figure, figure, plain, series
 from matstd.twin.units import UM
 
-ACROSS = 3
-"""Quantities side by side."""
+ACROSS = 3  # quantities side by side
 
-HEIGHT = 2.3
-"""Height of one row of pictures, inch."""
+HEIGHT = 2.3  # height of one row of pictures, inch
 
 
 def draw_trend(trend: Trend, rows: Sequence[tuple[GeometryRow, Sequence[bool]]]) -> Figure:

@@ -7,8 +7,7 @@ from tempfile import TemporaryDirectory
 from matstd.report.layout import LiveView, Page, write_page
 from matstd.twin.files import write_whole
 
-HEIGHT = 760
-"""Of the frame, pixels."""
+HEIGHT = 760  # of the frame, pixels
 
 
 class Framed:

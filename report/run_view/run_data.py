@@ -20,14 +20,12 @@ from matstd.twin.record import Run, Touches
 from matstd.twin.units import UM
 from matstd.twin.words import in_own_unit
 
-GRAIN = 0.02
-"""Of the corners of bodies, mm; larger ones are coarser."""
+GRAIN = 0.02  # of the corners of bodies, mm; larger ones are coarser
 
 LONG = 4000
 """Touches from which less is kept of each: fewer columns to plot, residuals at one noise."""
 
-MOST_COLUMNS, FEWER_COLUMNS = 40, 10
-"""Recorded columns that can be plotted; of a long run."""
+MOST_COLUMNS, FEWER_COLUMNS = 40, 10  # recorded columns that can be plotted; of a long run
 
 
 @dataclass(frozen=True, slots=True)

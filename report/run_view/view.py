@@ -17,8 +17,7 @@ from matstd.report.verdict import part_lines
 from matstd.report.words import sizes, structure_words
 from matstd.twin.frames import Array
 
-PATTERNS_IN_VIEW = 2
-"""Patterns of a residual that are named."""
+PATTERNS_IN_VIEW = 2  # patterns of a residual that are named
 
 _PLACE = Markup(
     '<section id="live" class="live run" hidden '

@@ -18,14 +18,11 @@ from matstd.twin.errors import DesignError, ShapeMismatch
 from matstd.twin.frames import Array, apply
 from matstd.twin.sampling import grid_points
 
-IMAGE = "image.npy"
-"""What the renderer leaves."""
+IMAGE = "image.npy"  # what the renderer leaves
 
-PIXELS = 900
-"""Height and width of one rendered scene."""
+PIXELS = 900  # height and width of one rendered scene
 
-COLOURS = "viridis"
-"""Even in lightness, and readable without red and green."""
+COLOURS = "viridis"  # even in lightness, and readable without red and green
 
 _VIEW = (0.62, -0.74, 0.46)  # towards the eye: right of and in front of the machine, from above
 _WIDEST = 5.0  # inch, of one scene

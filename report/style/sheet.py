@@ -62,8 +62,7 @@ def series(k: int) -> str:
 WIDTH = 10.0
 """Width of a picture, inch: pages shrink all pictures alike, so letters are equally large."""
 
-DPI = 140
-"""1400 dots across: sharp on the 190 mm of a printed page (190 dpi)."""
+DPI = 140  # 1400 dots across: sharp on the 190 mm of a printed page (190 dpi)
 
 
 def figure(

@@ -15,14 +15,11 @@ from matstd.report.numbers import digits, microns, noun, p_value, percent
 from matstd.report.words import sizes, structure_words
 from matstd.twin.words import listed
 
-NAMED = 3
-"""Quantities of the geometry that are written out; of more, the first ones."""
+NAMED = 3  # quantities of the geometry that are written out; of more, the first ones
 
-MAX_LOG10 = 12.0
-"""Odds are not written with more zeros: beyond, their number means nothing."""
+MAX_LOG10 = 12.0  # odds are not written with more zeros: beyond, their number means nothing
 
-HOLDS = 1.25
-"""Errors of left-out blocks over their uncertainties up to which a model holds there."""
+HOLDS = 1.25  # errors of left-out blocks over their uncertainties up to which a model holds there
 
 
 def part_lines(result: Diagnosis) -> list[tuple[str, str]]:

@@ -35,11 +35,9 @@ MACHINES = (
 )
 """Kinds of machines with a template of their own."""
 
-IN_METRES = 10.0
-"""A table smaller than this, mm, is one in metres."""
+IN_METRES = 10.0  # a table smaller than this, mm, is one in metres
 
-NEEDS_MACHINE = ("project", "run")
-"""Kinds that name a machine file."""
+NEEDS_MACHINE = ("project", "run")  # kinds that name a machine file
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
