@@ -112,8 +112,6 @@ def result_of(
     """Before and after over some poses, and the remainder of every error.
 
     Args:
-        q: Poses, (N, A).
-        datum: With the tool that is meant.
         unheld: What the compensation leaves per unit of every parameter, first order, (N, 3, P);
             None where nothing is broken down.
     """

@@ -186,7 +186,6 @@ def most_useful(
     that it helps.
 
     Args:
-        q: Poses, (N, A).
         most: Tables that a control holds.
     """
     left, effects = _fields(tables, errors, datum, q)
@@ -206,9 +205,6 @@ def harmless(tables: AxisTables, errors: MachineErrors, datum: Datum, q: Array) 
 
     A table keeps what depends on the direction of motion alone, which is right beside the datum
     too.
-
-    Args:
-        q: Poses, (N, A).
     """
     left, effects = _fields(tables, errors, datum, q)
     kept = dict(enumerate(effects))

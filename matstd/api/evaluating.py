@@ -183,7 +183,6 @@ def evaluate_scan_log(
 
     Args:
         log: See `matstd.importers.points.scan_log`.
-        standard: As calibrated.
         face: Name of the scanned face.
         radius: Of the ball, mm.
         length: From the gauge point to its centre, mm.

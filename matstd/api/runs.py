@@ -62,8 +62,6 @@ def starting_run(
     """What compare and diagnose begin with.
 
     Args:
-        runs: Measurements of one machine.
-        model: With which the work begins.
         same: What follows where the model was learnt from this very run, for the remark.
         hold_out: Names of runs of which nothing is to be learnt.
         pitch: Of axes whose pitch is stated, mm.

@@ -92,12 +92,7 @@ def next_visit(laws: Learning) -> VisitPlan:
 def write_learnt(
     folder: Path, laws: Learning, title: str, visit: VisitPlan, second: SecondRun | None = None
 ) -> None:
-    """Write law.json and, with a law, effect.py; next_visit.csv where touches are planned.
-
-    Args:
-        title: Names of the runs.
-        second: What a second run says of the laws.
-    """
+    """Write law.json and, with a law, effect.py; next_visit.csv where touches are planned."""
     write_json(folder / LAW, law_table(laws, title, visit, second))
     if laws.laws:
         write_whole(folder / EFFECT, effect_text(laws, title))

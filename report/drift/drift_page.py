@@ -52,10 +52,7 @@ def write_drift_page(
 
     Args:
         hold: Error one step ahead of holding the last value, (K,).
-        train: Rows of the training part.
-        held: Rows held out.
         title: Names of the logs.
-        probings: Sentences on the error that remains with occasional probing.
     """
     predicted, u = best.law.predicted(record), best.u(record)
     inside = np.abs((predicted - record.displacement) / u)[held] < 2.0

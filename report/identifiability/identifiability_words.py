@@ -116,7 +116,6 @@ def combination_words(
     """`EXX + 0.52 EXZ - 0.03 µm/µrad EBX ...`: the most important parameters with their weights.
 
     Args:
-        units: Base units of the parameters.
         weights: Shape (P,), the leading one's is one.
         importance: Weights in units of the expected size of each parameter, (P,).
     """

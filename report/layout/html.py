@@ -136,7 +136,6 @@ def picture(path: str | Path, is_small: bool = False) -> str:
     """A PNG or SVG file as a data address, so that the page stands alone.
 
     Args:
-        path: The file.
         is_small: Whether a PNG keeps 256 colours: charts look the same at a third of the size.
     """
     path = Path(path)

@@ -35,11 +35,7 @@ def page_tables(page: Page) -> list[tuple[str, str, Table]]:
 
 
 def write_tables(folder: Path, page: Page) -> list[Path]:
-    """Write every table of a page as CSV into `tables/`, and all of them into one workbook.
-
-    Returns:
-        The files.
-    """
+    """Write every table of a page as CSV into `tables/`, and all of them into one workbook."""
     from openpyxl import Workbook
     from openpyxl.styles import Font
     from openpyxl.utils import get_column_letter

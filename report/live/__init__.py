@@ -42,8 +42,6 @@ def packed(
         values: Numbers of any shape; for kinds of whole numbers they must be finite.
         kind: `f8`, `f4`, or the upper bytes of the former alone, `f6` (11 digits) and `f3` (3
             digits); or of whole numbers `i4`, `u4`, `i2`, `u2`, `i1`, `u1`.
-        unit: As it is shown.
-        name: As it is shown.
         grain: What one step of a whole number is; values are rounded to it.
 
     Raises:

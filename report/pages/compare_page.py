@@ -57,9 +57,6 @@ def write_compare_page(
     """Write `report.html` and its pictures into a folder.
 
     Args:
-        found: The comparison.
-        folder: For the page.
-        title: Name of the run file.
         rng: Shuffles residuals, to show what chance produces.
         reported: Numbers of effects as the model file keeps them, by name.
         body: Triangles of what was probed, where it is known.

@@ -80,10 +80,6 @@ _LIMITS = (
 def write_design_page(design: Design, folder: Path) -> list[str]:
     """Draw the pictures and write report.html.
 
-    Args:
-        design: What was made; its files lie in the folder.
-        folder: The results.
-
     Returns:
         What could not be drawn and why, one line each; the page states it too.
     """

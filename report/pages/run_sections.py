@@ -60,7 +60,6 @@ def residual_sections(name: str, fit: Fit, z: Array | None = None) -> list[Secti
 
     Args:
         name: First word of the files.
-        fit: The fit.
         z: Residuals over their standard uncertainty where that exceeds the touch's own, (N,).
     """
     panels, file = rank_variables(fit), f"{PICTURES}/{name}"
@@ -92,9 +91,7 @@ def pattern_pictures(
     """What a residual varies with, each beside the same residual shuffled.
 
     Args:
-        fit: The fit.
         found: Patterns in its residual, the most certain first.
-        rng: Shuffles.
     """
     out: list[Picture] = []
     seen: set[tuple[tuple[str, ...], float]] = set()

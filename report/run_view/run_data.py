@@ -49,8 +49,6 @@ def run_data(
     """Data of `run_page.js`.
 
     Args:
-        board: The run with its effects.
-        findings: What the report says of it.
         curves: Of laws among the switches, by their names, one for every variable.
     """
     fit = board.fit

@@ -31,7 +31,6 @@ def run_view(
     """The view of a run and its effects.
 
     Args:
-        board: As `diagnosed_board`, `learnt_board` or `compared_board` makes it.
         findings: What the report says of it.
         curves: Of laws among its effects, by their names.
     """
@@ -46,8 +45,6 @@ def diagnosis_view(result: Diagnosis, title: str, body: Array | None = None) -> 
     """Of a diagnosis: found effects on, and laws that were learnt of what they leave.
 
     Args:
-        result: The diagnosis.
-        title: Name of the run.
         body: Triangles of what was probed, where it is known.
     """
     laws = result.laws if result.laws is not None and result.laws.laws else None

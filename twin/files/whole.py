@@ -136,7 +136,6 @@ def write_into(
 
     Args:
         texts: By file name.
-        force: Whether files of the same names may be overwritten.
 
     Raises:
         DesignError: A file of the same name exists, or the folder cannot be written to.
@@ -159,7 +158,6 @@ def copy_into(folder: str | Path, data: Mapping[str, bytes], force: bool = False
 
     Args:
         data: By path within the folder.
-        force: Whether files of the same names may be overwritten.
 
     Raises:
         DesignError: A file of the same name exists; nothing is written then.
