@@ -39,6 +39,7 @@ class TimeLeft:
     begun: float = 0.0  # when the command began, s
     stage: str = ""
     position: float = 0.0
+    reached: float = 0.0
     at: float = 0.0
     shown: float = math.inf
     shown_at: float = 0.0
@@ -62,7 +63,12 @@ class TimeLeft:
             self.position, self.at = position, now
 
     def fraction(self, now: float) -> float:
-        """Fraction done, from 0 to 1, which never falls."""
+        """Fraction done, from 0 to 1, which never falls: a step that took longer catches up."""
+        self.reached = max(self.reached, self._fraction(now))
+        return self.reached
+
+    def _fraction(self, now: float) -> float:
+        """Fraction done by the last report and the clock."""
         end = self._before.get(self.stage, 0.0) + self.shares.get(self.stage, 0.0)
         rest = max(end - self.position, 0.0)
         if rest == 0.0:
@@ -74,7 +80,7 @@ class TimeLeft:
 
     def left(self, now: float) -> float | None:
         """Seconds left, less at every call; None while there is no pace."""
-        done = self.fraction(now)
+        done = self._fraction(now)
         if self.position < WORTH_SHOWING:
             return None
         estimate = (now - self.begun) * (1.0 - done) / done

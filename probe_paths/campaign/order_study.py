@@ -24,7 +24,7 @@ from matstd.probe_paths.plan import (
 from matstd.twin.frames import Array
 from matstd.twin.library import parse_effect
 from matstd.twin.model import Effect, Model, columns
-from matstd.twin.record import IntArray, Setup, Touches
+from matstd.twin.record import IntArray, Touches
 
 _PRIOR_FACTOR = 1e3
 """Prior of the sought effects in units of their typical size: almost uninformative."""
@@ -114,7 +114,7 @@ def _record(plan: TouchPlan, time: Array, approach: Array) -> Touches:
         radius=np.full(n, plan.probe.radius),
         point=plan.point,
         normal=plan.normal,
-        setups=(Setup(plan.setup.name, plan.setup.T_table_artefact),),
+        setups=(plan.setup,),
         setup=np.zeros(n, dtype=np.int64),
         time=time,
         approach=approach,

@@ -7,7 +7,7 @@ sides.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -118,7 +118,7 @@ def find_standard(
     u = _uncertainty(theta, on_surfaces)
     _refuse_ambiguous_place(rms, u)
     return Found(
-        setup=Setup(believed.name, believed.T_table_artefact @ _pose(theta)),
+        setup=replace(believed, T_table_artefact=believed.T_table_artefact @ _pose(theta)),
         shift=theta[:3],
         angles=theta[3:],
         u=u,

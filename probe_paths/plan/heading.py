@@ -92,6 +92,12 @@ class Heading:
         return self.ball.beside(standard, place)
 
     @property
+    def stamp(self) -> str:
+        """What the program was written for: `FFS-600U 001 (7A09B49B2AF2)`."""
+        hashed = f" ({self.calibration})" if self.calibration else ""
+        return f"{self.standard} {self.serial}".strip() + hashed
+
+    @property
     def log_lines(self) -> list[str]:
         """What the log repeats, four at least; numbers with six decimals, mm and degrees."""
         for name in (self.standard, self.setup.name):

@@ -228,7 +228,7 @@ def _fitted(
             f"at most {LARGEST_RMS:g} mm: another face, radius of the ball, or a filter that "
             "takes off the radius of the tip",
         )
-    return Setup(setup.name, T_table_artefact), uv
+    return replace(setup, T_table_artefact=T_table_artefact), uv
 
 
 def _gaps(

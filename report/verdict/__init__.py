@@ -10,12 +10,18 @@ from matstd.report.verdict.meanings import (
     study_meaning,
     uncertainty_meaning,
 )
-from matstd.report.verdict.part_words import part_lines, promise_words, repeatability_words
+from matstd.report.verdict.part_words import (
+    part_lines,
+    promise_sentence,
+    promise_words,
+    repeatability_words,
+)
 
 __all__ = [
     "comparison_meaning",
     "diagnosis_meaning",
     "part_lines",
+    "promise_sentence",
     "promise_words",
     "repeatability_words",
     "study_meaning",

@@ -34,6 +34,8 @@ PER_HAND = 0.5 * NM
 
 X, Y, Z = np.eye(3)
 
+HELD = Setup("a", fixing=(0.0, 0.0, 40.0))
+
 
 def touch(normal, X=100.0, Y=50.0, Z=-200.0, B=0.0, C=0.0, n=1, **more):
     """n touches in one pose (angles in deg), with normals in the table frame."""
@@ -177,6 +179,14 @@ BY_HAND = {
         touch(Z, temperature={"block": np.array([30.0])}),
         0,
         14.0,
+    ),
+    # held 40 mm above the origin of the table: 10 K * 10e-6 * (140 - 40) mm
+    "growing standard, held": (
+        "artefact-expansion(block)",
+        10e-6,
+        touch(Z, temperature={"block": np.array([30.0])}, setups=(HELD,)),
+        0,
+        10.0,
     ),
     # 2 h at 3 um/h in +x carries the wall that faces +x outwards
     "drift": ("drift", 3 * UM, touch(X, time=np.array([7200.0])), 0, 6.0),

@@ -204,7 +204,8 @@ class BodyScale(Declared):
 
 def _grown(touches: Touches, strain: Array) -> Sequence[Term]:
     """Shifts of a standard that is larger by a strain (N,) per unit."""
-    arm = touches.point_table - touches.T_table_artefact[:, :3, 3]
+    held = touches.fixing_table
+    arm = touches.point_table - np.where(np.isnan(held), touches.T_table_artefact[:, :3, 3], held)
     return [Term(0, Where("shift", 0, i), strain * arm[:, i]) for i in range(3)]
 
 

@@ -50,6 +50,8 @@ class Setup:
     run: str = ""  # name of the run that it belongs to, where several were joined
     start: float = 0.0  # time at which that run started, s
     body: Body | None = None  # the standard as it expands; None where the run does not state it
+    # point at which the standard is held, artefact frame, mm; None where the run does not state it
+    fixing: tuple[float, float, float] | None = None
 
 
 class Signature:
@@ -188,15 +190,26 @@ class Touches:
         return apply(self.T_table_artefact, self.point)
 
     @cached_property
+    def fixing_table(self) -> Array:
+        """Where the standard is held, table frame, (N, 3), mm; not a number where not stated."""
+        unknown = (np.nan, np.nan, np.nan)
+        held = np.array([s.fixing or unknown for s in self.setups])[self.setup]
+        return apply(self.T_table_artefact, held)
+
+    @cached_property
     def normal_table(self) -> Array:
         """Outward normals in the table frame, (N, 3)."""
         return turn(self.T_table_artefact, self.normal)
 
     @cached_property
     def growth(self) -> Array:
-        """Growth of the surface along its normal from 20 degC, (N,), mm: ``alpha dT n . p``."""
+        """Growth of the surface along its normal from 20 degC, (N,), mm: ``alpha dT n . (p - f)``.
+
+        It grows from the point f at which it is held, or from the origin of its frame.
+        """
         alpha = np.array([0.0 if s.body is None else s.body.alpha for s in self.setups])[self.setup]
-        along = np.einsum("ni,ni->n", self.normal, self.point)
+        held = np.array([s.fixing or (0.0, 0.0, 0.0) for s in self.setups])[self.setup]
+        along = np.einsum("ni,ni->n", self.normal, self.point - held)
         return np.asarray(alpha * (self.body_temperature - T_REF) * along)
 
     @cached_property
