@@ -50,8 +50,7 @@ from matstd.sensitivity.study import Study
 from matstd.stages.budgets import virtual_budgets
 from matstd.stages.cmm import cmm_program
 from matstd.stages.refusals import REACH, ROOM
-from matstd.stages.streams import Streams, streams
-from matstd.stages.study_run import study_and_maps
+from matstd.stages.study_run import Streams, streams, study_and_maps
 from matstd.stages.warm_body import WarmBody
 from matstd.twin.beside import beside
 from matstd.twin.compute import Progress, silent

@@ -25,7 +25,7 @@ class ComponentError(Declared):
     """One component error of an axis in one of the distributions of the D-MT paper.
 
     ``E(q) = a f(q)`` with f the constant, linear, parabolic or sinusoidal shape of unit peak
-    amplitude (`matstd.twin.machine.shapes`).
+    amplitude (`matstd.twin.machine.ranges`).
     """
 
     symbol: Symbol
