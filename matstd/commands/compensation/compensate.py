@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from matstd.commands.compensation.options import add_model, add_program, add_state
 from matstd.console import say
+from matstd.options import add_options
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
 
@@ -18,10 +19,13 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_model(parser)
-    parser.add_argument(
-        "--tables", metavar="DIR", help="write compensation tables of the controls to this folder"
+    add_options(
+        parser,
+        {
+            "--tables DIR": "write compensation tables of the controls to this folder",
+            "--program IN": "part program to compensate (.H, .ngc)",
+        },
     )
-    parser.add_argument("--program", metavar="IN", help="part program to compensate (.H, .ngc)")
     parser.add_argument("-o", "--output", metavar="OUT", help="compensated program")
     parser.add_argument(
         "--tolerance",

@@ -6,6 +6,7 @@ import argparse
 
 from matstd.commands.compensation.options import add_model, add_program, add_state
 from matstd.console import say
+from matstd.options import add_options
 from matstd.twin.errors import DesignError
 
 
@@ -14,8 +15,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     parser.add_argument("--program", metavar="IN", help="part program (.H, .ngc)")
     add_program(parser)
-    parser.add_argument("--loads", metavar="LOADS.csv", help="process forces by program line")
-    parser.add_argument("--poses", metavar="POSES.csv", help="axis readings, one row per pose")
+    add_options(
+        parser,
+        {
+            "--loads LOADS.csv": "process forces by program line",
+            "--poses POSES.csv": "axis readings, one row per pose",
+        },
+    )
     add_state(parser)
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="output folder")
     parser.add_argument("--force", action="store_true", help="replace results of an earlier run")

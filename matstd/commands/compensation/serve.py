@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from matstd.commands.compensation.options import add_model, add_state
 from matstd.console import say
+from matstd.options import add_options
 from matstd.twin.units import NM, UM
 
 if TYPE_CHECKING:
@@ -18,17 +19,17 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_model(parser)
-    parser.add_argument(
-        "--endpoint",
-        metavar="URL",
-        default="opc.tcp://localhost:4840",
-        help="address of the OPC UA server (opc.tcp://localhost:4840: reachable from this "
-        "computer only)",
-    )
-    parser.add_argument(
-        "--linuxcnc",
-        metavar="MACHINE.ini",
-        help="correct this LinuxCNC on this computer by external offsets, instead of OPC UA",
+    add_options(
+        parser,
+        {
+            "--endpoint URL": (
+                "address of the OPC UA server (opc.tcp://localhost:4840: reachable from this "
+                "computer only)",
+                "opc.tcp://localhost:4840",
+            ),
+            "--linuxcnc MACHINE.ini": "correct this LinuxCNC on this computer by external "
+            "offsets, instead of OPC UA",
+        },
     )
     for name, unit, default, words in (
         ("--most", "UM", 200.0, "largest correction of an axis, µm"),

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 
 from matstd.console import console, say
 from matstd.next_steps import called
-from matstd.options import add_measured, add_several, asked_printer, pitches, starting_model
+from matstd.options import (
+    add_measured,
+    add_options,
+    add_several,
+    asked_printer,
+    pitches,
+    starting_model,
+)
 from matstd.twin.units import UM
 
 if TYPE_CHECKING:
@@ -42,15 +49,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     for option, word, meaning in LISTS:
         add_several(parser, option, word, meaning)
-    parser.add_argument(
-        "--auto",
-        action="store_true",
-        help="add every effect that the diagnosis finds, step by step",
-    )
-    parser.add_argument(
-        "--no-learn",
-        action="store_true",
-        help="learn no law of what remains (matstd learn does the same by itself)",
+    add_options(
+        parser,
+        {
+            "--auto": "add every effect that the diagnosis finds, step by step",
+            "--no-learn": "learn no law of what remains (matstd learn does the same by itself)",
+        },
     )
     add_measured(parser, "starting model of the diagnosis (default: the ordinary geometric model)")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from matstd.console import say, say_each
-from matstd.options import add_output
+from matstd.options import add_options, add_output
 from matstd.twin.errors import DesignError
 from matstd.twin.units import HOUR, MINUTE, UM
 
@@ -31,38 +31,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="logs that are held out completely",
     )
-    parser.add_argument(
-        "--own-zeros",
-        action="store_true",
-        help="fit a separate zero of the displacements for every log",
-    )
-    parser.add_argument(
-        "--step-min",
-        metavar="MIN",
-        type=float,
-        default=5.0,
-        help="time step of the laws, minutes (5)",
-    )
-    parser.add_argument(
-        "--sensor-noise",
-        metavar="K",
-        type=float,
-        help="also evaluate with this noise on the temperatures, K",
-    )
-    parser.add_argument(
-        "--probe-every",
-        metavar="HOURS",
-        type=float,
-        help="also evaluate with the drift probed at this interval",
-    )
-    parser.add_argument(
-        "--u-um", type=float, default=1.0, help="standard uncertainty of a probed drift, µm (1)"
-    )
-    parser.add_argument(
-        "--law", metavar="thermal.json", help="predict with this law of an earlier run; fit nothing"
-    )
-    parser.add_argument(
-        "--probed", metavar="PROBED.csv", help="with --law: drifts probed on standards"
+    add_options(
+        parser,
+        {
+            "--own-zeros": "fit a separate zero of the displacements for every log",
+            "--step-min MIN": ("time step of the laws, minutes (5)", 5.0),
+            "--sensor-noise K": ("also evaluate with this noise on the temperatures, K", float),
+            "--probe-every HOURS": ("also evaluate with the drift probed at this interval", float),
+            "--u-um": ("standard uncertainty of a probed drift, µm (1)", 1.0),
+            "--law thermal.json": "predict with this law of an earlier run; fit nothing",
+            "--probed PROBED.csv": "with --law: drifts probed on standards",
+        },
     )
     add_output(parser)
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from matstd.commands.probing.simulate import add_planted, planted_machine
 from matstd.console import say, say_each
-from matstd.options import add_output
+from matstd.options import add_options, add_output
 from matstd.twin.units import MINUTE, UM
 
 if TYPE_CHECKING:
@@ -21,14 +21,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "design", metavar="OUT", help="output folder of `matstd design`, for any control"
     )
     add_planted(parser)
-    parser.add_argument(
-        "--touches",
-        metavar="N",
-        type=int,
-        help="run only N touches, spread evenly over the programs",
-    )
-    parser.add_argument(
-        "--user", default="", help="user that runs LinuxCNC if you are root (LinuxCNC refuses root)"
+    add_options(
+        parser,
+        {
+            "--touches N": ("run only N touches, spread evenly over the programs", int),
+            "--user USER": ("user that runs LinuxCNC if you are root (LinuxCNC refuses root)", ""),
+        },
     )
     add_output(parser)
 

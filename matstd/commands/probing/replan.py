@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from matstd.console import say, say_each
-from matstd.options import SHEET, add_output, add_pdf, asked_printer
+from matstd.options import SHEET, add_options, add_output, add_pdf, asked_printer
 from matstd.twin.units import DEG
 
 
@@ -24,22 +24,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         required=True,
         help="output folder of `matstd design` or `matstd replan`",
     )
-    parser.add_argument(
-        "--control",
-        metavar="NAME|FILE.toml",
-        help="control that the programs are written for (default: that of the programs in OUT)",
-    )
-    parser.add_argument(
-        "--within-mm",
-        type=float,
-        help="largest expected offset of the standard from its planned position, mm "
-        "(default: that of the search in OUT/setup)",
-    )
-    parser.add_argument(
-        "--within-deg",
-        type=float,
-        help="largest expected rotation of the standard from its planned orientation, degrees "
-        "(default: as --within-mm)",
+    add_options(
+        parser,
+        {
+            "--control NAME|FILE.toml": "control that the programs are written for (default: that "
+            "of the programs in OUT)",
+            "--within-mm": (
+                "largest expected offset of the standard from its planned position, mm "
+                "(default: that of the search in OUT/setup)",
+                float,
+            ),
+            "--within-deg": (
+                "largest expected rotation of the standard from its planned orientation, degrees "
+                "(default: as --within-mm)",
+                float,
+            ),
+        },
     )
     add_pdf(parser)
     add_output(parser)

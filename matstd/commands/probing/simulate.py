@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from matstd.console import say, say_assumed, say_each
-from matstd.options import add_body, add_effects, add_output, add_several
+from matstd.options import add_body, add_effects, add_options, add_output, add_several
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
 
@@ -39,27 +39,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         parser, "temperature of the standard, °C; the run file states it (default: 20, not stated)"
     )
     add_planted(parser)
-    parser.add_argument(
-        "--sensors",
-        metavar="SENSORS.csv",
-        help="temperatures and spindle speed over time, as for `evaluate`: columns clock "
-        "(2031-05-06T07:08:09), T_<sensor>_degC, spindle_rpm; the run begins at the "
-        "first row",
-    )
-    parser.add_argument(
-        "--probe-length", type=float, help="length of the probe, mm; must equal the program's"
-    )
-    parser.add_argument(
-        "--probe-radius", type=float, help="radius of the probe ball, mm; must equal the program's"
-    )
-    parser.add_argument(
-        "--control",
-        metavar="NAME|FILE.toml",
-        default="itnc530",
-        help="control that the programs are written for; needed for your own dialect (itnc530)",
-    )
-    parser.add_argument(
-        "--logs", metavar="FOLDER", help="also write the logs of the control to this folder"
+    add_options(
+        parser,
+        {
+            "--sensors SENSORS.csv": "temperatures and spindle speed over time, as for "
+            "`evaluate`: columns clock (2031-05-06T07:08:09), T_<sensor>_degC, spindle_rpm; the "
+            "run begins at the first row",
+            "--probe-length": ("length of the probe, mm; must equal the program's", float),
+            "--probe-radius": ("radius of the probe ball, mm; must equal the program's", float),
+            "--control NAME|FILE.toml": (
+                "control that the programs are written for; needed for your own dialect (itnc530)",
+                "itnc530",
+            ),
+            "--logs FOLDER": "also write the logs of the control to this folder",
+        },
     )
     add_output(parser, "RUN.csv")
 
@@ -133,11 +126,12 @@ def _search(
 def add_planted(parser: argparse.ArgumentParser) -> None:
     """Errors, noise, effects, set-up and probe as they really are."""
     errors = parser.add_mutually_exclusive_group()
-    errors.add_argument("--errors", metavar="ERRORS.toml", help="errors of the machine")
-    errors.add_argument(
-        "--random-errors",
-        action="store_true",
-        help="draw the errors from the default distributions",
+    add_options(
+        errors,
+        {
+            "--errors ERRORS.toml": "errors of the machine",
+            "--random-errors": "draw the errors from the default distributions",
+        },
     )
     parser.add_argument(
         "--noise-um", type=float, default=1.0, help="standard deviation of one touch, µm (1.0)"
@@ -150,18 +144,16 @@ def add_planted(parser: argparse.ArgumentParser) -> None:
         "'thermal-lag(EZZ)=25um,tau=18min', 'backlash(X)=3um', 'drift=X=2um/h'",
     )
     add_effects(parser)
-    parser.add_argument(
-        "--setup-error",
-        metavar="NAME=SIZE",
-        help="offset of the standard from its planned set-up, in its own frame: "
-        "X=0.3mm,Y=-0.1mm,C=0.05deg",
+    add_options(
+        parser,
+        {
+            "--setup-error NAME=SIZE": "offset of the standard from its planned set-up, in its "
+            "own frame: X=0.3mm,Y=-0.1mm,C=0.05deg",
+            "--probe-error NAME=SIZE": "error of the probe, true minus calibrated value: "
+            "radius=1um,length=20um",
+            "--seed": ("seed of noise and random errors (0)", 0),
+        },
     )
-    parser.add_argument(
-        "--probe-error",
-        metavar="NAME=SIZE",
-        help="error of the probe, true minus calibrated value: radius=1um,length=20um",
-    )
-    parser.add_argument("--seed", type=int, default=0, help="seed of noise and random errors (0)")
 
 
 def planted_machine(

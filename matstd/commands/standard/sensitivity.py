@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from matstd.console import say_assumed, say_each
-from matstd.options import add_pdf
+from matstd.options import add_options, add_pdf
 from matstd.twin.errors import BadFile, DesignError
 from matstd.workers import add_scheduler
 
@@ -30,18 +30,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="axis readings, one row per pose (with a machine file)",
     )
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="output file")
-    parser.add_argument("--draws", type=int, metavar="N", help="largest number of random machines")
-    parser.add_argument(
-        "--digits",
-        type=int,
-        metavar="D",
-        help="draw until D significant digits are stable (JCGM 101, 7.9.4)",
-    )
-    parser.add_argument(
-        "--tolerance-um",
-        type=float,
-        metavar="T",
-        help="also report the share of machines whose deviation exceeds T µm",
+    add_options(
+        parser,
+        {
+            "--draws N": ("largest number of random machines", int),
+            "--digits D": ("draw until D significant digits are stable (JCGM 101, 7.9.4)", int),
+            "--tolerance-um T": (
+                "also report the share of machines whose deviation exceeds T µm",
+                float,
+            ),
+        },
     )
     add_scheduler(parser)
     add_pdf(parser)

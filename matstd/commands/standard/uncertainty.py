@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from matstd.console import say, say_each
-from matstd.options import add_effects, add_output
+from matstd.options import add_effects, add_options, add_output
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -19,19 +19,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         required=True,
         help="calibrated standard that was measured",
     )
-    parser.add_argument(
-        "--task",
-        metavar="TASK.toml",
-        help="measuring task on the workpieces (default: every feature that was touched on "
-        "the faces)",
-    )
-    parser.add_argument(
-        "--model",
-        metavar="MODEL.toml",
-        help="model of an earlier diagnosis; results are corrected with it",
-    )
-    parser.add_argument(
-        "--page", metavar="PAGE.html", help="also write a report page, with its tables beside it"
+    add_options(
+        parser,
+        {
+            "--task TASK.toml": "measuring task on the workpieces (default: every feature that "
+            "was touched on the faces)",
+            "--model MODEL.toml": "model of an earlier diagnosis; results are corrected with it",
+            "--page PAGE.html": "also write a report page, with its tables beside it",
+        },
     )
     add_effects(parser)
     add_output(parser, "OUT.json")
