@@ -154,6 +154,7 @@ def _reflectors(
             around = match.string[: match.start()] + match.string[match.end() :]
             key = around.strip().lower(), match[1].isupper()
             found.setdefault(key, {}).setdefault(match[1].lower(), i)
+    # three coordinates of one name are a place; a single x or z is something else
     whole = {key: of for key, of in found.items() if len(of) == 3}
     fixed = {words: of for (words, _), of in whole.items() if _FIXED.search(_words(words))}
     whole = {key: of for key, of in whole.items() if key[0] not in fixed}

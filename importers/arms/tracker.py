@@ -201,6 +201,7 @@ def tracker_run(
         seen = _by_poses(table, chain, u, reflector, u_angle)
     clock, force = sheet.find(_TIME), loads(sheet)
     which, n = seen.row, len(seen.row)
+    # a pose that was visited again must not predict itself: both visits are held out together
     near = np.round(table.q[which] / SAME_READING).astype(np.int64)
     touches = replace(
         at_poses(chain, table.q[which], -seen.target[:, 2]),

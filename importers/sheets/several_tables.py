@@ -48,6 +48,7 @@ def separate_tables(
         names = _names(row)
         axis = axis_in(" ".join(c for c in row if isinstance(c, str))) or axis
         if names and is_data(below) and len(names) == sum(c != "" for c in below):
+            # a header that comes again, as of the way back, continues its table
             own = (i for i, h in enumerate(headers) if h.axis == axis and _alike(h.names, names))
             at = next(own, len(headers))
             headers += [_Header(names, axis)] if at == len(headers) else []

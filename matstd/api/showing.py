@@ -157,6 +157,7 @@ def show(
     duration = max(DURATION, float(played.time[-1]) if played else 0.0)
     progress("errors", 1, 2)
     with drives_stated(source or chain.name):
+        # after the program: errors that drift are needed over all of its time
         functions = error_functions(known, tool_length, duration)
     return MachinePage(
         ShownMachine(

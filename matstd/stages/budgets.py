@@ -107,6 +107,7 @@ def virtual_budgets(
         body.stated_in(visits(programs, piece, [stand], rng, calibrated=standard)[0].run)
         for piece, stand in zip(pieces, stands, strict=True)
     ]
+    # the model learns from the balls alone: the features that prove stay unseen
     held_back = np.where(that_prove(standard, runs[0].touches), "test", "train")
     fit = fit_run(replace(runs[0], split=held_back), brief.population.expected())
     count = len(fit.model.parameters)

@@ -272,6 +272,7 @@ def _prove(
     rng: np.random.Generator,
 ) -> Proven:
     """Probe one random machine by the text of the programs, identify it, compare with its truth."""
+    # a stream for each use: more draws of one leave the numbers of the others as they were
     rng_errors, rng_noise, rng_volume, rng_workspace, rng_body = rng.spawn(5)
     population = brief.population
     errors = drawn_errors(population, rng_errors)

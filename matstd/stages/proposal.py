@@ -102,6 +102,7 @@ def propose(machine: Path, named: str, table: tuple[float, ...] | None = None) -
             f"{machine}: a table of {min(size):g} mm: the smallest standard is "
             f"{LEAST:g} x {LEAST:g} x {LEAST_HEIGHT:g} mm; this machine is too small for the tool"
         )
+    # from the usual size down; the first refusal is reported, since it binds what is wanted most
     first: DesignError | None = None
     for base, length, turn in product(_bases(size, USUAL), LENGTHS, _turns(chain)):
         made = _tables(chain, base, length, turn, size, machine)

@@ -205,6 +205,8 @@ def _fitted(
     Args:
         moved: Displacements of the face by its weight, artefact frame, (N, 3), mm.
     """
+    # foot points are projected anew for every set-up; points may lie 10 mm off where the set-up is
+    # believed, 3 mm once it has settled; rotations are lengths at an arm of 100 mm
     T_table_artefact, limit = setup.T_table_artefact, _BELIEVED
     for _ in range(_ROUNDS):
         ball = apply(inverse(T_table_artefact), place) - moved

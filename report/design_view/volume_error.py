@@ -62,6 +62,7 @@ def error_field(
         proof = prove(
             fit, truth, brief.setup, seen_from(at_poses(chain, q, brief.probe.length), believed)
         )
+        # shown as what each linear axis would have to move, so that its own error fills one picture
         to_table = believed.T_table_artefact[:3, :3]
         outside = ~workspace.in_volume(q)
         for vectors, into in ((proof.before, before), (proof.after, after)):

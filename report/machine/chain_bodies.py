@@ -256,6 +256,7 @@ def _cradle(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> N
     plate, arm = 0.3 * _LEAST + 0.05 * wide, 0.25 * _LEAST + 0.06 * wide
     round_line = max(1.2 * arm, 0.4 * _LEAST)
     end = max(side.end, line[2] - round_line)
+    # the line may lie above or below the plate: arms reach over both
     level = sorted((line[2] - round_line, end + plate))
     parts = [
         block(
@@ -280,6 +281,7 @@ def _cradle(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> N
         [*(b.corners.reshape(-1, 3) for b in side.bodies if b.on == link.name)]
     )
     local = corners @ axes.T - line
+    # bearings stand on a foot that nothing which swings can reach
     swing = float(np.hypot(local[:, 1], local[:, 2]).max()) + 15.0
     foot = line[2] + swing
     bearings = []

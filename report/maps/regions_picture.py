@@ -81,6 +81,7 @@ def _tornado(
             total, y, xerr=2.0 * u, color=INK, mfc="white", lw=0.0, elinewidth=1.0, **_TOTAL
         )
         top = max(top, (total + 2.0 * u).max())
+    # all regions share one scale: an axis grows with each and never shrinks
     axes.set_xlim(min(0.0, axes.get_xlim()[0], low.min()), max(axes.get_xlim()[1], 1.04 * top))
     title = f"{place_words(region.place)}\n{region.rms / UM:.0f} µm rms"
     axes.set_title(title, fontsize=9.5, loc="left", color=INK)

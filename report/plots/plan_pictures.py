@@ -118,6 +118,7 @@ def _outlines(ax: Any, plan: TouchPlan, i: int, j: int) -> None:
         if isinstance(surface, FreeformPatch):
             a, b = surface.half_size
             s = np.linspace(-1.0, 1.0, 25)
+            # along all four edges: a freeform face bends them
             one = np.ones_like(s)
             ring = np.concatenate(
                 [np.stack(c, -1) for c in ((s, -one), (one, s), (-s, one), (-one, -s))]

@@ -201,6 +201,7 @@ def _is_sure(spread: Array) -> BoolArray:
 def _arrows(drawn: Any, ax: Any, fit: Fit, rows: IntArray, vectors: Array, sure: BoolArray) -> None:
     """Arrows in X and Y at the rotary readings, coloured by Z; their longest marks the scale."""
     x, y, x_name, y_name = _where(fit.run.touches, rows)
+    # uncertain poses get a circle: their arrows would set the scale of all others
     limit = robust_limit(vectors[sure, 2], 1.0)
     length = float(np.linalg.norm(vectors[sure, :2], axis=1).max()) or 1.0
     marks = ax.quiver(

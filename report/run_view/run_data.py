@@ -81,6 +81,7 @@ def _touches(fit: Fit) -> TREE:
     t, run = fit.run.touches, fit.run
     features, feature = np.unique(t.feature, return_inverse=True)
     state = np.where(fit.gross.rows | fit.gross_test_rows, 1, np.where(run.split == "test", 2, 0))
+    # the largest number of two bytes stands for no group, as the script of the page knows
     group = np.full(len(run), 65535)
     names = _group_names(fit)
     if not fit.test_rows.any():

@@ -101,6 +101,7 @@ def with_body(run: Run, stated: StatedBody) -> Run:
         _check_readings(at, common, u)
     else:
         at = np.full(len(touches), T_REF if common is None else common)
+    # an uncertainty that is not stated is a usual one: with zero a scale would look certain
     alpha, u_alpha = stated.expansion_1_K, stated.expansion_u_1_K
     body = Body(
         alpha,
