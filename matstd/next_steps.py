@@ -8,8 +8,7 @@ from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
 
-LOGS = "LOG.TXT ..."
-"""Logs of the control, whose names only the user knows."""
+LOGS = "LOG.TXT ..."  # logs of the control, whose names only the user knows
 
 
 def next_line(args: Namespace) -> str:

@@ -122,6 +122,7 @@ def trend(
             f"{where}{len(given)} runs or models, expected at least {FEWEST}; two runs are "
             "compared by matstd diagnose FIRST.csv SECOND.csv"
         )
+    # model files hold their estimates: nothing is fitted again
     is_of_models = all(isinstance(one, str) and one.endswith(".toml") for one in given)
     made = _of_models(given) if is_of_models else _of_runs(given, add, progress)
     occasions = [replace(one, date=one.date or date_of(one.name)) for one in made]

@@ -165,7 +165,7 @@ def test_a_full_disk_is_one_line(folder, tmp_path, capsys, monkeypatch) -> None:
     def full(figure: object, path: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("matstd.report.style.sheet.save", full)
+    monkeypatch.setattr("matstd.report.style.save", full)
     monkeypatch.setattr("matstd.report.layout.html.save", full)
     words = ["compare", str(folder / "run.csv"), "-o", str(tmp_path / "o")]
     assert main(words) == BAD

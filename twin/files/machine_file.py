@@ -26,8 +26,7 @@ NEAREST_PIVOT, FARTHEST_PIVOT = 0.05, 5.0
 """A coordinate of a pivot between these, mm, may be one in metres: 0.42 for 420 mm. Measured
 centres of rotation differ from zero by hundredths of a millimetre."""
 
-LONGEST_IN_METRES = 5e3
-"""In mm: no pivot lies farther."""
+LONGEST_IN_METRES = 5e3  # in mm: no pivot lies farther
 
 NEARER = 4.0
 """Times that a pivot in metres is nearer to the table, or farther from the spindle, once read so;
@@ -112,8 +111,7 @@ def _list(values: Array) -> str:
     return f"[{', '.join(f'{v:.6g}' for v in values)}]"
 
 
-KILOMETRE = 1e6
-"""In mm: nothing of a machine lies, and no axis travels, farther; degrees neither."""
+KILOMETRE = 1e6  # in mm: nothing of a machine lies, and no axis travels, farther; degrees neither
 
 Coordinate = Annotated[float, Field(ge=-KILOMETRE, le=KILOMETRE)]
 Vector = Annotated[tuple[Coordinate, Coordinate, Coordinate], Strict(False)]  # TOML has lists
