@@ -117,8 +117,25 @@ def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
         words = called("diagnose", *args.run_files, "again.csv", "-o", again)
         return words, "after the same programs have run again: repeated touches show the noise"
     tool = np.median(found.run.touches.length)
-    words = called("compensate", model, "--tool-length", f"{tool:g}", "--tables", "tables")
-    return words, "tables for the control"
+    tables = Path(args.output).parent / "tables"
+    words = called("compensate", model, "--tool-length", f"{tool:g}", "--tables", tables)
+    return f"{words} --within {' '.join(_probed(found))}", "judged where the touches were"
+
+
+def _probed(found: Diagnosis) -> list[str]:
+    """Readings of the touches by axis, mm and degrees, as `--within` has them: `X=-120:118`."""
+    import numpy as np
+
+    from matstd.twin.units import DEG
+
+    touches = found.run.touches
+    units = np.where([touches.chain.link(a).kind == "rotary" for a in touches.chain.axes], DEG, 1.0)
+    low, high = np.ceil(touches.q.min(axis=0) / units), np.floor(touches.q.max(axis=0) / units)
+    return [
+        f"{name}={low[i]:.0f}:{high[i]:.0f}"
+        for i, name in enumerate(touches.chain.axes)
+        if name in touches.chain.programmed_axes and low[i] < high[i]
+    ]
 
 
 def _unexplained(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
