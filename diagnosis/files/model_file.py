@@ -182,7 +182,7 @@ class SavedModel(Displayed):
             from_inner=self.from_inner,
             factor=source.noise_um * UM / float(np.median(run.u)),
             gross=np.isin(run.line, lines),
-            memory=m and Memory(m.correlation, m.step_s, m.by_place, m.is_filtered),
+            memory=Memory(m.correlation, m.step_s, m.by_place, m.is_filtered) if m else None,
         )
 
 
