@@ -41,19 +41,13 @@ class Ordering(Enum):
 
 @dataclass(frozen=True)
 class Order:
-    """One order of the same touches.
-
-    Attributes:
-        touches: Number, anchor touches included.
-        duration: Duration of all programs, s.
-        drift: Standard deviation of the rate of a drift, its worst direction, mm/h.
-        reversal: Standard deviation of the reversal of every rotary axis, in chain order, rad.
-    """
+    """One order of the same touches."""
 
     ordering: Ordering
-    touches: int
-    duration: float
-    drift: float
+    touches: int  # number, anchor touches included
+    duration: float  # duration of all programs, s
+    drift: float  # standard deviation of the rate of a drift, its worst direction, mm/h
+    # standard deviation of the reversal of every rotary axis, in chain order, rad
     reversal: tuple[float, ...]
 
 

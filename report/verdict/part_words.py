@@ -44,7 +44,7 @@ def part_lines(result: Diagnosis) -> list[tuple[str, str]]:
     """Heading and words of every part, in the order in which they are read."""
     parts = result.parts
     steps = {s.effect.name: s for s in result.steps if s.effect is not None}
-    before = result.promise_before if steps else None
+    before = result.promise_before if result.has_fallen else None
     gone = result.withdrawn
     named = [_named(one, steps[one.effect.name], one.effect in gone) for one in parts.named]
     beside = "beside the names withdrawn " if gone else ""

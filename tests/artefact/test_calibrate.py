@@ -384,15 +384,7 @@ def test_the_piece_is_probed_and_the_design_believed(golden, nominal, found, tmp
 
     write_standard(tmp_path / "standard.toml", nominal)
     write_standard(tmp_path / "real.toml", found.standard)
-    chain = golden.machine()
-    lines = [f'format = "machine/1"\nname = "{chain.name}"\nchain = "{chain.notation}"']
-    for letter in chain.programmed_axes:
-        link = chain.link(letter)
-        unit = 1.0 if link.kind == "linear" else np.pi / 180.0
-        lines.append(f"[axis.{letter}]\nrange = {[v / unit for v in link.range]}")
-        lines.append(f"point = {[float(v) for v in link.point]}")
-    lines.append("[workpiece]\norigin = [0.0, 0.0, -500.0]\n")
-    (tmp_path / "machine.toml").write_text("\n".join(lines))
+    (tmp_path / "machine.toml").write_text(golden.machine_text())
     programs = sorted(map(str, golden.FOLDER.glob("*_[0-9].H")))
     rms = {}
     for believed in ("standard", "real"):
