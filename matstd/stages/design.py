@@ -19,6 +19,7 @@ from matstd.artefact.compare import WorstRegions, identifiability_report, worst_
 from matstd.artefact.feasibility import check_beside, check_seat, feasibility
 from matstd.artefact.hidden import write_scan_path
 from matstd.artefact.place import Family, Placement, design_standard, scan_poses
+from matstd.artefact.price import Construction
 from matstd.cad_out.details import details_of
 from matstd.cad_out.making import Stiffness, making_of, stiffness_of, with_sag, write_making
 from matstd.cad_out.meshes import read_stl
@@ -122,7 +123,7 @@ def _made(
         study, maps = studied()
         progress("STEP and STL", 0, 1)
         conformity = cad.result()  # the last: the kernel takes as long as all of these
-    _draw(brief, placement.standard, conformity, folder)
+    _draw(brief, placement.standard, conformity.mass, making.make, folder)
     return Design(
         brief=brief,
         study=study,
@@ -200,14 +201,15 @@ def _export(brief: Brief, standard: Standard, folder: Path, q: Array) -> Conform
     return made
 
 
-def _draw(brief: Brief, standard: Standard, conformity: Conformity, folder: Path) -> None:
-    """The drawing of a standard, with the mass that was measured."""
+def _draw(brief: Brief, standard: Standard, mass: float, make: Construction, folder: Path) -> None:
+    """The drawing of a standard as the workshop makes it, with the mass that was measured."""
     issuer = Issuer(
         brief.author,
         brief.organisation,
-        mass=conformity.mass,
+        mass=mass,
         approved=brief.approved,
         date=brief.date,
+        make=make,
     )
     write_drawing(folder, standard, issuer)
 

@@ -8,6 +8,7 @@ from textwrap import wrap
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, Standard, max_slope, min_concave_radius
+from matstd.artefact.price import Construction
 from matstd.cad_out.details import (
     BALL,
     CUTTER,
@@ -47,6 +48,7 @@ class Issuer:
         mass: Mass of body and balls, kg.
         approved: Who approved the drawing.
         date: Date of its issue.
+        make: The construction that the workshop makes.
     """
 
     author: str
@@ -54,11 +56,12 @@ class Issuer:
     mass: float
     approved: str = "not stated"
     date: str = "not stated"
+    make: Construction = Construction.BILLET
 
 
-def blocks_of(standard: Standard, details: Details) -> list[Block]:
+def blocks_of(standard: Standard, details: Details, make: Construction) -> list[Block]:
     """Tables of faces, balls, datum targets, holes and parts, then every note, in this order."""
-    joints = _joints(standard, details)
+    joints = _joints(standard, details) if make is Construction.PARTS else None
     tables = [_balls(standard, details, joints), _targets(standard), _holes(standard, details)]
     if standard.patches:
         tables.insert(0, _faces(standard))
@@ -150,12 +153,14 @@ def _holes(standard: Standard, details: Details) -> Block:
 
 
 def _parts(standard: Standard, details: Details, joints: Joints | None) -> Block:
-    """Parts list of ISO 7573; body parts of the second construction are sub-items of the body."""
+    """Parts list of ISO 7573; parts of the body are its sub-items."""
     material, cm = standard.material.name, SCREW.name.removeprefix("steel, ")
     rows = [["item", "pieces", "part", "material or standard"]]
-    rows.append(["1", "1", "body in one piece", material])
-    if joints:
-        rows.append(["1.1", "1", "or of parts: plate", material])
+    if joints is None:
+        rows.append(["1", "1", "body in one piece", material])
+    else:
+        rows.append(["1", "1", "body, joined of 1.1 to 1.4", ""])
+        rows.append(["1.1", "1", "plate", material])
         if joints.studs:
             rows.append(["1.2", f"{len(joints.studs)}", "stud, thread as in the table", material])
         if joints.blocks:
@@ -223,7 +228,7 @@ def _joint_words(joints: Joints | None) -> list[str]:
     if joints is None:
         return []
     threads = sorted({stud.thread for stud in joints.studs})
-    words = "Of parts (standard-parts.step): "
+    words = "Made of parts (standard-parts.step): "
     studs = [f"M{d:g} {0.5 * _TORQUES[d]:.0f} N m" for d in threads]
     if studs:
         words += (

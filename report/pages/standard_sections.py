@@ -199,7 +199,7 @@ def making_rows(made: Making) -> list[tuple[str, str]]:
         *_stiffness_rows(made),
         *[
             (words.partition(": ")[0], words.partition(": ")[2])
-            for words in price_lines(made.prices)
+            for words in price_lines(made.prices, made.make)
         ],
         *((f"milling {face} with 6 mm", _milling(hint)) for face, hint in made.hints.items()),
     ]

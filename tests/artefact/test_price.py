@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from matstd.artefact.body import Material
-from matstd.artefact.price import Construction, Estimate, prices_of
+from matstd.artefact.price import Construction, Estimate, construction_to_make, prices_of
 from matstd.artefact.price.rates import MILLING, SET_UP
 
 
@@ -57,3 +57,13 @@ def test_more_balls_cost_more_and_stone_is_not_milled(upright):
     )
     assert "hardening" in hard.bought
     assert "hardening" not in soft.bought
+
+
+def test_parts_are_made_unless_the_billet_is_clearly_cheaper(upright):
+    billet, parts = prices_of(upright)
+    dearer = replace(parts, labour=parts.labour + billet.total)
+    assert construction_to_make((billet, dearer), True) is Construction.BILLET
+    like_it = replace(billet, construction=Construction.PARTS)
+    assert construction_to_make((billet, like_it), True) is Construction.PARTS
+    assert construction_to_make((billet, like_it), False) is Construction.BILLET
+    assert construction_to_make((), True) is Construction.BILLET
