@@ -16,17 +16,11 @@ MAX_U_POSES = 100
 
 
 class Share(NamedTuple):
-    """What one error adds, all others off.
+    """What one error adds, all others off."""
 
-    Attributes:
-        name: Symbol of ISO 230-1, or effect.
-        field: Deviation of the tool point relative to the datum, table frame, (N, 3), mm.
-        u: Standard uncertainty of its rms size from that of the model, mm.
-    """
-
-    name: str
-    field: Array
-    u: float
+    name: str  # symbol of ISO 230-1, or effect
+    field: Array  # deviation of the tool point relative to the datum, table frame, (N, 3), mm
+    u: float  # standard uncertainty of its rms size from that of the model, mm
 
 
 def contributions(errors: MachineErrors, touches: Touches, datum: Datum) -> tuple[Share, ...]:

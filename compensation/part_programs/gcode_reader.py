@@ -52,19 +52,13 @@ MAX_HOLES = 1000
 
 
 class _Block(NamedTuple):
-    """One line.
-
-    Attributes:
-        g: G words.
-        other: Words by letter but for G, M and N, axes among them.
-        kept: What stays in the program besides its motion.
-    """
+    """One line."""
 
     line: int
-    g: list[float]
-    other: dict[str, float]
+    g: list[float]  # G words
+    other: dict[str, float]  # words by letter but for G, M and N, axes among them
     axes: dict[str, float]
-    kept: list[str]
+    kept: list[str]  # what stays in the program besides its motion
 
     def text(self, words: dict[str, float], but: str = "") -> list[str]:
         """Words as text, without some letters."""

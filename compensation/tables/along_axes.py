@@ -34,21 +34,13 @@ MIN_GAIN = 50.0 * NM
 
 @dataclass(frozen=True, eq=False)
 class AxisTable:
-    """A correction of one axis over the reading of one, the same or another.
+    """A correction of one axis over the reading of one, the same or another."""
 
-    Attributes:
-        over: Axis whose reading counts.
-        moves: Axis that is corrected.
-        nodes: Readings, ascending, (n,), mm or rad.
-        forward: Correction after a positive motion of `over`, (n,), mm or rad.
-        reverse: The same after a negative motion.
-    """
-
-    over: str
-    moves: str
-    nodes: Array
-    forward: Array
-    reverse: Array
+    over: str  # axis whose reading counts
+    moves: str  # axis that is corrected
+    nodes: Array  # readings, ascending, (n,), mm or rad
+    forward: Array  # correction after a positive motion of `over`, (n,), mm or rad
+    reverse: Array  # the same after a negative motion
 
     @property
     def is_left_out(self) -> bool:

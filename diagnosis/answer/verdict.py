@@ -147,21 +147,36 @@ class Diagnosis(Tabular):
 
     @property
     def standing(self) -> Fit:
-        """The model with everything that stands: laws in the place of names withdrawn."""
-        return self.laws.after if self.laws is not None and self.withdrawn else self.fit
+        """The model with everything that stands.
+
+        It has laws where they replace names, and where the run is unexplained without them.
+        """
+        if self.laws is None or not self.laws.laws:
+            return self.fit
+        is_whole = self.withdrawn or self.verdict is Verdict.UNEXPLAINED
+        return self.laws.after if is_whole else self.fit
+
+    @property
+    def has_fallen(self) -> bool:
+        """Whether anything stands beside the starting model."""
+        return self.standing is not self.start
 
     def with_laws(self, laws: Learning) -> Self:
         """The same with laws of what remains.
 
-        Names that they explain better are withdrawn: none of them stands in a headline, the errors
-        to expect are those of the laws, and no plan distinguishes a name withdrawn from its rivals.
+        Where the laws stand in the model, the errors to expect are theirs: in an unexplained run,
+        and in the place of names. Names that they explain better are withdrawn: none of them stands
+        in a headline, and no plan distinguishes a name withdrawn from its rivals.
         """
+        found = replace(self, laws=laws)
+        if found.standing is not self.fit:
+            found = replace(found, promise=promise(found.standing))
         if not laws.instead_of:
-            return replace(self, laws=laws)
+            return found
         gone = {effect.name for effect in laws.instead_of}
         named = tuple(
             replace(one, is_headline=one.is_headline and one.effect.name not in gone)
             for one in self.parts.named
         )
         parts = replace(self.parts, named=named)
-        return replace(self, laws=laws, parts=parts, promise=promise(laws.after), plans=())
+        return replace(found, parts=parts, plans=())

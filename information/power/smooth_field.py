@@ -27,26 +27,36 @@ import numpy as np
 from matstd.information.power.quadratic import exceedance, quantile
 from matstd.twin.frames import Array
 
+
+def decorrelated(columns: Array, u: Array, memory: Array) -> Array:
+    """Columns in units of independent noise, (N, K).
+
+    The noise of row i is ``e_i = m_i e_(i-1) u_i / u_(i-1) + sqrt(1 - m_i^2) u_i z_i``, z
+    independent; what the row before already showed of it is subtracted.
+
+    Args:
+        columns: Deviations in mm, (N, K), in the order of the measurement.
+        u: Standard uncertainty of every row, (N,), mm.
+        memory: Correlation of the noise with that of the row before, (N,); 0 for a touch and at the
+            start of a line.
+    """
+    scaled = columns / u[:, None]
+    before = np.concatenate([np.zeros((1, scaled.shape[1])), scaled[:-1]])
+    return np.asarray((scaled - memory[:, None] * before) / np.sqrt(1.0 - memory**2)[:, None])
+
+
 _RANK = 1e-9  # eigenvalue relative to the largest, below which a pattern is rounding
 
 
 @dataclass(frozen=True, eq=False)
 class FieldTest:
-    """A test for a smooth field, made for some measurements.
+    """A test for a smooth field, made for some measurements."""
 
-    Attributes:
-        explained: ``Q``, (N, B).
-        patterns: ``p``, what is multiplied with the measurements, (N, M).
-        weight: ``l / (1 + l)`` of every pattern, (M,).
-        risk: Probability that it finds a field where there is none.
-        threshold: Of T.
-    """
-
-    explained: Array
-    patterns: Array
-    weight: Array
-    risk: float
-    threshold: float
+    explained: Array  # ``Q``, (N, B)
+    patterns: Array  # ``p``, what is multiplied with the measurements, (N, M)
+    weight: Array  # ``l / (1 + l)`` of every pattern, (M,)
+    risk: float  # probability that it finds a field where there is none
+    threshold: float  # of T
 
     def statistic(self, y: Array) -> Array:
         """T of measurements (N, K) in units of independent noise, (K,)."""

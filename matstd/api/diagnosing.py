@@ -212,11 +212,12 @@ def diagnose(
         progress,
         np.random.default_rng(0),
     )
-    if learn and found.parts.remains.is_real:
+    if learn:
         progress(0.9, "a law of what remains")
-        estimates = before.estimates if before else None
-        laws = learn_remainder(found.steps[len(added)].fit, found.fit, estimates)
-        found = found.with_laws(laws)
+        estimates, is_left = before.estimates if before else None, found.parts.remains.is_real
+        named = found.steps[len(added)].fit
+        laws = learn_remainder(named, found.fit, estimates, is_left=is_left)
+        found = found if laws is None else found.with_laws(laws)
     known = {f.name: getattr(found, f.name) for f in fields(found)}
     made: dict[str, Any] = {
         "before": before,

@@ -19,11 +19,12 @@ from matstd.probe_paths.campaign import (
     check_changes,
     effective_radii,
     read_heights,
+    read_program_of,
     sag_remarks,
     with_program_lines,
 )
 from matstd.probe_paths.campaign import evaluate as evaluate_parts
-from matstd.probe_paths.control import LogPart, ReadProgram, read_log, read_program
+from matstd.probe_paths.control import LogPart, ReadProgram, read_log
 from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.scans import STRETCH, ScanNoise, ScanPoints, evaluate_scan
 from matstd.report.numbers import um
@@ -114,7 +115,7 @@ def evaluate(
     parts = [part for path in logs for part in read_log(path, chain.rotary_axes)]
     known: dict[str, ReadProgram] = {}
     if programs is not None or not isinstance(standard, Standard):
-        known = _checked_programs(programs, standard, parts, chain)
+        known = _checked_programs(programs, standard, piece, parts, chain)
     dialect = Dialect(result_height=z)
     changes = ball_changes(parts, piece, chain, u, dialect)
     first = [part for part in parts if part.is_first]
@@ -151,6 +152,7 @@ def evaluate(
 def _checked_programs(
     folder: str | Path | None,
     standard: Standard | str | Path,
+    piece: Standard,
     parts: Sequence[LogPart],
     chain: Chain,
 ) -> dict[str, ReadProgram]:
@@ -160,7 +162,7 @@ def _checked_programs(
     files = [f for f in place.glob("*") if f.stem in names and f.suffix in (".H", ".ngc")]
     if folder is not None and not files:
         raise DesignError(f"--programs {place}: found none of {', '.join(sorted(names))}")
-    programs = {file.stem: read_program(file, chain) for file in files}
+    programs = {file.stem: read_program_of(piece, file, chain) for file in files}
     check_as_programmed(parts, programs, chain)
     return programs
 

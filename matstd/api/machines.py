@@ -82,13 +82,9 @@ def chain_of(machine: Chain | str | Path) -> Chain:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ToolPointDeviations(Tabular):
-    """Deviations of the tool point in the table frame; `volumetric` returns them.
+    """Deviations of the tool point in the table frame; `volumetric` returns them."""
 
-    Attributes:
-        deviation: Actual minus nominal, (N, 3), mm.
-    """
-
-    deviation: Array
+    deviation: Array  # actual minus nominal, (N, 3), mm
 
     number_format = ".9f"
 

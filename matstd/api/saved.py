@@ -30,13 +30,9 @@ FOUND = "machine_found.toml"
 
 
 class Saveable(ABC):
-    """A result that writes its files and its page into a folder, whole or not at all.
+    """A result that writes its files and its page into a folder, whole or not at all."""
 
-    Attributes:
-        sometimes: Files that not every such result leaves.
-    """
-
-    sometimes: ClassVar[tuple[str, ...]]
+    sometimes: ClassVar[tuple[str, ...]]  # files that not every such result leaves
 
     def save(self, folder: str | Path, pdf: bool = False, force: bool = False) -> Path:
         """Write results and page into a folder, whole or not at all.

@@ -62,24 +62,17 @@ ROUNDING = 1e-6
 
 @dataclass(frozen=True)
 class Proposal:
-    """A project that passes the first checks of a design.
+    """A project that passes the first checks of a design."""
 
-    Attributes:
-        text: Of the project file.
-        brief: The same, resolved.
-        table: Sides of the table, or its diameter, mm.
-        is_assumed: Whether the size of the table was derived from the travels.
-        larger: Side of the largest base that passes the same checks, mm; None where none larger
-            than this one does.
-        other_place: Farthest place of a second set-up along x of the table that passes them, mm; 0
-            where there is none.
-    """
-
-    text: str
-    brief: Brief
-    table: tuple[float, ...]
-    is_assumed: bool
+    text: str  # of the project file
+    brief: Brief  # the same, resolved
+    table: tuple[float, ...]  # sides of the table, or its diameter, mm
+    is_assumed: bool  # whether the size of the table was derived from the travels
+    # side of the largest base that passes the same checks, mm; None where none larger than this one
+    # does
     larger: float | None
+    # farthest place of a second set-up along x of the table that passes them, mm; 0 where there is
+    # none
     other_place: float
 
     @property

@@ -10,21 +10,16 @@ class Streams(NamedTuple):
 
     The order is part of the results: a stream depends on its place in it, so a new one goes to the
     end.
-
-    Attributes:
-        study: Random machines of the sensitivity study.
-        placement: Candidates and restarts of the search for standard and touches.
-        proof: Machines that are probed and identified, their noise, poses that judge them.
-        maps: Random machines that show what errors do to the length of the deviation.
-        other_setups: Poses at which other ways to measure are weighed.
-        visits: What calibration leaves open of the standard, noise and clamping of every visit.
     """
 
-    study: np.random.Generator
-    placement: np.random.Generator
+    study: np.random.Generator  # random machines of the sensitivity study
+    placement: np.random.Generator  # candidates and restarts of the search for standard and touches
+    # machines that are probed and identified, their noise, poses that judge them
     proof: np.random.Generator
+    # random machines that show what errors do to the length of the deviation
     maps: np.random.Generator
-    other_setups: np.random.Generator
+    other_setups: np.random.Generator  # poses at which other ways to measure are weighed
+    # what calibration leaves open of the standard, noise and clamping of every visit
     visits: np.random.Generator
 
 

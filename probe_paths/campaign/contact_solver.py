@@ -33,28 +33,21 @@ _SMALLEST_U = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class VirtualMachine:
-    """The machine as it really is, known to the simulator only.
+    """The machine as it really is, known to the simulator only."""
 
-    Attributes:
-        chain: Nominal kinematics.
-        disturbance: What all errors add at given touches; None for a perfect machine.
-        setup_error: Pose (4, 4) of the standard where it really stands, seen from where it is
-            believed to stand (artefact frame).
-        radius_error: Radius of the true ball minus the calibrated one, mm.
-        length_error: Length of the true probe minus the calibrated one, mm.
-        noise: Standard deviation of the trigger along the normal, mm.
-        temperature: Reading of a sensor by name at a time since the campaign began (s), degC.
-    """
-
-    chain: Chain
+    chain: Chain  # nominal kinematics
+    # what all errors add at given touches; None for a perfect machine
     disturbance: Disturbance | None = None
+    # pose (4, 4) of the standard where it really stands, seen from where it is believed to stand
+    # (artefact frame)
     setup_error: Array = field(default_factory=lambda: np.eye(4))
-    radius_error: float = 0.0
-    length_error: float = 0.0
-    noise: float = 0.0
+    radius_error: float = 0.0  # radius of the true ball minus the calibrated one, mm
+    length_error: float = 0.0  # length of the true probe minus the calibrated one, mm
+    noise: float = 0.0  # standard deviation of the trigger along the normal, mm
     begin: datetime = FIRST_MORNING
     clock: Clock = field(default_factory=Clock)
     dialect: Dialect = field(default_factory=Dialect)
+    # reading of a sensor by name at a time since the campaign began (s), degC
     temperature: Callable[[str, float], float] = lambda name, now: 20.0
 
     @property

@@ -45,26 +45,18 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class VirtualRun:
-    """What a program brought about.
-
-    Attributes:
-        q: Readings at the trigger, (N, A); nan for touches without contact.
-        time: Time of the trigger, s since the start of the campaign, (N,).
-        feature: What was touched, (N,).
-        meeting: What the ball ran into, (N,), values of `Meeting`; a contact is one with a surface.
-        reached: Number of touches tried before the program ended.
-        end: s since the start of the campaign.
-    """
+    """What a program brought about."""
 
     program: ReadProgram
-    q: Array
-    time: Array
-    feature: Labels
+    q: Array  # readings at the trigger, (N, A); nan for touches without contact
+    time: Array  # time of the trigger, s since the start of the campaign, (N,)
+    feature: Labels  # what was touched, (N,)
+    # what the ball ran into, (N,), values of `Meeting`; a contact is one with a surface
     meeting: np.ndarray
-    reached: int
+    reached: int  # number of touches tried before the program ended
     log: Mapping[str, str]
     outcome: Outcome
-    end: float
+    end: float  # s since the start of the campaign
 
     def check_done(self) -> None:
         """Raise NotReachable for a program that stopped; its attribute `run` is this run."""

@@ -16,6 +16,7 @@ from matstd.probe_paths.control.state import State
 from matstd.probe_paths.control.steps import ProbeStep, ReadProgram
 from matstd.probe_paths.control.structure import (
     Promise,
+    check_axes,
     check_cycles,
     heading,
     labels,
@@ -111,6 +112,7 @@ def interpret(
     check_cycles(blocks, path)
     head, features = heading(blocks, path)
     frame = ProgramFrame(chain, _probe(head, probe, path))
+    check_axes(blocks, frame.letters, head, path)
     stated = promise(blocks, head, path)
     runner = Runner(blocks, places, frame, path, name, masks, head)
     state = _initial_state(path, frame, stated, head.is_tilted)

@@ -106,18 +106,13 @@ _ANYTHING = (
 
 @dataclass(frozen=True)
 class Block:
-    """One block of a program.
+    """One block of a program."""
 
-    Attributes:
-        line: Number of its first line in the file, from 1.
-        words: Named parts of its pattern; None where an optional part is absent.
-        text: As it stands in the file, blanks folded.
-    """
-
-    line: int
+    line: int  # number of its first line in the file, from 1
     kind: Kind
+    # named parts of its pattern; None where an optional part is absent
     words: Mapping[str, str | None]
-    text: str
+    text: str  # as it stands in the file, blanks folded
 
     def word(self, name: str) -> str:
         """A part that the pattern guarantees."""

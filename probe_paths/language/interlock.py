@@ -28,22 +28,14 @@ TOP_LIMIT = 5.0
 
 
 class Interlock(NamedTuple):
-    """One test.
-
-    Attributes:
-        what: Is tested.
-        datum: Datum that is read; None for the length in the tool table.
-        work: Datum that is subtracted from it, or None.
-        planned: What is left where all is as planned, mm or degrees.
-        limit: By how much it may differ.
-    """
+    """One test."""
 
     label: Label
-    what: str
-    datum: Datum | None
-    work: Datum | None
-    planned: float
-    limit: float
+    what: str  # is tested
+    datum: Datum | None  # datum that is read; None for the length in the tool table
+    work: Datum | None  # datum that is subtracted from it, or None
+    planned: float  # what is left where all is as planned, mm or degrees
+    limit: float  # by how much it may differ
 
 
 _FIRST = (

@@ -48,23 +48,14 @@ Fields = tuple[str, Sequence[str]]
 
 
 class LogForm(NamedTuple):
-    """How a control prints clock and counters.
+    """How a control prints clock and counters."""
 
-    Attributes:
-        clock: Line of a time of day.
-        date: Lines of the day and the time in the head.
-        counter: Format of whole numbers.
-        is_wide: Whether numbers are printed in columns.
-        opens: Word of a mask that adds to a file of an earlier run, or "".
-        closes: Word of a mask that closes the file, or "".
-    """
-
-    clock: Fields
-    date: Sequence[Fields]
-    counter: str
-    is_wide: bool
-    opens: str = ""
-    closes: str = ""
+    clock: Fields  # line of a time of day
+    date: Sequence[Fields]  # lines of the day and the time in the head
+    counter: str  # format of whole numbers
+    is_wide: bool  # whether numbers are printed in columns
+    opens: str = ""  # word of a mask that adds to a file of an earlier run, or ""
+    closes: str = ""  # word of a mask that closes the file, or ""
 
 
 KEYWORDS = ("M_APPEND", "M_CLOSE")
@@ -73,15 +64,10 @@ KEYWORDS = ("M_APPEND", "M_CLOSE")
 
 @dataclass(frozen=True)
 class MaskLine:
-    """One line of a mask: literal text with formats, and what they print; or a keyword.
+    """One line of a mask: literal text with formats, and what they print; or a keyword."""
 
-    Attributes:
-        text: With `%w.dLF` and `%wd` formats.
-        arguments: Q numbers, or words of the date.
-    """
-
-    text: str
-    arguments: tuple[int | str, ...]
+    text: str  # with `%w.dLF` and `%wd` formats
+    arguments: tuple[int | str, ...]  # Q numbers, or words of the date
 
     @property
     def prints(self) -> bool:

@@ -36,15 +36,10 @@ _SHUTDOWN = 30.0
 
 @dataclass(frozen=True)
 class Session:
-    """What one session left.
+    """What one session left."""
 
-    Attributes:
-        logs: Text of every log file by name, whole or as far as it came.
-        outcome: Empty where every program came to its end; else what stopped it, in one line.
-    """
-
-    logs: Mapping[str, str]
-    outcome: str
+    logs: Mapping[str, str]  # text of every log file by name, whole or as far as it came
+    outcome: str  # empty where every program came to its end; else what stopped it, in one line
     said: str
 
 

@@ -23,17 +23,11 @@ NOWHERE = -1e3
 
 @dataclass(frozen=True, eq=False)
 class Relief:
-    """Heights over the artefact's x and y.
+    """Heights over the artefact's x and y."""
 
-    Attributes:
-        x0: Smallest x and y, (2,), mm.
-        top: Upper end of everything solid, (I, J), mm.
-        ball: Centre of a ball that comes down from above and touches, (I, J), mm.
-    """
-
-    x0: Array
-    top: Array
-    ball: Array
+    x0: Array  # smallest x and y, (2,), mm
+    top: Array  # upper end of everything solid, (I, J), mm
+    ball: Array  # centre of a ball that comes down from above and touches, (I, J), mm
 
     @classmethod
     def of(cls, standard: Standard, radius: float) -> "Relief":

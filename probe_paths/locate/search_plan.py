@@ -10,9 +10,8 @@ from scipy import ndimage
 
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import Workshop
-from matstd.probe_paths.locate.find import KNOWN, KNOWN_ANGLE, lifted
+from matstd.probe_paths.locate.find import KNOWN, KNOWN_ANGLE, Spread, lifted
 from matstd.probe_paths.locate.relief import NOWHERE, PITCH, Relief
-from matstd.probe_paths.locate.spread import Spread
 from matstd.probe_paths.plan import (
     PlanOptions,
     Probe,

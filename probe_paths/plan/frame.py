@@ -31,16 +31,13 @@ _PARALLEL = 1e-9
 class ProgramFrame:
     """Converts between axis readings and the words of a program.
 
-    Attributes:
-        shift: Shift of a tilted plane, mm.
-
     Raises:
         DesignError: A machine whose axes the programs cannot name.
     """
 
     chain: Chain
     probe: Probe
-    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)  # shift of a tilted plane, mm
 
     def __post_init__(self) -> None:
         chain = self.chain

@@ -5,8 +5,8 @@ from pathlib import Path
 
 from matstd.compensation.field import MachineErrors, Result
 from matstd.compensation.tables import Header, VerifiedTables
-from matstd.report.compensation.table_pictures import draw_errors_left, draw_shares
-from matstd.report.compensation.table_words import (
+from matstd.report.compensation.compensation_pictures import draw_errors_left, draw_shares
+from matstd.report.compensation.compensation_words import (
     control_title,
     extent_of,
     left_out_sentence,

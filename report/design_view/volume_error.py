@@ -22,21 +22,15 @@ _SHARES = (0.5, 0.15, 0.85)  # of the range of every rotary axis, at which the f
 
 @dataclass(frozen=True, eq=False)
 class ErrorField:
-    """Error vectors over a grid of linear readings, at some rotary readings.
+    """Error vectors over a grid of linear readings, at some rotary readings."""
 
-    Attributes:
-        axes: Names of the three linear axes.
-        at: Readings of each, ascending, mm.
-        rotary: Readings of the rotary axes by name, for every field, rad.
-        before: (F, n1, n2, n3, 3) along the motion of each axis, mm; nan outside the user's volume.
-        after: Not predicted by the identified model, the same shape, mm.
-    """
-
-    axes: tuple[str, ...]
-    at: tuple[Array, ...]
+    axes: tuple[str, ...]  # names of the three linear axes
+    at: tuple[Array, ...]  # readings of each, ascending, mm
+    # readings of the rotary axes by name, for every field, rad
     rotary: tuple[dict[str, float], ...]
+    # (F, n1, n2, n3, 3) along the motion of each axis, mm; nan outside the user's volume
     before: Array
-    after: Array
+    after: Array  # not predicted by the identified model, the same shape, mm
 
 
 def error_field(

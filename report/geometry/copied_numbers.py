@@ -16,15 +16,10 @@ from matstd.twin.units import DEG
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """One way to put a description right.
+    """One way to put a description right."""
 
-    Attributes:
-        key: Key of the file, or the error that does the same where no key states it.
-        line: What to write, or what is wrong.
-    """
-
-    key: str
-    line: str
+    key: str  # key of the file, or the error that does the same where no key states it
+    line: str  # what to write, or what is wrong
 
 
 def copy_lines(

@@ -46,23 +46,14 @@ NOTED = 8
 
 @dataclass(frozen=True, slots=True)
 class GeometryLine:
-    """One row of the table.
+    """One row of the table."""
 
-    Attributes:
-        name: `squareness of Y to X (EC0Y)`.
-        value: `3 ± 2 → 41 ± 2 µrad`; empty where the run does not determine it.
-        at_ends: Its effect over the travel.
-        expected: Its expected size.
-        note: Whether it exceeds its expected size, has changed, or shares its signature.
-        is_noted: Whether the note should be read first.
-    """
-
-    name: str
-    value: str
-    at_ends: str
-    expected: str
-    note: str
-    is_noted: bool
+    name: str  # `squareness of Y to X (EC0Y)`
+    value: str  # `3 ± 2 → 41 ± 2 µrad`; empty where the run does not determine it
+    at_ends: str  # its effect over the travel
+    expected: str  # its expected size
+    note: str  # whether it exceeds its expected size, has changed, or shares its signature
+    is_noted: bool  # whether the note should be read first
 
     @property
     def is_determined(self) -> bool:

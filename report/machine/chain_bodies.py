@@ -33,29 +33,19 @@ _MOST = 450.0  # mm: half a table's width at most
 
 @dataclass(frozen=True, slots=True)
 class Letter:
-    """Where the letter of an axis stands.
+    """Where the letter of an axis stands."""
 
-    Attributes:
-        on: Link that carries it.
-        text: The letter.
-        place: Frame of the machine with every axis at zero, (3,), mm.
-    """
-
-    on: str
-    text: str
-    place: tuple[float, float, float]
+    on: str  # link that carries it
+    text: str  # the letter
+    place: tuple[float, float, float]  # frame of the machine with every axis at zero, (3,), mm
 
 
 @dataclass
 class _Side:
-    """One side of a machine while it is built, from its end to the foundation.
+    """One side of a machine while it is built, from its end to the foundation."""
 
-    Attributes:
-        outwards: Direction from the end to the foundation, (3,).
-        low, high: Box round all that was built, (3,), mm.
-    """
-
-    outwards: Array
+    outwards: Array  # direction from the end to the foundation, (3,)
+    # box round all that was built, (3,), mm
     low: Array
     high: Array
     bodies: list[Drawn] = field(default_factory=list)

@@ -61,12 +61,14 @@ RATIO = 12.0
 
 def draw_fall(diagnosis: Diagnosis) -> Figure:
     """Error of fitted and of held-out touches, step by step, against the noise."""
-    steps = diagnosis.steps
+    fits = [(_step_words(s), s.fit) for s in diagnosis.steps]
+    if diagnosis.laws is not None and diagnosis.laws.laws:
+        fits.append(("with the\nlearnt law", diagnosis.laws.after))
     drawn = figure(3.9)
     ax = drawn.subplots()
-    x = np.arange(len(steps))
-    fitted = np.array([s.fit.rms for s in steps]) / UM
-    held = np.array([s.fit.test_rms for s in steps]) / UM
+    x = np.arange(len(fits))
+    fitted = np.array([fit.rms for _, fit in fits]) / UM
+    held = np.array([fit.test_rms for _, fit in fits]) / UM
     u = rms(diagnosis.run.u) / UM
     low, high = min(fitted.min(), held.min(), u), max(fitted.max(), held.max())
     _noise_lines(ax, diagnosis.fit, u)
@@ -76,7 +78,7 @@ def draw_fall(diagnosis: Diagnosis) -> Figure:
     ):
         ax.step(x, y, where="mid", color=colour, lw=1.0, alpha=0.45)
         ax.plot(x, y, marker, ms=7, color=colour, label=word)
-    for i in range(len(steps)):
+    for i in range(len(fits)):
         # the larger of the two is named above its mark, the smaller below
         up = held[i] >= fitted[i]
         _value(ax, i, held[i], up, ORANGE)
@@ -86,8 +88,8 @@ def draw_fall(diagnosis: Diagnosis) -> Figure:
         ax.set_ylim(0.55 * low, 1.8 * high)
     else:
         ax.set_ylim(0.0, 1.18 * high)
-    ax.set_xlim(-0.5, max(len(steps) - 0.5, 1.5))
-    ax.set_xticks(x, [_step_words(s) for s in steps], fontsize=8.5)
+    ax.set_xlim(-0.5, max(len(fits) - 0.5, 1.5))
+    ax.set_xticks(x, [words for words, _ in fits], fontsize=8.5)
     ax.set_ylabel("root mean square error in µm")
     plain(ax, "y")
     drawn.legend(fontsize=8.5, frameon=False, loc="outside upper center", ncols=4)

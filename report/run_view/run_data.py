@@ -32,22 +32,16 @@ MOST_COLUMNS, FEWER_COLUMNS = 40, 10
 
 @dataclass(frozen=True, slots=True)
 class Findings:
-    """What the report says of a run, for its live view.
+    """What the report says of a run, for its live view."""
 
-    Attributes:
-        title: Name of the run.
-        set_up_alone: Held-out error without geometry, mm; None where it is not known.
-        sizes: Of found effects by name.
-        remains: What remains with everything that was found; empty for nothing to say.
-        body: Triangles of what was probed, (T, 3, 3), mm; None where only its touches are known.
-        is_prediction: Whether a model predicts the machine, and the run places the standard alone.
-    """
-
-    title: str
+    title: str  # name of the run
+    # held-out error without geometry, mm; None where it is not known
     set_up_alone: float | None = None
-    sizes: Mapping[str, str] = field(default_factory=dict)
-    remains: str = ""
+    sizes: Mapping[str, str] = field(default_factory=dict)  # of found effects by name
+    remains: str = ""  # what remains with everything that was found; empty for nothing to say
+    # triangles of what was probed, (T, 3, 3), mm; None where only its touches are known
     body: Array | None = None
+    # whether a model predicts the machine, and the run places the standard alone
     is_prediction: bool = False
 
 

@@ -39,28 +39,20 @@ _FREE = 1.03  # of the half height: nothing touches the edge of the picture
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Values over a box of three readings.
+    """Values over a box of three readings."""
 
-    Attributes:
-        title: What is shown, and at which other readings.
-        unit: Label of the colour bar.
-        labels: Of the three readings, with their unit.
-        readings: Their values, three arrays, growing.
-        values: In the unit of the label, one for every point, (n1, n2, n3); not a number where
-            there is none.
-        T_readings_artefact: Where the standard stands in the map, (4, 4); None to leave it out.
-        lines: Lines of rotary axes by name: a point and a unit direction each, (2, 3).
-        body: Lowest and highest corner of the standard in its own frame, (2, 3); `draw_volumes`
-            takes them from the STL file.
-    """
-
-    title: str
-    unit: str
-    labels: tuple[str, str, str]
-    readings: tuple[Array, ...]
+    title: str  # what is shown, and at which other readings
+    unit: str  # label of the colour bar
+    labels: tuple[str, str, str]  # of the three readings, with their unit
+    readings: tuple[Array, ...]  # their values, three arrays, growing
+    # in the unit of the label, one for every point, (n1, n2, n3); not a number where there is none
     values: Array
+    # where the standard stands in the map, (4, 4); None to leave it out
     T_readings_artefact: Array | None = None
+    # lines of rotary axes by name: a point and a unit direction each, (2, 3)
     lines: Mapping[str, Array] = field(default_factory=dict)
+    # lowest and highest corner of the standard in its own frame, (2, 3); `draw_volumes` takes them
+    # from the STL file
     body: Array | None = None
 
     def __post_init__(self) -> None:

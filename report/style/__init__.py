@@ -4,7 +4,7 @@ A picture module takes an empty `figure`, the colours and the labels from here, 
 figure to `save`. To change how all pictures look, change this part and nothing else.
 """
 
-from matstd.report.style.colours import (
+from matstd.report.style.sheet import (
     BLUE,
     DIVERGING,
     FAINT,
@@ -16,10 +16,17 @@ from matstd.report.style.colours import (
     RED,
     SOFT,
     WASH,
+    WIDTH,
+    axis_of,
+    axis_title,
+    figure,
+    nothing,
+    plain,
+    reading_label,
+    robust_limit,
+    save,
     series,
 )
-from matstd.report.style.labels import axis_of, axis_title, reading_label, robust_limit
-from matstd.report.style.sheet import WIDTH, figure, nothing, plain, save
 
 __all__ = [
     "BLUE",

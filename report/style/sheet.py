@@ -1,16 +1,61 @@
-"""Empty figures that need no screen, axes without ornament, PNG files."""
+"""Colours, empty figures that need no screen, axes without ornament, labels, PNG files."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from matstd.report.style.colours import INK, LINE, SOFT
+import numpy as np
+
+from matstd.report.numbers import noun, time_unit, unit_of
 from matstd.twin.files import written_whole
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain, Link
+from matstd.twin.units import DEG
 from matstd.twin.words import in_own_unit
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+INK, SOFT, LINE, WASH = "#1c2430", "#7d8794", "#d8dee6", "#f4f6f9"
+"""Letters, what stands back, grids, and the ground of what is bare."""
+
+FAINT, NEUTRAL = "#9aa4b1", "#c3cad3"
+"""Single touches behind their means; bars of what is not singled out."""
+
+BLUE, ORANGE, GREEN, RED, PURPLE = "#0072b2", "#e69f00", "#009e73", "#d55e00", "#aa4499"
+
+_SERIES = (
+    BLUE, ORANGE, GREEN, PURPLE, RED, "#56b4e9",
+    "#8c564b", "#999933", "#44546a", "#e78ac3", "#117733", "#b2abd2",
+)  # fmt: skip
+"""The first six are Okabe and Ito's, distinguishable by colour-blind readers; more than twelve
+are not distinguishable."""
+
+DIVERGING = "RdBu_r"
+"""Map for signed values: red outside, blue inside, white nothing."""
+
+_STEP = 0.3  # towards white or black, at every turn of the twelve colours
+
+
+def series(k: int) -> str:
+    """Colour of the k-th of several things, from 0; a different one for each of sixty.
+
+    Example:
+        >>> series(0)
+        '#0072b2'
+        >>> len({series(k) for k in range(60)})
+        60
+    """
+    turn, place = divmod(k, len(_SERIES))
+    if turn == 0:
+        return _SERIES[place]
+    # lighter, darker, much lighter, much darker ...
+    ground = 255.0 if turn % 2 else 0.0
+    share = 1.0 - (1.0 - _STEP) ** ((turn + 1) // 2)
+    plain = (int(_SERIES[place][i : i + 2], 16) for i in (1, 3, 5))
+    return "#" + "".join(f"{round(v + share * (ground - v)):02x}" for v in plain)
+
 
 WIDTH = 10.0
 """Width of a picture, inch: pages shrink all pictures alike, so letters are equally large."""
@@ -66,3 +111,37 @@ def _plain_numbers(axis: Any) -> None:
     axis.set_major_locator(LogLocator(subs=steps, numticks=20))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
+
+
+def axis_title(link: Link) -> str:
+    """Axis as the chain notation writes it."""
+    if link.kind == "fixed":
+        return "workpiece" if link.carries_workpiece else "tool"
+    name = link.name + ("'" if link.carries_workpiece else "")
+    return name if link.programmed else f"({name})"
+
+
+def reading_label(chain: Chain, axis: str) -> tuple[str, float]:
+    """Label of a reading and what one shown unit of it is."""
+    return (f"{axis} in mm", 1.0) if chain.link(axis).kind == "linear" else (f"{axis} in °", DEG)
+
+
+def axis_of(column: str, values: Array) -> tuple[str, Array]:
+    """Label of an axis for a column of a run file, and its values in the unit of the label.
+
+    Example:
+        >>> axis_of("B_deg", np.array([-90.0, 0.0]))[0], axis_of("time_s", np.array([0.0, 9e4]))[0]
+        ('B in °', 'time in h')
+    """
+    if column == "time_s":
+        # two days are clearer in hours than in days: the axis has room for two digits
+        factor, unit = time_unit(min(float(np.max(np.abs(values), initial=1.0)), 86400.0))
+        return f"time in {unit}", values / factor
+    unit = unit_of(column).replace("deg", "°")
+    return (f"{noun(column)} in {unit}" if unit else noun(column)), values
+
+
+def robust_limit(values: Array, share: float = 0.99) -> float:
+    """End of a symmetric scale that a few large values do not decide; 1 where all are zero."""
+    limit = float(np.quantile(np.abs(values), share)) if len(values) else 0.0
+    return limit or 1.0

@@ -265,6 +265,9 @@ _SENTENCES: dict[type | What, str | Callable[[Any], str]] = {
     "theory is doubtful there, and the compliance of its support matters as much",
     What.LOAD_TOO_SMALL: "loads of up to {r.load:.3g} N are too small to identify {r.effect}: "
     "its numbers are the prior ones; load the tool with about 100 N",
+    What.FIXING_NOT_STATED: "{r.effect}: the standard is taken to expand together with the table, "
+    "from the origin of the table frame. If it is held elsewhere and expands alone, state the "
+    "point: fixing_mm in [setup.NAME] of the run",
     What.SEARCH_ENDED: "the search was stopped after {r.sets:.0f} sets of effects: the reported "
     "effects passed every test, but another set may explain more",
     What.NOT_SIGNIFICANT: _not_significant,

@@ -30,22 +30,14 @@ Sizes = NDArray[np.float32]
 
 @dataclass(frozen=True, eq=False)
 class Lengths:
-    """What is kept of the lengths of S machines at N poses.
+    """What is kept of the lengths of S machines at N poses."""
 
-    Attributes:
-        draws: S.
-        sum: Shape (N,), mm.
-        squares: Sum of squares, (N,), mm^2.
-        above: Machines above the tolerance, (N,).
-        histogram: Shape (N, BINS); the last bin holds whatever is longer.
-        worst: Machines for which the pose is among the worst ones, (N,); zero if not asked for.
-    """
-
-    draws: int
-    sum: Array
-    squares: Array
-    above: Array
-    histogram: NDArray[Any]
+    draws: int  # S
+    sum: Array  # shape (N,), mm
+    squares: Array  # sum of squares, (N,), mm^2
+    above: Array  # machines above the tolerance, (N,)
+    histogram: NDArray[Any]  # shape (N, BINS); the last bin holds whatever is longer
+    # machines for which the pose is among the worst ones, (N,); zero if not asked for
     worst: NDArray[np.int64]
 
 

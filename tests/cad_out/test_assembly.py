@@ -162,7 +162,7 @@ def test_tolerances_datums_and_notes_are_in_the_text(upright, built):
     assert Tolerance("DATUM_C", "perpendicularity", 0.02, "AB") in found
     assert len(found) == 3 + 3 + 2 + 3
     assert read_notes(entities) == list(notes_of(upright, details_of(upright)))
-    assert built[1].untold == ()
+    assert built[1].not_as_designed == ()
     text = (built[0] / "standard.step").read_text()
     assert text.count("DIMENSIONAL_SIZE(") == len(upright.spheres)
     assert "RUNOUT" not in text

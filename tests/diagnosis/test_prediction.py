@@ -8,16 +8,17 @@ from made_up import gauge_touches
 from scipy.integrate import solve_ivp
 
 from matstd.api.diagnosing import candidates
+from matstd.diagnosis.accuracy import Promise, blocks
 from matstd.diagnosis.answer.comparison import compare
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.answer.sizes import sizes
 from matstd.diagnosis.answer.verdict import Diagnosis
 from matstd.diagnosis.choice import prediction
-from matstd.diagnosis.choice.blocks import blocks, prune_by_held_out_error
 from matstd.diagnosis.choice.bodies import bodies
 from matstd.diagnosis.choice.chosen_set import with_chosen_set
 from matstd.diagnosis.choice.field import PRIOR_SIZES, sized_field
 from matstd.diagnosis.choice.prediction import Choice, candidate_effects, without
+from matstd.diagnosis.choice.pruned import prune_by_held_out_error
 from matstd.diagnosis.evidence.effect_signatures import ResidualSpace, ScaledEffect, projected
 from matstd.diagnosis.evidence.evidence import EffectSet
 from matstd.diagnosis.fit.identification import fit_run
@@ -25,7 +26,8 @@ from matstd.diagnosis.fit.prior import Prior
 from matstd.diagnosis.regression.memory import Memory
 from matstd.diagnosis.search.search_loop import searched
 from matstd.diagnosis.search.task import DiagnosisTask
-from matstd.report.words.diagnosis_words import named_value, promise_sentence
+from matstd.report.verdict import promise_sentence
+from matstd.report.words.diagnosis_words import named_value
 from matstd.twin.errors import DesignError
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.library.ordinary import ordinary_model
@@ -260,8 +262,9 @@ def test_a_way_that_is_followed_counts_independent_observations(chosen) -> None:
 def test_a_broken_promise_is_said() -> None:
     run = record()
     found = compare(run, ordinary_model(run.touches.chain))
-    assert "worse than promised" in promise_sentence(found, 0.5 * found.rms)
-    assert "as good as promised" in promise_sentence(found, found.rms)
+    here = 0.5 * found.rms  # what counts is the promise for other places
+    assert "worse than promised" in promise_sentence(found, Promise(here, here, ()))
+    assert "as good as promised" in promise_sentence(found, Promise(here, found.rms, ()))
 
 
 def test_candidates_are_narrowed_by_kind_and_by_name() -> None:

@@ -5,6 +5,8 @@ ball centre stands at (100, 50, 140) of the table frame, the line of B at height
 outward normal n reads dev = -n . (motion of the tip) + n . (shift of the standard) + bias.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from machines import HSM600U
@@ -22,6 +24,8 @@ PER_HAND = 0.5 * NM
 """Hand values are given to half a nanometre."""
 
 X, Y, Z = np.eye(3)
+
+HELD = Setup("a", fixing=(0.0, 0.0, 40.0))
 
 
 def touch(normal, X=100.0, Y=50.0, Z=-200.0, B=0.0, C=0.0, n=1, **more):
@@ -129,6 +133,14 @@ BY_HAND = {
     "stylus square at B -90": ("stylus-bending", 4 * UM, touch(Z, B=-90.0), 0, 4.0),
     # (T - 20) alpha p_z = 10 K * 10e-6 * 140 mm
     "growing standard": ("artefact-expansion(block)", 10e-6, warm(Z, block=30.0), 0, 14.0),
+    # held 40 mm above the origin of the table: 10 K * 10e-6 * (140 - 40) mm
+    "growing standard, held": (
+        "artefact-expansion(block)",
+        10e-6,
+        replace(warm(Z, block=30.0), setups=(HELD,)),
+        0,
+        10.0,
+    ),
     # 2 h at 3 um/h in +x carries the wall that faces +x outwards
     "drift": ("drift", 3 * UM, touch(X, time=np.array([7200.0])), 0, 6.0),
 }

@@ -29,13 +29,10 @@ class Backlash(Declared):
     B is what was reached in the positive direction minus what was reached in the negative one;
     lost motion behind a motor encoder lags and is negative. A touch whose last motion is unknown
     is not disturbed.
-
-    Attributes:
-        component: Index of the component that reverses: along or about the axis, as a rule.
     """
 
     axis: str
-    component: int
+    component: int  # index of the component that reverses: along or about the axis, as a rule
 
     kind = "backlash"
     usual = (10 * UM, 50 * URAD)

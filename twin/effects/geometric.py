@@ -27,17 +27,13 @@ class ComponentError(Declared):
 
     ``E(q) = a f(q)`` with f the constant, linear, parabolic or sinusoidal shape of unit peak
     amplitude (`matstd.twin.machine.shapes`).
-
-    Attributes:
-        phase: Phase of the sinusoidal distribution, rad.
-        sd: Expected standard deviation of the amplitude, mm or rad.
     """
 
     symbol: Symbol
     shape: ShapeName
     periods: float = 1.0
-    phase: float = 0.0
-    sd: float = 1.0
+    phase: float = 0.0  # phase of the sinusoidal distribution, rad
+    sd: float = 1.0  # expected standard deviation of the amplitude, mm or rad
 
     kind, called = "geometric", "{symbol.title}"
     is_ordinary = True
@@ -76,14 +72,11 @@ class HigherOrder(Declared):
     the Chebyshev polynomials (T_1 and T_2 are the linear and the parabolic distribution) of u, the
     reading scaled to [-1, 1]. Constants are location errors and not in it. Coefficients are
     expected to fall as ``1/k^1.5`` from the size of the class.
-
-    Attributes:
-        sd: Expected standard deviation of the first coefficient, mm or rad.
     """
 
     symbol: Symbol
     degree: int
-    sd: float
+    sd: float  # expected standard deviation of the first coefficient, mm or rad
     rotary: bool = False
     lowest: int = 1
 

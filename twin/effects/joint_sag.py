@@ -45,16 +45,14 @@ class JointSag(Declared):
     W_k at points p_k; c is the compliance of the joint. One parameter, c W_k, for every point: a
     positive one, rad a millimetre of lever, turns the arm down.
 
-    Attributes:
-        places: Names of the joints at whose points weights are taken to be, and `flange` for the
-            gauge point, where a payload hangs.
-
     Reference:
         Static torque of gravity of an open chain; joint compliance is what remains of a calibrated
         arm: Judd and Knasinski, IEEE Trans. Robotics and Automation 6 (1990) 20.
     """
 
     joint: Annotated[str, Argument("axis", _joint)]
+    # names of the joints at whose points weights are taken to be, and `flange` for the gauge point,
+    # where a payload hangs
     places: tuple[str, ...] = ()
 
     kind = "joint-sag"

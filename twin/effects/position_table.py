@@ -60,19 +60,15 @@ class PositionTable(Declared):
     finer a wave the less is expected of it: ``w_k ~ 1/(1 + (k pi l)^2)``, ``sum w_k^2 = 1``, l the
     correlation length. A constant belongs to the location of the axis.
 
-    Attributes:
-        by_direction: Whether each direction has its own curve; a reversal that is alike everywhere
-            is `backlash`.
-        is_round: Whether the travel of a rotary axis closes in itself.
-        length: l, as a share of the travel.
-
     Reference:
         ISO 230-2 (mean deviation at every target for either direction, reversal at a target).
     """
 
     symbol: ComponentSymbol
+    # whether each direction has its own curve; a reversal that is alike everywhere is `backlash`
     by_direction: Annotated[bool, Argument("directions", _directions, _no_or_each)] = False
-    is_round: bool = False
+    is_round: bool = False  # whether the travel of a rotary axis closes in itself
+    # l, as a share of the travel
     length: float = scanned("1", CORRELATION_LENGTHS, continuous=False)
 
     kind = "position-table"

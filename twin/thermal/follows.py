@@ -76,14 +76,12 @@ class Follows(Declared):
     ``E = a v / s``. The column is in a unit that only its user knows, so the amplitude a, mm or
     rad, is that of a step s, a round number near the spread of the column, which stays with the
     effect: the same model means the same on another run.
-
-    Attributes:
-        column: Name of the column without `V_`, its unit included.
-        step: s, in the unit of the column.
     """
 
     symbol: ComponentSymbol
+    # name of the column without `V_`, its unit included
     column: Annotated[str, Argument("column of the user's own", _column)]
+    # s, in the unit of the column
     step: float = scanned("1", _steps, default=1.0, continuous=False)
 
     kind, usual = "follows", USUAL_AMPLITUDE

@@ -10,17 +10,11 @@ from typing import NamedTuple
 
 
 class Example(NamedTuple):
-    """One example.
+    """One example."""
 
-    Attributes:
-        files: Patterns of its files within the examples.
-        about: What it shows.
-        first: The command to begin with, seen from the folder of the copy.
-    """
-
-    files: tuple[str, ...]
-    about: str
-    first: str
+    files: tuple[str, ...]  # patterns of its files within the examples
+    about: str  # what it shows
+    first: str  # the command to begin with, seen from the folder of the copy
 
 
 RUNS = ("*.csv", "*.toml", "*.json", "README.md")

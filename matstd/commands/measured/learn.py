@@ -61,6 +61,7 @@ def _report(args: argparse.Namespace, found: LearntLaws) -> None:
     """The law, its rival, its errors elsewhere, and the files."""
     from matstd.console import say
     from matstd.report.laws import (
+        held_out_sentence,
         law_notes,
         law_sentence,
         no_law_sentence,
@@ -78,6 +79,8 @@ def _report(args: argparse.Namespace, found: LearntLaws) -> None:
             say(f"- {second}")
     for line in law_notes(found):
         say(f"- {line}")
+    if found.laws:
+        say(f"- {held_out_sentence(found)}")
     for line in visit_sentences(found.visit):
         say(f"- {line}")
     if found.second is not None:
