@@ -79,7 +79,9 @@ class Diagnosis(Tabular):
             and no repeats show it.
         steps: The error falling, effect by effect.
         parts: Geometry, named effects and remainder, each with its weight.
-        promise: Errors to expect of the model that stands, at the same touches and elsewhere.
+        predicting: The model that predicts: what was added, with every member of its classes that
+            predicts differently.
+        promise: Errors to expect of it, at the same touches and elsewhere; of laws that stand.
         promise_before: The same of the starting model.
         structure: What the residual of the starting model varies with.
         left: What the residual of the last step varies with; empty unless unexplained.
@@ -96,6 +98,7 @@ class Diagnosis(Tabular):
     verdict: Verdict
     steps: tuple[Step, ...]
     parts: VerdictParts
+    predicting: Fit
     promise: Promise
     promise_before: Promise
     candidates: tuple[Candidate, ...]

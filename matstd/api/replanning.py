@@ -19,6 +19,7 @@ from matstd.probe_paths.campaign import (
     check_moves,
     checked_parts,
     evaluate,
+    read_program_of,
     simulate,
 )
 from matstd.probe_paths.control import (
@@ -51,14 +52,11 @@ from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG, MINUTE, UM
 
-SEED = 0
-"""Of the places that are tried first: the same log gives the same programs."""
+SEED = 0  # of the places that are tried first: the same log gives the same programs
 
-ROUGH = 1.0 * UM
-"""Uncertainty of a touch where only the place of the standard is asked for, mm."""
+ROUGH = 1.0 * UM  # uncertainty of a touch where only the place of the standard is asked for, mm
 
-OURS = (*REPORT_FILES, *SHEET_FILES, "programs/*")
-"""Files that not every replan leaves."""
+OURS = (*REPORT_FILES, *SHEET_FILES, "programs/*")  # files that not every replan leaves
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -148,7 +146,7 @@ def replan(
     standard = read_standard(design / "standard.toml")
     files = programs_of(design)
     words = _dialect(control, files[0])
-    programs = [read_program(file, chain, dialect=words) for file in files]
+    programs = [read_program_of(standard, file, chain, None, words) for file in files]
     parts = [part for log in logs for part in read_log(log, chain.rotary_axes)]
     here, others = of_one_setup(programs, parts)
     setup, lines = _place(parts, standard, chain, words, spread)

@@ -29,19 +29,14 @@ SEARCH_FEED = 800.0
 
 @dataclass(frozen=True)
 class Program:
-    """One program file.
-
-    Attributes:
-        duration: By the clock, s.
-        read: What the interpreter understood of it.
-    """
+    """One program file."""
 
     name: str
     ending: str
     text: str
     touches: int
-    duration: float
-    read: ReadProgram = field(repr=False, compare=False)
+    duration: float  # by the clock, s
+    read: ReadProgram = field(repr=False, compare=False)  # what the interpreter understood of it
 
     @property
     def blocks(self) -> int:

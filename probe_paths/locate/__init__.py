@@ -8,10 +8,9 @@ the touches of earlier programs, or those of a planned visit (`read_visit`), pla
 
 from matstd.probe_paths.locate.again import planned_again
 from matstd.probe_paths.locate.beside import RAISED, Companions, companions
-from matstd.probe_paths.locate.find import Found, find_standard
+from matstd.probe_paths.locate.find import SPREADS, Found, Spread, find_standard
 from matstd.probe_paths.locate.planned_visit import PlannedVisit, VisitSchedule, read_visit
 from matstd.probe_paths.locate.search_plan import plan_search
-from matstd.probe_paths.locate.spread import SPREADS, Spread
 
 __all__ = [
     "RAISED",

@@ -23,45 +23,28 @@ LONGEST_TURN = 170.0 * DEG
 
 _PART, _NO_GAIN = 3, 1e-9  # places that are put elsewhere together; mm
 
-_ROUNDING = 1e-9
-"""A reading at the very end of the travel is inside, whatever its last digit, rad."""
+_ROUNDING = 1e-9  # a reading at the very end of the travel is inside, whatever its last digit, rad
 
 
 @dataclass(frozen=True, eq=False)
 class Visit:
-    """One stay at a table pose.
+    """One stay at a table pose."""
 
-    Attributes:
-        pose: Number of the pose, from 0.
-        rotary: Readings of the rotary axes, (R,), rad.
-        side: Direction of the last motion of each rotary axis, (R,), -1 or 1.
-        before: Readings just before it, overshot to the side, (R,), rad.
-        rows: Requests to touch here, (M,).
-        height: Reading of Z at which the probe moves sideways, mm.
-        stretch: Number of the stretch between standstills; each begins a program.
-    """
-
-    pose: int
-    rotary: Array
-    side: Array
-    before: Array
-    rows: IntArray
-    height: float = 0.0
-    stretch: int = 0
+    pose: int  # number of the pose, from 0
+    rotary: Array  # readings of the rotary axes, (R,), rad
+    side: Array  # direction of the last motion of each rotary axis, (R,), -1 or 1
+    before: Array  # readings just before it, overshot to the side, (R,), rad
+    rows: IntArray  # requests to touch here, (M,)
+    height: float = 0.0  # reading of Z at which the probe moves sideways, mm
+    stretch: int = 0  # number of the stretch between standstills; each begins a program
 
 
 class StatedVisits(NamedTuple):
-    """Visits in a given order, from given sides.
+    """Visits in a given order, from given sides."""
 
-    Attributes:
-        number: Of the visit of every request, in their order, (N,).
-        side: Direction of the last motion of each rotary axis towards it, (N, R), -1 or 1.
-        stretch: Number of the stretch between standstills, (N,).
-    """
-
-    number: IntArray
-    side: Array
-    stretch: IntArray
+    number: IntArray  # of the visit of every request, in their order, (N,)
+    side: Array  # direction of the last motion of each rotary axis towards it, (N, R), -1 or 1
+    stretch: IntArray  # number of the stretch between standstills, (N,)
 
 
 def stated_visits(

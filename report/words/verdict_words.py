@@ -14,20 +14,13 @@ from matstd.report.laws import (
     rival_sentence,
 )
 from matstd.report.numbers import digits, microns
-from matstd.report.words.diagnosis_words import (
-    noise_words,
-    sizes,
-    stated_noise,
-    structure_clause,
-)
+from matstd.report.words.diagnosis_words import noise_words, sizes, stated_noise, structure_clause
 from matstd.twin.units import DEG
 from matstd.twin.words import listed
 
-PERIODS_NAMED = 4
-"""Indistinguishable periods that are named, the longest ones."""
+PERIODS_NAMED = 4  # indistinguishable periods that are named, the longest ones
 
-WITHIN = 0.1
-"""Excess over the stated noise that is not reported: half a per cent of its size."""
+WITHIN = 0.1  # excess over the stated noise that is not reported: half a per cent of its size
 
 HALF = 0.5
 """Share of the mean square beyond the stated noise that a pattern must have to explain it."""
@@ -60,15 +53,19 @@ def _unexplained(diagnosis: Diagnosis) -> str:
 
 
 def _fall(diagnosis: Diagnosis) -> str:
+    """The error to expect, which falls: of what predicts, so elsewhere first."""
     if diagnosis.choice is not None and not diagnosis.fit.test_rows.any():
         first, best = diagnosis.choice.rules[0], diagnosis.choice.best
         return (
             "the error of blocks left out, with the choice repeated without each, falls from "
             f"{microns(first.error)} to {microns(best.error)}"
         )
+    before, after = diagnosis.promise_before, diagnosis.promise
+    verb = "falls" if after.elsewhere < before.elsewhere else "rises"
     return (
-        f"the error of held-out touches falls from {microns(diagnosis.start.test_rms)} to "
-        f"{microns(diagnosis.fit.test_rms)}"
+        f"the error to expect at other places {verb} from {microns(before.elsewhere)} to "
+        f"{microns(after.elsewhere)} (at the same touches: {microns(before.same)} to "
+        f"{microns(after.same)})"
     )
 
 
@@ -150,7 +147,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         more = f" ({_plural(doubtful)} not certain or too small to name)" if doubtful else ""
         return (
             f"The model lacks {what}: {'; '.join(found)}{more}.{also} With {them} "
-            f"{_fall(diagnosis)}{_elsewhere(diagnosis)}; the noise is "
+            f"{_fall(diagnosis)}; the noise is "
             f"{noise_words(diagnosis.fit)}.{_also_left(diagnosis)}{_covered(diagnosis)}"
         )
     if diagnosis.verdict is Verdict.UNEXPLAINED:
@@ -165,21 +162,14 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
     fall = f" With {them} {_fall(diagnosis)}." if named else ""
     return (
         f"No {'further ' if named else ''}effect is missing that this run could show: the error "
-        f"of held-out touches is {microns(diagnosis.fit.test_rms)}, and the noise is "
+        f"to expect at other places is {microns(diagnosis.promise.elsewhere)} (at the same "
+        f"touches: {microns(diagnosis.promise.same)}), and the noise is "
         f"{noise_words(diagnosis.fit)}.{also}{fall}{_covered(diagnosis)}"
     )
 
 
 def _plural(count: int) -> str:
     return "one effect" if count == 1 else f"{count} effects"
-
-
-def _elsewhere(diagnosis: Diagnosis) -> str:
-    """The error to expect at other places, where it is another than at the same touches."""
-    promise = diagnosis.promise
-    if promise.elsewhere < (1.0 + WITHIN) * promise.same:
-        return ""
-    return f" (at other places expect {microns(promise.elsewhere)})"
 
 
 def _of_law(laws: Learning, added: Sequence[str]) -> str:

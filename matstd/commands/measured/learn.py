@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from matstd.console import say
 from matstd.options import add_measured, add_several, asked_printer, pitches, starting_model
 
 if TYPE_CHECKING:
@@ -79,7 +80,6 @@ def _next(args: argparse.Namespace, found: LearntLaws) -> tuple[str, str]:
 
 def _report(args: argparse.Namespace, found: LearntLaws) -> None:
     """The law, its rival, its errors elsewhere, and the files."""
-    from matstd.console import say
     from matstd.report.laws import (
         held_out_sentence,
         law_notes,
