@@ -24,6 +24,7 @@ from matstd.diagnosis.laws.space import Space
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.frames import Array
 from matstd.twin.laws import Carrier, Law
+from matstd.twin.library import owner_of
 from matstd.twin.model import Effect, Model, columns
 from matstd.twin.record import Run
 
@@ -151,10 +152,14 @@ class Learning:
         return tuple(out)
 
     def predicted(self, run: Run) -> Array:
-        """Deviation that the laws add at the touches of any run, (N,), mm."""
-        out = np.zeros(len(run))
+        """Deviation that the laws add at the touches of any run, (N,), mm.
+
+        A law that belongs to the run that it was learnt from adds nothing elsewhere.
+        """
+        out, is_own = np.zeros(len(run)), run.fingerprint == self.before.run.fingerprint
         for law, theta, share in self.members:
-            out += share * (columns([law], run.touches) @ theta)
+            if is_own or owner_of(law) == "machine":
+                out += share * (columns([law], run.touches) @ theta)
         return out
 
     @property
@@ -233,8 +238,7 @@ def _each_anew(
     """Every law searched anew with the others in place, until none of them changes.
 
     The first of several laws is found while the others are part of the noise, and may hold a part
-    of them. Another law takes its place where it explains the run better, all charges taken off,
-    and predicts touches left out no worse.
+    of them. Another law takes its place where it explains the run better, all charges taken off.
 
     Args:
         laws: Those that were learnt; the last one with all others in place. Changed in place.
@@ -253,9 +257,8 @@ def _each_anew(
             if best.score < log_odds(fit, base, charges[i]) + margin:
                 continue
             tried = white.fitted([(best if k == i else one).law for k, one in enumerate(laws)])
-            if predicts_better(fit, tried, policy):
-                laws[i] = replace(best, library=laws[i].library, memory=laws[i].memory)
-                charges[i], fit = log_odds(tried, base, best.score), tried
+            laws[i] = replace(best, library=laws[i].library, memory=laws[i].memory)
+            charges[i], fit = log_odds(tried, base, best.score), tried
         if before == [one.law.name for one in laws]:
             break
         last = -1
