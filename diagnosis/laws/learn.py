@@ -245,23 +245,25 @@ def _each_anew(
         charges: What each was charged; changed with them.
         fit: With all of them.
     """
-    last = len(laws) - 1
-    for _ in range(policy.most_turns if last else 0):
-        before = [one.law.name for one in laws]
-        for i in [k for k in range(len(laws)) if k != last]:
-            base = white.fitted([one.law for k, one in enumerate(laws) if k != i])
-            best = _learnt(search_law(Space.of(base), policy))
-            if best is None:
-                continue
-            margin = 0.0 if best.law.name == laws[i].law.name else policy.shorter
-            if best.score < log_odds(fit, base, charges[i]) + margin:
-                continue
-            tried = white.fitted([(best if k == i else one).law for k, one in enumerate(laws)])
-            laws[i] = replace(best, library=laws[i].library, memory=laws[i].memory)
-            charges[i], fit = log_odds(tried, base, best.score), tried
-        if before == [one.law.name for one in laws]:
+    waiting = set(range(len(laws) - 1))
+    for _ in range(policy.most_turns * len(laws)):
+        if not waiting:
             break
-        last = -1
+        i = min(waiting)
+        waiting.remove(i)
+        others = set(range(len(laws))) - {i}
+        base = white.fitted([laws[k].law for k in sorted(others)])
+        best = _learnt(search_law(Space.of(base), policy))
+        if best is None or best.score < policy.min_score:
+            continue
+        is_same = best.law.name == laws[i].law.name
+        margin = 0.0 if is_same else policy.shorter
+        if best.score < log_odds(fit, base, charges[i]) + margin:
+            continue
+        laws[i] = replace(best, library=laws[i].library, memory=laws[i].memory)
+        fit = white.fitted([one.law for one in laws])
+        charges[i] = log_odds(fit, base, best.score)
+        waiting |= set() if is_same else others
     return fit
 
 
