@@ -15,12 +15,19 @@ from matstd.diagnosis.regression import GrossErrors
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.model import Effect
 
+IMITATORS = ("thermal-lag", "drift", "artefact-slip", "position-table")
+"""Kinds that take the shape of many a law over time or place, and leave nothing of it."""
+
 
 @one_blas_thread()
 def learn_remainder(
-    start: Fit, end: Fit, known: Prior | None = None, policy: LawPolicy = POLICY
-) -> Learning:
-    """Laws for what remains at the end of a diagnosis.
+    start: Fit,
+    end: Fit,
+    known: Prior | None = None,
+    policy: LawPolicy = POLICY,
+    is_left: bool = True,
+) -> Learning | None:
+    """Laws for what remains at the end of a diagnosis; None where there is nothing to learn.
 
     Effects that a search named may imitate a law that the library lacks. Laws are therefore learnt
     twice: beside these effects, and in their place. Those in their place are returned where their
@@ -30,18 +37,22 @@ def learn_remainder(
         start: Of the model without the effects that were found.
         end: With them.
         known: What was known of the starting model from another run.
+        is_left: Whether anything remains beside these effects; else laws are learnt in the place of
+            `IMITATORS` only.
     """
     base = start.model
-    beside = learn_beside(Beginning.of_fit(end, base, known), policy, True)
     names = {e.name for e in base.effects}
     found = tuple(e for e in end.model.effects if e.name not in names)
-    if not found:
-        return beside
-    alone = learn_beside(Beginning.of_fit(start, base, known), policy, True)
-    odds = _odds(alone, beside, found) if alone.laws else -np.inf
-    if odds < policy.shorter:
-        return beside
-    return replace(alone, instead_of=found, instead_odds=odds)
+    if not is_left and not any(e.kind in IMITATORS for e in found):
+        return None
+    rest = policy if is_left else replace(policy, most_laws=0)
+    beside = learn_beside(Beginning.of_fit(end, base, known), rest, True)
+    if found:
+        alone = learn_beside(Beginning.of_fit(start, base, known), policy, True)
+        odds = _odds(alone, beside, found) if alone.laws else -np.inf
+        if odds >= policy.shorter:
+            return replace(alone, instead_of=found, instead_odds=odds)
+    return beside if is_left else None
 
 
 def _odds(alone: Learning, beside: Learning, found: Sequence[Effect]) -> float:

@@ -1,5 +1,6 @@
 """The errors of a machine as a model knows them, taken back: tables, programs, a live service."""
 
+import re
 import shutil
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -42,8 +43,9 @@ from matstd.report.style import save
 from matstd.twin.compute import Progress, silent
 from matstd.twin.display import Displayed
 from matstd.twin.elastic import short_beams
-from matstd.twin.errors import BadArgument, DesignError
+from matstd.twin.errors import BadArgument, BadFile, DesignError
 from matstd.twin.files import (
+    read_any_text,
     read_poses,
     read_text,
     refuse_to_overwrite,
@@ -67,30 +69,20 @@ SOMETIMES = (
 
 @dataclass(frozen=True, eq=False)
 class TableResults:
-    """Tables of controls that were written, read back and played on the exact twin.
+    """Tables of controls that were written, read back and played on the exact twin."""
 
-    Attributes:
-        done: What the tables of every control correct and leave.
-        refused: Why tables of other controls were not written: they would make the machine worse.
-    """
-
-    done: tuple[VerifiedTables, ...]
+    done: tuple[VerifiedTables, ...]  # what the tables of every control correct and leave
+    # why tables of other controls were not written: they would make the machine worse
     refused: tuple[Harmful, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class Shares:
-    """What every error adds along a program or at poses.
+    """What every error adds along a program or at poses."""
 
-    Attributes:
-        touches: The poses.
-        whole: Deviation of the tool point from the datum's, (N, 3), mm.
-        each: What each error has of it.
-    """
-
-    touches: Touches
-    whole: Array
-    each: tuple[Share, ...]
+    touches: Touches  # the poses
+    whole: Array  # deviation of the tool point from the datum's, (N, 3), mm
+    each: tuple[Share, ...]  # what each error has of it
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write contributions.csv and contributions.png, whole or not at all."""
@@ -98,6 +90,10 @@ class Shares:
         with results_folder(folder, force, names) as place:
             write_shares(place / names[0], self.touches, self.whole, self.each)
             save(draw_shares_along(self.touches.time, self.whole, self.each), place / names[1])
+
+
+PROBING = re.compile(r"\bSTANDARD (\S+) SETUP \S+")
+"""Stands in the head of every probing program: the standard that it was written for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +119,14 @@ class ProgramOptions:
     loads: str | Path | None = None
 
     def read(self, path: str | Path, frame: Frame) -> Program:
-        """A part program with these options."""
+        """A part program with these options; raises BadFile for a probing program."""
+        if probing := PROBING.search(read_any_text(path)):
+            raise BadFile(
+                path,
+                "head",
+                f"a probing program, written for {probing[1]}",
+                "a part program; `matstd simulate` runs probing programs, `matstd show` plays them",
+            )
         tools, radii = dict(self.tools or {}), dict(self.radii or {})
         program = read_part_program(path, frame, tools, radii, self.pass_m, self.tcp_m)
         return replace(program, loads=read_loads(self.loads)) if self.loads else program

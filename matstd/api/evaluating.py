@@ -19,11 +19,12 @@ from matstd.probe_paths.campaign import (
     check_changes,
     effective_radii,
     read_heights,
+    read_program_of,
     sag_remarks,
     with_program_lines,
 )
 from matstd.probe_paths.campaign import evaluate as evaluate_parts
-from matstd.probe_paths.control import LogPart, ReadProgram, read_log, read_program
+from matstd.probe_paths.control import LogPart, ReadProgram, read_log
 from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.scans import STRETCH, ScanNoise, ScanPoints, evaluate_scan
 from matstd.report.numbers import um
@@ -114,7 +115,7 @@ def evaluate(
     parts = [part for path in logs for part in read_log(path, chain.rotary_axes)]
     known: dict[str, ReadProgram] = {}
     if programs is not None or not isinstance(standard, Standard):
-        known = _checked_programs(programs, standard, parts, chain)
+        known = _checked_programs(programs, standard, piece, parts, chain)
     dialect = Dialect(result_height=z)
     changes = ball_changes(parts, piece, chain, u, dialect)
     first = [part for part in parts if part.is_first]
@@ -122,8 +123,10 @@ def evaluate(
     planned = [(part.radius, part.heading.probe.radius) for part in first]
     radii = effective_radii(parts, chain, u, dialect)
     of_probe = tuple(ball_lines(changes, probe_limit, heights, radii, planned))
+    # logs of the ball or of the commissioning program alone answer for the probe, and hold no run
     if not any(part.is_measuring for part in parts) and of_probe:
         return Evaluation(None, chain, of_probe)
+    # only now: a run that shall be evaluated needs one probe, the words above report any change
     check_changes(changes, probe_limit)
     run = with_program_lines(evaluate_parts(parts, piece, chain, u, dialect), known)
     twice: list[str] = []
@@ -151,6 +154,7 @@ def evaluate(
 def _checked_programs(
     folder: str | Path | None,
     standard: Standard | str | Path,
+    piece: Standard,
     parts: Sequence[LogPart],
     chain: Chain,
 ) -> dict[str, ReadProgram]:
@@ -160,7 +164,7 @@ def _checked_programs(
     files = [f for f in place.glob("*") if f.stem in names and f.suffix in (".H", ".ngc")]
     if folder is not None and not files:
         raise DesignError(f"--programs {place}: found none of {', '.join(sorted(names))}")
-    programs = {file.stem: read_program(file, chain) for file in files}
+    programs = {file.stem: read_program_of(piece, file, chain) for file in files}
     check_as_programmed(parts, programs, chain)
     return programs
 
@@ -183,7 +187,6 @@ def evaluate_scan_log(
 
     Args:
         log: See `matstd.importers.points.scan_log`.
-        standard: As calibrated.
         face: Name of the scanned face.
         radius: Of the ball, mm.
         length: From the gauge point to its centre, mm.

@@ -1,6 +1,5 @@
 """A machine that moves on a page, with its errors and a program that is played."""
 
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
@@ -8,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.api.compensating import ProgramOptions, within_travel
+from matstd.api.compensating import PROBING, ProgramOptions, within_travel
 from matstd.api.known_errors import drives_stated, machine_errors, with_added, with_unknowns
 from matstd.api.machines import chain_of
 from matstd.api.standards import standard_of
@@ -19,6 +18,7 @@ from matstd.compensation.part_programs import Frame
 from matstd.diagnosis.files import SavedModel, read_model
 from matstd.diagnosis.fit import Fit
 from matstd.effect_kinds import register_effects
+from matstd.probe_paths.campaign import read_program_of
 from matstd.probe_paths.control import ReadProgram, read_program
 from matstd.probe_paths.language import read_dialect
 from matstd.report.machine import (
@@ -41,12 +41,7 @@ from matstd.twin.compute import Progress, silent
 from matstd.twin.display import Displayed, html, text
 from matstd.twin.effects import ComponentError, LocationError
 from matstd.twin.errors import BadArgument, BadFile
-from matstd.twin.files import (
-    read_any_text,
-    read_errors,
-    refuse_to_overwrite,
-    write_whole,
-)
+from matstd.twin.files import read_any_text, read_errors, refuse_to_overwrite, write_whole
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Ranges
 from matstd.twin.model import Effect
@@ -55,11 +50,7 @@ from matstd.twin.units import HOUR
 TOOL_LENGTH = 150.0
 """Of the tool that is drawn unless another is stated, mm."""
 
-DURATION = 8.0 * HOUR
-"""After the start over which drifts are shown at least, s: a shift."""
-
-_PROBING = re.compile(r"\bSTANDARD \S+ SETUP \S+")
-"""Stands in the head of every probing program."""
+DURATION = 8.0 * HOUR  # after the start over which drifts are shown at least, s: a shift
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -166,6 +157,7 @@ def show(
     duration = max(DURATION, float(played.time[-1]) if played else 0.0)
     progress("errors", 1, 2)
     with drives_stated(source or chain.name):
+        # after the program: errors that drift are needed over all of its time
         functions = error_functions(known, tool_length, duration)
     return MachinePage(
         ShownMachine(
@@ -247,7 +239,7 @@ def _played(
 ) -> tuple[Played, list[Drawn]]:
     """A part program, or probing programs with what they probe; and bodies that come with it."""
     texts = [read_any_text(file) for file in files]
-    is_probing = [bool(_PROBING.search(text)) for text in texts]
+    is_probing = [bool(PROBING.search(text)) for text in texts]
     if not any(is_probing):
         if len(files) > 1:
             raise BadArgument("program", str(files[1]), "one part program, or probing programs")
@@ -260,11 +252,12 @@ def _played(
         other = files[is_probing.index(False)]
         raise BadArgument("program", str(other), "probing programs alone, or one part program")
     dialect = read_dialect(control)
-    read = [read_program(file, errors.chain, dialect=dialect) for file in files]
-    played = played_probing(errors.chain, read, texts)
     if standard is None:
-        return played, [probe_body(read[0].heading.probe)]
-    stands = _stands(read, standard_of(standard))
+        read = [read_program(file, errors.chain, dialect=dialect) for file in files]
+        return played_probing(errors.chain, read, texts), [probe_body(read[0].heading.probe)]
+    piece = standard_of(standard)
+    read = [read_program_of(piece, file, errors.chain, None, dialect) for file in files]
+    played, stands = played_probing(errors.chain, read, texts), _stands(read, piece)
     return with_clearance(errors.chain, played, stands), set_up_bodies(errors.chain, stands)
 
 
@@ -273,8 +266,6 @@ def _stands(programs: Sequence[ReadProgram], standard: Standard) -> SetUp:
     first = programs[0].heading
     for program in programs:
         head = program.heading
-        if head.standard != standard.name:
-            raise BadFile(program.path, "head", f"standard {head.standard}", standard.name)
         if head.setup.name != first.setup.name or head.probe != first.probe:
             found = f"set-up {head.setup.name}, probe of {head.probe.length:g} mm"
             expected = f"{first.setup.name} and {first.probe.length:g} mm, as in the first program"

@@ -51,8 +51,7 @@ from matstd.sensitivity.study import Study
 from matstd.stages.budgets import virtual_budgets
 from matstd.stages.cmm import cmm_program
 from matstd.stages.refusals import REACH, ROOM
-from matstd.stages.streams import Streams, streams
-from matstd.stages.study_run import study_and_maps
+from matstd.stages.study_run import Streams, streams, study_and_maps
 from matstd.stages.warm_body import WarmBody
 from matstd.twin.beside import beside
 from matstd.twin.compute import Progress, silent
@@ -275,6 +274,7 @@ def _prove(
     rng: np.random.Generator,
 ) -> Proven:
     """Probe one random machine by the text of the programs, identify it, compare with its truth."""
+    # a stream for each use: more draws of one leave the numbers of the others as they were
     rng_errors, rng_noise, rng_volume, rng_workspace, rng_body = rng.spawn(5)
     population = brief.population
     errors = drawn_errors(population, rng_errors)

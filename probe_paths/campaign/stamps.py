@@ -17,7 +17,11 @@ from matstd.twin.machine import Chain
 
 
 def read_program_of(
-    standard: Standard, path: str | Path, chain: Chain, probe: Probe | None, dialect: Dialect
+    standard: Standard,
+    path: str | Path,
+    chain: Chain,
+    probe: Probe | None = None,
+    dialect: Dialect | None = None,
 ) -> ReadProgram:
     """A program that was written for a standard.
 
@@ -72,10 +76,8 @@ def _check_name(path: str | Path, heading: Heading, standard: Standard) -> None:
     serial = stated_serial(standard.serial)
     stated = heading.serial
     if heading.standard != standard.name or (stated and stated != serial):
-        theirs = f"{heading.standard} {stated}".strip()
-        hashed = f" ({heading.calibration})" if heading.calibration else ""
         ours = f"{standard.name} {serial}".strip() if stated else standard.name
-        raise DesignError(f"{path} was written for {theirs}{hashed}; you gave {ours}")
+        raise DesignError(f"{path} was written for {heading.stamp}; you gave {ours}")
 
 
 def _check_numbers(path: str | Path, heading: Heading, standard: Standard) -> None:

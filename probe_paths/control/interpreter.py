@@ -16,6 +16,7 @@ from matstd.probe_paths.control.state import State
 from matstd.probe_paths.control.steps import ProbeStep, ReadProgram
 from matstd.probe_paths.control.structure import (
     Promise,
+    check_axes,
     check_cycles,
     heading,
     labels,
@@ -35,8 +36,7 @@ from matstd.probe_paths.plan import Heading, Probe, ProgramFrame
 from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
 
-_BEYOND = 1.05
-"""Multiple of its limit by which a value is off when the program has to stop."""
+_BEYOND = 1.05  # multiple of its limit by which a value is off when the program has to stop
 
 
 def read_program(
@@ -111,6 +111,7 @@ def interpret(
     check_cycles(blocks, path)
     head, features = heading(blocks, path)
     frame = ProgramFrame(chain, _probe(head, probe, path))
+    check_axes(blocks, frame.letters, head, path)
     stated = promise(blocks, head, path)
     runner = Runner(blocks, places, frame, path, name, masks, head)
     state = _initial_state(path, frame, stated, head.is_tilted)

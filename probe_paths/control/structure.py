@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from matstd.nc.grammar import label_places
+from matstd.probe_paths.control.motion import AXIS
 from matstd.probe_paths.language import Block, Kind, Label, language_of
 from matstd.probe_paths.plan import Heading, parse_heading
 from matstd.twin.errors import BadFile
@@ -31,20 +32,13 @@ _DIGITS = 1e-4
 
 
 class Promise(NamedTuple):
-    """What the head of a program promises of its blocks.
+    """What the head of a program promises of its blocks."""
 
-    Attributes:
-        touches: Numbers of the touches; none of a dry run.
-        tool: Number of the probe in the tool table.
-        preset: Row of the preset table.
-        is_search: Its touches are long ones from above that look for the standard.
-        is_first: It is the one that a control is tried with: few tests, a touch in the air.
-    """
-
-    touches: range
-    tool: int
-    preset: int
-    is_search: bool = False
+    touches: range  # numbers of the touches; none of a dry run
+    tool: int  # number of the probe in the tool table
+    preset: int  # row of the preset table
+    is_search: bool = False  # its touches are long ones from above that look for the standard
+    # it is the one that a control is tried with: few tests, a touch in the air
     is_first: bool = False
 
 
@@ -122,6 +116,26 @@ def check_cycles(blocks: Sequence[Block], path: Path) -> None:
                 f"TCH PROBE {_NAMES[_CYCLE[expected]]} in its place",
             )
         expected = 0 if place is None else (place + 1) % len(_CYCLE)
+
+
+def check_axes(blocks: Sequence[Block], letters: Sequence[str], head: Heading, path: Path) -> None:
+    """Refuse a program whose axes are not those of the machine; raises BadFile."""
+    named = {
+        letter: block.line
+        for block in reversed(blocks)
+        if block.kind is Kind.LINE
+        for letter, _ in AXIS.findall(block.word("axes"))
+    }
+    of_machine = ", ".join(letters)
+    written = f"the program was written for {head.stamp}: is this its machine?"
+    for letter, line in sorted(named.items(), key=lambda one: one[1]):
+        if letter not in letters:
+            expected = f"an axis of the machine: {of_machine}; {written}"
+            raise BadFile(path, f"line {line}", f"axis {letter}", expected)
+    missing = [] if head.is_tilted else [a for a in letters if a not in named]
+    if missing:
+        found = f"no position of {' and '.join(missing)}"
+        raise BadFile(path, "program", found, f"every axis of the machine, {of_machine}; {written}")
 
 
 def heading(blocks: Sequence[Block], path: Path) -> tuple[Heading, Mapping[int, str]]:

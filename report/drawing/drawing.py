@@ -170,11 +170,11 @@ def _fill(
             columns.append(_Column(left, COLUMN, end, column.low))
     for block in blocks:
         # in order: what did not fit into a column goes on in the next
-        while columns and not (at := columns[0].take(block)):
+        while columns and not (place := columns[0].take(block)):
             columns.pop(0)
-        if not columns:
+        if not columns or not place:
             return False
-        placed.append((block, at))
+        placed.append((block, place))
     for block, at in placed:
         block.draw(sheet, *at)
     return True

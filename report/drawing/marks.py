@@ -69,9 +69,9 @@ def draw_datums(sheet: Sheet, views: Views, standard: Standard, details: Details
     sheet.datum(np.add(south, [-8.0, 0.0]), down, "B")
     sheet.text(south[0] - 4.5, south[1] - 10.3, "B1, 2")
     sheet.attached(np.add(south, [-12.0, -_FRAME]), *held["DATUM_B"], np.add(south, [8.0, 0.0]))
-    side = details.sides["DATUM_C"]
-    corner = views.top.at([[-side.offset, b]])[0]
-    at = views.top.at([[-side.offset, 0.85 * side.half_length]])[0]
+    west_side = details.sides["DATUM_C"]
+    corner = views.top.at([[-west_side.offset, b]])[0]
+    at = views.top.at([[-west_side.offset, 0.85 * west_side.half_length]])[0]
     sheet.datum(np.add(at, [0.0, -7.0]), west, "C")
     sheet.text(at[0] - 11.0, at[1] - 3.5, "C1")
     sheet.attached(np.add(corner, [-21.0, 6.0]), *held["DATUM_C"], at)

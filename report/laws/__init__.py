@@ -12,9 +12,10 @@ from matstd.report.laws.law_words import (
     no_law_sentence,
     rival_sentence,
     second_run_sentence,
+    short_words,
     size_words,
 )
-from matstd.report.laws.visit_words import visit_sentences
+from matstd.report.laws.visit_words import visit_lines, visit_sentences
 
 __all__ = [
     "LawCurve",
@@ -29,7 +30,9 @@ __all__ = [
     "no_law_sentence",
     "rival_sentence",
     "second_run_sentence",
+    "short_words",
     "size_words",
+    "visit_lines",
     "visit_sentences",
     "write_law_page",
 ]

@@ -44,10 +44,13 @@ _ALIKE = (
     "course of time for a temperature."
 )
 _NEXT = (
-    "Try it on another run: `matstd compare RUN.csv --model model.toml --effects effect.py`; only "
-    "then compensate with it."
+    "Give the law its name in effect.py, and try it on another run: `matstd compare RUN.csv "
+    "--model model.toml --effects effect.py`; only then compensate with it."
 )
-_VISIT = "Probe `next_visit.csv` and learn from both runs, to distinguish the law from its rivals."
+_VISIT = (
+    "To distinguish the law from its rivals, probe `next_visit.csv` and learn from both runs: "
+    "`matstd learn {runs} visit.csv`."
+)
 _WITHOUT = "Record what could cause it (a temperature, a load, a speed) and probe again."
 _FOOT = (
     "Uncertainties are standard uncertainties (k = 1) of the fit with all parameters of the law; "
@@ -74,7 +77,7 @@ def write_law_page(
         heading=f"What the model leaves of {title}",
         lead=_lead(learning),
         means=_meaning(learning),
-        next=_next(learning, visit),
+        next=_next(learning, visit, title),
         key=_key(learning, second),
         sections=law_sections(learning, visit, second),
         foot=[_FOOT],
@@ -108,10 +111,10 @@ def _meaning(learning: Learning) -> str:
     )
 
 
-def _next(learning: Learning, visit: VisitPlan) -> str:
+def _next(learning: Learning, visit: VisitPlan, title: str) -> str:
     if not learning.laws:
         return _WITHOUT
-    return _NEXT if visit.touches is None else f"{_VISIT} {_NEXT}"
+    return _NEXT if visit.touches is None else f"{_VISIT.format(runs=title)} {_NEXT}"
 
 
 def _lead(learning: Learning) -> str:

@@ -2,6 +2,7 @@
 
 import math
 import re
+from collections.abc import Sequence
 
 from matstd.diagnosis.laws import (
     Estimate,
@@ -13,7 +14,7 @@ from matstd.diagnosis.laws import (
     places,
 )
 from matstd.report.numbers import digits, microns, with_uncertainty
-from matstd.twin.laws import Carrier, Driver, Law
+from matstd.twin.laws import Carrier, Driver, Factor, Law
 from matstd.twin.units import DEG, MINUTE, UM, URAD
 from matstd.twin.words import listed
 
@@ -66,6 +67,9 @@ _SHAPES = {
     "play": "a play that follows",
     "curve": "a smooth curve without a formula",
 }
+_EDGES = ("x0", "x1", "x2")
+"""Parameters of shapes that are values of the variable."""
+
 _LOOKS = {
     ("bump", "linear"): "It looks like a hose or a cable chain, or a worn place of a guide.",
     ("plateau", "linear"): "It looks like a worn zone of a scale or of a guide.",
@@ -146,27 +150,48 @@ def place_words(one: Estimate) -> str:
 
 
 def law_sentence(learning: Learning, one: LearntLaw) -> str:
-    """What was learnt, in a sentence or two."""
-    law = one.law
-    size, shapes = _size(learning, law), " times ".join(_shape_words(learning, law))
-    alike = [c.name for c in one.alike]
-    borne = (
-        f", or {listed(alike, 'or')}, which this run cannot distinguish from it" if alike else ""
-    )
-    return f"{carrier_words(law.carrier)}{borne}: {size}, {shapes}".replace("  ", " ") + "."
-
-
-def _shape_words(learning: Learning, law: Law) -> list[str]:
-    """`a step over Y (x0 -19.8 ± 0.6 mm)` of every factor."""
-    left, out = places(learning, law), []
+    """What was learnt: where it moves the tool, what carries it, its shape with all numbers."""
+    law, left, shapes = one.law, places(learning, one.law), []
     for factor in law.factors:
         count = len(factor.shape.places)
-        own, left = left[:count], left[count:]
-        plain = [p._replace(name=p.name.removesuffix("-2")) for p in own if p.u is not None]
-        where = [place_words(p) for p in plain]
-        details = f" ({', '.join(where)})" if where else ""
-        out.append(f"{_SHAPES[factor.shape.word]} over {variable_words(factor.driver)}{details}")
-    return out
+        shapes.append((factor, [p for p in left[:count] if p.u is not None]))
+        left = left[count:]
+    size = _size(learning, law)
+    if len(shapes) > 1 or law.is_curve_alone:
+        what = f"{' times '.join(_shape_words(*s) for s in shapes)}, {size}"
+    else:
+        what = _shape_words(*shapes[0], size)
+    return f"{_carried_words(law.carrier, one.alike)}: {what}".replace("  ", " ") + "."
+
+
+def short_words(law: Law) -> str:
+    """A law without its numbers: `EBY as a parabola over the temperature spindle`."""
+    shapes = " times ".join(_shape_words(factor, ()) for factor in law.factors)
+    return f"{carrier_words(law.carrier)} as {shapes}"
+
+
+def _carried_words(carrier: Carrier, alike: Sequence[Carrier]) -> str:
+    """`along Z, carried by Y (EZY)`."""
+    same = listed([c.name for c in alike], "or")
+    notes = [f"this run cannot distinguish it from {same}"] if alike else []
+    if carrier.symbol is None:
+        words = carrier_words(carrier)
+    else:
+        words = f"{carrier.symbol.motion}, carried by {carrier.symbol.link}"
+        notes.insert(0, carrier.name)
+    return f"{words} ({'; '.join(notes)})" if notes else words
+
+
+def _shape_words(factor: Factor, numbers: Sequence[Estimate], size: str = "") -> str:
+    """`a bump of -10.3 ± 0.3 µm over Y at 7.7 ± 0.6 mm (w 48.0 ± 1.4 mm)`."""
+    plain = [p._replace(name=p.name.removesuffix("-2")) for p in numbers]
+    edges = [place_words(p).split(maxsplit=1)[1] for p in plain if p.name in _EDGES]
+    others = [place_words(p) for p in plain if p.name not in _EDGES]
+    words = _SHAPES[factor.shape.word] + (f" of {size}" if size else "")
+    words += f" over {variable_words(factor.driver)}"
+    if edges:
+        words += f" from {edges[0]} to {edges[1]}" if len(edges) > 1 else f" at {edges[0]}"
+    return f"{words} ({', '.join(others)})" if others else words
 
 
 def size_words(learning: Learning, law: Law) -> str:
@@ -205,7 +230,7 @@ def rival_sentence(one: LearntLaw) -> str:
     rival = one.second_choice
     if rival is None:
         return ""
-    return f"Second choice: {formula_words(rival.law)} (odds {odds_words(rival.log_odds)})."
+    return f"Second choice: {short_words(rival.law)} (odds {odds_words(rival.log_odds)})."
 
 
 def library_sentence(one: LearntLaw) -> str:
@@ -236,12 +261,10 @@ def instead_sentence(learning: Learning) -> str:
 
 
 def law_notes(learning: Learning) -> list[str]:
-    """What is to be known of the laws: the library, what they look like, the error elsewhere."""
+    """What is to be known of the laws beside their numbers: the library, what they look like."""
     out = []
     for one in learning.laws:
         out += [library_sentence(one), rivals_sentence(one), looks_like(one.law)]
-    if learning.laws:
-        out.append(held_out_sentence(learning))
     return [line for line in out if line]
 
 
@@ -250,12 +273,7 @@ def learnt_words(learning: Learning) -> str:
     if not learning.laws:
         return "no law of any carrier and variable explains it"
     word = "learnt law" if len(learning.laws) == 1 else "learnt laws"
-    each = []
-    for one in learning.laws:
-        said = law_sentence(learning, one).removesuffix(".")
-        second = rival_sentence(one).removesuffix(".")
-        each.append(f"{said}; {second[0].lower()}{second[1:]}" if second else said)
-    return f"{word}: {'; '.join(each)}"
+    return f"{word}: {'; '.join(short_words(one.law) for one in learning.laws)}"
 
 
 def odds_words(log_odds: float) -> str:
@@ -282,7 +300,7 @@ def no_law_sentence(learning: Learning) -> str:
     best = learning.refused
     if best is None or learning.refusal in (None, Refusal.CHANCE):
         return f"No law: {left} follows no carrier and variable beyond chance."
-    name = formula_words(best.law)
+    name = short_words(best.law)
     if learning.refusal is Refusal.LIBRARY:
         return f"No law beside the library. {library_sentence(best)}"
     if learning.refusal is Refusal.MEMORY:

@@ -76,7 +76,6 @@ def comparison_table(design: Design, on_machine: dict[str, float]) -> Table:
     """The standard beside other artefacts.
 
     Args:
-        design: The design.
         on_machine: Minutes of every artefact; nan without a body.
     """
     placement, user, volume = design.placement, "in your workspace, µm", "in the probed volume, µm"

@@ -1,7 +1,8 @@
 """Drawing itself, in the renderer's own process; reached through `standard_scene` alone."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,6 +20,13 @@ _SPHERE = "#f0e442"  # a colour that no patch has
 _PLANE = "#8fae8b"
 _FAR, _STRIDE = 500.0, 2.0  # of a line of sight, mm
 _PITCH = 0.8  # mm, of the drawn grid of a face
+_LETTER, _LINE = 11.0, 24.0
+"""Width of a letter and height of a name with their margins, pixels."""
+
+_NAME_OVER_BALL, _ASIDE = 10.0, 0.7
+"""How much worse it is to cover another name than another ball; share of its area that a name may
+cover of other balls before it leaves its best place."""
+
 _VIEWS = ((38.0, 33.0), (218.0, 33.0))  # azimuth and elevation of the eye, deg
 
 
@@ -36,8 +44,8 @@ def draw_body(folder: str) -> None:
         plotter.subplot(0, column)
         _add_body(plotter, standard, corners, triangles, owner)
         _add_faces(plotter, faces)
-        _add_labels(plotter, standard, _eye(view))
-        _aim(plotter, standard, _eye(view))
+        pixel = _aim(plotter, standard, _eye(view))
+        _add_labels(plotter, standard, _eye(view), pixel)
     screenshot(plotter, place / PICTURE)
 
 
@@ -95,31 +103,36 @@ def _face(patch: FreeformPatch) -> Any:
     return mesh
 
 
-def _add_labels(plotter: Any, standard: Standard, eye: Array) -> None:
-    """Names above the faces that are visible, on the balls that are, and on the plane.
+class _Box(NamedTuple):
+    """A rectangle in the picture, mm along its right and upward directions."""
 
-    A name is drawn over everything: beside or above its ball it would stand on another one, and
-    that of a hidden ball on what hides it.
+    x: float
+    y: float
+    width: float
+    height: float
+
+    def common(self, other: "_Box") -> float:
+        """Area that two rectangles share, mm²."""
+        along = 0.5 * (self.width + other.width) - abs(self.x - other.x)
+        upward = 0.5 * (self.height + other.height) - abs(self.y - other.y)
+        return max(min(along, self.width), 0.0) * max(min(upward, self.height), 0.0)
+
+
+def _add_labels(plotter: Any, standard: Standard, eye: Array, pixel: float) -> None:
+    """Names of the faces and balls that are visible, and of the plane.
+
+    All are drawn over everything. The renderer leaves out a name that covers another.
+
+    Args:
+        pixel: mm.
     """
     right, up = _picture_axes(eye)
-    places, names = [], []
-    for patch in standard.patches:
-        a, b = patch.half_size
-        border = np.array([[a, 0.0], [-a, 0.0], [0.0, b], [0.0, -b]])
-        if patch.normal(np.zeros((1, 2)))[0] @ eye > 0.15:
-            sides = patch.point(border)
-            places.append(sides[np.argmax(sides @ up)] + 5.0 * up)
-            names.append(patch.name)
-    for sphere in standard.spheres:
-        if _is_seen(standard, sphere, eye):
-            places.append(sphere.centre)
-            names.append(sphere.name)
-    places.append(_free_corner(standard, eye))
-    names.append(standard.plane.name)
+    placed = _placed(standard, eye, pixel)
+    half = [0.5 * pixel * (_LETTER * len(name) * right + _LINE * up) for name in placed]
     plotter.add_point_labels(
-        # Before everything else, or a label would be half sunk in the part.
-        np.array(places) + 400.0 * eye - 6.0 * right,
-        names,
+        # Lower left corners; before everything else, or a label would be half sunk in the part.
+        np.array(list(placed.values())) - np.array(half) + 400.0 * eye,
+        list(placed),
         font_size=18,
         bold=True,
         text_color="black",
@@ -129,6 +142,56 @@ def _add_labels(plotter: Any, standard: Standard, eye: Array) -> None:
         show_points=False,
         always_visible=True,
     )
+
+
+def _placed(standard: Standard, eye: Array, pixel: float) -> dict[str, Array]:
+    """Middle of every name, mm, so that none covers another one if that can be."""
+    right, up = _picture_axes(eye)
+    spheres = [(s.centre, 2.0 * s.radius) for s in standard.spheres]
+    balls = [_Box(float(at @ right), float(at @ up), size, size) for at, size in spheres]
+    placed, taken = dict[str, Array](), list[_Box]()
+    for name, places in _wanted(standard, eye, pixel):
+        size = _LETTER * pixel * len(name), _LINE * pixel
+        boxes = [_Box(float(place @ right), float(place @ up), *size) for place in places]
+        best = _freest(boxes, taken, balls)
+        taken.append(boxes[best])
+        placed[name] = places[best]
+    return placed
+
+
+def _wanted(standard: Standard, eye: Array, pixel: float) -> list[tuple[str, Array]]:
+    """Names, each with the places of its middle that suit it, the best first, (N, 3), mm."""
+    right, up = _picture_axes(eye)
+    height, wanted = _LINE * pixel, list[tuple[str, Array]]()
+    for sphere in standard.spheres:
+        if _is_seen(standard, sphere, eye):
+            aside = sphere.radius + 0.5 * pixel * _LETTER * len(sphere.name)
+            beside = [0.0 * up, (sphere.radius + 0.6 * height) * up, aside * right, -aside * right]
+            wanted.append((sphere.name, sphere.centre + np.array(beside)))
+    for patch in standard.patches:
+        a, b = patch.half_size
+        middle = np.zeros((1, 2))
+        if patch.normal(middle)[0] @ eye > 0.05:
+            sides = patch.point(np.array([[a, 0.0], [-a, 0.0], [0.0, b], [0.0, -b]]))
+            sides = sides[np.argsort(-(sides @ up))] + 0.7 * height * up
+            wanted.append((patch.name, np.vstack([sides[:1], patch.point(middle), sides[1:]])))
+    return [*wanted, (standard.plane.name, _free_places(standard, eye))]
+
+
+def _freest(boxes: Sequence[_Box], taken: Sequence[_Box], balls: Sequence[_Box]) -> int:
+    """The first place of a name at which it covers least of other names, then of other balls."""
+    cost = [
+        _NAME_OVER_BALL * sum(box.common(one) for one in taken)
+        + sum(box.common(one) for one in balls if not _is_on(one, box))
+        + (_ASIDE * box.width * box.height if place else 0.0)
+        for place, box in enumerate(boxes)
+    ]
+    return int(np.argmin(np.round(cost, 3)))
+
+
+def _is_on(ball: _Box, name: _Box) -> bool:
+    """Whether a name is that of a ball: it stands on its middle."""
+    return abs(ball.x - name.x) < 1e-6 and abs(ball.y - name.y) < 1e-6
 
 
 def _is_seen(standard: Standard, sphere: DatumSphere, eye: Array) -> bool:
@@ -143,22 +206,24 @@ def _room(bodies: list[Any], point: Array, eye: Array) -> float:
     return float(np.min([body.distance(line) for body in bodies]))
 
 
-def _free_corner(standard: Standard, eye: Array) -> Array:
-    """A place on the datum plane near the eye with nothing over it."""
+def _free_places(standard: Standard, eye: Array) -> Array:
+    """Places on the datum plane, the best first: nothing over them, near the eye, (N, 3)."""
+    right, _ = _picture_axes(eye)
     half = 0.86 * np.array(standard.base.half_size)
     sides = np.array([[sx, sy] for sx in (-1, -0.5, 0, 0.5, 1) for sy in (-1, -0.5, 0, 0.5, 1)])
     flat = np.column_stack([half * sides, np.full(len(sides), standard.base.thickness)])
     bodies = [body for name, body in standard.bodies.items() if name != "BASE"]
-    room = np.array([_room(bodies, point + 8.0 * eye, eye) for point in flat])
+    across = [by * right + 8.0 * eye for by in (-18.0, 0.0, 18.0)]
+    room = np.array([min(_room(bodies, point + by, eye) for by in across) for point in flat])
     holes = np.array([[hole.x, hole.y] for hole in standard.holes]).reshape(-1, 2)
     for hole in holes:
         room = np.minimum(room, np.linalg.norm(flat[:, :2] - hole, axis=1) - 12.0)
-    best: Array = flat[np.argmax(np.minimum(room, 15.0) + 0.1 * flat @ eye)]
-    return best
+    ranked: Array = flat[np.argsort(-(np.minimum(room, 15.0) + 0.1 * flat @ eye))]
+    return ranked
 
 
-def _aim(plotter: Any, standard: Standard, eye: Array) -> None:
-    """Parallel view that just holds the whole standard with its labels."""
+def _aim(plotter: Any, standard: Standard, eye: Array) -> float:
+    """Parallel view that just holds the whole standard with its labels; the size of a pixel, mm."""
     right, up = _picture_axes(eye)
     (a, b), top = standard.base.half_size, standard.base.thickness
     outline = np.array([[sx * a, sy * b, z] for sx in (-1, 1) for sy in (-1, 1) for z in (0, top)])
@@ -175,9 +240,10 @@ def _aim(plotter: Any, standard: Standard, eye: Array) -> None:
     plotter.camera.focal_point = tuple(middle)
     plotter.camera.up = (0.0, 0.0, 1.0)
     plotter.camera.parallel_projection = True
-    width = 1000.0 / 860.0  # of a view against its height
+    width = 0.5 * SIZE[0] / SIZE[1]  # of a view against its height
     plotter.camera.parallel_scale = 0.52 * max(np.ptp(y), np.ptp(x) / width)
     plotter.add_axes(line_width=4, color="black", viewport=(0.0, 0.0, 0.16, 0.2))
+    return 2.0 * float(plotter.camera.parallel_scale) / SIZE[1]
 
 
 def _picture_axes(eye: Array) -> tuple[Array, Array]:

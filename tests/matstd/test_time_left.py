@@ -8,18 +8,22 @@ import numpy as np
 import pytest
 
 from matstd.commands.standard.design import LINEAR_PLAN, PLAN
-from matstd.progress import _whole
-from matstd.time_left import TimeLeft
+from matstd.progress import TimeLeft, _whole
 
 SHARES = {"first": 0.2, "second": 0.5, "third": 0.3}
 
 
-def watched(ends: dict[str, float], shares: dict[str, float] = SHARES, steps: int = 1):
-    """Time left, every second, of stages that end at some seconds and report some steps."""
+def watched(ends: dict[str, float], shares=SHARES, steps: int = 1, late: float | None = None):
+    """Time left, every second, of stages that end at some seconds and report some steps.
+
+    Args:
+        late: Share of a stage after which it reports one step of ten; None for none.
+    """
     left = TimeLeft(shares, usual=50.0)
     events, since = [], 0.0
     for name, end in ends.items():
         events += [(since + (end - since) * k / steps, name, k, steps) for k in range(steps)]
+        events += [(since + (end - since) * late, name, 1, 10)] if late else []
         since = end
     shown = []
     for now in np.arange(1.0, since, 1.0):
@@ -39,10 +43,10 @@ def test_at_a_steady_pace_it_is_what_is_left():
 
 @pytest.mark.parametrize("seed", range(20))
 def test_it_falls_whatever_the_stages_take(seed):
-    """Stages take up to five times their share, and are silent within."""
+    """Stages take up to five times their share; every other one reports a step that comes late."""
     rng = np.random.default_rng(seed)
     ends = np.cumsum(rng.uniform(0.2, 5.0, 3) * 100.0 * np.array(list(SHARES.values())))
-    shown, _ = watched(dict(zip(SHARES, ends, strict=True)))
+    shown, _ = watched(dict(zip(SHARES, ends, strict=True)), late=0.8 if seed % 2 else None)
     known = [left for _, left, _ in shown if left is not None]
     assert np.all(np.diff(known) < 1e-9)
     assert min(known) >= 0.0

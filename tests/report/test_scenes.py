@@ -1,10 +1,14 @@
 """Pictures in space: what is rendered, what is written on it, and what without OpenGL."""
 
+from dataclasses import replace
+from itertools import combinations
+
 import numpy as np
 import pytest
 import trimesh
 
 from matstd.cad_out.kernel.process import Ending
+from matstd.report.scenes import standard_render
 from matstd.report.scenes.standard_scene import draw_standard
 from matstd.report.scenes.volume_scene import PIXELS, Scene, composed, draw_volumes, eye
 from matstd.twin.errors import DesignError, MissingLibrary, ShapeMismatch
@@ -162,3 +166,24 @@ def test_without_opengl_the_package_is_named_and_nothing_written(
 def test_a_missing_mesh_is_named(small, tmp_path):
     with pytest.raises(DesignError, match=r"none\.stl: cannot be read"):
         draw_standard(small, tmp_path / "none.stl", tmp_path / "standard.png")
+
+
+@pytest.mark.parametrize("view", range(2))
+def test_every_visible_name_of_a_standard_has_room_of_its_own(upright, view):
+    """Balls one behind the other, as on the post of another: no name covers another one's.
+
+    The renderer leaves out names that meet.
+    """
+    eye_of, pixel = standard_render._eye(standard_render._VIEWS[view]), 0.6
+    right, up = standard_render._picture_axes(eye_of)
+    first = upright.spheres[0]
+    behind = first.centre - 40.0 * eye_of + (first.radius + 1.0) * up
+    balls = (*upright.spheres, replace(first, name="SPH99", centre=behind))
+    names = standard_render._placed(replace(upright, spheres=balls), eye_of, pixel)
+    wide = standard_render._LETTER * pixel
+    boxes = {name: (at @ right, at @ up, wide * len(name)) for name, at in names.items()}
+    assert {"SPH99", first.name, upright.plane.name} <= set(boxes)
+    tall = standard_render._LINE * pixel
+    for (a, (xa, ya, wa)), (b, (xb, yb, wb)) in combinations(boxes.items(), 2):
+        apart = abs(xa - xb) >= 0.5 * (wa + wb) - 1e-9 or abs(ya - yb) >= tall - 1e-9
+        assert apart, (a, b)
