@@ -48,8 +48,7 @@ from matstd.artefact.layout import (
     wavy_face,
     with_spheres,
 )
-from matstd.artefact.place.body_choice import balls_beside
-from matstd.artefact.place.identifying import left_unknown
+from matstd.artefact.place import balls_beside, left_unknown
 from matstd.artefact.reach import joined, spread_poses
 from matstd.artefact.worth import (
     BallPlaces,
