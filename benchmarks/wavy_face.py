@@ -191,7 +191,7 @@ def main() -> None:
     parser.add_argument("--poses", type=int, default=1)
     parser.add_argument("--touches", type=int, default=300)
     parser.add_argument("--size", type=float, default=236.0, help="side of plane and wavy face, mm")
-    parser.add_argument("--slope", type=float, default=56.0, help="of the wavy face, degrees")
+    parser.add_argument("--slope", type=float, default=50.0, help="of the wavy face, degrees")
     parser.add_argument("--radius", type=float, default=8.0, help="of its cutter, mm")
     parser.add_argument("--lines", type=float, default=4.0, help="between lines of the scan, mm")
     parser.add_argument("--wavelength", type=float, default=60.0, help="of the wavy face, mm")
