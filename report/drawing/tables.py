@@ -34,7 +34,7 @@ TITLE = (180.0, 48.0)
 _FLAT = 10_000.0  # mm: a ball of 3 mm cannot distinguish such a face from a plane
 _HEADING = 9.0  # mm above a table, for its title
 _LINE = 4.2  # mm from a line of a note to the next
-_LETTERS = 82  # of a line of a note
+_LETTERS = 80  # of a line of a note
 _ERRORS = 2  # dominant errors that a row names
 
 
@@ -99,14 +99,15 @@ def _face_row(patch: FreeformPatch) -> list[str]:
         *(f"{c:.1f}" for c in (x, y, z)),
         f"{2 * patch.half_size[0]:g} x {2 * patch.half_size[1]:g}",
         f"{max_slope(patch) / DEG:.0f}°",
-        f"{radius:.4g}" if radius < _FLAT else "convex",
+        f"{radius:.{1 if radius < 1e3 else 0}f}" if radius < _FLAT else "convex",
         shares or "a face of a workpiece",
     ]
 
 
 def _balls(standard: Standard, details: Details, joints: Joints | None) -> Block:
     threads = {stud.ball: f"M{stud.thread:g}" for stud in joints.studs} if joints else {}
-    head = ["ball", "x", "y", "z", "SØ", "foot", "land", "land z", "sink", "stud", "use"]
+    last = "stud" if joints else ""
+    head = ["ball", "x", "y", "z", "SØ", "foot", "land", "land z", "sink", last, "use"]
     rows = [head, *(_ball_row(one, details, threads) for one in standard.spheres)]
     title = "Balls (centres, theoretically exact) and their posts"
     return _table(title, (14, 14, 14, 14, 9, 15, 17, 15, 12, 11, 19), rows)
