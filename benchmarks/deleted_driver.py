@@ -161,7 +161,7 @@ def outcome(case: Case, cut: Callable[[str], str]) -> Outcome:
         (here / "second.csv").write_text(cut(case.second))
         result = diagnose(read_run(here / "run.csv"))
         plain = predicted(result.start, here / "second.csv").rms / UM
-        named = predicted(result.fit, here / "second.csv").rms / UM
+        named = predicted(result.predicting, here / "second.csv").rms / UM
     return Outcome(result, plain, named)
 
 

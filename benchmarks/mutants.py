@@ -14,6 +14,7 @@ import ast
 import json
 import os
 import random
+import re
 import shutil
 import subprocess
 import sys
@@ -221,6 +222,8 @@ class Copy:
 
     def __init__(self, place: Path) -> None:
         self.root, self.writes = place / "project", 1_000_000_000
+        self.path = os.pathsep.join([str(self.root), os.environ.get("PYTHONPATH", "")])
+        self.passed: set[str] = set()
         listed = subprocess.run(
             ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True
         )
@@ -241,28 +244,39 @@ class Copy:
         os.utime(self.root / name, (self.writes, self.writes))
 
     def notices(self, mutant: Mutant, tests: list[list[str]]) -> bool:
-        """Whether a test fails with a wrong line."""
+        """Whether a test fails with a wrong line and passes without it."""
         right = (self.root / mutant.file).read_text(encoding="utf-8")
-        self.write(mutant.file, mutant.apply(right))
-        try:
-            path = os.pathsep.join([str(self.root), os.environ.get("PYTHONPATH", "")])
-            for files in filter(None, tests):
-                done = subprocess.run(
-                    [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", *files],
-                    cwd=self.root,
-                    env=os.environ | {"PYTHONPATH": path},
-                    stdout=subprocess.DEVNULL,
-                    stderr=subprocess.DEVNULL,
-                    timeout=TIMEOUT,
-                    check=False,
-                )
-                if done.returncode not in (0, 5):
-                    return True
-        except subprocess.TimeoutExpired:
-            return True
-        finally:
-            self.write(mutant.file, right)
+        for files in filter(None, tests):
+            self.write(mutant.file, mutant.apply(right))
+            try:
+                failed = self.first_failure(files)
+            except subprocess.TimeoutExpired:
+                return True
+            finally:
+                self.write(mutant.file, right)
+            if failed and failed not in self.passed:
+                if self.first_failure([failed]):
+                    sys.exit(f"{failed} fails with every line right: it cannot notice a wrong one")
+                self.passed.add(failed)
+            if failed:
+                return True
         return False
+
+    def first_failure(self, tests: list[str]) -> str:
+        """The first test that fails, or the first file where none could begin; empty for none."""
+        done = subprocess.run(
+            [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", *tests],
+            cwd=self.root,
+            env=os.environ | {"PYTHONPATH": self.path},
+            capture_output=True,
+            text=True,
+            timeout=TIMEOUT,
+            check=False,
+        )
+        if done.returncode in (0, 5):
+            return ""
+        named = re.findall(r"^(?:FAILED|ERROR) (.+?)(?: - |$)", done.stdout, flags=re.MULTILINE)
+        return named[0] if named else tests[0]
 
 
 def main() -> None:

@@ -85,7 +85,7 @@ def score(folder: Path) -> Score:
     began = time.process_time()
     result = diagnose(read_run(folder / "run.csv"), rng=np.random.default_rng(0))
     seconds = time.process_time() - began
-    second = predicted(result.fit, folder / "second" / "run.csv")
+    second = predicted(result.predicting, folder / "second" / "run.csv")
     return Score(
         name=folder.name,
         truth=", ".join(h["name"] for h in hidden) or "-",

@@ -22,7 +22,7 @@ sys.path.insert(0, str(ROOT))
 
 import matstd  # noqa: E402  (found through the path above)
 from matstd.commands.standard.design import LINEAR_PLAN, PLAN  # noqa: E402
-from matstd.time_left import TimeLeft  # noqa: E402
+from matstd.progress import TimeLeft  # noqa: E402
 
 Events = list[tuple[float, str, int, int]]
 """Seconds since the beginning, stage, done, total; the last one ends the run."""

@@ -8,8 +8,7 @@ from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
 
-LOGS = "LOG.TXT ..."
-"""Logs of the control, whose names only the user knows."""
+LOGS = "LOG.TXT ..."  # logs of the control, whose names only the user knows
 
 
 def next_line(args: Namespace) -> str:
@@ -66,7 +65,8 @@ def _control_test(args: Namespace) -> Step:
 def _replan(args: Namespace) -> Step:
     design = Path(args.design)
     where = ["--standard", design / "standard.toml", "--machine", design / "machine.toml"]
-    words = called("evaluate", *where, "-o", "run.csv", more=LOGS)
+    out = "visit.csv" if args.logs[0].lower().endswith(".csv") else "run.csv"
+    words = called("evaluate", *where, "-o", out, more=LOGS)
     return words, f"after the programs in {Path(args.output) / 'programs'} have run"
 
 

@@ -1,4 +1,4 @@
-"""Progress of a command on standard error: bars in a terminal, a line now and then elsewhere."""
+"""Progress of a command on standard error, with the time left: bars in a terminal, else lines."""
 
 from __future__ import annotations
 
@@ -9,18 +9,92 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple, TextIO
 
 from matstd.stop import raise_if_asked
-from matstd.time_left import TimeLeft
 from matstd.twin.compute import Progress
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-PERIOD = 10.0
-"""Seconds between two lines where there is no terminal."""
+FIRST = 0.02
+"""Fraction done from which on the pace of this run says how long the whole takes."""
+
+WORTH_SHOWING = 0.04
+"""Reported fraction from which on a time left is shown: one that began too short cannot grow."""
+
+
+PATIENCE = 3
+"""Power by which a time left that is too short runs slower: at half of the estimate an eighth."""
+
+
+@dataclass(slots=True)
+class TimeLeft:
+    """How far a command is, and how long the rest takes."""
+
+    # share of the whole that every stage takes, in their order; they sum up to one
+    shares: Mapping[str, float]
+    usual: float  # duration of the whole where it was measured, s: the pace before there is one
+    begun: float = 0.0  # when the command began, s
+    stage: str = ""
+    position: float = 0.0
+    reached: float = 0.0
+    at: float = 0.0
+    shown: float = math.inf
+    shown_at: float = 0.0
+    _before: dict[str, float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.at = self.shown_at = self.begun
+        total = 0.0
+        for name, share in self.shares.items():
+            self._before[name] = total
+            total += share
+
+    def report(self, stage: str, done: int, total: int, now: float) -> None:
+        """Take what the work reports; a stage without a share changes nothing."""
+        if stage not in self.shares:
+            return
+        self.stage = stage
+        inside = done / total if total > 0 else 0.0
+        position = self._before[stage] + self.shares[stage] * min(inside, 1.0)
+        if position > self.position:
+            self.position, self.at = position, now
+
+    def fraction(self, now: float) -> float:
+        """Fraction done, from 0 to 1, which never falls: a step that took longer catches up."""
+        self.reached = max(self.reached, self._fraction(now))
+        return self.reached
+
+    def _fraction(self, now: float) -> float:
+        """Fraction done by the last report and the clock."""
+        end = self._before.get(self.stage, 0.0) + self.shares.get(self.stage, 0.0)
+        rest = max(end - self.position, 0.0)
+        if rest == 0.0:
+            return self.position
+        is_known = self.position > FIRST
+        whole = (self.at - self.begun) / self.position if is_known else self.usual
+        # towards the end of the stage, ever slower where it takes longer than its share
+        return self.position - rest * math.expm1(-(now - self.at) / max(whole * rest, 1e-9))
+
+    def left(self, now: float) -> float | None:
+        """Seconds left, less at every call; None while there is no pace."""
+        done = self._fraction(now)
+        if self.position < WORTH_SHOWING:
+            return None
+        estimate = (now - self.begun) * (1.0 - done) / done
+        if math.isinf(self.shown):
+            self.shown = estimate
+        else:  # where the estimate has grown, the shown one waits for it: nearly, but it falls
+            ratio = min(self.shown / max(estimate, 1e-9), 1.0)
+            self.shown = max(self.shown - (now - self.shown_at) * ratio**PATIENCE, 0.0)
+            self.shown = min(self.shown, estimate)
+        self.shown_at = now
+        return self.shown
+
+
+PERIOD = 10.0  # seconds between two lines where there is no terminal
 
 
 TIME_LEFT_TOLERANCE = 1.2
@@ -28,15 +102,11 @@ TIME_LEFT_TOLERANCE = 1.2
 
 
 class Plan(NamedTuple):
-    """Stages of a command as they were measured.
+    """Stages of a command as they were measured."""
 
-    Attributes:
-        shares: Share of the whole that every stage takes, in their order; they sum up to one.
-        usual: Duration of the whole, s.
-    """
-
+    # share of the whole that every stage takes, in their order; they sum up to one
     shares: Mapping[str, float]
-    usual: float
+    usual: float  # duration of the whole, s
 
 
 @dataclass(slots=True)

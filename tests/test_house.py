@@ -83,7 +83,7 @@ EXCUSED = {
     "probe_paths/campaign/as_programmed.py": "refusals that name what stood in a log",
     "probe_paths/campaign/log_parts.py": "remarks of a reader on a log, like its refusals",
     "probe_paths/campaign/contact_points.py": "remark of the same reader on a feature out of place",
-    "twin/files/machine_checks.py": "slips of units in a machine file, put into one refusal",
+    "twin/files/machine_file.py": "slips of units in a machine file, put into one refusal",
     "twin/library/trial.py": "the unit that a refusal of a user's effect expects",
     "artefact/compare/alternatives.py": "names of other set-ups, shown as they are",
     "artefact/feasibility/standing.py": "what is wrong with a body, put into one refusal",

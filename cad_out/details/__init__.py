@@ -13,6 +13,7 @@ from matstd.cad_out.details.mounting import BALL, RELIEF, SCREW, Pad, Screw, rel
 from matstd.cad_out.details.places import Bore, Side, datum_touches
 from matstd.cad_out.details.seats import Seat, glue_gap
 from matstd.cad_out.details.tolerances import (
+    BALL_SIZE,
     CALIBRATED,
     DATUMS,
     Tolerance,
@@ -23,6 +24,7 @@ from matstd.cad_out.details.tolerances import (
 
 __all__ = [
     "BALL",
+    "BALL_SIZE",
     "CALIBRATED",
     "CUTTER",
     "DATUMS",

@@ -81,7 +81,10 @@ def _hardness(standard: Standard) -> str:
 
 def notes_of(standard: Standard, details: Details) -> tuple[str, ...]:
     """General notes, in ASCII."""
-    glue = "Balls: degrease seat and ball, press into the countersink until metal meets metal, "
+    glue = (
+        "Balls: lap the countersink with a ball to a bright band, degrease seat and ball, press in "
+        "until metal meets metal, "
+    )
     faces = (
         "Freeform faces: B-splines of this model are the nominal; as milled, "
         f"Ra {FACE_ROUGHNESS:g} um or finer, then calibrated."

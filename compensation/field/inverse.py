@@ -25,15 +25,10 @@ SETTLED_STEP = 2.0 * NM
 
 @dataclass(frozen=True, eq=False)
 class Datum:
-    """The pose to which all figures refer: a preset taken there stays what it was.
+    """The pose to which all figures refer: a preset taken there stays what it was."""
 
-    Attributes:
-        q: Readings, (A,).
-        length: Length of the tool, mm.
-    """
-
-    q: Array
-    length: float
+    q: Array  # readings, (A,)
+    length: float  # length of the tool, mm
 
     def deviation(self, errors: MachineErrors) -> Array:
         """Deviation of the tool point there, (3,), mm: the preset has taken it up."""

@@ -56,27 +56,21 @@ class MachineErrors:
 
     Set-ups, probe and standard, and the constants of workpiece and tool (`EX0w`, `EX0t` ...) belong
     to the measurement: they are not in it.
-
-    Attributes:
-        effects: The physics that moves the tool point through an axis.
-        theta: Parameters of each effect, base units.
-        root: Root of the covariance of all parameters, effect by effect, (P, K), of a machine whose
-            tools are set against the probe that measured it.
-        tool_root: What the covariance has in addition, (P, T), where it is unknown how a tool
-            stands in the spindle against that probe: a run cannot distinguish that from the lines
-            of rotary axes.
-        left_out: Names of effects of the model that are not the machine's.
-        determined: Location errors as the run of the model determines them, by symbol. A parameter
-            shares with others what the run cannot separate; this is what was reported.
     """
 
     chain: Chain
-    effects: tuple[Effect, ...]
-    theta: tuple[Array, ...]
+    effects: tuple[Effect, ...]  # the physics that moves the tool point through an axis
+    theta: tuple[Array, ...]  # parameters of each effect, base units
+    # root of the covariance of all parameters, effect by effect, (P, K), of a machine whose tools
+    # are set against the probe that measured it
     root: Array
+    # what the covariance has in addition, (P, T), where it is unknown how a tool stands in the
+    # spindle against that probe: a run cannot distinguish that from the lines of rotary axes
     tool_root: Array
     state: State = SWITCHED_ON
-    left_out: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()  # names of effects of the model that are not the machine's
+    # location errors as the run of the model determines them, by symbol. A parameter shares with
+    # others what the run cannot separate; this is what was reported
     determined: Mapping[str, Estimate] = field(default_factory=dict)
 
     @classmethod
@@ -285,8 +279,7 @@ def group_of(effect: Effect) -> str:
     return symbol.name if symbol is not None and effect.kind in _PLAIN else effect.name
 
 
-_PLAIN = ("geometric", "location")
-"""Kinds of effects that are the errors of ISO 230-1 themselves."""
+_PLAIN = ("geometric", "location")  # kinds of effects that are the errors of ISO 230-1 themselves
 
 
 def words_of(chain: Chain, effect: Effect) -> set[str]:

@@ -13,8 +13,7 @@ from matstd.twin.numbers import rms, rms_length
 from matstd.twin.record import Touches
 from matstd.twin.sampling import even_points
 
-RESULT_POSES = 256
-"""Poses of the figures: their rms is then known to some 4 %."""
+RESULT_POSES = 256  # poses of the figures: their rms is then known to some 4 %
 
 
 def sample_workspace(
@@ -42,41 +41,26 @@ def sample_workspace(
 
 @dataclass(frozen=True, slots=True)
 class UncorrectedError:
-    """One error that a compensation does not remove completely.
+    """One error that a compensation does not remove completely."""
 
-    Attributes:
-        name: Symbol of ISO 230-1, or effect.
-        before: Deviation of the tool point by this error alone, rms over the workspace, mm.
-        rms: Remainder after compensation, mm.
-        u: Standard uncertainty of the remainder, mm.
-    """
-
-    name: str
-    before: float
-    rms: float
-    u: float
+    name: str  # symbol of ISO 230-1, or effect
+    before: float  # deviation of the tool point by this error alone, rms over the workspace, mm
+    rms: float  # remainder after compensation, mm
+    u: float  # standard uncertainty of the remainder, mm
 
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """What a compensation does over a workspace, the workpiece being aligned (`aligned`), mm.
+    """What a compensation does over a workspace, the workpiece being aligned (`aligned`), mm."""
 
-    Attributes:
-        q: Poses, (N, A).
-        before: Deviation of the tool point without it, (N, 3).
-        after: The same with it, by the exact twin with the estimates as the truth, (N, 3).
-        u: Standard uncertainty of both from that of the model, (N,), of the length of the error
-            vector's three components together.
-        u_tool: Added to the rms where tools are not set against the probe that measured, mm.
-        left: Errors with a remainder, the largest first.
-    """
-
-    q: Array
-    before: Array
-    after: Array
+    q: Array  # poses, (N, A)
+    before: Array  # deviation of the tool point without it, (N, 3)
+    after: Array  # the same with it, by the exact twin with the estimates as the truth, (N, 3)
+    # standard uncertainty of both from that of the model, (N,), of the length of the error vector's
+    # three components together
     u: Array
-    u_tool: float
-    left: tuple[UncorrectedError, ...]
+    u_tool: float  # added to the rms where tools are not set against the probe that measured, mm
+    left: tuple[UncorrectedError, ...]  # errors with a remainder, the largest first
 
     @property
     def u_rms(self) -> float:
@@ -128,8 +112,6 @@ def result_of(
     """Before and after over some poses, and the remainder of every error.
 
     Args:
-        q: Poses, (N, A).
-        datum: With the tool that is meant.
         unheld: What the compensation leaves per unit of every parameter, first order, (N, 3, P);
             None where nothing is broken down.
     """

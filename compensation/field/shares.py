@@ -11,22 +11,15 @@ from matstd.twin.numbers import rms_length
 from matstd.twin.record import Touches
 from matstd.twin.sampling import spread_rows
 
-MAX_U_POSES = 100
-"""Poses at which the uncertainty of a share is taken: it varies slowly over them."""
+MAX_U_POSES = 100  # poses at which the uncertainty of a share is taken: it varies slowly over them
 
 
 class Share(NamedTuple):
-    """What one error adds, all others off.
+    """What one error adds, all others off."""
 
-    Attributes:
-        name: Symbol of ISO 230-1, or effect.
-        field: Deviation of the tool point relative to the datum, table frame, (N, 3), mm.
-        u: Standard uncertainty of its rms size from that of the model, mm.
-    """
-
-    name: str
-    field: Array
-    u: float
+    name: str  # symbol of ISO 230-1, or effect
+    field: Array  # deviation of the tool point relative to the datum, table frame, (N, 3), mm
+    u: float  # standard uncertainty of its rms size from that of the model, mm
 
 
 def contributions(errors: MachineErrors, touches: Touches, datum: Datum) -> tuple[Share, ...]:

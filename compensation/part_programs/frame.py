@@ -18,14 +18,10 @@ class Frame:
     Without tool-point control coordinates are readings less those at the zero, whatever the rotary
     axes do; the control takes up the length of the tool. With it they are those of the tool point
     in the table frame, from the zero.
-
-    Attributes:
-        chain: The machine; three linear axes.
-        datum: Readings at which the tool point of its tool stands at the program's zero.
     """
 
-    chain: Chain
-    datum: Datum
+    chain: Chain  # the machine; three linear axes
+    datum: Datum  # readings at which the tool point of its tool stands at the program's zero
 
     @cached_property
     def zero(self) -> Array:

@@ -47,24 +47,17 @@ _NOT_PLAIN = re.compile(r"[/$]|O\d|O<|.*[#\[=]")
 _CHANGE = re.compile(r"M0*6(?!\d)", re.IGNORECASE)
 
 _IN_CYCLES = frozenset("XYZRPQFLHSTK")
-MAX_HOLES = 1000
-"""Holes of one line; beyond it the word is no number of holes."""
+MAX_HOLES = 1000  # holes of one line; beyond it the word is no number of holes
 
 
 class _Block(NamedTuple):
-    """One line.
-
-    Attributes:
-        g: G words.
-        other: Words by letter but for G, M and N, axes among them.
-        kept: What stays in the program besides its motion.
-    """
+    """One line."""
 
     line: int
-    g: list[float]
-    other: dict[str, float]
+    g: list[float]  # G words
+    other: dict[str, float]  # words by letter but for G, M and N, axes among them
     axes: dict[str, float]
-    kept: list[str]
+    kept: list[str]  # what stays in the program besides its motion
 
     def text(self, words: dict[str, float], but: str = "") -> list[str]:
         """Words as text, without some letters."""

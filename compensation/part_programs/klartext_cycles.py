@@ -22,23 +22,14 @@ DEFAULT_PLUNGE_FEED = 100.0
 
 
 class Hole(NamedTuple):
-    """A cycle as it was defined; heights in coordinates of the program, mm.
+    """A cycle as it was defined; heights in coordinates of the program, mm."""
 
-    Attributes:
-        text: The block, `{top}` where its surface stands.
-        surface: Q203.
-        depth: Q201, downwards.
-        near: Set-up clearance above the surface, Q200.
-        far: Height above it on which the cycle ends.
-        feed: Q206, or what is in force, mm/min.
-    """
-
-    text: str
-    surface: float
-    depth: float
-    near: float
-    far: float
-    feed: float
+    text: str  # the block, `{top}` where its surface stands
+    surface: float  # Q203
+    depth: float  # Q201, downwards
+    near: float  # set-up clearance above the surface, Q200
+    far: float  # height above it on which the cycle ends
+    feed: float  # Q206, or what is in force, mm/min
 
 
 def is_hole(block: str) -> bool:

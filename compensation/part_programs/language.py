@@ -25,40 +25,29 @@ from matstd.twin.units import DEG
 
 @dataclass
 class Reading:
-    """A program while it is read: where its axes stand, what is in force.
-
-    Attributes:
-        frame: Where the program's zero stands on the machine.
-        lengths: Lengths of tools by number or name, mm; other tools have that of the datum.
-        radii: Radii of tools by number, mm.
-        passed: Numbers of M functions of the machine that move nothing, as the user states.
-        tcp_functions: M functions of the machine that switch tool-point control on, and off.
-        at: Program coordinates with the shift, (A,), mm and rad; nan where unknown.
-        offset: Shift of the program's zero, (A,), mm.
-        tool: Number, or name, of that in the spindle.
-        more_radius: What the program adds to its radius, mm.
-        side: Side of the contour on which the tool goes: 1 left, -1 right, 0 on it.
-        feed: Number of the F word in force; degrees/min where axes turn alone.
-        feed_unit: One of it where linear axes move, mm/min.
-    """
+    """A program while it is read: where its axes stand, what is in force."""
 
     path: Path
-    frame: Frame
+    frame: Frame  # where the program's zero stands on the machine
+    # lengths of tools by number or name, mm; other tools have that of the datum
     lengths: dict[int | str, float]
-    radii: dict[int | str, float] = field(default_factory=dict)
+    radii: dict[int | str, float] = field(default_factory=dict)  # radii of tools by number, mm
+    # numbers of M functions of the machine that move nothing, as the user states
     passed: frozenset[int] = frozenset()
+    # M functions of the machine that switch tool-point control on, and off
     tcp_functions: tuple[int, ...] = ()
+    # program coordinates with the shift, (A,), mm and rad; nan where unknown
     at: Array = field(init=False)
-    offset: Array = field(init=False)
+    offset: Array = field(init=False)  # shift of the program's zero, (A,), mm
     items: list[Item | Corner] = field(default_factory=list)
     length: float = field(init=False)
-    feed: float = 0.0
-    feed_unit: float = 1.0
+    feed: float = 0.0  # number of the F word in force; degrees/min where axes turn alone
+    feed_unit: float = 1.0  # one of it where linear axes move, mm/min
     tcpm: bool = False
     unit: float = 1.0
-    tool: int | str | None = None
-    more_radius: float = 0.0
-    side: float = 0.0
+    tool: int | str | None = None  # number, or name, of that in the spindle
+    more_radius: float = 0.0  # what the program adds to its radius, mm
+    side: float = 0.0  # side of the contour on which the tool goes: 1 left, -1 right, 0 on it
 
     def __post_init__(self) -> None:
         self.at = self.frame.datum.q.copy()

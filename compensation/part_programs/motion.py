@@ -13,43 +13,29 @@ from matstd.twin.units import DEG
 
 @dataclass(frozen=True, slots=True)
 class Keep:
-    """A block that moves nothing, or nothing whose place is known; it stays as it is.
-
-    Attributes:
-        text: Without its number.
-        moves: Whether it still moves an axis: in coordinates of the machine, or before
-            the place of every axis is known.
-    """
+    """A block that moves nothing, or nothing whose place is known; it stays as it is."""
 
     line: int
-    text: str
+    text: str  # without its number
+    # whether it still moves an axis: in coordinates of the machine, or before the place of every
+    # axis is known
     moves: bool = False
 
 
 class Corner(NamedTuple):
-    """A corner between the motions before and behind it.
-
-    Attributes:
-        size: Radius, or the length that a chamfer cuts off both, mm.
-    """
+    """A corner between the motions before and behind it."""
 
     line: int
-    size: float
+    size: float  # radius, or the length that a chamfer cuts off both, mm
     is_round: bool
 
 
 class Arc(NamedTuple):
-    """A circular arc, or a helix, in a plane of two linear axes.
+    """A circular arc, or a helix, in a plane of two linear axes."""
 
-    Attributes:
-        plane: Columns of the readings, in the order in which a positive angle turns.
-        centre: Centre of the circle in that plane, (2,), mm.
-        angle: From start to end, signed, rad.
-    """
-
-    plane: tuple[int, int]
-    centre: Array
-    angle: float
+    plane: tuple[int, int]  # columns of the readings, in the order in which a positive angle turns
+    centre: Array  # centre of the circle in that plane, (2,), mm
+    angle: float  # from start to end, signed, rad
 
 
 class Cycle(NamedTuple):
@@ -57,57 +43,38 @@ class Cycle(NamedTuple):
 
     A cycle is three motions: above the hole, to its bottom, back. It is shifted as a whole, by what
     its bottom needs.
-
-    Attributes:
-        block: Block that calls it, with `{place}` and `{top}`; the second motion alone has one.
-        depth: Bottom below what the block states as its top, mm: R of G-code, the surface of
-            Klartext.
-        ahead: Motions from here to the second of the three.
     """
 
-    block: str
+    block: str  # block that calls it, with `{place}` and `{top}`; the second motion alone has one
+    # bottom below what the block states as its top, mm: R of G-code, the surface of Klartext
     depth: float
-    ahead: int
+    ahead: int  # motions from here to the second of the three
 
 
 class Motion(NamedTuple):
-    """A block that moves axes, from where the one before has ended.
-
-    Attributes:
-        start: Program coordinates of every axis, (A,), mm and rad.
-        is_rapid: Whether it cuts nothing.
-        feed: mm/min, or degrees/min where axes turn alone; 0 where it is rapid.
-        word: The feed as the number that the program states.
-        is_from_known: Whether the place of every axis is known where it begins.
-        tcpm: Whether coordinates are those of the tool point on the turning table.
-        length: Length of the tool, mm.
-        offset: What the program has shifted its zero by, (A,), mm; in `start` and `end` already.
-        unit: One unit of the program's lengths, mm.
-        words: What else stands in the block, for its first line.
-        arc: None for a straight line.
-        beside: Way by which the tool's centre goes to the left of the path that is programmed, mm;
-            to the right below zero. Zero once it is resolved.
-        minutes: Time that it takes where the program states that instead of a feed; else 0.
-        cycle: None where the program itself says how the axes move.
-    """
+    """A block that moves axes, from where the one before has ended."""
 
     line: int
-    start: Array
+    start: Array  # program coordinates of every axis, (A,), mm and rad
     end: Array
-    is_rapid: bool
-    feed: float
-    word: float
-    is_from_known: bool
-    tcpm: bool
-    length: float
+    is_rapid: bool  # whether it cuts nothing
+    feed: float  # mm/min, or degrees/min where axes turn alone; 0 where it is rapid
+    word: float  # the feed as the number that the program states
+    is_from_known: bool  # whether the place of every axis is known where it begins
+    tcpm: bool  # whether coordinates are those of the tool point on the turning table
+    length: float  # length of the tool, mm
+    # what the program has shifted its zero by, (A,), mm; in `start` and `end` already
     offset: Array
-    unit: float
-    words: str
+    unit: float  # one unit of the program's lengths, mm
+    words: str  # what else stands in the block, for its first line
     turned: tuple[str, ...]
-    arc: Arc | None = None
+    arc: Arc | None = None  # None for a straight line
+    # way by which the tool's centre goes to the left of the path that is programmed, mm; to the
+    # right below zero. Zero once it is resolved
     beside: float = 0.0
+    # time that it takes where the program states that instead of a feed; else 0
     minutes: float = 0.0
-    cycle: Cycle | None = None
+    cycle: Cycle | None = None  # None where the program itself says how the axes move
 
 
 Item = Keep | Motion

@@ -29,17 +29,13 @@ _ABSURD = re.compile(r"\d{31,}")  # beyond any machine, and beyond what arithmet
 
 @dataclass(frozen=True, eq=False)
 class Program:
-    """A program that was read.
-
-    Attributes:
-        items: Blocks and motions in their order.
-        loads: Force of the process on the tool, block by block; elsewhere that of the state.
-    """
+    """A program that was read."""
 
     path: Path
     frame: Frame
-    items: tuple[Item, ...]
+    items: tuple[Item, ...]  # blocks and motions in their order
     language: ModuleType
+    # force of the process on the tool, block by block; elsewhere that of the state
     loads: tuple[Load, ...] = ()
 
     @property

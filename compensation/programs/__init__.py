@@ -5,9 +5,11 @@ every point as it should be, as the machine makes it without and with compensati
 """
 
 from matstd.compensation.programs.compensation import TOLERANCE, Compensated, compensated, passed
-from matstd.compensation.programs.program_result_file import write_program_result
-from matstd.compensation.programs.shares_file import write_shares
-from matstd.compensation.programs.trajectory_file import write_trajectory
+from matstd.compensation.programs.result_files import (
+    write_program_result,
+    write_shares,
+    write_trajectory,
+)
 
 __all__ = [
     "TOLERANCE",

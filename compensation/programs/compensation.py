@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from matstd.compensation.field import MachineErrors, actual_tip, aligned, shifted
 from matstd.compensation.part_programs import Keep, Motion, Program
-from matstd.compensation.programs.between import off_path
 from matstd.compensation.programs.path import ProgramPath, are_first, shares_of_lines
 from matstd.compensation.programs.times import Timed, in_time
 from matstd.compensation.tables import Header, point_spacing
@@ -20,50 +19,86 @@ from matstd.twin.record import IntArray, Touches
 from matstd.twin.sampling import spread_rows
 from matstd.twin.units import DEG, MINUTE, UM
 
+CHECKED_SHARES = (0.25, 0.5, 0.75)
+"""Shares of a line at which it is checked: the error of a chord is a parabola, largest in its
+middle; that of a jump of the error is not."""
+
+LINES_PER_BLOCK = 20_000  # lines that are checked together: bounds the memory
+
+
+def off_path(path: ProgramPath, which: IntArray, share: Array, written: Array) -> Array:
+    """Largest distance of the tool point from the path of the program inside every line, (N,), mm.
+
+    The control moves all axes in proportion from one end of a line to the next; the exact twin says
+    where the tool point then is. Its distance is taken square to the nominal path, so that a tool
+    which is early or late on the path is not off it. nan for rapid motions, cycles, and lines that
+    begin where no place is known.
+
+    Args:
+        which: Motion of every line, (N,).
+        share: Share of its motion that is done at its end, (N,).
+        written: Where it ends, program coordinates as written, (N, A).
+    """
+    begin = path.begins_at(which, written)
+    part = shares_of_lines(which, share)
+    seen = ~path.is_whole[which] & ~(are_first(which) & ~path.is_from_known[which])
+    out = np.full(len(which), np.nan)
+    todo = np.flatnonzero(seen)
+    for low in range(0, len(todo), LINES_PER_BLOCK):
+        rows = todo[low : low + LINES_PER_BLOCK]
+        out[rows] = _largest(
+            path, which[rows], (share - part)[rows], part[rows], begin[rows], written[rows]
+        )
+    return out
+
+
+def _largest(
+    path: ProgramPath, which: IntArray, start: Array, part: Array, begin: Array, end: Array
+) -> Array:
+    chain = path.errors.chain
+    aims = [path.touches(which, start + s * part) for s in (0.0, *CHECKED_SHARES, 1.0)]
+    nominal = [tip(chain, touches.q, touches.target) for touches in aims]
+    worst = np.zeros(len(which))
+    for k, place in enumerate(CHECKED_SHARES, start=1):
+        along = nominal[k + 1] - nominal[k - 1]
+        length = np.linalg.norm(along, axis=1, keepdims=True)
+        along /= np.where(length > 0.0, length, 1.0)
+        added = path.readings(which, begin + place * (end - begin)) - aims[k].q
+        off = actual_tip(path.errors, shifted(aims[k], added)) - nominal[k] - path.aim
+        off -= np.einsum("ni,ni->n", off, along)[:, None] * along
+        worst = np.maximum(worst, np.linalg.norm(off, axis=1))
+    return worst
+
+
 TOLERANCE = 1.0 * UM
 """Distance between the wanted path and a straight line, mm: what good machines repeat."""
 
 MAX_LINE = 20.0
 """Longest line of a motion that is checked as one, mm: no guide repeats an error over less."""
 
-MIN_LINE = 0.01
-"""A line that is shorter is not divided, mm: controls round there."""
+MIN_LINE = 0.01  # a line that is shorter is not divided, mm: controls round there
 
 
 @dataclass(frozen=True, eq=False)
 class Compensated:
-    """A program and its compensation, point by point in the order of the motion.
-
-    Attributes:
-        text: The compensated program.
-        motion: Index of the motion that every point belongs to, (N,).
-        elapsed: Time at every point since the program began, (N,), s.
-        q: Readings as they were commanded, (N, A).
-        added: What the compensation adds to them, as written, (N, A).
-        nominal: Tool point in the table frame as it should be, (N, 3), mm.
-        before: Deviation of the tool point from there without compensation, (N, 3), mm.
-        after: The same with it, rounded as it was written.
-        between: Largest distance of the tool point from the nominal path inside the line that ends
-            at every point, (N,), mm; nan where it is not checked (`off_path`).
-        tolerance: Tolerance to which lines were divided, mm.
-        u: Standard uncertainty of both from that of the model at some points, (M,), mm.
-        u_at: Those points, (M,).
-        unmoved: Lines of motions that stay as they are, since no place is known there.
-    """
+    """A program and its compensation, point by point in the order of the motion."""
 
     program: Program
-    text: str
-    motion: IntArray
-    elapsed: Array
-    q: Array
-    added: Array
-    nominal: Array
-    before: Array
-    after: Array
+    text: str  # the compensated program
+    motion: IntArray  # index of the motion that every point belongs to, (N,)
+    elapsed: Array  # time at every point since the program began, (N,), s
+    q: Array  # readings as they were commanded, (N, A)
+    added: Array  # what the compensation adds to them, as written, (N, A)
+    nominal: Array  # tool point in the table frame as it should be, (N, 3), mm
+    before: Array  # deviation of the tool point from there without compensation, (N, 3), mm
+    after: Array  # the same with it, rounded as it was written
+    # largest distance of the tool point from the nominal path inside the line that ends at every
+    # point, (N,), mm; nan where it is not checked (`off_path`)
     between: Array
-    tolerance: float
-    u: Array
-    u_at: IntArray
+    tolerance: float  # tolerance to which lines were divided, mm
+    u: Array  # standard uncertainty of both from that of the model at some points, (M,), mm
+    u_at: IntArray  # those points, (M,)
+    # lines of motions that stay as they are, since no place is known there
     unmoved: tuple[int, ...]
 
     @cached_property
@@ -156,8 +191,7 @@ def passed(program: Program, errors: MachineErrors) -> tuple[Touches, IntArray]:
     return path.touches(which, share), which
 
 
-MAX_U_POINTS = 200
-"""Points at which the uncertainty is taken: it varies slowly along a program."""
+MAX_U_POINTS = 200  # points at which the uncertainty is taken: it varies slowly along a program
 
 
 def _begun(path: ProgramPath, tolerance: float) -> IntArray:

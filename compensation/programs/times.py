@@ -34,19 +34,12 @@ MAX_LAG_SHARE = 0.1
 
 
 class Timed(NamedTuple):
-    """Ends of lines, and the motions among them that are written in inverse time.
+    """Ends of lines, and the motions among them that are written in inverse time."""
 
-    Attributes:
-        which: Motion of every line, (N,).
-        share: Share of its motion that is done at its end, (N,).
-        written: Program coordinates, rounded, (N, A).
-        motions: Numbers of the motions whose time would change if F alone were kept.
-    """
-
-    which: IntArray
-    share: Array
-    written: Array
-    motions: frozenset[int]
+    which: IntArray  # motion of every line, (N,)
+    share: Array  # share of its motion that is done at its end, (N,)
+    written: Array  # program coordinates, rounded, (N, A)
+    motions: frozenset[int]  # numbers of the motions whose time would change if F alone were kept
 
 
 def in_time(

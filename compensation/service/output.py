@@ -26,20 +26,14 @@ class Quality(StrEnum):
 class OutputLimits:
     """What a control is asked to add at most.
 
-    Attributes:
-        most: Largest correction of each axis, mm.
-        rate: Its change, mm/s: 1 mm/s follows 0.5 µm/mm at 120 m/min, and 20 µm in 20 ms.
-        patience: Age at which a correction is no longer valid, s.
-        hold: Age at which it begins to go to zero, s.
-
     Raises:
         BadValue: A number that is not above zero, or a hold shorter than the patience.
     """
 
-    most: float = 200.0 * UM
-    rate: float = 1.0
-    patience: float = 0.5
-    hold: float = 5.0
+    most: float = 200.0 * UM  # largest correction of each axis, mm
+    rate: float = 1.0  # its change, mm/s: 1 mm/s follows 0.5 µm/mm at 120 m/min, and 20 µm in 20 ms
+    patience: float = 0.5  # age at which a correction is no longer valid, s
+    hold: float = 5.0  # age at which it begins to go to zero, s
 
     def __post_init__(self) -> None:
         for name in ("most", "rate", "patience", "hold"):
@@ -54,18 +48,12 @@ class OutputLimits:
 
 @dataclass(frozen=True)
 class Sent:
-    """What is given to the control.
+    """What is given to the control."""
 
-    Attributes:
-        values: Corrections of the three linear axes, mm.
-        age: Since the readings that they were made for, s; infinite before the first.
-        lag: Largest way that a value still has to go, mm.
-    """
-
-    values: Point
+    values: Point  # corrections of the three linear axes, mm
     quality: Quality
-    age: float
-    lag: float
+    age: float  # since the readings that they were made for, s; infinite before the first
+    lag: float  # largest way that a value still has to go, mm
 
 
 class Output:

@@ -31,48 +31,31 @@ _BESIDE = 1e-9  # mm or rad by which a reading may lie beyond its travel
 
 
 class _Source(NamedTuple):
-    """Errors of one link from one table, or one table for each direction of an axis.
-
-    Attributes:
-        low: Smallest reading of each.
-        per: Cells per unit of each reading.
-        last: Number of the last cell along each.
-        turn: Number of the axis whose direction chooses the table, -1 for none.
-        cells: By direction, errors at the corners of the cells, the last reading running first.
-    """
+    """Errors of one link from one table, or one table for each direction of an axis."""
 
     axes: tuple[int, ...]
-    low: tuple[float, ...]
-    per: tuple[float, ...]
-    last: tuple[int, ...]
-    turn: int
+    low: tuple[float, ...]  # smallest reading of each
+    per: tuple[float, ...]  # cells per unit of each reading
+    last: tuple[int, ...]  # number of the last cell along each
+    turn: int  # number of the axis whose direction chooses the table, -1 for none
+    # by direction, errors at the corners of the cells, the last reading running first
     cells: dict[int, list[tuple[Six, ...]]]
 
 
 class _Step(NamedTuple):
-    """A link on the way of the point: its line where it really is, and where it should be.
-
-    Attributes:
-        is_linear: Or else rotary.
-        workpiece: Whether it carries the workpiece, so that its error comes before its motion.
-        offset: Added to the reading: the zero of the axis is displaced.
-        ideal: Direction of the line without errors.
-        lever: Point that angular errors turn about, every axis at zero.
-        carries: By how much the lever goes along with the reading, in `ideal`: 0, 1 or -1.
-        column: Number of the linear axis that it is, -1 for none.
-    """
+    """A link on the way of the point: its line where it really is, and where it should be."""
 
     axis: int
-    is_linear: bool
-    workpiece: bool
-    offset: float
+    is_linear: bool  # or else rotary
+    workpiece: bool  # whether it carries the workpiece, so that its error comes before its motion
+    offset: float  # added to the reading: the zero of the axis is displaced
     direction: Point
     point: Point
-    ideal: Point
-    lever: Point
-    carries: float
+    ideal: Point  # direction of the line without errors
+    lever: Point  # point that angular errors turn about, every axis at zero
+    carries: float  # by how much the lever goes along with the reading, in `ideal`: 0, 1 or -1
     sources: tuple[_Source, ...]
-    column: int
+    column: int  # number of the linear axis that it is, -1 for none
 
 
 class PointCorrection:

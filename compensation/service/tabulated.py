@@ -32,27 +32,20 @@ Terms = list[tuple[Effect, Array]]
 
 @dataclass(frozen=True, eq=False)
 class ErrorTable:
-    """Errors of links over the same readings, in the same direction.
-
-    Attributes:
-        terms: Effects that are in it, with their parameters.
-        length: Length of the tool, mm.
-        axes: Numbers of the readings, none to two.
-        turns: Direction of some axes in which it holds, -1, 0 or 1 by the axis's number.
-        is_driven: Whether it changes with time, temperatures, speed or columns of the user's own.
-        counts: Points along each reading.
-        rows: Component errors of the links, (*points, L, 6), mm and rad.
-        left: What straight lines leave at the middles between the points, mm at the tip.
-    """
+    """Errors of links over the same readings, in the same direction."""
 
     errors: MachineErrors
-    terms: Terms
-    length: float
-    axes: tuple[int, ...]
+    terms: Terms  # effects that are in it, with their parameters
+    length: float  # length of the tool, mm
+    axes: tuple[int, ...]  # numbers of the readings, none to two
+    # direction of some axes in which it holds, -1, 0 or 1 by the axis's number
     turns: dict[int, int]
+    # whether it changes with time, temperatures, speed or columns of the user's own
     is_driven: bool = False
-    counts: tuple[int, ...] = ()
+    counts: tuple[int, ...] = ()  # points along each reading
+    # component errors of the links, (*points, L, 6), mm and rad
     rows: Array = field(default_factory=lambda: np.zeros((0, 6)))
+    # what straight lines leave at the middles between the points, mm at the tip
     left: float = np.inf
 
     @property
@@ -160,6 +153,7 @@ def _dependence(
     """Readings and directions on which an effect depends, and whether it changes with the state."""
     chain, rng, terms = errors.chain, np.random.default_rng(0), [(effect, theta)]
     low, high = chain.travels.T
+    # found by trial, as for a user's own effect: each reading is changed alone at random poses
     q, other = rng.uniform(low, high, (2, _POSES, len(low)))
     still = np.zeros_like(q)
     at = _twist(errors, terms, q, still, length)

@@ -28,27 +28,18 @@ from matstd.twin.numbers import rms_length
 from matstd.twin.record import Touches
 from matstd.twin.units import NM
 
-MIN_GAIN = 50.0 * NM
-"""A table that lowers the rms error by less is not written, mm."""
+MIN_GAIN = 50.0 * NM  # a table that lowers the rms error by less is not written, mm
 
 
 @dataclass(frozen=True, eq=False)
 class AxisTable:
-    """A correction of one axis over the reading of one, the same or another.
+    """A correction of one axis over the reading of one, the same or another."""
 
-    Attributes:
-        over: Axis whose reading counts.
-        moves: Axis that is corrected.
-        nodes: Readings, ascending, (n,), mm or rad.
-        forward: Correction after a positive motion of `over`, (n,), mm or rad.
-        reverse: The same after a negative motion.
-    """
-
-    over: str
-    moves: str
-    nodes: Array
-    forward: Array
-    reverse: Array
+    over: str  # axis whose reading counts
+    moves: str  # axis that is corrected
+    nodes: Array  # readings, ascending, (n,), mm or rad
+    forward: Array  # correction after a positive motion of `over`, (n,), mm or rad
+    reverse: Array  # the same after a negative motion
 
     @property
     def is_left_out(self) -> bool:
@@ -195,7 +186,6 @@ def most_useful(
     that it helps.
 
     Args:
-        q: Poses, (N, A).
         most: Tables that a control holds.
     """
     left, effects = _fields(tables, errors, datum, q)
@@ -215,9 +205,6 @@ def harmless(tables: AxisTables, errors: MachineErrors, datum: Datum, q: Array) 
 
     A table keeps what depends on the direction of motion alone, which is right beside the datum
     too.
-
-    Args:
-        q: Poses, (N, A).
     """
     left, effects = _fields(tables, errors, datum, q)
     kept = dict(enumerate(effects))

@@ -11,15 +11,13 @@ from matstd.twin.machine import Chain, Contribution, Link
 from matstd.twin.record import Touches
 from matstd.twin.units import NM
 
-FIRST_POINTS = 17
-"""Points of an axis from which the number is doubled until they are enough."""
+FIRST_POINTS = 17  # points of an axis from which the number is doubled until they are enough
 
 MAX_INTERPOLATION = 20.0 * NM
 """What interpolation of one component may leave at the tool point, mm: far below what a machine
 repeats."""
 
-CHECKED_PLACES = 4
-"""Places between two points at which interpolation is looked at."""
+CHECKED_PLACES = 4  # places between two points at which interpolation is looked at
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,19 +26,13 @@ class NamedTables:
 
     The control interpolates linearly and corrects by its own inverse; what depends on a second axis
     has the value of the datum.
-
-    Attributes:
-        nodes: Readings of the points by axis, ascending, (n,), mm or rad.
-        values: Component errors there, (n, 6), mm and rad.
-        place: Location errors of every link, (L, 6), mm and rad.
-        only_own: Whether every axis's own positioning error is all that they hold.
     """
 
     chain: Chain
-    nodes: Mapping[str, Array]
-    values: Mapping[str, Array]
-    place: Array
-    only_own: bool = False
+    nodes: Mapping[str, Array]  # readings of the points by axis, ascending, (n,), mm or rad
+    values: Mapping[str, Array]  # component errors there, (n, 6), mm and rad
+    place: Array  # location errors of every link, (L, 6), mm and rad
+    only_own: bool = False  # whether every axis's own positioning error is all that they hold
 
     def holds(self, axis: str) -> Array:
         """Which components of an axis they hold, (6,): 1 or 0."""

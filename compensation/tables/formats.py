@@ -5,9 +5,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from matstd.compensation.field import Datum, MachineErrors, Result, result_of
+import numpy as np
+
+from matstd.compensation.field import (
+    CorrectionFunction,
+    Datum,
+    MachineErrors,
+    Result,
+    deviation_after,
+    relative_columns,
+    result_of,
+)
 from matstd.compensation.tables import heidenhain_com, iso_csv, linuxcnc_comp, sinumerik_cec
-from matstd.compensation.tables.acceptance import Acceptance, acceptance
 from matstd.compensation.tables.along_axes import (
     MIN_GAIN,
     AxisTables,
@@ -32,44 +41,76 @@ from matstd.twin.machine import Chain
 from matstd.twin.numbers import rms_length
 from matstd.twin.units import UM
 
+
+@dataclass(frozen=True, eq=False)
+class Acceptance:
+    """The place where a table moves the tool point most, rotary axes as at the datum.
+
+    An indicator is zeroed at the datum and read at this place against a gauge that is straight.
+    """
+
+    q: Array  # readings, (A,)
+    without: Array  # deviation of the tool point relative to the datum without the table, (3,), mm
+    with_table: Array  # the same with it
+    wrong_sign: Array  # the same where the control takes its values with the opposite sign
+    u: Array  # standard uncertainties from that of the model, (3,), mm
+
+
+def acceptance(
+    errors: MachineErrors, corrects: CorrectionFunction, datum: Datum, q: Array
+) -> Acceptance:
+    """The one-point test of a table.
+
+    Args:
+        datum: Pose to which everything refers.
+        q: Poses of the workspace, (N, A): the place is among them but for the rotary axes.
+    """
+    is_rotary = np.array([errors.chain.link(a).kind == "rotary" for a in errors.chain.axes])
+    q = np.where(is_rotary, datum.q, q)
+    candidates = errors.touches(q, datum.length)
+    best = int(np.argmax(np.abs(corrects(candidates)).sum(axis=1)))
+    at, there = errors.touches(q[[best]], datum.length), errors.touches(datum.q[None], datum.length)
+    shown = []
+    for sign in (0.0, 1.0, -1.0):
+        moved = deviation_after(errors, at, sign * corrects(at)) - deviation_after(
+            errors, there, sign * corrects(there)
+        )
+        shown.append(moved[0])
+    spread = relative_columns(errors, at, datum)[0] @ errors.root
+    return Acceptance(
+        q=q[best],
+        without=shown[0],
+        with_table=shown[1],
+        wrong_sign=shown[2],
+        u=np.linalg.norm(spread, axis=1),
+    )
+
+
 Tables = NamedTables | AxisTables
 
 
 @dataclass(frozen=True, slots=True)
 class Format:
-    """A control's tables.
+    """A control's tables."""
 
-    Attributes:
-        name: Word of the command line, and folder.
-        make: Tables of some errors, for some poses.
-        write: Texts by file name.
-        read: Tables and head from a folder.
-    """
-
-    name: str
-    make: Callable[[MachineErrors, Datum, Array], Tables]
-    write: Callable[[Any, Header], dict[str, str]]
-    read: Callable[[Path, Chain], tuple[Tables, Header]]
+    name: str  # word of the command line, and folder
+    make: Callable[[MachineErrors, Datum, Array], Tables]  # tables of some errors, for some poses
+    write: Callable[[Any, Header], dict[str, str]]  # texts by file name
+    read: Callable[[Path, Chain], tuple[Tables, Header]]  # tables and head from a folder
 
 
 @dataclass(frozen=True, eq=False)
 class VerifiedTables:
-    """Tables that were written, read back and simulated on the exact twin.
+    """Tables that were written, read back and simulated on the exact twin."""
 
-    Attributes:
-        format: Word of the format.
-        result: Before and after over the workspace, and what the format cannot hold.
-        interpolation: What interpolation and rounding leave at most, mm: over the workspace where
-            tables hold errors by name, on the lines through the datum where they hold axes.
-        by_name: Whether tables hold errors by name.
-        left_out: Axes whose table would raise the error beside the line through the datum.
-    """
-
-    format: str
+    format: str  # word of the format
     files: tuple[str, ...]
-    result: Result
+    result: Result  # before and after over the workspace, and what the format cannot hold
+    # what interpolation and rounding leave at most, mm: over the workspace where tables hold errors
+    # by name, on the lines through the datum where they hold axes
     interpolation: float
-    by_name: bool
+    by_name: bool  # whether tables hold errors by name
+    # axes whose table would raise the error beside the line through the datum
     left_out: tuple[str, ...]
     acceptance: Acceptance
 
@@ -146,9 +187,6 @@ def verify_tables(
     q: Array,
 ) -> VerifiedTables:
     """Read tables back and simulate them on the exact twin.
-
-    Args:
-        q: Poses over which they are judged, (N, A).
 
     Raises:
         BadFile: Files that cannot be read, or are of another machine or datum.

@@ -15,20 +15,13 @@ _LINE = re.compile(r"\W*(matstd (?:[a-z ]+)): (.*?)\s*\)?\Z")
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """Head of a table, in comment lines of its format.
-
-    Attributes:
-        machine: Name of the machine and hash of its chain, travels, points and table.
-        datum: Readings and tool length to which the values refer.
-        state: Time, temperatures and speed that they hold for.
-        sign: +1 as this house understands the format; -1 where a control wants the opposite.
-    """
+    """Head of a table, in comment lines of its format."""
 
     model: str
-    machine: str
-    datum: str
-    state: str
-    sign: int
+    machine: str  # name of the machine and hash of its chain, travels, points and table
+    datum: str  # readings and tool length to which the values refer
+    state: str  # time, temperatures and speed that they hold for
+    sign: int  # +1 as this house understands the format; -1 where a control wants the opposite
 
     def lines(self) -> list[str]:
         """`matstd key: value`, one a field."""

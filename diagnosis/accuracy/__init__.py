@@ -5,6 +5,7 @@ In: a `Fit`. Out: `Repeatability`, the scatter of repeated touches beside the st
 both ask here. Of a machine whose truth is known, a `Proof`: what a model predicts of it.
 """
 
+from matstd.diagnosis.accuracy.left_out_blocks import blocks, domains
 from matstd.diagnosis.accuracy.promised import (
     Domain,
     Promise,
@@ -21,6 +22,8 @@ __all__ = [
     "Proof",
     "Repeatability",
     "Scatter",
+    "blocks",
+    "domains",
     "machine_variance",
     "other_places",
     "probed_volume",

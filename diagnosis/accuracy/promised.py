@@ -8,11 +8,11 @@ so blocks of a domain (half of a stroke, a set-up, a part of the time) are left 
 larger their errors are than their uncertainties multiplies it.
 """
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from matstd.diagnosis.accuracy.left_out_blocks import domains
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.regression import left_out, solve
 from matstd.twin.effects import setup_errors
@@ -24,9 +24,6 @@ from matstd.twin.record import Instrument, IntArray, Touches
 DRAWN = 1000
 """Touches at other places, at least: their mean variance is known within a few per cent."""
 
-PARTS_OF_TIME = 3
-"""Parts of a run that are left out in turn."""
-
 MIN_BLOCKS = 3
 """Set-ups from which standards are placed as set-ups stood; with fewer, poses are moved."""
 
@@ -35,9 +32,6 @@ ON_STANDARD = (Instrument.TOUCH_PROBE, Instrument.CMM, Instrument.BALL_BAR)
 
 LINEAR = 3
 """Linear axes that bring the tool to any point."""
-
-MIN_ROWS = 4
-"""Touches that a block must leave out to be a test."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +65,11 @@ class Promise:
 def promise(fit: Fit) -> Promise:
     """What a fit promises; the other places are drawn alike each time."""
     rng = np.random.default_rng(0)
-    found = sorted(_domains(fit), key=lambda d: -d.ratio)
+    found = []
+    for name, parts in domains(fit.run.touches, fit.used).items():
+        squared = left_out(fit.solution.Q, fit.solution.residual, parts).squared
+        found.append(Domain(name, float(np.sqrt(squared / fit.used.sum()))))
+    found.sort(key=lambda d: -d.ratio)
     worst = found[0].ratio if found else 1.0
     touches, m = fit.run.touches, len(fit.model.parameters)
     variances = []
@@ -133,29 +131,3 @@ def _elsewhere(values: Array, label: IntArray, rng: np.random.Generator) -> Arra
 def _labels(touches: Touches, pose: IntArray) -> IntArray:
     key = np.column_stack([touches.setup, pose])
     return np.unique(key, axis=0, return_inverse=True)[1].reshape(-1)
-
-
-def _domains(fit: Fit) -> Iterator[Domain]:
-    """Every domain whose blocks can be left out."""
-    for name, blocks in _blocks(fit):
-        if len(blocks) > 1 and min(map(len, blocks)) >= MIN_ROWS:
-            left = left_out(fit.solution.Q, fit.solution.residual, blocks)
-            yield Domain(name, float(np.sqrt(left.squared / fit.used.sum())))
-
-
-def _blocks(fit: Fit) -> Iterator[tuple[str, Sequence[IntArray]]]:
-    """Rows of the fit, by numbers within it, of the blocks of every domain."""
-    touches = fit.run.touches
-    for axis in touches.chain.programmed_axes:
-        q = touches.reading(axis)[fit.used]
-        upper = q > np.median(q)
-        unit = "deg" if touches.chain.link(axis).kind == "rotary" else "mm"
-        yield f"{axis}_{unit}", (np.flatnonzero(~upper), np.flatnonzero(upper))
-    order = np.argsort(touches.time[fit.used], kind="stable")
-    yield "time_s", np.array_split(order, PARTS_OF_TIME)
-    setup = touches.setup[fit.used]
-    yield "setup", [np.flatnonzero(setup == k) for k in np.unique(setup)]
-    if touches.force is not None:
-        load = np.linalg.norm(touches.force, axis=1)[fit.used]
-        heavy = load > np.median(load)
-        yield "force", (np.flatnonzero(~heavy), np.flatnonzero(heavy))

@@ -12,6 +12,7 @@ from matstd.diagnosis.evidence import (
     Signatures,
     addition,
     projected,
+    ranked,
     scanned_grids,
     score_all,
     signatures,
@@ -159,22 +160,15 @@ def _on_grid(base: EffectSet, found: ScaledEffect) -> float:
 
 def _ranked(pool: Signatures, evidence: Array, least: float) -> list[int]:
     """Best variant of every candidate with at least some evidence, most first."""
-    order = np.argsort(-evidence, kind="stable")
-    _, first = np.unique(pool.owner[order], return_index=True)
-    ranked = order[np.sort(first)]
-    close = int(np.count_nonzero(evidence[ranked] > least))
-    near = ranked[: min(close, MAX_RIVALS)]
-    return [int(v) for v in (*near, *ranked[close : close + LISTED_FAR])]
+    best = pool.first_of_each(ranked(evidence))
+    close = int(np.count_nonzero(evidence[best] > least))
+    return [int(v) for v in (*best[: min(close, MAX_RIVALS)], *best[close : close + LISTED_FAR])]
 
 
 def _ordered(found: Sequence[Rival], prior: dict[str, float]) -> ConfusionClass:
     """The class headed by its likeliest member, with odds against it."""
-
-    def rank(r: Rival) -> float:
-        return r.log_odds - prior[r.effect.name]
-
-    head = min(found, key=rank)
-    rest = sorted((r for r in found if r is not head), key=rank)
+    likely = np.array([prior[r.effect.name] - r.log_odds for r in found])
+    head, *rest = (found[i] for i in ranked(likely))
     shifted = [Rival(r.sized, r.log_odds - head.log_odds, r.overlap) for r in rest]
     close = tuple(r for r in shifted if r.log_odds < POLICY.log_odds_alike)
     return ConfusionClass(

@@ -1,14 +1,14 @@
 """What to measure next: the touches that would distinguish two effects, as a run plan."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
-from matstd.twin.frames import Array
+from matstd.diagnosis.next_visit import greedy, separation
 from matstd.twin.model import columns
-from matstd.twin.record import Touches
+from matstd.twin.record import Touches, stacked
 
 PLANNED_TOUCHES = 24
 """Touches of a plan."""
@@ -56,45 +56,23 @@ def plan(
     if len(offers) < PLANNED_TOUCHES:
         return None
     offers = _later(run.touches, offers)
-    whole = _joined(run.touches, offers)
+    whole = stacked([run.touches, offers], run.touches.setups)
     u = float(np.median(first.u))
     own = columns(first.effects, whole)[len(run) :]
-    others = [columns(f.effects, whole)[len(run) :] @ f.theta for f in rivals]
-    difference = (own @ first.theta - np.array(others)) / u
-    chosen, gained = _greedy(difference, own @ first.spread / u)
-    if gained <= MIN_SEPARATION**2:
+    spread = own @ first.spread / u
+    others = [columns(f.effects, whole)[len(run) :] @ f.theta / u for f in rivals]
+    predicted = [(mean, spread) for mean in (own @ first.theta / u, *others)]
+    chosen = greedy(predicted[0], predicted[1:], PLANNED_TOUCHES)
+    seen, *unlike = [(mean[chosen], root[chosen]) for mean, root in predicted]
+    apart = min(separation(seen, other) for other in unlike)
+    if apart <= MIN_SEPARATION:
         return None
     ordered = np.array(sorted(chosen, key=lambda i: (offers.setup[i], offers.pose[i])))
     picked = offers[ordered]
     pace = _pace(run.touches)
     start = float(run.touches.time.max()) + pace
     time = np.asarray(start + pace * np.arange(len(picked)), dtype=float)
-    return Plan(names, replace(picked, time=time), float(np.sqrt(gained)))
-
-
-def _greedy(difference: Array, spread: Array) -> tuple[list[int], float]:
-    """Choice of touches with the largest ``d^T (1 + S S^T)^-1 d``, and that value.
-
-    Args:
-        difference: Of every rival at every touch, (R, N).
-        spread: Root of the covariance of the prediction, (N, P).
-    """
-    d, S = difference.copy(), spread.copy()
-    chosen: list[int] = []
-    gained = np.zeros(len(d))
-    free = np.ones(d.shape[1], dtype=bool)
-    for _ in range(min(PLANNED_TOUCHES, d.shape[1])):
-        variance = 1.0 + np.einsum("np,np->n", S, S)
-        i = int(np.argmax(np.where(free, d[int(np.argmin(gained))] ** 2 / variance, -1.0)))
-        gained += d[:, i] ** 2 / variance[i]
-        chosen.append(i)
-        free[i] = False
-        # what the touch teaches: covariance and expected difference of all others given this one
-        along = S @ S[i] / variance[i]
-        d = d - d[:, i][:, None] * along
-        root = 1.0 / (1.0 + np.sqrt(1.0 / variance[i]))
-        S = S - np.outer(along, S[i]) * root
-    return chosen, float(gained.min())
+    return Plan(names, replace(picked, time=time), apart)
 
 
 def _pace(touches: Touches) -> float:
@@ -112,17 +90,3 @@ def _later(touches: Touches, offers: Touches) -> Touches:
     own = {k: np.full(len(offers), v[last]) for k, v in touches.value.items()}
     rpm = None if touches.spindle_rpm is None else np.full(len(offers), touches.spindle_rpm[last])
     return replace(offers, time=time, temperature=temperature, value=own, spindle_rpm=rpm)
-
-
-def _joined(first: Touches, second: Touches) -> Touches:
-    """Two records one after the other: effects that remember need what went before."""
-    merged = {}
-    for field in fields(Touches):
-        a, b = getattr(first, field.name), getattr(second, field.name)
-        if field.name in ("chain", "setups", "instrument") or a is None:
-            merged[field.name] = a
-        elif field.name in ("temperature", "value"):
-            merged[field.name] = {k: np.concatenate([a[k], b[k]]) for k in a}
-        else:
-            merged[field.name] = np.concatenate([a, b])
-    return Touches(**merged)

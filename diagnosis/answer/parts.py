@@ -136,7 +136,8 @@ def verdict_parts(
         assert step.effect is not None
         explained = float(np.sqrt(max(before**2 - own**2, 0.0)))
         is_large = explained > POLICY.headline_noise_share * repeats.stated
-        is_certain = step.is_significant and step.p_value < POLICY.false_alarm
+        is_certain = step.p_value < POLICY.false_alarm
+        is_sized = step.worth >= POLICY.significant_ratio
         named.append(
             NamedEffect(
                 effect=step.effect,
@@ -144,7 +145,7 @@ def verdict_parts(
                 explained=explained,
                 share=min(explained**2 / whole, 1.0),
                 runner_up=step.confusion.runner_up if step.confusion else None,
-                is_headline=bool(is_certain and is_large),
+                is_headline=bool(is_certain and is_sized and is_large),
                 against_drift=against_drift.get(step.effect.name),
             )
         )

@@ -8,6 +8,7 @@ import numpy as np
 from matstd.diagnosis.accuracy import promise, repeatability
 from matstd.diagnosis.answer.alike import period_value
 from matstd.diagnosis.answer.ambiguity import ConfusionClass
+from matstd.diagnosis.answer.averaged import averaged
 from matstd.diagnosis.answer.detectable import detectable
 from matstd.diagnosis.answer.next_measurement import Plan, plan
 from matstd.diagnosis.answer.parts import VerdictParts, verdict_parts
@@ -167,7 +168,7 @@ def _result(
     left = _beyond_doubt(final.remains, steps[-1].fit)
     # a residual well below the stated uncertainty is allowed for, whatever pattern it has
     counted = () if _is_covered(steps[-1].fit) else left
-    last = steps[-1].fit
+    last, predicting = steps[-1].fit, averaged(task, steps, added, classes, gross)
     repeats = repeatability(last)
     repeat = to_repeat(last, repeats)
     named = [s.effect for s in steps[1:] if s.effect is not None]
@@ -191,7 +192,8 @@ def _result(
         verdict=verdict,
         steps=steps,
         parts=parts,
-        promise=promise(last),
+        predicting=predicting,
+        promise=promise(predicting),
         promise_before=promise(steps[0].fit),
         candidates=candidates,
         structure=start,

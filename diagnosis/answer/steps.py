@@ -76,11 +76,6 @@ class Step:
         is_sized = self.effect is None or len(self.effect.parameters) <= MAX_SIZED_PARAMETERS
         return self.p_value < (POLICY.certain_p if is_sized else POLICY.close_p)
 
-    @property
-    def is_significant(self) -> bool:
-        """Whether an effect exceeds its own uncertainty, or needs not to."""
-        return self.is_certain or self.worth >= POLICY.significant_ratio
-
 
 def significant_effects(
     task: DiagnosisTask, added: tuple[ScaledEffect, ...], final: SearchState

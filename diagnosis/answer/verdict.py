@@ -79,7 +79,9 @@ class Diagnosis(Tabular):
             and no repeats show it.
         steps: The error falling, effect by effect.
         parts: Geometry, named effects and remainder, each with its weight.
-        promise: Errors to expect of the model that stands, at the same touches and elsewhere.
+        predicting: The model that predicts: what was added, with every member of its classes that
+            predicts differently.
+        promise: Errors to expect of it, at the same touches and elsewhere; of laws that stand.
         promise_before: The same of the starting model.
         structure: What the residual of the starting model varies with.
         left: What the residual of the last step varies with; empty unless unexplained.
@@ -96,6 +98,7 @@ class Diagnosis(Tabular):
     verdict: Verdict
     steps: tuple[Step, ...]
     parts: VerdictParts
+    predicting: Fit
     promise: Promise
     promise_before: Promise
     candidates: tuple[Candidate, ...]
@@ -147,21 +150,36 @@ class Diagnosis(Tabular):
 
     @property
     def standing(self) -> Fit:
-        """The model with everything that stands: laws in the place of names withdrawn."""
-        return self.laws.after if self.laws is not None and self.withdrawn else self.fit
+        """The model with everything that stands.
+
+        It has laws where they replace names, and where the run is unexplained without them.
+        """
+        if self.laws is None or not self.laws.laws:
+            return self.fit
+        is_whole = self.withdrawn or self.verdict is Verdict.UNEXPLAINED
+        return self.laws.after if is_whole else self.fit
+
+    @property
+    def has_fallen(self) -> bool:
+        """Whether anything stands beside the starting model."""
+        return self.standing is not self.start
 
     def with_laws(self, laws: Learning) -> Self:
         """The same with laws of what remains.
 
-        Names that they explain better are withdrawn: none of them stands in a headline, the errors
-        to expect are those of the laws, and no plan distinguishes a name withdrawn from its rivals.
+        Where the laws stand in the model, the errors to expect are theirs: in an unexplained run,
+        and in the place of names. Names that they explain better are withdrawn: none of them stands
+        in a headline, and no plan distinguishes a name withdrawn from its rivals.
         """
+        found = replace(self, laws=laws)
+        if found.standing is not self.fit:
+            found = replace(found, promise=promise(found.standing))
         if not laws.instead_of:
-            return replace(self, laws=laws)
+            return found
         gone = {effect.name for effect in laws.instead_of}
         named = tuple(
             replace(one, is_headline=one.is_headline and one.effect.name not in gone)
             for one in self.parts.named
         )
         parts = replace(self.parts, named=named)
-        return replace(self, laws=laws, parts=parts, promise=promise(laws.after), plans=())
+        return replace(found, parts=parts, plans=())

@@ -243,6 +243,6 @@ def _stated(saved: SavedModel) -> Iterator[tuple[Charted, Estimate]]:
         if effect.kind == "backlash" and u[k] * MIN_DETERMINED_RATIO < parameter.sd:
             value = float(saved.estimates.mean[k])
             yield _charted(effect, names[k], parameter.unit), Estimate(value, float(u[k]))
-    if saved.source.held_out_um > 0.0:
-        error = saved.source.held_out
+    if saved.source.promise is not None:
+        error = saved.source.promise.same
         yield Charted(Overall.PROOF), _of_rms(error, saved.source.touches)

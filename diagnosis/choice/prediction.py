@@ -13,10 +13,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from matstd.diagnosis.choice.blocks import blocks, prune_by_held_out_error
+from matstd.diagnosis.accuracy import blocks
 from matstd.diagnosis.choice.bodies import bodies
 from matstd.diagnosis.choice.field import sized_field
 from matstd.diagnosis.choice.noise_memory import memory_of
+from matstd.diagnosis.choice.pruned import prune_by_held_out_error
 from matstd.diagnosis.evidence import Progress, ResidualSpace, ScaledEffect, quiet
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY

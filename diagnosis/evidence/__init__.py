@@ -24,6 +24,7 @@ from matstd.diagnosis.evidence.evidence import (
     Scores,
     addition,
     log_evidence,
+    ranked,
     score_all,
     screen,
 )
@@ -45,6 +46,7 @@ __all__ = [
     "period_of",
     "projected",
     "quiet",
+    "ranked",
     "scanned_grids",
     "score_all",
     "screen",

@@ -231,9 +231,10 @@ class Signatures:
             tries=self.tries[:owners],
         )
 
-    def columns_of(self, variant: int) -> Array:
-        """Projected columns of one variant, (N + P, k)."""
-        return self.C[:, self.start[variant] : self.start[variant + 1]]
+    def first_of_each(self, order: IntArray) -> IntArray:
+        """Of variants in some order the first of every candidate, in that order."""
+        _, first = np.unique(self.owner[order], return_index=True)
+        return np.asarray(order[np.sort(first)])
 
 
 def _inner(C: Array, left: IntArray, right: IntArray) -> Array:

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
-from matstd.diagnosis.evidence.effect_signatures import ResidualSpace, Signatures
+from matstd.diagnosis.evidence.effect_signatures import IntArray, ResidualSpace, Signatures
 from matstd.diagnosis.regression import PRIOR_DOF, LeftOut, f_probability, left_out
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect
@@ -24,6 +24,9 @@ the true noise inflates as much: beside the true noise it must still be free."""
 MIN_OWN_SHARE = 1e-4
 """Share of the square of a signature that model and other effects must leave. With less, its size
 is a hundred times as uncertain as it would be alone."""
+
+ROUNDING = 1e-6
+"""Difference of log evidence that rounding may make: ten thousand times what is seen."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,6 +173,22 @@ class Scores:
     evidence: Array
     scale: Array
     p: Array
+
+
+def ranked(evidence: Array) -> IntArray:
+    """Numbers of variants, most evidence first, (V,); of equal ones the first comes first.
+
+    Carriers that act alike at every touch differ by rounding, which must not choose among them.
+
+    Example:
+        >>> ranked(np.array([1.0, 2.0, 2.0 + 1e-12, -np.inf, -np.inf])).tolist()
+        [1, 2, 0, 3, 4]
+    """
+    order = np.argsort(-evidence, kind="stable")
+    with np.errstate(invalid="ignore"):  # two that cannot be scored
+        is_next = np.diff(-evidence[order]) > ROUNDING
+    level = np.concatenate([[0], np.cumsum(is_next)])[: len(order)]
+    return np.asarray(order[np.lexsort((order, level))])
 
 
 def score_all(effects: EffectSet, pool: Signatures, inside: Array | None = None) -> Scores:

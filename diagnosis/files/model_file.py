@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field
 
+from matstd.diagnosis.accuracy import Promise
 from matstd.diagnosis.files.curve_table import CurveEntry
 from matstd.diagnosis.files.determined import Determined, DeterminedEntry
 from matstd.diagnosis.fit import Learnt, Prior, Reported, Role, file_unit
@@ -83,7 +84,8 @@ class SourceEntry(Table):
 
     `revision` counts the runs that the model has learnt from, one after the other; `learnt_from`
     has their fingerprints, so that no touch is counted twice. `held_out_um` is the plain error that
-    the model promises for rows it has not seen; 0 where it promises none. `probes` are lengths and
+    the model promises for the same touches in another run, `elsewhere_um` that at other places; 0
+    where it promises none. `probes` are lengths and
     radii of the probes that touched, mm. `machine_hash` is the digest of the machine that was
     measured; "" in "model/1". `began` and `standard` are those of the run.
     """
@@ -96,6 +98,7 @@ class SourceEntry(Table):
     learnt_from: list[str] = Field(default_factory=list)
     made_with: str = ""
     held_out_um: float = 0.0
+    elsewhere_um: float = 0.0
     held_out_gross_errors: list[int] = Field(default_factory=list)
     memory: MemoryEntry | None = None
     probes: list[Annotated[list[float], Field(min_length=2, max_length=2)]] = Field(
@@ -106,9 +109,10 @@ class SourceEntry(Table):
     standard: str = ""
 
     @property
-    def held_out(self) -> float:
-        """The error that the model promises, mm."""
-        return self.held_out_um * UM
+    def promise(self) -> Promise | None:
+        """The errors that the model promises; None for none."""
+        same, elsewhere = self.held_out_um * UM, self.elsewhere_um * UM
+        return Promise(same, max(same, elsewhere), ()) if same > 0.0 else None
 
 
 class ModelTable(Table):
@@ -178,9 +182,7 @@ class SavedModel(Displayed):
             from_inner=self.from_inner,
             factor=source.noise_um * UM / float(np.median(run.u)),
             gross=np.isin(run.line, lines),
-            memory=None
-            if m is None
-            else Memory(m.correlation, m.step_s, m.by_place, m.is_filtered),
+            memory=Memory(m.correlation, m.step_s, m.by_place, m.is_filtered) if m else None,
         )
 
 

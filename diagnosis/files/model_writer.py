@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from matstd.diagnosis.accuracy import promise
 from matstd.diagnosis.files.curve_table import curve_entries
 from matstd.diagnosis.files.determined import Determined, determined_text
 from matstd.diagnosis.files.model_file import (
@@ -42,7 +43,8 @@ def model_text(
         run_name: Name of the run file, for a later reader of the model.
         before: Model whose estimates the fit began with; None if it began with none.
         made_with: Name and version of the program, for the same reader.
-        held_out: Plain error that is promised for rows not seen, mm; None for that of the fit.
+        held_out: Plain error of rows not seen in the choice of the model, mm; None for that of the
+            fit.
         reported: Sizes of effects as reported, by name.
         determined: Quantities that the run determines.
     """
@@ -95,6 +97,8 @@ def _source(
     fit: Fit, run_name: str, before: SavedModel | None, made_with: str, held_out: float | None
 ) -> dict[str, Any]:
     """What the estimates rest upon."""
+    promised = promise(fit)
+    same = promised.same if held_out is None else held_out
     earlier = before.source.learnt_from if before else []
     return {
         "run": run_name,
@@ -104,7 +108,8 @@ def _source(
         "revision": before.source.revision + 1 if before else 1,
         "learnt_from": [*earlier, *fit.run.fingerprints],
         "made_with": made_with,
-        "held_out_um": float(fit.test_rms if held_out is None else held_out) / UM,
+        "held_out_um": float(same) / UM,
+        "elsewhere_um": float(max(promised.elsewhere, same)) / UM,
         "held_out_gross_errors": [int(line) for line in fit.run.line[fit.gross_test_rows]],
         "probes": [list(probe) for probe in probes_of(fit.run.touches)],
         "machine_hash": fit.model.chain.fingerprint,

@@ -76,6 +76,7 @@ def visit_text(plan: VisitPlan) -> str:
     stop = "" if plan.pause_after is None else f" after touch {plan.pause_after}"
     head = (
         f"# to distinguish {plan.law.name} from its rivals; "
-        f"warm_up_s = {plan.schedule.warm_up:g}, pause_s = {plan.schedule.pause:g}{stop}\n"
+        f"warm_up_s = {plan.schedule.warm_up:g}, pause_s = {plan.schedule.pause:g}{stop}, "
+        f"slowness = {plan.schedule.slowness:g}\n"
     )
     return head + csv_text(rows[0], (row.values() for row in rows))

@@ -6,6 +6,7 @@ made, `course` what time and sensors do, `hypotheses` what every explanation pre
 """
 
 from matstd.diagnosis.next_visit.course import Schedule
+from matstd.diagnosis.next_visit.discrimination import greedy, separation
 from matstd.diagnosis.next_visit.hypotheses import DECIDED
 from matstd.diagnosis.next_visit.offers import candidate_targets, candidate_touches
 from matstd.diagnosis.next_visit.planned_visit import NoPlan, RivalPower, VisitPlan, plan_visit
@@ -18,5 +19,7 @@ __all__ = [
     "VisitPlan",
     "candidate_targets",
     "candidate_touches",
+    "greedy",
     "plan_visit",
+    "separation",
 ]

@@ -12,6 +12,7 @@ from matstd.diagnosis.evidence import (
     EffectSet,
     ResidualSpace,
     ScaledEffect,
+    ranked,
     scanned_grids,
     score_all,
     signatures,
@@ -241,13 +242,11 @@ def _best(space: ResidualSpace, library: Sequence[Effect], count: int) -> list[S
     scores = score_all(EffectSet(space, np.zeros((len(space.residual), 0))), pool)
     out: list[ScaledEffect] = []
     kinds: dict[str, int] = {}
-    taken: set[int] = set()
-    for variant in np.argsort(-scores.evidence, kind="stable"):
-        owner, effect = int(pool.owner[variant]), pool.variants[variant]
+    for variant in pool.first_of_each(ranked(scores.evidence)):
+        effect = pool.variants[variant]
         is_full = kinds.get(effect.kind, 0) >= MOST_OF_A_KIND
-        if owner in taken or is_full or not np.isfinite(scores.evidence[variant]):
+        if is_full or not np.isfinite(scores.evidence[variant]):
             continue
-        taken.add(owner)
         kinds[effect.kind] = kinds.get(effect.kind, 0) + 1
         out.append(ScaledEffect(effect, float(scores.scale[variant])))
         if len(out) == count:

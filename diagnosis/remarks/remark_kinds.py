@@ -35,6 +35,8 @@ class What(Enum):
     NOT_SIGNIFICANT = "effect, quantity, value, u, unit"
     SHORT_BEAM = "effect, slenderness"
     LOAD_TOO_SMALL = "effect, load"
+    FIXING_NOT_STATED = "effect"
+    """An expansion of a standard of which the run does not state where it is held."""
 
 
 @dataclass(frozen=True, slots=True)

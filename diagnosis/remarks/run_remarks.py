@@ -51,6 +51,7 @@ def remarks(fit: Fit, start: Fit | None = None) -> tuple[Remark, ...]:
     out += [] if jump is None else [jump]
     out += harmonics_alike(fit)
     out += _elastic(fit)
+    out += _fixing(fit)
     out += ([] if units else _noise(fit)) + _outliers(fit)
     if fit.widened > 1.0:
         out.append(noticed(What.PRIOR_WIDENED, factor=fit.widened))
@@ -98,6 +99,14 @@ def _elastic(fit: Fit) -> list[Remark]:
         if rows and float(felt[rows].max()) < 1.0:
             out.append(noticed(What.LOAD_TOO_SMALL, effect=effect.name, load=load))
     return out
+
+
+def _fixing(fit: Fit) -> list[Remark]:
+    """Expansions of a standard from a point that the run does not state."""
+    if all(setup.fixing is not None for setup in fit.run.touches.setups):
+        return []
+    names = (e.name for e in fit.model.effects if e.kind == "artefact-expansion")
+    return [noticed(What.FIXING_NOT_STATED, effect=name) for name in names]
 
 
 def _memory(fit: Fit) -> list[Remark]:

@@ -8,11 +8,12 @@ with the same sensors at nearly the same temperatures: what merely follows a slo
 them predicts a pose, and fails where an hour is left out as a whole.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from matstd.diagnosis.accuracy import domains
 from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, Signatures
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import f_tail
@@ -21,11 +22,8 @@ from matstd.twin.frames import Array
 from matstd.twin.model import Effect, is_tunable
 from matstd.twin.record import IntArray
 
-PARTS_OF_TIME = 5
-"""Stretches of time that are left out in turn; a law of warming up is seen in one of them."""
-
-MIN_ROWS = 4
-"""Touches that a block must leave out to be a test."""
+LEFT_OUT = ("time_s", "setup")
+"""Domains of which blocks are left out: an effect may act in one half of a travel alone."""
 
 MIN_SHARED_ROWS = 0.5
 """Share of rows with the instant and readings of the row before, from which rows of an instant are
@@ -159,32 +157,18 @@ def tested(others: EffectSet, whole: EffectSet, quick: Verified) -> Verified:
     )
     if not found.stands_by_poses:
         return found
+    known = domains(whole.complement.touches, whole.complement.used)
     gains = [
         by_blocks(whole, blocks).held_out_log_density
         - by_blocks(others, blocks).held_out_log_density
-        for blocks in domain_blocks(whole.complement)
+        for blocks in (known[name] for name in LEFT_OUT if name in known)
     ]
-    return replace(found, domain_density=min(gains))
+    return replace(found, domain_density=min(gains, default=found.density))
 
 
 def by_blocks(effects: EffectSet, groups: tuple[IntArray, ...]) -> EffectSet:
     """The set with other rows held out together."""
     return EffectSet(replace(effects.complement, groups=groups), effects.A)
-
-
-def domain_blocks(space: ResidualSpace) -> Iterator[tuple[IntArray, ...]]:
-    """Rows of the fit, by numbers within it, of the blocks of every domain."""
-    yield by_time(space)
-    setup = space.touches.setup[space.used]
-    blocks = tuple(np.flatnonzero(setup == k) for k in np.unique(setup))
-    if len(blocks) > 1 and min(map(len, blocks)) >= MIN_ROWS:
-        yield blocks
-
-
-def by_time(space: ResidualSpace) -> tuple[IntArray, ...]:
-    """Stretches of time."""
-    order = np.argsort(space.touches.time[space.used], kind="stable")
-    return tuple(np.array_split(order, PARTS_OF_TIME))
 
 
 def p_by_instants(others: EffectSet, whole: EffectSet) -> float:

@@ -26,6 +26,7 @@ from matstd.diagnosis.evidence import (
     blocks,
     projected,
     quiet,
+    ranked,
     scanned_grids,
     screen,
     signatures,
@@ -151,7 +152,7 @@ class Library:
             return {}
         scores = self._screen(found, effects)
         best: dict[int, list[int]] = {}
-        for variant in np.argsort(-scores.evidence, kind="stable"):
+        for variant in ranked(scores.evidence):
             best.setdefault(int(self.sample.owner[variant]), []).append(int(variant))
         names = {s.effect.name for s in found}
         known = [i for i, grid in enumerate(self.grids) if grid.effect.name in names]

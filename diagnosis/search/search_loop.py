@@ -33,6 +33,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from matstd.diagnosis.accuracy import domains
 from matstd.diagnosis.evidence import (
     EffectSet,
     Progress,
@@ -53,7 +54,7 @@ from matstd.diagnosis.search.edges import (
     without,
 )
 from matstd.diagnosis.search.further_parts import WiderSearch, further_periods, one_period, tables
-from matstd.diagnosis.search.members import EffectSubset, Member, by_blocks, by_time
+from matstd.diagnosis.search.members import EffectSubset, Member, by_blocks
 from matstd.diagnosis.search.missing_driver import is_unrecorded, unrecorded
 from matstd.diagnosis.search.screening import Budget, Library, joined_shortlists
 from matstd.diagnosis.search.selection import Search
@@ -353,7 +354,9 @@ def _as_pattern(search: Search, chosen: EffectSubset, member: Member) -> Structu
 
 def _by_stretches(effects: EffectSet) -> float:
     """Held-out error of a set when long stretches of time are left out."""
-    return by_blocks(effects, by_time(effects.complement)).held_out.rms
+    space = effects.complement
+    parts = domains(space.touches, space.used).get("time_s", space.groups)
+    return by_blocks(effects, parts).held_out.rms
 
 
 def most_evident(found: Sequence[Structure]) -> Structure:

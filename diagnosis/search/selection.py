@@ -22,6 +22,7 @@ from matstd.diagnosis.evidence import (
     Scores,
     Signatures,
     quiet,
+    ranked,
     score_all,
     signatures,
 )
@@ -126,9 +127,8 @@ class Search:
             scores = replace(scores, evidence=scores.evidence + self.prior + chosen.prior)
             # a drift that would not stand must not hide a law that does
             chance = self._is_unrecorded & (scores.p * self.pool.tried >= POLICY.false_alarm)
-            order = np.argsort(-np.where(chance, -np.inf, scores.evidence), kind="stable")
-            _, first = np.unique(self.pool.owner[order], return_index=True)
-            self._known[key] = scores, order[np.sort(first)].tolist()
+            order = ranked(np.where(chance, -np.inf, scores.evidence))
+            self._known[key] = scores, self.pool.first_of_each(order).tolist()
         return self._known[key]
 
     def _inside(self, chosen: EffectSubset) -> Array:
@@ -157,7 +157,10 @@ class Search:
     def additions(self, chosen: EffectSubset) -> list[int]:
         """The same without tables by direction whose plain table is a member."""
         plain = {t.symbol for m in chosen.members if (t := traits(m.effect)).is_table}
-        own = ((v, traits(self.pool.variants[v])) for v in self.ranking(chosen))
+        ranked = self.ranking(chosen)
+        if not plain:
+            return ranked
+        own = ((v, traits(self.pool.variants[v])) for v in ranked)
         return [
             v for v, t in own if not (t.is_table and t.reversal is not None and t.symbol in plain)
         ]

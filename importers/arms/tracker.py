@@ -9,14 +9,13 @@ did, becomes columns of the run.
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 
 from matstd.importers.arms.dh import arm_from_dh
-from matstd.importers.arms.mistakes import likely_mistake
 from matstd.importers.arms.orientation import arms, check_orientations, target_rotation
 from matstd.importers.arms.placement import Placement, located
 from matstd.importers.arms.table import ArmTable, coupled, read_arm
@@ -36,8 +35,48 @@ from matstd.twin.record import (
 )
 from matstd.twin.units import UM
 
-SAME_READING = 1e-4
-"""Readings that agree within this (mm, rad) are one pose, held out as a whole."""
+IMPLAUSIBLE_RMS = 5.0  # deviations (mm rms) beyond those of an uncalibrated arm (about 1 mm)
+
+EXPLAINED_SHARE = 0.2  # a mistake explains the deviations if at most this share remains
+
+
+def likely_mistake(
+    q: Array, chain: Chain, other: Chain | None, residual: Callable[[Chain, Array], float]
+) -> tuple[str, float] | None:
+    """The mistake that explains implausible deviations, and the remaining ones, mm rms, or None.
+
+    Args:
+        q: Readings, (N, J), rad.
+        other: The arm with Denavit and Hartenberg's parameters read in the other convention.
+        residual: Deviations of an arm at some readings, mm rms.
+    """
+    stated = residual(chain, q)
+    if stated < IMPLAUSIBLE_RMS:
+        return None
+    found = [(residual(chain, readings), words) for words, readings in _mistakes(q)]
+    if other is not None:
+        words = "its parameters are read in the other convention (with or without --modified)"
+        found.append((residual(other, q), words))
+    best, words = min(found)
+    return (words, best) if best < EXPLAINED_SHARE * stated else None
+
+
+def _mistakes(q: Array) -> Iterator[tuple[str, Array]]:
+    """Readings with one mistake undone."""
+    for k in range(q.shape[1]):
+        turned = q.copy()
+        turned[:, k] *= -1.0
+        yield f"joint {k + 1} turns the other way", turned
+    for k in range(1, q.shape[1]):
+        for sign in "+-":
+            how = f"J{k + 1}{sign}J{k}"
+            words = f"joint {k + 1} counts from the link before joint {k} (--coupled {how})"
+            yield words, coupled(q, how)
+    yield "joints are in radians ([rad] behind the names of their columns)", np.rad2deg(q)
+    yield "joints are in degrees ([deg] behind the names of their columns)", np.deg2rad(q)
+
+
+SAME_READING = 1e-4  # readings that agree within this (mm, rad) are one pose, held out as a whole
 
 _TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
 
@@ -162,6 +201,7 @@ def tracker_run(
         seen = _by_poses(table, chain, u, reflector, u_angle)
     clock, force = sheet.find(_TIME), loads(sheet)
     which, n = seen.row, len(seen.row)
+    # a pose that was visited again must not predict itself: both visits are held out together
     near = np.round(table.q[which] / SAME_READING).astype(np.int64)
     touches = replace(
         at_poses(chain, table.q[which], -seen.target[:, 2]),

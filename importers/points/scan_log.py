@@ -30,27 +30,17 @@ _FEWEST_POINTS = 10  # points of a scan
 
 @dataclass(frozen=True, eq=False)
 class ScanLog:
-    """Points of one scan in the order of time.
+    """Points of one scan in the order of time."""
 
-    Attributes:
-        path: Of the file.
-        row: Line of every point in the file, (N,).
-        line: Number of the line of the scan, (N,); all 1 where the file has none.
-        position: Coordinates of the ball, (N, 3), mm.
-        deflection: Along the surface's normal, to be added to the distance of the ball, (N,), mm.
-        rotary: Readings of rotary axes that the file has, by letter, (N,), rad.
-        time: Since the first point, (N,), s; zeros where the file has none.
-        is_numbered: Whether the file numbers its lines.
-    """
-
-    path: Path
-    row: IntArray
-    line: IntArray
-    position: Array
+    path: Path  # of the file
+    row: IntArray  # line of every point in the file, (N,)
+    line: IntArray  # number of the line of the scan, (N,); all 1 where the file has none
+    position: Array  # coordinates of the ball, (N, 3), mm
+    # along the surface's normal, to be added to the distance of the ball, (N,), mm
     deflection: Array
-    rotary: Mapping[str, Array]
-    time: Array
-    is_numbered: bool
+    rotary: Mapping[str, Array]  # readings of rotary axes that the file has, by letter, (N,), rad
+    time: Array  # since the first point, (N,), s; zeros where the file has none
+    is_numbered: bool  # whether the file numbers its lines
 
 
 def read_scan_log(path: str | Path, unit: str = "mm", names: Sequence[str] = ()) -> ScanLog:

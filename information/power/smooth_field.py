@@ -20,33 +20,84 @@ Reference:
     X. Lin, Biometrika 84 (1997) 309 (score test of a variance component).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from matstd.information.power.quadratic import exceedance, quantile
 from matstd.twin.frames import Array
+from matstd.twin.record import IntArray
+
+
+def low_rank(
+    diagonal: Array,
+    column: Callable[[int], Array],
+    left_out: float = 1e-3,
+    most: int | None = None,
+) -> tuple[Array, IntArray]:
+    """``F`` with ``F F^T = K`` but for a share of the trace: Cholesky with pivots.
+
+    A smooth covariance of thousands of points has a rank of a few hundred; its columns are asked
+    for only where they are used.
+
+    Args:
+        diagonal: Of K, (N,).
+        column: Column of K at a point, (N,).
+        left_out: Share of the trace of K that may be left out.
+        most: Columns at most; None for N.
+
+    Returns:
+        Shape (N, M), and the points whose columns were used, (M,).
+
+    Reference:
+        Harbrecht, Peters, Schneider, Applied Numerical Mathematics 62 (2012) 428.
+    """
+    left = np.array(diagonal, dtype=np.float64)
+    enough, most = left_out * left.sum(), len(left) if most is None else min(most, len(left))
+    F, pivots = np.zeros((most, len(left))), []
+    for m in range(most):
+        pivot = int(np.argmax(left))
+        if left.sum() <= enough or left[pivot] <= 0.0:
+            F = F[:m]
+            break
+        row = (column(pivot) - F[:m, pivot] @ F[:m]) / np.sqrt(left[pivot])
+        F[m] = row
+        pivots.append(pivot)
+        left = np.maximum(left - row**2, 0.0)
+        left[pivot] = 0.0
+    return F.T, np.array(pivots, dtype=np.int64)
+
+
+def decorrelated(columns: Array, u: Array, memory: Array) -> Array:
+    """Columns in units of independent noise, (N, K).
+
+    The noise of row i is ``e_i = m_i e_(i-1) u_i / u_(i-1) + sqrt(1 - m_i^2) u_i z_i``, z
+    independent; what the row before already showed of it is subtracted.
+
+    Args:
+        columns: Deviations in mm, (N, K), in the order of the measurement.
+        u: Standard uncertainty of every row, (N,), mm.
+        memory: Correlation of the noise with that of the row before, (N,); 0 for a touch and at the
+            start of a line.
+    """
+    scaled = columns / u[:, None]
+    before = np.concatenate([np.zeros((1, scaled.shape[1])), scaled[:-1]])
+    return np.asarray((scaled - memory[:, None] * before) / np.sqrt(1.0 - memory**2)[:, None])
+
 
 _RANK = 1e-9  # eigenvalue relative to the largest, below which a pattern is rounding
 
 
 @dataclass(frozen=True, eq=False)
 class FieldTest:
-    """A test for a smooth field, made for some measurements.
+    """A test for a smooth field, made for some measurements."""
 
-    Attributes:
-        explained: ``Q``, (N, B).
-        patterns: ``p``, what is multiplied with the measurements, (N, M).
-        weight: ``l / (1 + l)`` of every pattern, (M,).
-        risk: Probability that it finds a field where there is none.
-        threshold: Of T.
-    """
-
-    explained: Array
-    patterns: Array
-    weight: Array
-    risk: float
-    threshold: float
+    explained: Array  # ``Q``, (N, B)
+    patterns: Array  # ``p``, what is multiplied with the measurements, (N, M)
+    weight: Array  # ``l / (1 + l)`` of every pattern, (M,)
+    risk: float  # probability that it finds a field where there is none
+    threshold: float  # of T
 
     def statistic(self, y: Array) -> Array:
         """T of measurements (N, K) in units of independent noise, (K,)."""

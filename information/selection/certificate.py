@@ -1,6 +1,6 @@
 """Certified efficiency of a choice of touches.
 
-The efficiency is the bound of `matstd.information.selection.bound` over the criterion of the
+The efficiency is the bound of `matstd.information.selection.relaxation` over the criterion of the
 choice; the fractions of `matstd.information.selection.relaxation` make the bound tight, their
 heaviest touches a good start for exchanges.
 """

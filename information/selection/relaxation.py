@@ -18,12 +18,48 @@ import numpy as np
 from scipy.optimize import brentq
 
 from matstd.information.criteria import DesignCriterion, Tangent
-from matstd.information.selection.bound import slope
 from matstd.information.selection.shares import cells, keeps, largest_sum
 from matstd.information.selection.touch_selection import Mask, Quota
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
+
+
+@dataclass(frozen=True, eq=False)
+class Slope:
+    """Slope of a criterion at one information."""
+
+    inverse: Array  # ``M_s^-1``, (S, R, R)
+    S: Array  # forms of the gains ``w^T S_s w``, (S, R, R)
+    constant: float  # ``sum_s trace(S_s prior_s)``
+    value: float  # of the tangent: the criterion itself, or below it
+    degree: float  # ``sum_s trace(S_s M_s)``
+
+    def gains(self, W: Array) -> Array:
+        """Gain of every candidate, (N,)."""
+        total = self.S.sum(axis=0)
+        return np.asarray(np.einsum("nr,nr->n", W @ total, W), dtype=np.float64)
+
+    def bound(self, largest: float) -> float:
+        """Bound for choices whose gains sum up to at most `largest`."""
+        return self.value * self.degree / (self.constant + largest)
+
+
+def slope(criterion: DesignCriterion, information: Array) -> Slope:
+    """Slope of a criterion at an information (R, R)."""
+    M = criterion.prior + information
+    inverse = np.asarray(np.linalg.solve(M, np.broadcast_to(np.eye(M.shape[1]), M.shape)))
+    tangents = criterion.tangents(information)
+    S = np.stack([t.slope(i) for t, i in zip(tangents, inverse, strict=True)])
+    raw = sum(t.value(m, i) for t, m, i in zip(tangents, M, inverse, strict=True))
+    return Slope(
+        inverse=inverse,
+        S=S,
+        constant=float(np.sum(S * criterion.prior)),
+        value=criterion.measure.shown(raw),
+        degree=sum(t.degree(i) for t, i in zip(tangents, inverse, strict=True)),
+    )
+
 
 _STEPS = 400  # vertex exchanges between two looks at all candidates
 _STEPS_CURVED = 40  # the same along one tangent of a criterion that is curved

@@ -69,30 +69,20 @@ SOMETIMES = (
 
 @dataclass(frozen=True, eq=False)
 class TableResults:
-    """Tables of controls that were written, read back and played on the exact twin.
+    """Tables of controls that were written, read back and played on the exact twin."""
 
-    Attributes:
-        done: What the tables of every control correct and leave.
-        refused: Why tables of other controls were not written: they would make the machine worse.
-    """
-
-    done: tuple[VerifiedTables, ...]
+    done: tuple[VerifiedTables, ...]  # what the tables of every control correct and leave
+    # why tables of other controls were not written: they would make the machine worse
     refused: tuple[Harmful, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class Shares:
-    """What every error adds along a program or at poses.
+    """What every error adds along a program or at poses."""
 
-    Attributes:
-        touches: The poses.
-        whole: Deviation of the tool point from the datum's, (N, 3), mm.
-        each: What each error has of it.
-    """
-
-    touches: Touches
-    whole: Array
-    each: tuple[Share, ...]
+    touches: Touches  # the poses
+    whole: Array  # deviation of the tool point from the datum's, (N, 3), mm
+    each: tuple[Share, ...]  # what each error has of it
 
     def save(self, folder: str | Path, force: bool = False) -> None:
         """Write contributions.csv and contributions.png, whole or not at all."""

@@ -90,13 +90,13 @@ class Diagnosis(Saveable, answer.Diagnosis):
         is_whole = self.auto or self.verdict is answer.Verdict.UNEXPLAINED
         if self.laws is not None and self.laws.laws and is_whole:
             return self.laws.after
-        return self.fit if self.auto else self.steps[self.named].fit
+        return self.predicting if self.auto else self.steps[self.named].fit
 
     @property
     def model_text(self) -> str:
         """Text of the model file."""
         made_with = f"material-standard {versions()['material-standard']}"
-        is_all = self.learnt is self.fit and self.choice is not None
+        is_all = self.learnt is self.predicting and self.choice is not None
         promised = self.choice.best.error if is_all and self.choice else None
         if self.laws is not None and self.learnt is self.laws.after and self.laws.laws:
             promised = self.laws.held_out[0].after
@@ -210,11 +210,12 @@ def diagnose(
         progress,
         np.random.default_rng(0),
     )
-    if learn and found.parts.remains.is_real:
+    if learn:
         progress(0.9, "a law of what remains")
-        estimates = before.estimates if before else None
-        laws = learn_remainder(found.steps[len(added)].fit, found.fit, estimates)
-        found = found.with_laws(laws)
+        estimates, is_left = before.estimates if before else None, found.parts.remains.is_real
+        named = found.steps[len(added)].fit
+        laws = learn_remainder(named, found.fit, estimates, is_left=is_left)
+        found = found if laws is None else found.with_laws(laws)
     known = {f.name: getattr(found, f.name) for f in fields(found)}
     made: dict[str, Any] = {
         "before": before,

@@ -1,8 +1,8 @@
-"""Programs planned again for where the standard stands, as logs show it."""
+"""Programs planned again: for where the standard stands, as logs show it, or for a visit."""
 
 import re
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
@@ -13,7 +13,15 @@ from matstd.api.saved import REPORT_FILES
 from matstd.artefact.body import Standard, read_standard
 from matstd.artefact.reach import DatumBall
 from matstd.options import SHEET, SHEET_FILES
-from matstd.probe_paths.campaign import ball_centres, checked_parts, evaluate, read_program_of
+from matstd.probe_paths.campaign import (
+    VirtualMachine,
+    ball_centres,
+    check_moves,
+    checked_parts,
+    evaluate,
+    read_program_of,
+    simulate,
+)
 from matstd.probe_paths.control import (
     BALL,
     LogPart,
@@ -25,8 +33,15 @@ from matstd.probe_paths.control import (
 )
 from matstd.probe_paths.emit import SEARCH, Feeds, ProgramSet, make_programs
 from matstd.probe_paths.language import Dialect, language_of, read_dialect
-from matstd.probe_paths.locate import Spread, find_standard, planned_again
+from matstd.probe_paths.locate import (
+    PlannedVisit,
+    Spread,
+    find_standard,
+    planned_again,
+    read_visit,
+)
 from matstd.probe_paths.stations import Station, all_programs
+from matstd.report.laws import visit_lines
 from matstd.report.pages import Printer, printer
 from matstd.report.words import located_lines
 from matstd.stages.sheets import write_sheets
@@ -37,26 +52,23 @@ from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG, MINUTE, UM
 
-SEED = 0
-"""Of the places that are tried first: the same log gives the same programs."""
+SEED = 0  # of the places that are tried first: the same log gives the same programs
 
-ROUGH = 1.0 * UM
-"""Uncertainty of a touch where only the place of the standard is asked for, mm."""
+ROUGH = 1.0 * UM  # uncertainty of a touch where only the place of the standard is asked for, mm
 
-OURS = (*REPORT_FILES, *SHEET_FILES, "programs/*")
-"""Files that not every replan leaves."""
+OURS = (*REPORT_FILES, *SHEET_FILES, "programs/*")  # files that not every replan leaves
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Replanned(Displayed):
-    """Programs for where the standard stands; `replan` returns it.
+    """Programs for where the standard stands; `replan` and `planned_visit` return it.
 
     Attributes:
         design: Folder of the design.
         setup: Where the standard stands.
         stations: Plans and programs of every probe.
         feeds: Of the programs.
-        lines: Sentences on the place that was found.
+        lines: Sentences on the place that was found, or on how a visit is made.
         left_alone: Set-ups whose programs stay as they are.
 
     Example:
@@ -138,7 +150,7 @@ def replan(
     parts = [part for log in logs for part in read_log(log, chain.rotary_axes)]
     here, others = of_one_setup(programs, parts)
     setup, lines = _place(parts, standard, chain, words, spread)
-    stations = _stations(here, standard, chain, setup, control)
+    stations = _stations(by_probe(here, control), standard, chain, setup)
     return Replanned(
         design=design,
         setup=setup,
@@ -147,6 +159,72 @@ def replan(
         lines=tuple(lines),
         left_alone=tuple(others),
     )
+
+
+def planned_visit(
+    touches: str | Path, design: str | Path, *, control: str | None = None
+) -> Replanned:
+    """Programs of a planned visit: its touches, in its order, from its sides.
+
+    Args:
+        touches: `next_visit.csv` of `learn` or `diagnose`, or a plan of a diagnosis.
+        design: Folder of the design whose programs made the run, or of a replan.
+        control: Whose words the programs have; that of the programs of the design without it.
+
+    Raises:
+        BadFile: A folder without programs, or a file that cannot be read.
+        DesignError: A set-up that no program has.
+        NotReachable: More touches cannot be made than may be dropped.
+    """
+    design = Path(design)
+    chain = read_machine(design / "machine.toml")
+    standard = read_standard(design / "standard.toml")
+    visits, schedule = read_visit(touches, chain, standard)
+    files = programs_of(design)
+    words = _dialect(control, files[0])
+    programs = [read_program(file, chain, dialect=words) for file in files]
+    names = list(dict.fromkeys(program.heading.setup.name for program in programs))
+    if missing := [name for name in visits if name not in names]:
+        found = f"set-up {', '.join(missing)}"
+        raise BadFile(touches, "setup", found, f"one that programs are for: {', '.join(names)}")
+    stations = []
+    for name, visit in visits.items():
+        here = [program for program in programs if program.heading.setup.name == name]
+        first = next(iter(by_probe(here, control).items()))
+        stations += _stations(dict([first]), standard, chain, here[0].heading.setup, visit)
+    return Replanned(
+        design=design,
+        setup=stations[0].plan.setup,
+        stations=tuple(stations),
+        feeds=feeds_of(programs, chain),
+        lines=tuple(visit_lines(schedule, _after_standstill(stations), *_on_twin(stations, chain))),
+        left_alone=(),
+    )
+
+
+def _on_twin(stations: Sequence[Station], chain: Chain) -> tuple[int, float]:
+    """Touches that the programs make on the twin, every move checked, and their duration, s."""
+    touches, duration = 0, 0.0
+    for one in stations:
+        programs = [program.read for program in one.programs.programs]
+        for program in programs:
+            check_moves(program, one.plan.standard, chain)
+        rng = np.random.default_rng(SEED)
+        made = simulate(programs, one.plan.standard, VirtualMachine(chain), rng)
+        touches += len(made.run)
+        duration += sum(program.duration for program in one.programs.programs)
+    return touches, duration
+
+
+def _after_standstill(stations: Sequence[Station]) -> str:
+    """Name of the first program after the standstill; "" without one."""
+    for one in stations:
+        stretch = np.array([visit.stretch for visit in one.plan.visits])[one.plan.visit]
+        ends = np.cumsum([program.touches for program in one.programs.programs])
+        for program, end in zip(one.programs.programs, ends, strict=True):
+            if stretch[end - 1] > 0:
+                return program.name
+    return ""
 
 
 def of_one_setup(
@@ -169,16 +247,17 @@ def of_one_setup(
 
 
 def _stations(
-    programs: list[ReadProgram],
+    programs: Mapping[Dialect, list[ReadProgram]],
     standard: Standard,
     chain: Chain,
     setup: Setup,
-    control: str | None,
+    visit: PlannedVisit | None = None,
 ) -> list[Station]:
     """The programs of every probe, planned again for where the standard stands."""
     out = []
-    for words, mine in by_probe(programs, control).items():
-        plan = planned_again(mine, standard, chain, setup, _ball_of(mine[0], words, chain))
+    for words, mine in programs.items():
+        ball = _ball_of(mine[0], words, chain)
+        plan = planned_again(mine, standard, chain, setup, ball, visit)
         out.append(Station(plan, words, make_programs(plan, words, feeds_of(mine, chain))))
     return out
 

@@ -45,11 +45,6 @@ T = TypeVar("T")
 class Trend(Saveable, Displayed, History):
     """A machine over several runs; `trend` returns it.
 
-    Attributes:
-        title: Of what was charted.
-        paths: Of the runs or models in the order of time; empty where records were given.
-        left_out: Files of the folder that are neither run nor model.
-
     Example:
         >>> found = trend("trend")
         >>> [chart.of.symbol for chart in found.changed if chart.course.drift]
@@ -57,9 +52,10 @@ class Trend(Saveable, Displayed, History):
     """
 
     sometimes = ("pictures/*.png", *REPORT_FILES)
-    title: str = ""
+    title: str = ""  # of what was charted
+    # of the runs or models in the order of time; empty where records were given
     paths: tuple[str, ...] = ()
-    left_out: tuple[str, ...] = ()
+    left_out: tuple[str, ...] = ()  # files of the folder that are neither run nor model
     is_of_models: bool = False
 
     @property
@@ -126,6 +122,7 @@ def trend(
             f"{where}{len(given)} runs or models, expected at least {FEWEST}; two runs are "
             "compared by matstd diagnose FIRST.csv SECOND.csv"
         )
+    # model files hold their estimates: nothing is fitted again
     is_of_models = all(isinstance(one, str) and one.endswith(".toml") for one in given)
     made = _of_models(given) if is_of_models else _of_runs(given, add, progress)
     occasions = [replace(one, date=one.date or date_of(one.name)) for one in made]

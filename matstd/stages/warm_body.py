@@ -17,19 +17,13 @@ class WarmBody:
 
     The thermometer reads `temperature`; the piece differs from it, and from its stated expansion
     and lengths, at random by their standard uncertainties.
-
-    Attributes:
-        temperature: As read, degC.
-        u_temperature: Of the reading, K.
-        expansion: As stated, 1/K.
-        u_scale: Of the calibrated lengths, relative.
     """
 
-    temperature: float
-    u_temperature: float
-    expansion: float
+    temperature: float  # as read, degC
+    u_temperature: float  # of the reading, K
+    expansion: float  # as stated, 1/K
     u_expansion: float
-    u_scale: float
+    u_scale: float  # of the calibrated lengths, relative
 
     @classmethod
     def of(cls, study: StudySettings, standard: Standard, known: Calibration) -> "WarmBody":

@@ -3,12 +3,19 @@
 Nothing here knows a machine. A reader that stands on it decides which blocks it takes.
 """
 
-from matstd.nc.grammar.blocks import Block, Line, gcode_lines, klartext_blocks
+from matstd.nc.grammar.blocks import (
+    NUMBER,
+    SIGNED,
+    Block,
+    Line,
+    gcode_lines,
+    klartext_blocks,
+    split_words,
+)
 from matstd.nc.grammar.flow import MAX_DEPTH, Flow, label_places
 from matstd.nc.grammar.formulas import COMPARISONS
 from matstd.nc.grammar.modal import DATUMS, MODAL, Modal
 from matstd.nc.grammar.order import run_order
-from matstd.nc.grammar.words import NUMBER, SIGNED, split_words
 
 __all__ = [
     "COMPARISONS",

@@ -1,8 +1,29 @@
-"""Text of a program to its blocks: numbers, comments and continued lines, nothing else."""
+"""Text of a program to its blocks and words: numbers, comments, continued lines, nothing else."""
 
 import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
+
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"
+"""A number as programs of any origin write it."""
+
+SIGNED = r"[+-]\d{1,5}(?:\.\d{0,7})?"
+"""A coordinate as our own programs write it and controls save it: always with its sign."""
+
+_WORD = re.compile(rf"([A-Z])({NUMBER})")
+_WORDS = re.compile(rf"(?:[A-Z]{NUMBER})*")
+
+
+def split_words(text: str) -> list[tuple[str, float]]:
+    """Words of a block: letters with their numbers.
+
+    Raises:
+        ValueError: Something that is no word, which is the message.
+    """
+    bare = "".join(text.split())
+    if not _WORDS.fullmatch(bare):
+        raise ValueError(_WORD.sub("", bare))
+    return [(letter, float(number)) for letter, number in _WORD.findall(bare)]
 
 
 class Block(NamedTuple):

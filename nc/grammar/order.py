@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from matstd.nc.grammar.blocks import Block
+from matstd.nc.grammar.blocks import NUMBER, Block
 from matstd.nc.grammar.flow import Flow, label_places
 from matstd.nc.grammar.formulas import (
     COMPARISONS,
@@ -17,11 +17,9 @@ from matstd.nc.grammar.formulas import (
     NotAFormulaError,
     function_value,
 )
-from matstd.nc.grammar.words import NUMBER
 from matstd.twin.errors import BadFile
 
-MAX_BLOCKS = 1_000_000
-"""Largest number of executed blocks; beyond it a program does not end."""
+MAX_BLOCKS = 1_000_000  # largest number of executed blocks; beyond it a program does not end
 
 _VALUE = rf"[+-]?Q\d+|{NUMBER}"
 _NAME = r'\d+|"[^"]+"'

@@ -25,8 +25,7 @@ from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.machine import Chain
 from matstd.twin.units import HOUR, UM
 
-COVERAGE = 2.0
-"""Coverage factor of a significant change."""
+COVERAGE = 2.0  # coverage factor of a significant change
 
 _UNKNOWNS = 4
 _EXCESS_SCATTER = 3.0  # times the stated noise in what the four numbers leave over
@@ -34,28 +33,19 @@ _EXCESS_SCATTER = 3.0  # times the stated noise in what the four numbers leave o
 
 @dataclass(frozen=True, eq=False)
 class BallChange:
-    """Changes between two measurements of a ball.
-
-    Attributes:
-        before: Time of the first measurement.
-        after: Time of the second.
-        centre: By how much its centre has moved, table frame, (3,), mm.
-        radius: By how much the effective radius of the probe has grown, mm.
-        u: Standard uncertainties of the four, (4,), mm.
-        scatter: What four numbers do not explain, rms of one touch, mm; of a ball moved and a
-            radius changed alone it is the noise of a touch.
-        is_odd: It is far beyond the uncertainty that was stated for a touch.
-    """
+    """Changes between two measurements of a ball."""
 
     ball: str
-    before: datetime
-    after: datetime
+    before: datetime  # time of the first measurement
+    after: datetime  # time of the second
     touches: int
-    centre: Array
-    radius: float
-    u: Array
+    centre: Array  # by how much its centre has moved, table frame, (3,), mm
+    radius: float  # by how much the effective radius of the probe has grown, mm
+    u: Array  # standard uncertainties of the four, (4,), mm
+    # what four numbers do not explain, rms of one touch, mm; of a ball moved and a radius changed
+    # alone it is the noise of a touch
     scatter: float
-    is_odd: bool
+    is_odd: bool  # it is far beyond the uncertainty that was stated for a touch
 
     @property
     def size(self) -> float:
@@ -167,16 +157,11 @@ def read_heights(part: LogPart, standard: Standard, chain: Chain) -> dict[str, f
 
 
 class EffectiveRadius(NamedTuple):
-    """Effective radius of the probe on a calibrated ball.
-
-    Attributes:
-        excess: Over the radius that the control has calibrated, mm.
-        u: Its standard uncertainty, with that of the ball, mm.
-    """
+    """Effective radius of the probe on a calibrated ball."""
 
     begin: datetime
-    excess: float
-    u: float
+    excess: float  # over the radius that the control has calibrated, mm
+    u: float  # its standard uncertainty, with that of the ball, mm
 
 
 def effective_radii(

@@ -16,11 +16,9 @@ from matstd.twin.machine import Chain, Contribution, exact_tip, linear_direction
 from matstd.twin.record import IntArray, Setup, Touches
 from matstd.twin.units import NM
 
-CONTACT_TOLERANCE = 1e-3 * NM
-"""The ball touches when its gap is this small, mm."""
+CONTACT_TOLERANCE = 1e-3 * NM  # the ball touches when its gap is this small, mm
 
-_STEPS = 12
-"""Limit for Newton's method; with errors of ordinary size four sufficed."""
+_STEPS = 12  # limit for Newton's method; with errors of ordinary size four sufficed
 
 _BEYOND_END = 10.0  # mm beyond the end of a touch: far more than the errors of a working machine
 
@@ -33,28 +31,21 @@ _SMALLEST_U = 1e-5
 
 @dataclass(frozen=True, eq=False)
 class VirtualMachine:
-    """The machine as it really is, known to the simulator only.
+    """The machine as it really is, known to the simulator only."""
 
-    Attributes:
-        chain: Nominal kinematics.
-        disturbance: What all errors add at given touches; None for a perfect machine.
-        setup_error: Pose (4, 4) of the standard where it really stands, seen from where it is
-            believed to stand (artefact frame).
-        radius_error: Radius of the true ball minus the calibrated one, mm.
-        length_error: Length of the true probe minus the calibrated one, mm.
-        noise: Standard deviation of the trigger along the normal, mm.
-        temperature: Reading of a sensor by name at a time since the campaign began (s), degC.
-    """
-
-    chain: Chain
+    chain: Chain  # nominal kinematics
+    # what all errors add at given touches; None for a perfect machine
     disturbance: Disturbance | None = None
+    # pose (4, 4) of the standard where it really stands, seen from where it is believed to stand
+    # (artefact frame)
     setup_error: Array = field(default_factory=lambda: np.eye(4))
-    radius_error: float = 0.0
-    length_error: float = 0.0
-    noise: float = 0.0
+    radius_error: float = 0.0  # radius of the true ball minus the calibrated one, mm
+    length_error: float = 0.0  # length of the true probe minus the calibrated one, mm
+    noise: float = 0.0  # standard deviation of the trigger along the normal, mm
     begin: datetime = FIRST_MORNING
     clock: Clock = field(default_factory=Clock)
     dialect: Dialect = field(default_factory=Dialect)
+    # reading of a sensor by name at a time since the campaign began (s), degC
     temperature: Callable[[str, float], float] = lambda name, now: 20.0
 
     @property

@@ -260,7 +260,7 @@ def _fitted_setup(
         T_table_artefact = T_table_artefact @ pose(rotation(r), e)
         if np.abs(step).max() < 1e-3 * NM:
             break
-    return Setup(setup.name, T_table_artefact)
+    return replace(setup, T_table_artefact=T_table_artefact)
 
 
 def _split_by_gap(

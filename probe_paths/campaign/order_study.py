@@ -24,7 +24,7 @@ from matstd.probe_paths.plan import (
 from matstd.twin.frames import Array
 from matstd.twin.library import parse_effect
 from matstd.twin.model import Effect, Model, columns
-from matstd.twin.record import IntArray, Setup, Touches
+from matstd.twin.record import IntArray, Touches
 
 _PRIOR_FACTOR = 1e3
 """Prior of the sought effects in units of their typical size: almost uninformative."""
@@ -41,19 +41,13 @@ class Ordering(Enum):
 
 @dataclass(frozen=True)
 class Order:
-    """One order of the same touches.
-
-    Attributes:
-        touches: Number, anchor touches included.
-        duration: Duration of all programs, s.
-        drift: Standard deviation of the rate of a drift, its worst direction, mm/h.
-        reversal: Standard deviation of the reversal of every rotary axis, in chain order, rad.
-    """
+    """One order of the same touches."""
 
     ordering: Ordering
-    touches: int
-    duration: float
-    drift: float
+    touches: int  # number, anchor touches included
+    duration: float  # duration of all programs, s
+    drift: float  # standard deviation of the rate of a drift, its worst direction, mm/h
+    # standard deviation of the reversal of every rotary axis, in chain order, rad
     reversal: tuple[float, ...]
 
 
@@ -120,7 +114,7 @@ def _record(plan: TouchPlan, time: Array, approach: Array) -> Touches:
         radius=np.full(n, plan.probe.radius),
         point=plan.point,
         normal=plan.normal,
-        setups=(Setup(plan.setup.name, plan.setup.T_table_artefact),),
+        setups=(plan.setup,),
         setup=np.zeros(n, dtype=np.int64),
         time=time,
         approach=approach,

@@ -22,17 +22,12 @@ from matstd.twin.record import Run
 
 @dataclass(frozen=True, eq=False)
 class Campaign:
-    """All programs of one set-up or several, run one after the other.
-
-    Attributes:
-        parts: Parts of their logs, as read back.
-        begin: What the clock said at the run's time zero.
-    """
+    """All programs of one set-up or several, run one after the other."""
 
     run: Run
     runs: tuple[VirtualRun, ...]
-    parts: tuple[LogPart, ...]
-    begin: datetime
+    parts: tuple[LogPart, ...]  # parts of their logs, as read back
+    begin: datetime  # what the clock said at the run's time zero
 
     @property
     def logs(self) -> Mapping[str, str]:

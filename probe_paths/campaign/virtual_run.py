@@ -31,8 +31,7 @@ from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.record import Labels, Touches
 
-CHANGEOVER = 60.0
-"""Between two programs, s."""
+CHANGEOVER = 60.0  # between two programs, s
 
 
 class Outcome(StrEnum):
@@ -45,26 +44,18 @@ class Outcome(StrEnum):
 
 @dataclass(frozen=True, eq=False)
 class VirtualRun:
-    """What a program brought about.
-
-    Attributes:
-        q: Readings at the trigger, (N, A); nan for touches without contact.
-        time: Time of the trigger, s since the start of the campaign, (N,).
-        feature: What was touched, (N,).
-        meeting: What the ball ran into, (N,), values of `Meeting`; a contact is one with a surface.
-        reached: Number of touches tried before the program ended.
-        end: s since the start of the campaign.
-    """
+    """What a program brought about."""
 
     program: ReadProgram
-    q: Array
-    time: Array
-    feature: Labels
+    q: Array  # readings at the trigger, (N, A); nan for touches without contact
+    time: Array  # time of the trigger, s since the start of the campaign, (N,)
+    feature: Labels  # what was touched, (N,)
+    # what the ball ran into, (N,), values of `Meeting`; a contact is one with a surface
     meeting: np.ndarray
-    reached: int
+    reached: int  # number of touches tried before the program ended
     log: Mapping[str, str]
     outcome: Outcome
-    end: float
+    end: float  # s since the start of the campaign
 
     def check_done(self) -> None:
         """Raise NotReachable for a program that stopped; its attribute `run` is this run."""

@@ -12,23 +12,14 @@ from matstd.twin.machine import Chain
 
 @dataclass(frozen=True)
 class Clock:
-    """Speeds of machine and control. Defaults are those of a machine of medium speed.
+    """Speeds of machine and control. Defaults are those of a machine of medium speed."""
 
-    Attributes:
-        rapid: Rapid speed of a linear axis, mm/s.
-        turning: Rapid of a rotary axis, rad/s.
-        acceleration: Acceleration of a linear axis, mm/s^2.
-        turning_acceleration: Acceleration of a rotary axis, rad/s^2.
-        block: What every move costs besides, s.
-        probing: What a probing cycle costs besides its motion, s.
-    """
-
-    rapid: float = 300.0
-    turning: float = 1.0
-    acceleration: float = 3000.0
-    turning_acceleration: float = 5.0
-    block: float = 0.05
-    probing: float = 0.8
+    rapid: float = 300.0  # rapid speed of a linear axis, mm/s
+    turning: float = 1.0  # rapid of a rotary axis, rad/s
+    acceleration: float = 3000.0  # acceleration of a linear axis, mm/s^2
+    turning_acceleration: float = 5.0  # acceleration of a rotary axis, rad/s^2
+    block: float = 0.05  # what every move costs besides, s
+    probing: float = 0.8  # what a probing cycle costs besides its motion, s
 
     def durations(self, chain: Chain, steps: Array, feed: Array) -> Array:
         """Duration of moves from standstill to standstill, (M,), s.

@@ -47,44 +47,32 @@ Line = tuple[int, str]
 
 @dataclass(frozen=True, eq=False)
 class LogPart:
-    """What one run of one program logged.
-
-    Attributes:
-        heading: Standard, set-up and probe as planned.
-        begin: When the program was started; `UNDATED` where its date cannot be read.
-        radius: Calibrated radius of the ball, mm.
-        tool_length: As calibrated, mm; that of the tool table where the control keeps none.
-        offset: Calibrated offset of the ball from the spindle axis, (2,), mm; the control has
-            already corrected X and Y by it.
-        xyz: As the cycle returned them, (N, 3), mm.
-        rotary: Rotary positions by letter, degrees, each (N,).
-        side: Side that each rotary axis came from, by letter, each (N,).
-        time: s since `begin`, (N,); never falling.
-        tool: Number of the tool as the control had it; None where the line was lost.
-        preset: Number of the preset that the program selected; None where the line was lost.
-        temperature: degC by sensor, each (N,); nan where a line could not be read.
-        remarks: What was left out or mended, one line each.
-    """
+    """What one run of one program logged."""
 
     path: Path
     program: str
-    heading: Heading
-    begin: datetime
-    radius: float
-    tool_length: float
+    heading: Heading  # standard, set-up and probe as planned
+    begin: datetime  # when the program was started; `UNDATED` where its date cannot be read
+    radius: float  # calibrated radius of the ball, mm
+    tool_length: float  # as calibrated, mm; that of the tool table where the control keeps none
+    # calibrated offset of the ball from the spindle axis, (2,), mm; the control has already
+    # corrected X and Y by it
     offset: Array
     line: IntArray
     number: IntArray
     pose: IntArray
     feature: IntArray
-    xyz: Array
-    rotary: Mapping[str, Array]
-    side: Mapping[str, Array]
-    time: Array
+    xyz: Array  # as the cycle returned them, (N, 3), mm
+    rotary: Mapping[str, Array]  # rotary positions by letter, degrees, each (N,)
+    side: Mapping[str, Array]  # side that each rotary axis came from, by letter, each (N,)
+    time: Array  # s since `begin`, (N,); never falling
     is_complete: bool
-    remarks: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()  # what was left out or mended, one line each
+    # number of the tool as the control had it; None where the line was lost
     tool: float | None = None
+    # number of the preset that the program selected; None where the line was lost
     preset: float | None = None
+    # degC by sensor, each (N,); nan where a line could not be read
     temperature: Mapping[str, Array] = field(default_factory=dict)
 
     @property

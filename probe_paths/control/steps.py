@@ -25,70 +25,46 @@ Value = float | Result
 
 @dataclass(frozen=True, eq=False)
 class Move:
-    """Positioning to a target.
-
-    Attributes:
-        q: Readings at the end, (A,), mm and rad; nan where an axis has not been positioned yet.
-        feed: mm/s or rad/s; None is rapid.
-        checked: False for a move that ends in mid-air by definition (M140), not at a position.
-    """
+    """Positioning to a target."""
 
     line: int
-    q: Array
-    feed: float | None
+    q: Array  # readings at the end, (A,), mm and rad; nan where an axis has not been positioned yet
+    feed: float | None  # mm/s or rad/s; None is rapid
+    # False for a move that ends in mid-air by definition (M140), not at a position
     checked: bool = True
 
 
 @dataclass(frozen=True, eq=False)
 class ProbeStep:
-    """One run of touch probe cycle 4.
+    """One run of touch probe cycle 4."""
 
-    Attributes:
-        line: In the program file, of the cycle's last block.
-        index: Counts the touches of this program from 0.
-        q: Readings at the start, (A,), mm and rad.
-        direction: Unit vector of the motion in readings, (A,); zero for rotary axes.
-        distance: Longest travel, mm.
-        feed: mm/s.
-        slow_feed: Feed of the second touch that measures, mm/s; 0 where the first one does.
-        step_back: From the surface before the second touch, mm.
-        back: Retract after the contact, mm.
-        side: Sign of the last motion of every axis before the touch, (A,); 0 where unknown.
-        number: Number of the touch, as the log will name it.
-        pose: Number of the table pose in the log.
-        feature: Number of the feature in the log.
-        on_miss: What the program does when there is no contact; of one in the air, when there is.
-        is_air: It must meet nothing; it has no number, and no line in the log.
-    """
-
-    line: int
-    index: int
-    q: Array
-    direction: Array
-    distance: float
-    feed: float
-    back: float
-    side: Array
-    number: int
-    pose: int
-    feature: int
+    line: int  # in the program file, of the cycle's last block
+    index: int  # counts the touches of this program from 0
+    q: Array  # readings at the start, (A,), mm and rad
+    direction: Array  # unit vector of the motion in readings, (A,); zero for rotary axes
+    distance: float  # longest travel, mm
+    feed: float  # mm/s
+    back: float  # retract after the contact, mm
+    side: Array  # sign of the last motion of every axis before the touch, (A,); 0 where unknown
+    number: int  # number of the touch, as the log will name it
+    pose: int  # number of the table pose in the log
+    feature: int  # number of the feature in the log
+    # feed of the second touch that measures, mm/s; 0 where the first one does
     slow_feed: float = 0.0
-    step_back: float = 0.0
+    step_back: float = 0.0  # from the surface before the second touch, mm
+    # what the program does when there is no contact; of one in the air, when there is
     on_miss: list["Step"] = field(default_factory=list)
-    is_air: bool = False
+    is_air: bool = False  # it must meet nothing; it has no number, and no line in the log
 
 
 @dataclass(frozen=True, eq=False)
 class Print:
-    """Lines that FN 16 writes.
-
-    Attributes:
-        values: Values of the Q parameters in the mask; a sensor where it is read at that moment.
-    """
+    """Lines that FN 16 writes."""
 
     line: int
     lines: tuple[MaskLine, ...]
     target: str
+    # values of the Q parameters in the mask; a sensor where it is read at that moment
     values: Mapping[int, Value | Sensor]
 
 
@@ -105,26 +81,17 @@ Step = Move | ProbeStep | Print | Halt
 
 @dataclass(frozen=True, eq=False)
 class ReadProgram:
-    """A program as its text alone states it.
-
-    Attributes:
-        heading: Standard, set-up and probe that it was made for.
-        features: Name of every feature number.
-        is_search: Its touches come down from above on whatever is there.
-        is_first: It is one that a control is tried with, and measures nothing.
-        tool: Number of the tool that it calls.
-        preset: Number of the preset that it selects.
-    """
+    """A program as its text alone states it."""
 
     path: Path
     name: str
-    heading: Heading
-    features: Mapping[int, str]
+    heading: Heading  # standard, set-up and probe that it was made for
+    features: Mapping[int, str]  # name of every feature number
     steps: tuple[Step, ...]
-    is_search: bool = False
-    is_first: bool = False
-    tool: int | None = None
-    preset: int | None = None
+    is_search: bool = False  # its touches come down from above on whatever is there
+    is_first: bool = False  # it is one that a control is tried with, and measures nothing
+    tool: int | None = None  # number of the tool that it calls
+    preset: int | None = None  # number of the preset that it selects
 
     @property
     def touches(self) -> list[ProbeStep]:

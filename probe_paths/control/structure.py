@@ -32,20 +32,13 @@ _DIGITS = 1e-4
 
 
 class Promise(NamedTuple):
-    """What the head of a program promises of its blocks.
+    """What the head of a program promises of its blocks."""
 
-    Attributes:
-        touches: Numbers of the touches; none of a dry run.
-        tool: Number of the probe in the tool table.
-        preset: Row of the preset table.
-        is_search: Its touches are long ones from above that look for the standard.
-        is_first: It is the one that a control is tried with: few tests, a touch in the air.
-    """
-
-    touches: range
-    tool: int
-    preset: int
-    is_search: bool = False
+    touches: range  # numbers of the touches; none of a dry run
+    tool: int  # number of the probe in the tool table
+    preset: int  # row of the preset table
+    is_search: bool = False  # its touches are long ones from above that look for the standard
+    # it is the one that a control is tried with: few tests, a touch in the air
     is_first: bool = False
 
 

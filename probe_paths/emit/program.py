@@ -29,19 +29,14 @@ SEARCH_FEED = 800.0
 
 @dataclass(frozen=True)
 class Program:
-    """One program file.
-
-    Attributes:
-        duration: By the clock, s.
-        read: What the interpreter understood of it.
-    """
+    """One program file."""
 
     name: str
     ending: str
     text: str
     touches: int
-    duration: float
-    read: ReadProgram = field(repr=False, compare=False)
+    duration: float  # by the clock, s
+    read: ReadProgram = field(repr=False, compare=False)  # what the interpreter understood of it
 
     @property
     def blocks(self) -> int:
@@ -90,9 +85,10 @@ def make_programs(
     """
     made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock=clock)
     limits, sizes = made.writer.feeds, np.bincount(plan.visit, minlength=len(plan.visits))
+    stretch = np.array([visit.stretch for visit in plan.visits])
     count = max(int(np.ceil(sizes.sum() / limits.touches_per_file)), 1)
     while True:
-        parts = _parts(sizes, count)
+        parts = _parts(sizes, count, stretch)
         programs = made.programs(parts)
         too_long = [
             program.duration > limits.minutes_per_file * MINUTE and len(part) > 1
@@ -212,6 +208,9 @@ class _Maker:
         count = len(parts)
         names = [self.only] if self.only else [str(i + 1) for i in range(count)]
         titles = [f"FREEFORM STANDARD, PART {i + 1} OF {count}" for i in range(count)]
+        stretch = [self.plan.visits[part[0]].stretch for part in parts]
+        for i in np.flatnonzero(np.diff(stretch)) + 1:
+            titles[i] += ", AFTER STANDSTILL"
         named = zip(names, titles, parts, strict=True)
         return tuple(
             self._program(checked_name(f"{self.dialect.prefix}_{setup}_{name}"), title, part)
@@ -261,8 +260,8 @@ def _is_same_but_for_a_remark(text: str, other: str) -> bool:
     return len(lines) == len(others) and len(changed) <= 1 and all(len(b) == 1 for b in before)
 
 
-def _parts(sizes: IntArray, count: int) -> list[list[int]]:
-    """Whole visits for each of `count` files, distributed evenly."""
+def _parts(sizes: IntArray, count: int, stretch: IntArray) -> list[list[int]]:
+    """Whole visits for each of `count` files, distributed evenly; a standstill ends a file."""
     before = np.cumsum(sizes) - sizes
-    part = np.minimum(before * count // max(int(sizes.sum()), 1), count - 1)
-    return [list(np.flatnonzero(part == i)) for i in range(count) if np.any(part == i)]
+    part = np.minimum(before * count // max(int(sizes.sum()), 1), count - 1) + stretch * count
+    return [list(np.flatnonzero(part == i)) for i in np.unique(part)]

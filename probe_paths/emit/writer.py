@@ -44,38 +44,25 @@ _LONGEST_TITLE = MAX_LINE - len("12345 * - ")
 
 @dataclass(frozen=True)
 class Feeds:
-    """Feeds as they stand in a program, mm/min and degrees/min, and where a file ends.
+    """Feeds as they stand in a program, mm/min and degrees/min, and where a file ends."""
 
-    Attributes:
-        probing: Feed of cycle 4; the same at the calibration of the probe.
-        approach: Along Z below the clearance height, and back from a touch.
-        turning: Feed of the last motion towards a rotary position.
-        touches_per_file: After so many touches the next visit begins a new file.
-        minutes_per_file: A file takes no longer, unless one visit does.
-    """
-
-    probing: float = 250.0
-    approach: float = 2000.0
-    turning: float = 1000.0
-    touches_per_file: int = 400
-    minutes_per_file: float = np.inf
+    probing: float = 250.0  # feed of cycle 4; the same at the calibration of the probe
+    approach: float = 2000.0  # along Z below the clearance height, and back from a touch
+    turning: float = 1000.0  # feed of the last motion towards a rotary position
+    touches_per_file: int = 400  # after so many touches the next visit begins a new file
+    minutes_per_file: float = np.inf  # a file takes no longer, unless one visit does
 
 
 @dataclass(frozen=True)
 class Purpose:
-    """What a program beside those that measure is for.
+    """What a program beside those that measure is for."""
 
-    Attributes:
-        ending: Last letters of its name.
-        raised: By how much a dry run is raised, which goes where the programs go and touches
-            nothing, mm; None for a program that touches.
-        is_first: It is written by `first`: one touch in the air and one on a ball.
-    """
-
-    ending: str
+    ending: str  # last letters of its name
     remarks: tuple[str, ...] = ()
+    # by how much a dry run is raised, which goes where the programs go and touches nothing, mm;
+    # None for a program that touches
     raised: float | None = None
-    is_first: bool = False
+    is_first: bool = False  # it is written by `first`: one touch in the air and one on a ball
 
 
 class Writer:

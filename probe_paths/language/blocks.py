@@ -13,8 +13,7 @@ from matstd.twin.errors import BadFile
 _XYZ = rf"X({SIGNED}) Y({SIGNED}) Z({SIGNED})"
 _PATH = r"[A-Z0-9_:\\.-]+"
 
-LONGEST_BLOCK = 1000
-"""Characters of a block; the longest of our programs has 71."""
+LONGEST_BLOCK = 1000  # characters of a block; the longest of our programs has 71
 
 
 class Kind(Enum):
@@ -106,18 +105,13 @@ _ANYTHING = (
 
 @dataclass(frozen=True)
 class Block:
-    """One block of a program.
+    """One block of a program."""
 
-    Attributes:
-        line: Number of its first line in the file, from 1.
-        words: Named parts of its pattern; None where an optional part is absent.
-        text: As it stands in the file, blanks folded.
-    """
-
-    line: int
+    line: int  # number of its first line in the file, from 1
     kind: Kind
+    # named parts of its pattern; None where an optional part is absent
     words: Mapping[str, str | None]
-    text: str
+    text: str  # as it stands in the file, blanks folded
 
     def word(self, name: str) -> str:
         """A part that the pattern guarantees."""

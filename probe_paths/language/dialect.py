@@ -98,41 +98,30 @@ DISTANCE_WORDS = ("SET UP", "ABST", "DIST")
 
 @dataclass(frozen=True)
 class Dialect:
-    """Words and numbers of one control and one workshop; the defaults are those of an iTNC 530.
+    """Words and numbers of one control and one workshop; the defaults are those of an iTNC 530."""
 
-    Attributes:
-        language: In which blocks are spelt.
-        cycle_name: Name of cycle 4, after `4.0`; its number identifies the cycle.
-        distance_word: Before the longest path in `4.3`.
-        folder: Folder of programs, masks and logs on the control; empty where it takes none.
-        tool: Number of the probe in the tool table.
-        preset: Row of the preset table; it stands at the origin of the table frame with every
-            rotary axis at zero.
-        prefix: First letters of every program name.
-        result_height: What Z of a touch in the log belongs to: the spindle's `gauge` point (no
-            length compensation) or the `tip` of the tool table. One touch settles it.
-        log_decimals: Decimals of coordinates in the log.
-        slow_feed: Feed of the second touch, mm/min, on a control that measures by a slow one.
-        step_back: From the surface before the second touch, mm.
-        has_planes: The control has PLANE SPATIAL.
-        sensors: Temperatures that the control hands to programs.
-        is_tilted: Programs use it: coordinates are those of planes tilted with the table.
-    """
-
-    language: Literal["klartext", "gcode"] = "klartext"
+    language: Literal["klartext", "gcode"] = "klartext"  # in which blocks are spelt
+    # name of cycle 4, after `4.0`; its number identifies the cycle
     cycle_name: str = CYCLE_NAMES[0]
-    distance_word: str = DISTANCE_WORDS[0]
+    distance_word: str = DISTANCE_WORDS[0]  # before the longest path in `4.3`
+    # folder of programs, masks and logs on the control; empty where it takes none
     folder: str = "TNC:\\MATSTD"
-    tool: int = 30
+    tool: int = 30  # number of the probe in the tool table
+    # row of the preset table; it stands at the origin of the table frame with every rotary axis at
+    # zero
     preset: int = 1
-    prefix: str = "MS"
+    prefix: str = "MS"  # first letters of every program name
+    # what Z of a touch in the log belongs to: the spindle's `gauge` point (no length compensation)
+    # or the `tip` of the tool table. One touch settles it
     result_height: Literal["gauge", "tip"] = "gauge"
-    log_decimals: int = 6
+    log_decimals: int = 6  # decimals of coordinates in the log
+    # feed of the second touch, mm/min, on a control that measures by a slow one
     slow_feed: float = 0.0
-    step_back: float = 0.0
-    has_planes: bool = True
+    step_back: float = 0.0  # from the surface before the second touch, mm
+    has_planes: bool = True  # the control has PLANE SPATIAL
+    # programs use it: coordinates are those of planes tilted with the table
     is_tilted: bool = False
-    sensors: tuple[Sensor, ...] = ()
+    sensors: tuple[Sensor, ...] = ()  # temperatures that the control hands to programs
 
     def on_control(self, name: str) -> str:
         """Full name of a file on the control."""

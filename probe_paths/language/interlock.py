@@ -14,36 +14,26 @@ from matstd.probe_paths.plan import LINEAR, ProgramFrame
 PRESET_LIMIT = 1.0
 """Largest displacement of the preset, mm: the clearance that is planned at a touch."""
 
-ANGLE_LIMIT = 0.05
-"""Largest basic rotation and rotary zero, degrees: 0.2 mm at 200 mm."""
+ANGLE_LIMIT = 0.05  # largest basic rotation and rotary zero, degrees: 0.2 mm at 200 mm
 
 OFFSET_LIMIT = 0.05
 """Largest offset of a tool from the spindle axis, mm: the program moves by all of it."""
 
-RADIUS_LIMIT = 0.2
-"""Largest difference of the calibrated ball's radius, mm."""
+RADIUS_LIMIT = 0.2  # largest difference of the calibrated ball's radius, mm
 
 TOP_LIMIT = 5.0
 """Largest missing height at the upper end of Z, mm: turns are planned with that clearance."""
 
 
 class Interlock(NamedTuple):
-    """One test.
-
-    Attributes:
-        what: Is tested.
-        datum: Datum that is read; None for the length in the tool table.
-        work: Datum that is subtracted from it, or None.
-        planned: What is left where all is as planned, mm or degrees.
-        limit: By how much it may differ.
-    """
+    """One test."""
 
     label: Label
-    what: str
-    datum: Datum | None
-    work: Datum | None
-    planned: float
-    limit: float
+    what: str  # is tested
+    datum: Datum | None  # datum that is read; None for the length in the tool table
+    work: Datum | None  # datum that is subtracted from it, or None
+    planned: float  # what is left where all is as planned, mm or degrees
+    limit: float  # by how much it may differ
 
 
 _FIRST = (

@@ -52,70 +52,42 @@ class Datum(StrEnum):
 
 
 class Touch(NamedTuple):
-    """One touch as a program states it.
+    """One touch as a program states it."""
 
-    Attributes:
-        direction: Probing vector in the workpiece frame.
-        distance: Longest path from the start, mm.
-        feed: Probing feed, mm/min.
-        back: Retract after the contact, mm.
-    """
-
-    direction: Sequence[float]
-    distance: float
-    feed: float
-    back: float
+    direction: Sequence[float]  # probing vector in the workpiece frame
+    distance: float  # longest path from the start, mm
+    feed: float  # probing feed, mm/min
+    back: float  # retract after the contact, mm
 
 
 class Tilting(NamedTuple):
-    """Planes square to the tool.
+    """Planes square to the tool."""
 
-    Attributes:
-        on: Block that begins one, of its spatial angles (degrees) and the reading of the rotary
-            axis nearest the foundation.
-    """
-
+    # block that begins one, of its spatial angles (degrees) and the reading of the rotary axis
+    # nearest the foundation
     on: Callable[[Sequence[float], float], str]
     off: str
 
 
 @dataclass(frozen=True, kw_only=True)
 class Terms:
-    """How a language names what a refusal asks for.
+    """How a language names what a refusal asks for."""
 
-    Attributes:
-        reset: Block that ends tool-point control, with which a reset begins.
-        plane: Block that ends tilted planes, or the like.
-        shift: Blocks after which only the preset shifts.
-        tool: Call of the probe.
-        preset: Activation of the preset.
-        machine: Word for coordinates of the machine.
-        retract: Move of Z to its upper end.
-        retract_max: The same after a touch without contact.
-        rapid: Word for rapid.
-        sync: Wait until the machine stands.
-        status: Test of the status of a touch.
-        unset: Assignment of a status; `{q}` is its parameter.
-        printed: Line that goes to the log.
-        halt: What ends a program early.
-        back: Word for the retract after a contact.
-    """
-
-    reset: str
-    plane: str
-    shift: str
-    tool: str
-    preset: str
-    machine: str
-    retract: str
-    retract_max: str
-    rapid: str
-    sync: str
-    status: str
-    unset: str
-    printed: str
-    halt: str
-    back: str
+    reset: str  # block that ends tool-point control, with which a reset begins
+    plane: str  # block that ends tilted planes, or the like
+    shift: str  # blocks after which only the preset shifts
+    tool: str  # call of the probe
+    preset: str  # activation of the preset
+    machine: str  # word for coordinates of the machine
+    retract: str  # move of Z to its upper end
+    retract_max: str  # the same after a touch without contact
+    rapid: str  # word for rapid
+    sync: str  # wait until the machine stands
+    status: str  # test of the status of a touch
+    unset: str  # assignment of a status; `{q}` is its parameter
+    printed: str  # line that goes to the log
+    halt: str  # what ends a program early
+    back: str  # word for the retract after a contact
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -124,49 +96,33 @@ class Language:
 
     Coordinates always carry a sign and four decimals, the resolution of the controls, so that the
     planned, printed and re-read numbers agree.
-
-    Attributes:
-        ending: Ending of the name of a program file.
-        longest: Characters of a line that is emitted.
-        forms: Text of every block by the name of its method, with places in braces.
-        stock_forms: Forms of the blocks of the raw part, which the control draws.
-        sign: Letter before the number of a parameter.
-        tool_length: Parameter with the length of the called tool, as in the tool table.
-        system: How each system datum is addressed.
-        log: How the control prints clock and counters.
-        printed: Block that appends lines to a log, from the mask file, its lines, and the target.
-        lines: Lines of the file from all blocks.
-        reset: Blocks that begin a program: nothing that an earlier one left acts afterwards.
-        wait: Block that stops the look-ahead: system data are read where the machine stands.
-        unwind: Blocks before rotary axes go home the way that the numbers state.
-        tilting: Blocks that tilt the plane square to the tool; None where the language has none.
-        operator_stop: Waits for the operator.
-        has_masks: The lines of the log stand in mask files, not in the program.
-        subprograms_first: They stand before the program itself.
-        tests_turns: The control may take another way or end of a turn than its word states.
     """
 
-    ending: str
+    ending: str  # ending of the name of a program file
     line_end: str
-    longest: int
-    forms: Mapping[str, str]
-    sign: str
-    tool_length: str
-    system: Mapping[Datum, str]
+    longest: int  # characters of a line that is emitted
+    forms: Mapping[str, str]  # text of every block by the name of its method, with places in braces
+    sign: str  # letter before the number of a parameter
+    tool_length: str  # parameter with the length of the called tool, as in the tool table
+    system: Mapping[Datum, str]  # how each system datum is addressed
     terms: Terms
-    log: LogForm
+    log: LogForm  # how the control prints clock and counters
+    # block that appends lines to a log, from the mask file, its lines, and the target
     printed: Callable[[str, Sequence[MaskLine], str], str]
-    lines: Callable[[Sequence[str]], list[str]]
+    lines: Callable[[Sequence[str]], list[str]]  # lines of the file from all blocks
+    # blocks that begin a program: nothing that an earlier one left acts afterwards
     reset: Sequence[str]
-    wait: str
+    wait: str  # block that stops the look-ahead: system data are read where the machine stands
     label_end: str
-    operator_stop: str
-    stock_forms: Sequence[str] = ()
+    operator_stop: str  # waits for the operator
+    stock_forms: Sequence[str] = ()  # forms of the blocks of the raw part, which the control draws
     program_stop: str = "M30"
-    unwind: Sequence[str] = ()
+    unwind: Sequence[str] = ()  # blocks before rotary axes go home the way that the numbers state
+    # blocks that tilt the plane square to the tool; None where the language has none
     tilting: Tilting | None = None
-    has_masks: bool = False
-    subprograms_first: bool = False
+    has_masks: bool = False  # the lines of the log stand in mask files, not in the program
+    subprograms_first: bool = False  # they stand before the program itself
+    # the control may take another way or end of a turn than its word states
     tests_turns: bool = False
 
     def _form(self, form: str, /, **words: object) -> str:

@@ -43,45 +43,29 @@ _SENSORS_A_LINE = 4
 
 LINE_END = "\r\n"
 
-Fields = tuple[str, Sequence[str]]
-"""Text with formats, and what they print."""
+Fields = tuple[str, Sequence[str]]  # text with formats, and what they print
 
 
 class LogForm(NamedTuple):
-    """How a control prints clock and counters.
+    """How a control prints clock and counters."""
 
-    Attributes:
-        clock: Line of a time of day.
-        date: Lines of the day and the time in the head.
-        counter: Format of whole numbers.
-        is_wide: Whether numbers are printed in columns.
-        opens: Word of a mask that adds to a file of an earlier run, or "".
-        closes: Word of a mask that closes the file, or "".
-    """
-
-    clock: Fields
-    date: Sequence[Fields]
-    counter: str
-    is_wide: bool
-    opens: str = ""
-    closes: str = ""
+    clock: Fields  # line of a time of day
+    date: Sequence[Fields]  # lines of the day and the time in the head
+    counter: str  # format of whole numbers
+    is_wide: bool  # whether numbers are printed in columns
+    opens: str = ""  # word of a mask that adds to a file of an earlier run, or ""
+    closes: str = ""  # word of a mask that closes the file, or ""
 
 
-KEYWORDS = ("M_APPEND", "M_CLOSE")
-"""Words of a mask that print nothing: what becomes of the file."""
+KEYWORDS = ("M_APPEND", "M_CLOSE")  # words of a mask that print nothing: what becomes of the file
 
 
 @dataclass(frozen=True)
 class MaskLine:
-    """One line of a mask: literal text with formats, and what they print; or a keyword.
+    """One line of a mask: literal text with formats, and what they print; or a keyword."""
 
-    Attributes:
-        text: With `%w.dLF` and `%wd` formats.
-        arguments: Q numbers, or words of the date.
-    """
-
-    text: str
-    arguments: tuple[int | str, ...]
+    text: str  # with `%w.dLF` and `%wd` formats
+    arguments: tuple[int | str, ...]  # Q numbers, or words of the date
 
     @property
     def prints(self) -> bool:

@@ -11,8 +11,7 @@ from matstd.artefact.body import Standard
 from matstd.probe_paths.campaign import VirtualMachine, check_moves, evaluate, read_program_of
 from matstd.probe_paths.control import MAX_FEED, read_log, read_program
 from matstd.probe_paths.emit import Feeds, ProgramSet, make_programs
-from matstd.probe_paths.linuxcnc.latch import latch_error, latch_u
-from matstd.probe_paths.linuxcnc.machine_config import machine_files
+from matstd.probe_paths.linuxcnc.machine_config import latch_error, latch_u, machine_files
 from matstd.probe_paths.linuxcnc.replanned import shortened
 from matstd.probe_paths.linuxcnc.session import machine_folder, run_on_linuxcnc
 from matstd.probe_paths.linuxcnc.twin_contact import TwinContact
@@ -24,18 +23,12 @@ from matstd.twin.record import Run
 
 @dataclass(frozen=True, eq=False)
 class Rehearsal:
-    """What LinuxCNC measured.
-
-    Attributes:
-        u: Standard uncertainty of every touch, noise and latch, mm.
-        latched: How far each logged position lies beyond the twin's contact, (N,), mm.
-        modelled: How far it may at most, mm.
-    """
+    """What LinuxCNC measured."""
 
     run: Run
-    u: float
-    latched: Array
-    modelled: float
+    u: float  # standard uncertainty of every touch, noise and latch, mm
+    latched: Array  # how far each logged position lies beyond the twin's contact, (N,), mm
+    modelled: float  # how far it may at most, mm
 
 
 def rehearse(

@@ -22,16 +22,12 @@ of a program, and of a position that was read back."""
 
 @dataclass(frozen=True)
 class Stroke:
-    """One stroke that the twin was asked about.
-
-    Attributes:
-        contact: Readings where the true ball meets the true surface, (A,); nan where it does not.
-        direction: Direction of the motion in readings, (A,).
-    """
+    """One stroke that the twin was asked about."""
 
     number: int
+    # readings where the true ball meets the true surface, (A,); nan where it does not
     contact: Array
-    direction: Array
+    direction: Array  # direction of the motion in readings, (A,)
 
 
 class TwinContact:

@@ -2,24 +2,27 @@
 
 In: a standard that stands roughly where it is believed to. Out: a plan of long touches from above
 (`plan_search`), from the log of its program the place with its uncertainty (`find_standard`), and
-the touches of earlier programs, planned again there (`planned_again`). `companions` are the
-programs that are run beside those of a plan.
+the touches of earlier programs, or those of a planned visit (`read_visit`), planned again there
+(`planned_again`). `companions` are the programs that are run beside those of a plan.
 """
 
 from matstd.probe_paths.locate.again import planned_again
 from matstd.probe_paths.locate.beside import RAISED, Companions, companions
-from matstd.probe_paths.locate.find import Found, find_standard
+from matstd.probe_paths.locate.find import SPREADS, Found, Spread, find_standard
+from matstd.probe_paths.locate.planned_visit import PlannedVisit, VisitSchedule, read_visit
 from matstd.probe_paths.locate.search_plan import plan_search
-from matstd.probe_paths.locate.spread import SPREADS, Spread
 
 __all__ = [
     "RAISED",
     "SPREADS",
     "Companions",
     "Found",
+    "PlannedVisit",
     "Spread",
+    "VisitSchedule",
     "companions",
     "find_standard",
     "plan_search",
     "planned_again",
+    "read_visit",
 ]

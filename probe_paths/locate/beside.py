@@ -1,8 +1,14 @@
 """Programs beside those of a plan: a dry run, a search for the standard, one ball, one touch."""
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 from pathlib import Path
 
+import numpy as np
+
+from matstd.artefact.body import DatumSphere, Standard
+from matstd.artefact.reach import ProbeReach, Requests, joined
 from matstd.probe_paths.emit import (
     Feeds,
     ProgramSet,
@@ -12,11 +18,105 @@ from matstd.probe_paths.emit import (
     make_search,
 )
 from matstd.probe_paths.language import Dialect
-from matstd.probe_paths.locate.ball_plan import plan_ball
+from matstd.probe_paths.locate.find import SPREADS, Spread
 from matstd.probe_paths.locate.search_plan import plan_search
-from matstd.probe_paths.locate.spread import SPREADS, Spread
-from matstd.probe_paths.plan import TouchPlan
+from matstd.probe_paths.plan import PlanOptions, TouchPlan, home_readings, plan_touches, readings_at
 from matstd.twin.errors import NotReachable
+from matstd.twin.frames import Array
+from matstd.twin.machine import table_to_tool
+from matstd.twin.units import DEG
+
+_TILTS = (75.0 * DEG, 60.0 * DEG, 45.0 * DEG)
+"""Angles of the ring to the tool axis, rad, steepest first: 75 degrees separate radius and height
+five times as well as 45, and leave a stem the room of its own thickness."""
+
+_RING = 6
+
+_CERTAIN_COLLISION = -3.0
+"""Room below which a collision is certain, mm: the quick check underestimates room by less."""
+
+
+def plan_ball(plan: TouchPlan, is_beside: bool = False) -> TouchPlan:
+    """Plan of a pole and a ring of six touches on a ball, all at one table pose.
+
+    The ball is the first of the standard, and the pose the first, that let the probe have all of
+    them: rotary axes at home, then the poses of the plan.
+
+    Args:
+        is_beside: The ball is that of the workshop, on the table beside the standard.
+
+    Raises:
+        NotReachable: No ball can be touched all round at any pose.
+    """
+    home = home_readings(plan.chain)
+    poses = np.unique([visit.rotary for visit in plan.visits], axis=0)
+    steps = np.abs(poses - home).max(axis=1, initial=0.0)
+    poses = np.concatenate([home[None], poses[np.argsort(steps, kind="stable")]])
+    standard, general = plan.standard, plan.options
+    balls = standard.spheres
+    if is_beside:
+        ball, room = general.workshop.ball, replace(general.workshop, ball=None)
+        assert ball is not None
+        standard = ball.beside(standard, plan.setup.T_table_artefact)
+        balls, general = standard.spheres[-1:], replace(general, workshop=room, ball=ball)
+    why = "the probe would run into something" if balls else "it has no ball"
+    for sphere, wanted in _without_deep_collisions(plan, standard, general, poses, balls):
+        # the first touch of every visit is that of an anchor: on the same ball
+        options = replace(general, anchor=sphere.name, tolerated=0, shortest_visit=2 * _RING)
+        try:
+            made = plan_touches(standard, plan.chain, plan.probe, plan.setup, wanted, options)
+        except NotReachable as error:
+            why = str(error)
+            continue
+        if set(made.feature.tolist()) == {sphere.name}:
+            return made
+    raise NotReachable(f"no ball of {plan.standard.name} can be touched all round; the last: {why}")
+
+
+def _without_deep_collisions(
+    plan: TouchPlan,
+    standard: Standard,
+    options: PlanOptions,
+    poses: Array,
+    balls: Sequence[DatumSphere],
+) -> Iterator[tuple[DatumSphere, Requests]]:
+    """Rings that may be touched, pose by pose: exact gaps take half a second a ring."""
+    reach = ProbeReach(
+        chain=plan.chain,
+        setup=plan.setup,
+        shape=plan.probe.shape,
+        length=plan.probe.length,
+        steepest=options.steepest,
+        room=_CERTAIN_COLLISION,
+        standoff=options.standoff,
+        search=options.search,
+        workshop=options.workshop,
+    )
+    for tilt, rotary in product(_TILTS, poses if balls else []):
+        # one static check for the rings of all balls
+        rings = [_ring(plan, ball, rotary, tilt) for ball in balls]
+        every = joined(rings)
+        good = np.asarray(reach.is_reachable(every))
+        good[good] = reach.is_clear(standard, every[good])
+        for k in np.flatnonzero(good.reshape(len(balls), -1).all(axis=1)).tolist():
+            yield balls[k], rings[k]
+
+
+def _ring(plan: TouchPlan, ball: DatumSphere, rotary: Array, tilt: float) -> Requests:
+    """The pole under the tool and a ring round it."""
+    angle = np.arange(_RING) * 2.0 * np.pi / _RING
+    sin, cos = np.sin(tilt), np.cos(tilt)
+    ring = np.stack([sin * np.cos(angle), sin * np.sin(angle), np.full(_RING, cos)], axis=-1)
+    R_table_tool = table_to_tool(plan.chain, readings_at(plan.chain, rotary[None]))[0, :3, :3]
+    normal = np.concatenate([[[0.0, 0.0, 1.0]], ring]) @ R_table_tool.T
+    normal = normal @ plan.setup.T_table_artefact[:3, :3]
+    return Requests(
+        np.full(len(normal), ball.name),
+        ball.centre + ball.radius * normal,
+        normal,
+        np.repeat(rotary[None], len(normal), axis=0),
+    )
+
 
 RAISED = 100.0
 """Height by which a dry run is raised, mm."""
@@ -24,24 +124,17 @@ RAISED = 100.0
 
 @dataclass(frozen=True)
 class Companions:
-    """Programs that go with those of a plan.
+    """Programs that go with those of a plan."""
 
-    Attributes:
-        dry_run: Where the programs go, higher, without a touch.
-        raised: By how much, mm.
-        spread: Within which a search finds the standard.
-        search: For the standard; None where there can be none.
-        ball: Touches on one ball, before the programs and after them; None where there can be none.
-        first: One touch that a control is tried with; None where there is none.
-    """
-
-    dry_run: ProgramSet
-    raised: float
-    spread: Spread
-    search: ProgramSet | None = None
+    dry_run: ProgramSet  # where the programs go, higher, without a touch
+    raised: float  # by how much, mm
+    spread: Spread  # within which a search finds the standard
+    search: ProgramSet | None = None  # for the standard; None where there can be none
     no_search: str = ""
+    # touches on one ball, before the programs and after them; None where there can be none
     ball: ProgramSet | None = None
     no_ball: str = ""
+    # one touch that a control is tried with; None where there is none
     first: ProgramSet | None = None
 
     def write(self, folder: Path) -> None:

@@ -7,26 +7,37 @@ sides.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from matstd.artefact.body import Standard, contact
 from matstd.probe_paths.locate.relief import Relief
-from matstd.probe_paths.locate.spread import Spread
 from matstd.twin.errors import NotEnoughData
 from matstd.twin.frames import Array, apply, fixed_xyz, inverse, pose
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
+
+@dataclass(frozen=True)
+class Spread:
+    """Largest offset of the standard from its assumed place, either way in every direction."""
+
+    distance: float = 20.0  # along x, y and z of its own frame, mm
+    angle: float = 5.0 * DEG  # about each of them, rad
+
+
+SPREADS = tuple(Spread(d, a * DEG) for d, a in ((20.0, 5.0), (15.0, 4.0), (10.0, 3.0), (5.0, 2.0)))
+"""Spreads for which a search is tried, the widest first: placed by eye, by a rule, by a stop. A
+standard of tall posts may leave a short stylus no room to come down over a wide spread."""
+
+
 _TRIED, _FEWEST_TRIED = 40_000, 2_000
 """Places in the first round for a spread of 20 mm and 5 degrees, and for a small one."""
 
-_KEPT = 60
-"""Number improved on the relief."""
+_KEPT = 60  # number improved on the relief
 
-_EXACT = 3
-"""Number improved on the exact surfaces."""
+_EXACT = 3  # number improved on the exact surfaces
 
 _ROUNDS, _EXACT_ROUNDS, _LAST_ROUNDS = 25, 15, 15
 _RESTARTS, _RESTART_PLACES = 6, 24
@@ -49,22 +60,14 @@ machine alone may cause, mm."""
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """Where a standard stands.
-
-    Attributes:
-        shift: Shift of the standard from its assumed place, in its own frame, (3,), mm.
-        angles: About x, y and z of it, (3,), rad.
-        u: Standard uncertainties of both, (6,), mm and rad.
-        rms: Rms distance of the touches, mm.
-        next_rms: The same at the best of the other places, mm.
-    """
+    """Where a standard stands."""
 
     setup: Setup
-    shift: Array
-    angles: Array
-    u: Array
-    rms: float
-    next_rms: float
+    shift: Array  # shift of the standard from its assumed place, in its own frame, (3,), mm
+    angles: Array  # about x, y and z of it, (3,), rad
+    u: Array  # standard uncertainties of both, (6,), mm and rad
+    rms: float  # rms distance of the touches, mm
+    next_rms: float  # the same at the best of the other places, mm
 
 
 def find_standard(
@@ -115,7 +118,7 @@ def find_standard(
     u = _uncertainty(theta, on_surfaces)
     _refuse_ambiguous_place(rms, u)
     return Found(
-        setup=Setup(believed.name, believed.T_table_artefact @ _pose(theta)),
+        setup=replace(believed, T_table_artefact=believed.T_table_artefact @ _pose(theta)),
         shift=theta[:3],
         angles=theta[3:],
         u=u,

@@ -23,7 +23,13 @@ from matstd.probe_paths.plan.heading import (
     parse_heading,
     stated_serial,
 )
-from matstd.probe_paths.plan.order import Visit, nearest_neighbours, short_order, waypoints
+from matstd.probe_paths.plan.order import (
+    StatedVisits,
+    Visit,
+    nearest_neighbours,
+    short_order,
+    waypoints,
+)
 from matstd.probe_paths.plan.planner import plan_touches
 from matstd.probe_paths.plan.strokes import stroke_gaps
 from matstd.probe_paths.plan.touch_plan import PlanOptions, Refusal, TouchPlan, requests_at
@@ -37,6 +43,7 @@ __all__ = [
     "ProgramFrame",
     "Refusal",
     "Sensor",
+    "StatedVisits",
     "ToolClearance",
     "TouchPlan",
     "Visit",

@@ -27,27 +27,18 @@ _ROUNDING = 9  # decimals: a motion that is nothing but the rounding of one has 
 
 @dataclass(frozen=True, eq=False)
 class Approaches:
-    """Ways to N touches of one table pose each.
-
-    Attributes:
-        length: Gauge point to ball centre, mm.
-        radius: Radius of the ball, mm.
-        contact: Readings at the expected contact, (N, A).
-        normal: Outward unit normals, artefact frame, (N, 3).
-        back: From the contact to the start, mm.
-        beyond: From the contact to the end of the longest travel, mm.
-    """
+    """Ways to N touches of one table pose each."""
 
     chain: Chain
     standard: Standard
     setup: Setup
-    length: float
-    radius: float
-    contact: Array
-    normal: Array
+    length: float  # gauge point to ball centre, mm
+    radius: float  # radius of the ball, mm
+    contact: Array  # readings at the expected contact, (N, A)
+    normal: Array  # outward unit normals, artefact frame, (N, 3)
     feature: Labels
-    back: float
-    beyond: float
+    back: float  # from the contact to the start, mm
+    beyond: float  # from the contact to the end of the longest travel, mm
 
     def others(self) -> Iterator[tuple[Array, Array, Mask]]:
         """Starts (N, A), motions of X Y Z (N, A) and which are possible, the least leaning first.

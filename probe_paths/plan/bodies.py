@@ -17,17 +17,12 @@ _OVER = 0.02  # mm: what a face of 12 mm radius may rise above these places in b
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """Convex bodies, each within the outline of its owner.
+    """Convex bodies, each within the outline of its owner."""
 
-    Attributes:
-        hulls: One of every owner that holds all of it, table frame.
-        on: Axis that carries each, empty for the table, (B,).
-        parts: What an owner really consists of, by its row; it is its hull where none is listed.
-    """
-
-    hulls: Hulls
+    hulls: Hulls  # one of every owner that holds all of it, table frame
     name: Labels
-    on: Labels
+    on: Labels  # axis that carries each, empty for the table, (B,)
+    # what an owner really consists of, by its row; it is its hull where none is listed
     parts: dict[int, Hulls]
 
     def rows_of(self, feature: str) -> IntArray:

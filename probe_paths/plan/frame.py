@@ -23,16 +23,12 @@ from matstd.twin.units import DEG
 
 LINEAR = "XYZ"
 
-_PARALLEL = 1e-9
-"""Largest angle between an axis of a tilted plane and one of the machine, rad."""
+_PARALLEL = 1e-9  # largest angle between an axis of a tilted plane and one of the machine, rad
 
 
 @dataclass(frozen=True, eq=False)
 class ProgramFrame:
     """Converts between axis readings and the words of a program.
-
-    Attributes:
-        shift: Shift of a tilted plane, mm.
 
     Raises:
         DesignError: A machine whose axes the programs cannot name.
@@ -40,7 +36,7 @@ class ProgramFrame:
 
     chain: Chain
     probe: Probe
-    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    shift: tuple[float, float, float] = (0.0, 0.0, 0.0)  # shift of a tilted plane, mm
 
     def __post_init__(self) -> None:
         chain = self.chain

@@ -40,24 +40,16 @@ _BALL_SIZE = re.compile(rf"DATUM R{_NUMBER} S{_NUMBER} F{_NUMBER} U{_NUMBER}")
 _EARLIER = re.compile(r"(STYLUS L.* BODY R.*|NOSE R.* TABLE R.*)")
 _TABLE_WORD, _HASH = "TABLE", 12
 
-_FIRST_PARAMETER = 100
-"""In which a PLC hands values to programs; there are eight."""
+_FIRST_PARAMETER = 100  # in which a PLC hands values to programs; there are eight
 
 
 class Sensor(NamedTuple):
-    """A temperature that the control itself knows, and logs with every touch.
+    """A temperature that the control itself knows, and logs with every touch."""
 
-    Attributes:
-        name: Name of the sensor; its column in a run is `T_<name>_degC`.
-        parameter: Q parameter in which the control's PLC hands it to programs.
-        factor: degC per unit of the parameter.
-        offset: degC at zero.
-    """
-
-    name: str
-    parameter: int
-    factor: float = 1.0
-    offset: float = 0.0
+    name: str  # name of the sensor; its column in a run is `T_<name>_degC`
+    parameter: int  # Q parameter in which the control's PLC hands it to programs
+    factor: float = 1.0  # degC per unit of the parameter
+    offset: float = 0.0  # degC at zero
 
     @property
     def line(self) -> str:
@@ -73,30 +65,20 @@ class Sensor(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Heading:
-    """Facts at the head of a program.
+    """Facts at the head of a program."""
 
-    Attributes:
-        standard: Name of the standard, as its file has it.
-        probe: In the spindle; in a log its ball and length alone.
-        workshop: What stands beside the standard; None in a log.
-        serial: Number of the standard, as far as a program can state it; empty where it has none.
-        calibration: Hash of the faces and places of the standard; empty in logs of earlier
-            programs.
-        stated: Hash of probe and workshop; empty in logs of earlier programs.
-        is_tilted: Coordinates are those of planes that are tilted with the table.
-        ball: On the table beside the standard, where that is what is touched.
-    """
-
-    standard: str
+    standard: str  # name of the standard, as its file has it
     setup: Setup
-    probe: Probe
-    workshop: Workshop | None = None
+    probe: Probe  # in the spindle; in a log its ball and length alone
+    workshop: Workshop | None = None  # what stands beside the standard; None in a log
+    # number of the standard, as far as a program can state it; empty where it has none
     serial: str = ""
+    # hash of the faces and places of the standard; empty in logs of earlier programs
     calibration: str = ""
-    stated: str = ""
-    is_tilted: bool = False
+    stated: str = ""  # hash of probe and workshop; empty in logs of earlier programs
+    is_tilted: bool = False  # coordinates are those of planes that are tilted with the table
     sensors: tuple[Sensor, ...] = ()
-    ball: DatumBall | None = None
+    ball: DatumBall | None = None  # on the table beside the standard, where that is what is touched
 
     def touched(self, standard: Standard, T_table_artefact: Array | None = None) -> Standard:
         """What a program has before it: the standard, and the ball if that is touched.

@@ -4,7 +4,8 @@ The order of the golden ratio's fractional parts spreads axis positions evenly o
 Touches within a pose follow a short way by 2-opt and Or-opt.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,29 +23,42 @@ LONGEST_TURN = 170.0 * DEG
 
 _PART, _NO_GAIN = 3, 1e-9  # places that are put elsewhere together; mm
 
-_ROUNDING = 1e-9
-"""A reading at the very end of the travel is inside, whatever its last digit, rad."""
+_ROUNDING = 1e-9  # a reading at the very end of the travel is inside, whatever its last digit, rad
 
 
 @dataclass(frozen=True, eq=False)
 class Visit:
-    """One stay at a table pose.
+    """One stay at a table pose."""
 
-    Attributes:
-        pose: Number of the pose, from 0.
-        rotary: Readings of the rotary axes, (R,), rad.
-        side: Direction of the last motion of each rotary axis, (R,), -1 or 1.
-        before: Readings just before it, overshot to the side, (R,), rad.
-        rows: Requests to touch here, (M,).
-        height: Reading of Z at which the probe moves sideways, mm.
-    """
+    pose: int  # number of the pose, from 0
+    rotary: Array  # readings of the rotary axes, (R,), rad
+    side: Array  # direction of the last motion of each rotary axis, (R,), -1 or 1
+    before: Array  # readings just before it, overshot to the side, (R,), rad
+    rows: IntArray  # requests to touch here, (M,)
+    height: float = 0.0  # reading of Z at which the probe moves sideways, mm
+    stretch: int = 0  # number of the stretch between standstills; each begins a program
 
-    pose: int
-    rotary: Array
-    side: Array
-    before: Array
-    rows: IntArray
-    height: float = 0.0
+
+class StatedVisits(NamedTuple):
+    """Visits in a given order, from given sides."""
+
+    number: IntArray  # of the visit of every request, in their order, (N,)
+    side: Array  # direction of the last motion of each rotary axis towards it, (N, R), -1 or 1
+    stretch: IntArray  # number of the stretch between standstills, (N,)
+
+
+def stated_visits(
+    chain: Chain, rotary: Array, stated: StatedVisits, overshoot: float
+) -> list[Visit]:
+    """Visits in the order and from the sides that are stated; arguments and errors as `visits`."""
+    poses, belongs = np.unique(rotary, axis=0, return_inverse=True)
+    out = []
+    for number in np.unique(stated.number):
+        rows = np.flatnonzero(stated.number == number)
+        pose, side = int(belongs.reshape(-1)[rows[0]]), stated.side[rows[0]]
+        made = _visit(chain, pose, poses[pose], side, overshoot, rows)
+        out.append(replace(made, stretch=int(stated.stretch[rows[0]])))
+    return out
 
 
 def visits(chain: Chain, rotary: Array, overshoot: float, shortest_visit: int) -> list[Visit]:

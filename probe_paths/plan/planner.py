@@ -23,7 +23,14 @@ from matstd.probe_paths.plan.approach import Approaches
 from matstd.probe_paths.plan.clearance import SMALLEST_GAP, ToolClearance
 from matstd.probe_paths.plan.frame import LINEAR, ProgramFrame
 from matstd.probe_paths.plan.heading import rounded_setup, rounded_workshop
-from matstd.probe_paths.plan.order import Visit, rotary_path, short_order, visits
+from matstd.probe_paths.plan.order import (
+    StatedVisits,
+    Visit,
+    rotary_path,
+    short_order,
+    stated_visits,
+    visits,
+)
 from matstd.probe_paths.plan.strokes import Stage, stroke_gaps
 from matstd.probe_paths.plan.touch_plan import GRID, PlanOptions, Refusal, TouchPlan
 from matstd.twin.errors import DesignError, NotReachable, ShapeMismatch
@@ -97,8 +104,12 @@ def plan_touches(
     setup: Setup,
     requests: Requests,
     options: PlanOptions | None = None,
+    stated: StatedVisits | None = None,
 ) -> TouchPlan:
     """Plan of all touches of one set-up.
+
+    Args:
+        stated: Order and sides of the visits; in mixed order and from both sides without it.
 
     Raises:
         NotReachable: More requests refused than tolerated, a pose without room for the probe above
@@ -113,7 +124,10 @@ def plan_touches(
     # rounded first, so that plan and program state the same readings
     rotary = np.round(requests.rotary / GRID) * GRID
     task = _Task(standard=standard, chain=chain, probe=probe, setup=setup, options=options)
-    stops = visits(chain, rotary, options.overshoot, options.shortest_visit)
+    if stated is None:
+        stops = visits(chain, rotary, options.overshoot, options.shortest_visit)
+    else:
+        stops = stated_visits(chain, rotary, stated, options.overshoot)
     stops = _with_heights(task, stops)
     rounded = replace(requests, rotary=rotary)
     stops = _raised(task, stops, rounded)

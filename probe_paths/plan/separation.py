@@ -17,11 +17,9 @@ from numpy.typing import NDArray
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
-CORNERS = 8
-"""Most corners of a body."""
+CORNERS = 8  # most corners of a body
 
-EXACT = 0.01
-"""Accuracy of a gap that matters, mm."""
+EXACT = 0.01  # accuracy of a gap that matters, mm
 
 _ROUNDS = 60  # of the search; cylinders beside cylinders took up to 35
 _INSIDE = 1e-7  # mm: nearer than this the bodies are in each other
@@ -31,19 +29,12 @@ _SUBSETS = [pick for k in (1, 2, 3) for pick in combinations(range(3), k)]
 
 @dataclass(frozen=True, eq=False)
 class Hulls:
-    """B convex bodies: hulls of discs round their corners, all of them swollen by a ball.
+    """B convex bodies: hulls of discs round their corners, all of them swollen by a ball."""
 
-    Attributes:
-        corner: Corners, some of them the same, (B, CORNERS, 3), mm.
-        disc: Radius of the disc round every corner, square to `up`, (B, CORNERS), mm.
-        up: Axis of the discs, (B, 3).
-        ball: By which the whole is swollen, (B,), mm.
-    """
-
-    corner: Array
-    disc: Array
-    up: Array
-    ball: Array
+    corner: Array  # corners, some of them the same, (B, CORNERS, 3), mm
+    disc: Array  # radius of the disc round every corner, square to `up`, (B, CORNERS), mm
+    up: Array  # axis of the discs, (B, 3)
+    ball: Array  # by which the whole is swollen, (B,), mm
 
     def __len__(self) -> int:
         return len(self.ball)
@@ -65,25 +56,15 @@ class Hulls:
 
 @dataclass(frozen=True, eq=False)
 class Sweeps:
-    """M cylinders (or balls) on their way.
+    """M cylinders (or balls) on their way."""
 
-    Attributes:
-        centre: Ball centre of the tool at the beginning, (M, 3), mm.
-        axis: Unit vector from there to the spindle, (M, 3).
-        way: Straight way that is made, (M, 3), mm.
-        low: Where the cylinder begins on the axis, (M,), mm.
-        high: Where it ends, (M,), mm.
-        radius: Radius of the cylinder, (M,), mm.
-        ball: By which it is swollen, (M,), mm.
-    """
-
-    centre: Array
-    axis: Array
-    way: Array
-    low: Array
-    high: Array
-    radius: Array
-    ball: Array
+    centre: Array  # ball centre of the tool at the beginning, (M, 3), mm
+    axis: Array  # unit vector from there to the spindle, (M, 3)
+    way: Array  # straight way that is made, (M, 3), mm
+    low: Array  # where the cylinder begins on the axis, (M,), mm
+    high: Array  # where it ends, (M,), mm
+    radius: Array  # radius of the cylinder, (M,), mm
+    ball: Array  # by which it is swollen, (M,), mm
 
     def __len__(self) -> int:
         return len(self.ball)

@@ -19,8 +19,7 @@ from matstd.twin.machine import Chain
 from matstd.twin.record import IntArray, Labels, Setup
 from matstd.twin.units import DEG
 
-GRID = 1e-4 * DEG
-"""Rotary readings are rounded to what a program can state, rad."""
+GRID = 1e-4 * DEG  # rotary readings are rounded to what a program can state, rad
 
 
 @dataclass(frozen=True)
@@ -30,38 +29,30 @@ class PlanOptions:
     Angle and gap are wider than in the choice of touches (`ProbeReach`: 75 degrees and 2 mm), so
     that no chosen touch is refused because of rounding in a program; all other shared values are
     taken from there.
-
-    Attributes:
-        standoff: Gap between ball and surface at the start of a touch.
-        search: How far beyond the expected contact the probe looks for the surface.
-        clearance: Height of the tool above everything while it moves sideways.
-        smallest_gap: Smallest gap between stylus, body, spindle and anything solid at a touch.
-        overshoot: How far before a rotary position the last motion towards it begins, rad.
-        steepest: Largest angle between the surface's normal and the tool axis, rad.
-        retract: Below the upper end of Z's travel, where rotary axes may turn.
-        anchor: Sphere touched on every visit; empty for the first of the standard.
-        anchor_tilt: Angle between the anchor touch's normal and the tool axis, rad.
-        shortest_visit: Fewest touches for which a pose is visited twice, half of them each time.
-        workshop: What stands beside the standard and is kept clear.
-        ball: Ball of the workshop where that is touched; the standard has it as a feature.
-        tolerated: How many requests may be refused before the whole plan is.
-        is_swept: Whether moves are swept with the whole tool; a plan that is timed and never run
-            need not be.
     """
 
-    standoff: float = ProbeReach.standoff
+    standoff: float = ProbeReach.standoff  # gap between ball and surface at the start of a touch
+    # how far beyond the expected contact the probe looks for the surface
     search: float = ProbeReach.search
-    clearance: float = 20.0
+    clearance: float = 20.0  # height of the tool above everything while it moves sideways
+    # smallest gap between stylus, body, spindle and anything solid at a touch
     smallest_gap: float = 1.0
+    # how far before a rotary position the last motion towards it begins, rad
     overshoot: float = OVERSHOOT
+    # largest angle between the surface's normal and the tool axis, rad
     steepest: float = 90.5 * DEG
-    retract: float = 1.0
-    anchor: str = ""
+    retract: float = 1.0  # below the upper end of Z's travel, where rotary axes may turn
+    anchor: str = ""  # sphere touched on every visit; empty for the first of the standard
+    # angle between the anchor touch's normal and the tool axis, rad
     anchor_tilt: float = 40.0 * DEG
+    # fewest touches for which a pose is visited twice, half of them each time
     shortest_visit: int = 4
+    # what stands beside the standard and is kept clear
     workshop: Workshop = field(default_factory=Workshop)
+    # ball of the workshop where that is touched; the standard has it as a feature
     ball: DatumBall | None = None
-    tolerated: int = 0
+    tolerated: int = 0  # how many requests may be refused before the whole plan is
+    # whether moves are swept with the whole tool; a plan that is timed and never run need not be
     is_swept: bool = True
 
 
@@ -74,18 +65,12 @@ def requests_at(standard: Standard, feature: str, uv: Array, rotary: Array) -> R
 
 @dataclass(frozen=True)
 class Refusal:
-    """A request that cannot be made.
+    """A request that cannot be made."""
 
-    Attributes:
-        request: Row of the requests; -1 for an anchor touch.
-        rotary: Readings of the rotary axes by letter, rad.
-        reason: What is against it, as `ProbeReach.reasons` has it.
-    """
-
-    request: int
+    request: int  # row of the requests; -1 for an anchor touch
     feature: str
-    rotary: Mapping[str, float]
-    reason: str
+    rotary: Mapping[str, float]  # readings of the rotary axes by letter, rad
+    reason: str  # what is against it, as `ProbeReach.reasons` has it
 
     def __str__(self) -> str:
         place = " ".join(f"{a}{v / DEG:+.1f}" for a, v in self.rotary.items())
@@ -94,34 +79,24 @@ class Refusal:
 
 @dataclass(frozen=True, eq=False)
 class TouchPlan:
-    """Touches in the order of execution; rows of one visit stand together.
-
-    Attributes:
-        visits: Table poses in order, each with its side of approach and clearance height.
-        visit: Index into `visits`, (N,).
-        request: Row of the requests, -1 for an anchor touch, (N,).
-        point: Contact points, artefact frame, (N, 3), mm.
-        start: Readings at the start of the touch, (N, A).
-        contact: Readings at the expected contact, (N, A).
-        direction: Unit vector of the probing motion in X, Y, Z readings, (N, 3).
-        refused: Requests that cannot be made, and why.
-    """
+    """Touches in the order of execution; rows of one visit stand together."""
 
     chain: Chain
     probe: Probe
     standard: Standard
     setup: Setup
     options: PlanOptions
+    # table poses in order, each with its side of approach and clearance height
     visits: tuple[Visit, ...]
-    visit: IntArray
-    request: IntArray
+    visit: IntArray  # index into `visits`, (N,)
+    request: IntArray  # row of the requests, -1 for an anchor touch, (N,)
     feature: Labels
-    point: Array
+    point: Array  # contact points, artefact frame, (N, 3), mm
     normal: Array
-    start: Array
-    contact: Array
-    direction: Array
-    refused: tuple[Refusal, ...] = field(default=())
+    start: Array  # readings at the start of the touch, (N, A)
+    contact: Array  # readings at the expected contact, (N, A)
+    direction: Array  # unit vector of the probing motion in X, Y, Z readings, (N, 3)
+    refused: tuple[Refusal, ...] = field(default=())  # requests that cannot be made, and why
 
     def __len__(self) -> int:
         return len(self.visit)

@@ -39,8 +39,7 @@ from matstd.twin.units import NM, UM
 STRETCH = 8.0
 """Length of line in one row, mm: less than half of the narrowest effect that is looked for."""
 
-LARGEST_GAP = 3.0
-"""Largest distance of a ball from its face after the set-up is fitted, mm."""
+LARGEST_GAP = 3.0  # largest distance of a ball from its face after the set-up is fitted, mm
 
 LARGEST_RMS = 0.1
 """Root mean square of the deviations with the set-up fitted, mm: no machine in use is that wrong,
@@ -60,25 +59,15 @@ _ARM = 100.0  # mm; scales rotations of the standard to lengths
 
 @dataclass(frozen=True, eq=False)
 class ScanPoints:
-    """Points of a scan on one machine, in the order of time.
+    """Points of a scan on one machine, in the order of time."""
 
-    Attributes:
-        path: Of the file, for messages.
-        row: Line of every point in it, (N,).
-        line: Number of the line of the scan, (N,).
-        is_numbered: Whether the file numbers its lines; if not they end where points stop.
-        q: Readings of all axes, (N, A), mm and rad.
-        deflection: Of the stylus along the normal, (N,), mm.
-        time: S, (N,).
-    """
-
-    path: Path
-    row: IntArray
-    line: IntArray
-    is_numbered: bool
-    q: Array
-    deflection: Array
-    time: Array
+    path: Path  # of the file, for messages
+    row: IntArray  # line of every point in it, (N,)
+    line: IntArray  # number of the line of the scan, (N,)
+    is_numbered: bool  # whether the file numbers its lines; if not they end where points stop
+    q: Array  # readings of all axes, (N, A), mm and rad
+    deflection: Array  # of the stylus along the normal, (N,), mm
+    time: Array  # S, (N,)
 
     def __len__(self) -> int:
         return len(self.q)
@@ -100,23 +89,14 @@ class ScanPoints:
 
 @dataclass(frozen=True)
 class ScanNoise:
-    """What a scan shows of its own noise.
+    """What a scan shows of its own noise."""
 
-    Attributes:
-        points: Recorded.
-        lines: Of the scan.
-        u: Standard deviation of a point of 0.2 mm, mm.
-        alike: Correlation of neighbouring ones.
-        pitch: Distance of these, mm.
-        u_mean: Standard uncertainty of a row by that noise, mm.
-    """
-
-    points: int
-    lines: int
-    u: float
-    alike: float
-    pitch: float
-    u_mean: float
+    points: int  # recorded
+    lines: int  # of the scan
+    u: float  # standard deviation of a point of 0.2 mm, mm
+    alike: float  # correlation of neighbouring ones
+    pitch: float  # distance of these, mm
+    u_mean: float  # standard uncertainty of a row by that noise, mm
 
 
 def evaluate_scan(
@@ -225,6 +205,8 @@ def _fitted(
     Args:
         moved: Displacements of the face by its weight, artefact frame, (N, 3), mm.
     """
+    # foot points are projected anew for every set-up; points may lie 10 mm off where the set-up is
+    # believed, 3 mm once it has settled; rotations are lengths at an arm of 100 mm
     T_table_artefact, limit = setup.T_table_artefact, _BELIEVED
     for _ in range(_ROUNDS):
         ball = apply(inverse(T_table_artefact), place) - moved
@@ -248,7 +230,7 @@ def _fitted(
             f"at most {LARGEST_RMS:g} mm: another face, radius of the ball, or a filter that "
             "takes off the radius of the tip",
         )
-    return Setup(setup.name, T_table_artefact), uv
+    return replace(setup, T_table_artefact=T_table_artefact), uv
 
 
 def _gaps(

@@ -6,9 +6,15 @@ every probe in every clamping, with its plan and its programs, in the order in w
 Their logs are evaluated together (`matstd.probe_paths.campaign.evaluate`).
 """
 
-from matstd.probe_paths.stations.from_brief import dialects_of, feeds_of, plan_options_of
+from matstd.probe_paths.stations.from_brief import (
+    Station,
+    all_programs,
+    dialects_of,
+    feeds_of,
+    make_stations,
+    plan_options_of,
+)
 from matstd.probe_paths.stations.planned import plan_campaign
-from matstd.probe_paths.stations.programmed import Station, all_programs, make_stations
 
 __all__ = [
     "Station",

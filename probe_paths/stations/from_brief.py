@@ -1,13 +1,55 @@
 """What a brief asks of the programs: words of the control, feeds, and how carefully to plan."""
 
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 from matstd.artefact.brief import Brief
-from matstd.probe_paths.emit import SEARCH, Feeds
+from matstd.probe_paths.emit import SEARCH, Feeds, ProgramSet, make_programs
 from matstd.probe_paths.language import Dialect, checked_name, read_dialect
-from matstd.probe_paths.plan import PlanOptions, Sensor
-from matstd.probe_paths.stations.programmed import with_tool
+from matstd.probe_paths.plan import PlanOptions, Sensor, TouchPlan
 from matstd.twin.errors import BadFile
+
+
+@dataclass(frozen=True, eq=False)
+class Station:
+    """What one probe does in one clamping."""
+
+    plan: TouchPlan
+    dialect: Dialect  # words of the control, with the probe's tool
+    programs: ProgramSet
+
+    @property
+    def setup(self) -> str:
+        """Name of the clamping."""
+        return self.plan.setup.name
+
+
+def with_tool(dialect: Dialect, tool: int) -> Dialect:
+    """Words for a further probe; all its names begin with the tool: `MS31_A_1`."""
+    return replace(dialect, tool=tool, prefix=f"{dialect.prefix}{tool}")
+
+
+def make_stations(
+    plans: Sequence[tuple[int, TouchPlan]], words: Sequence[Dialect], feeds: Feeds | None = None
+) -> tuple[Station, ...]:
+    """Programs of the plans of a campaign.
+
+    Args:
+        plans: As of `plan_campaign`, with the number of the probe.
+        words: Words of the control, for every probe.
+    """
+    return tuple(
+        Station(plan, words[probe], make_programs(plan, words[probe], feeds))
+        for probe, plan in plans
+    )
+
+
+def all_programs(stations: Sequence[Station]) -> ProgramSet:
+    """Programs of all stations in their order; masks that they share are the same."""
+    programs = tuple(program for one in stations for program in one.programs.programs)
+    masks = {name: text for one in stations for name, text in one.programs.masks.items()}
+    return ProgramSet(programs, masks)
+
 
 _DROPPED = 0.1
 """Share of touches that a plan may drop, each with its reason: the choice checks touches only,

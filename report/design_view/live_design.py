@@ -2,44 +2,83 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from matstd.artefact.body import Standard
 from matstd.artefact.brief import Brief
 from matstd.artefact.compare import Rival
 from matstd.artefact.place import Placement
 from matstd.artefact.reach import Requests
+from matstd.artefact.worth import Criterion
+from matstd.information.criteria import Posterior
 from matstd.probe_paths.plan import TouchPlan
-from matstd.report.design_view.feature_worth import feature_shares, features_of
 from matstd.report.design_view.volume_error import ErrorField
 from matstd.report.layout import LiveView
 from matstd.report.live import TREE, packed, scripted, style
-from matstd.report.machine import machine_data, probe_body
+from matstd.report.machine import machine_data, probe_body, standard_bodies
 from matstd.twin.frames import Array, inverse
 from matstd.twin.machine import table_to_tool
 from matstd.twin.units import DEG, UM
 
-GRAIN = 0.05
-"""Of the corners of bodies, mm."""
+
+class Feature(NamedTuple):
+    """A ball or a face, or the rest of the body."""
+
+    name: str  # empty for the rest
+    kind: str  # `ball`, `face` or `body`
+    colour: str  # as `#rrggbb`
+    corners: Array  # artefact frame, (T, 3, 3), mm
+
+
+def features_of(standard: Standard) -> list[Feature]:
+    """All bodies of a standard: the rest first, then balls, then faces."""
+    balls = {s.name for s in standard.spheres}
+    return [
+        Feature(name, "body" if not name else "ball" if name in balls else "face", colour, corners)
+        for name, colour, corners in standard_bodies(standard)
+    ]
+
+
+def feature_shares(
+    criterion: Criterion, standard: Standard, touches: Requests
+) -> Mapping[str, float]:
+    """Predicted error of the tool point without the touches on each feature, rms, mm.
+
+    Args:
+        criterion: That chose the touches, on no body.
+        touches: Those that identify.
+
+    Returns:
+        By feature, over the user's workspace; with all touches under the empty name.
+    """
+    on_body = criterion.on(standard)
+    tip = on_body.tip_user
+    # the mean over the poses of trace(G Sigma G^T) is that of Sigma times one moment of G
+    moment = np.einsum("mip,miq->pq", tip, tip, optimize=True) / len(tip)
+    out = {}
+    for name in ["", *np.unique(touches.feature).tolist()]:
+        left = touches[np.flatnonzero(touches.feature != name)]
+        known = Posterior(on_body.known_rows(left), on_body.prior_sd, on_body.model.names)
+        out[name] = float(np.sqrt(np.sum(known.covariance * moment)))
+    return out
+
+
+GRAIN = 0.05  # of the corners of bodies, mm
 
 
 @dataclass(frozen=True, eq=False)
 class DesignScene:
-    """What the page of a design shows that moves.
-
-    Attributes:
-        plan: Touches of the first clamping and probe, in their order.
-        minutes: On the machine, by the name of the artefact.
-        field: Errors of the first simulated machine; None where there is no volume.
-    """
+    """What the page of a design shows that moves."""
 
     brief: Brief
     placement: Placement
-    plan: TouchPlan
-    minutes: Mapping[str, float]
-    field: ErrorField | None
+    plan: TouchPlan  # touches of the first clamping and probe, in their order
+    minutes: Mapping[str, float]  # on the machine, by the name of the artefact
+    field: ErrorField | None  # errors of the first simulated machine; None where there is no volume
 
 
 def design_live(scene: DesignScene) -> LiveView:

@@ -14,29 +14,22 @@ from matstd.twin.model import Effect
 from matstd.twin.record import Setup, at_poses
 from matstd.twin.sampling import grid_points
 
-COUNTS = (11, 11, 9)
-"""Places along the three linear axes."""
+COUNTS = (11, 11, 9)  # places along the three linear axes
 
 _SHARES = (0.5, 0.15, 0.85)  # of the range of every rotary axis, at which the field is worked out
 
 
 @dataclass(frozen=True, eq=False)
 class ErrorField:
-    """Error vectors over a grid of linear readings, at some rotary readings.
+    """Error vectors over a grid of linear readings, at some rotary readings."""
 
-    Attributes:
-        axes: Names of the three linear axes.
-        at: Readings of each, ascending, mm.
-        rotary: Readings of the rotary axes by name, for every field, rad.
-        before: (F, n1, n2, n3, 3) along the motion of each axis, mm; nan outside the user's volume.
-        after: Not predicted by the identified model, the same shape, mm.
-    """
-
-    axes: tuple[str, ...]
-    at: tuple[Array, ...]
+    axes: tuple[str, ...]  # names of the three linear axes
+    at: tuple[Array, ...]  # readings of each, ascending, mm
+    # readings of the rotary axes by name, for every field, rad
     rotary: tuple[dict[str, float], ...]
+    # (F, n1, n2, n3, 3) along the motion of each axis, mm; nan outside the user's volume
     before: Array
-    after: Array
+    after: Array  # not predicted by the identified model, the same shape, mm
 
 
 def error_field(
@@ -69,6 +62,7 @@ def error_field(
         proof = prove(
             fit, truth, brief.setup, seen_from(at_poses(chain, q, brief.probe.length), believed)
         )
+        # shown as what each linear axis would have to move, so that its own error fills one picture
         to_table = believed.T_table_artefact[:3, :3]
         outside = ~workspace.in_volume(q)
         for vectors, into in ((proof.before, before), (proof.after, after)):

@@ -1,6 +1,6 @@
 """A sheet of paper in millimetres, and the signs of technical drawings on it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,38 +24,34 @@ class Paper:
         return self.width, self.height
 
 
-A2, A1 = Paper("A2", 594.0, 420.0), Paper("A1", 841.0, 594.0)
-"""Papers of drawings."""
+A2, A1, A0 = Paper("A2", 594.0, 420.0), Paper("A1", 841.0, 594.0), Paper("A0", 1189.0, 841.0)
+PAPERS = (A2, A1, A0)
+"""Papers of drawings, the smallest first."""
 
-WIDE, THIN = 0.5, 0.25
-"""Lines of ISO 128-2, mm."""
+WIDE, THIN = 0.5, 0.25  # lines of ISO 128-2, mm
 
-HATCH = "hatch"
-"""Filling of a cut solid (ISO 128-3)."""
+HATCH = "hatch"  # filling of a cut solid (ISO 128-3)
 
-LETTER_HEIGHT = 2.5
-"""Height of lettering, mm (ISO 3098-1); smaller letters do not survive a copy."""
+LETTER_HEIGHT = 2.5  # height of lettering, mm (ISO 3098-1); smaller letters do not survive a copy
+
+ROW = 5.2
+"""Height of a row of a table, mm."""
 
 _POINT = 72.0 / 25.4  # points a millimetre
 _MARGIN, _BINDING = 10.0, 20.0
+_FIELD, _GRID = 50.0, 5.0  # mm: length and width of a reference field in the border (ISO 5457)
 _ARROW = 2.6  # mm
-_WIDE = 0.95  # of its height, a letter with what is between two
+_WIDE, _NARROW = 0.95, 0.84  # of its height, a capital and any other letter with its space
 _CLEAR, _WAYS = 1.0, 32  # mm between a circle and its name; directions that are tried for it
 
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """Where a view lies on the sheet.
+    """Where a view lies on the sheet."""
 
-    Attributes:
-        x: Place of the view's origin, mm of paper.
-        y: The same upwards, mm of paper.
-        scale: Paper by part.
-    """
-
-    x: float
-    y: float
-    scale: float
+    x: float  # place of the view's origin, mm of paper
+    y: float  # the same upwards, mm of paper
+    scale: float  # paper by part
 
     def at(self, points: Any) -> Array:
         """Points (N, 2) of the view on paper, mm."""
@@ -63,8 +59,47 @@ class View:
         return placed
 
 
+@dataclass(frozen=True, slots=True)
+class Block:
+    """Something that may stand anywhere on a sheet.
+
+    Attributes:
+        width: Mm of paper.
+        height: The same.
+        draw: Draws it on a sheet, from the x of its left and the y of its upper edge.
+    """
+
+    width: float
+    height: float
+    draw: "Callable[[Sheet, float, float], None]"
+
+
+def block_of(scale: float, draw: "Callable[[Sheet, View], None]") -> Block:
+    """A drawn section as a block, as large as what it draws."""
+    scratch = Sheet()
+    begin = len(scratch.ink)
+    draw(scratch, View(0.0, 0.0, scale))
+    points = np.concatenate(scratch.ink[begin:])
+    (x0, y0), (x1, y1) = points.min(axis=0), points.max(axis=0)
+
+    def place(sheet: Sheet, x: float, top: float) -> None:
+        draw(sheet, View(x - x0, top - y1, scale))
+
+    return Block(float(x1 - x0), float(y1 - y0), place)
+
+
+def ratio(scale: float) -> str:
+    """A scale as ISO 5455 writes it."""
+    return f"{scale:g}:1" if scale >= 1.0 else f"1:{np.round(1.0 / scale, 2):g}"
+
+
 class Sheet:
-    """Lines and signs, all in millimetres of paper from the lower left corner."""
+    """Lines and signs, all in millimetres of paper from the lower left corner.
+
+    Attributes:
+        ink: Points of everything drawn.
+        left, right, low, high: Edges of the drawing space, mm.
+    """
 
     def __init__(self, paper: Paper = A2) -> None:
         self.paper = paper
@@ -75,15 +110,44 @@ class Sheet:
         self.axes.set_ylim(0.0, high)
         self.axes.set_axis_off()
         self._depth = 1.0
-        self._ink: list[Array] = []
-        self.box(_BINDING, _MARGIN, wide - _MARGIN - _BINDING, high - 2 * _MARGIN, 0.7)
+        self.ink: list[Array] = []
+        self.left, self.right = _BINDING, wide - _MARGIN
+        self.low, self.high = _MARGIN, high - _MARGIN
+        self.box(self.left, self.low, self.right - self.left, self.high - self.low, 0.7)
+        self._border()
+
+    def _border(self) -> None:
+        """Reference fields and centring marks of ISO 5457."""
+        across, along = 0.5 * (self.left + self.right), 0.5 * (self.low + self.high)
+        count = 2 * int((self.right - across) / _FIELD)
+        for k in range(count + 1):
+            x = across + (k - count / 2) * _FIELD
+            for y, out in ((self.low, -1.0), (self.high, 1.0)):
+                self.line([[x, y], [x, y + out * _GRID]], 0.35)
+                if k < count:
+                    middle = y + 0.5 * out * _GRID - 1.2
+                    self.text(x + 0.5 * _FIELD, middle, f"{k + 1}", ha="center")
+        count = 2 * int((self.high - along) / _FIELD)
+        for k in range(count + 1):
+            y = along + (count / 2 - k) * _FIELD
+            for x, out in ((self.left, -1.0), (self.right, 1.0)):
+                self.line([[x, y], [x + out * _GRID, y]], 0.35)
+                if k < count:
+                    letter = "ABCDEFGHJKLMNPQR"[k]
+                    self.text(x + 0.5 * out * _GRID, y - 0.5 * _FIELD - 1.2, letter, ha="center")
+        for x, y, way in (
+            (across, self.low, (0.0, -1.0)), (across, self.high, (0.0, 1.0)),
+            (self.left, along, (-1.0, 0.0)), (self.right, along, (1.0, 0.0)),
+        ):  # fmt: skip
+            ends = np.array([x, y]) + np.outer([-5.0, _MARGIN - 1.0], way)
+            self.line(ends, 0.7)
 
     def line(self, points: Any, width: float = THIN, style: str = "-", fill: str = "none") -> None:
         """A polyline, or a filled figure that hides what was drawn before; `hatch` cuts it."""
         from matplotlib.patches import Polygon
 
         p = np.atleast_2d(points)
-        self._ink.append(p)
+        self.ink.append(p)
         self._depth += 1e-3
         closed = fill != "none" or bool(np.allclose(p[0], p[-1]))
         dashes = {"--": (0, (8, 4)), "-.": (0, (20, 4, 2, 4))}.get(style, "-")
@@ -102,6 +166,13 @@ class Sheet:
             )
         )
 
+    def broken(self, a: Any, b: Any) -> None:
+        """A thin line drawn by hand, where a body is drawn broken off (ISO 128-2, 01.1)."""
+        p, q = np.asarray(a, dtype=float), np.asarray(b, dtype=float)
+        t = np.linspace(0.0, 1.0, 41)[:, None]
+        n = np.array([p[1] - q[1], q[0] - p[0]]) / np.linalg.norm(q - p)
+        self.line(p + t * (q - p) + 0.7 * np.sin(4.0 * np.pi * t) * n)
+
     def circle(
         self, middle: Any, radius: float, width: float = WIDE, style: str = "-", fill: str = "none"
     ) -> None:
@@ -119,11 +190,11 @@ class Sheet:
     ) -> None:
         """Words of a height in millimetres, standing on a line."""
         self._depth += 1e-3
-        wide, begin = _WIDE * size * len(words), {"left": 0.0, "center": 0.5, "right": 1.0}[ha]
+        wide, begin = _long(words, size), {"left": 0.0, "center": 0.5, "right": 1.0}[ha]
         box = np.array([[0.0, 0.0], [wide, 0.0], [wide, size], [0.0, size], [0.0, 0.0]])
         along = np.array([np.cos(np.radians(turn)), np.sin(np.radians(turn))])
         axes = np.array([along, [-along[1], along[0]]])
-        self._ink.append(np.array([x, y]) + (box - [begin * wide, 0.0]) @ axes)
+        self.ink.append(np.array([x, y]) + (box - [begin * wide, 0.0]) @ axes)
         self.axes.text(
             x, y, words, fontsize=1.35 * size * _POINT, ha=ha, va="baseline", rotation=turn,
             rotation_mode="anchor", zorder=self._depth,
@@ -131,9 +202,9 @@ class Sheet:
 
     def label(self, middle: Any, radius: float, words: str, size: float = LETTER_HEIGHT) -> None:
         """Words beside a circle, on the side where least is drawn."""
-        p, half = np.asarray(middle, dtype=float), 0.5 * np.array([_WIDE * len(words), 1.0]) * size
+        p, half = np.asarray(middle, dtype=float), 0.5 * np.array([_long(words, size), size])
         reach = radius + 2.0 * half[0] + 2.0 * _CLEAR
-        ink = np.concatenate([_dense(line) for line in self._ink])
+        ink = np.concatenate([_dense(line) for line in self.ink])
         ink = ink[(np.abs(ink - p) < reach).all(axis=1)]
         ways = np.pi / 4.0 + np.arange(_WAYS) * 2.0 * np.pi / _WAYS
         ways = np.column_stack([np.cos(ways), np.sin(ways)])
@@ -242,6 +313,26 @@ class Sheet:
             self.text(x + 10.0 + cells[1] + 6.0 * k, y + 1.8, letter, ha="center")
         return sum(cells)
 
+    def attached(
+        self, at: Any, kind: str, width: str, datums: str, tip: Any, words: str = ""
+    ) -> None:
+        """A tolerance frame with its leader to the feature, and words beside or above it."""
+        x, y = float(at[0]), float(at[1])
+        long = self.tolerance(x, y, kind, width, datums)
+        goal = np.asarray(tip, dtype=float)
+        above = goal[1] > y
+        start = np.array([np.clip(goal[0], x + 2.0, x + long - 2.0), y + 6.0 if above else y])
+        self.line([start, goal])
+        self.arrow(goal, goal - start)
+        if words:
+            beside = (x + long + 1.5, y + 1.8) if above else (x, y + 6.8)
+            self.text(*beside, words)
+
+    def crowd(self, low: Any, high: Any) -> int:
+        """Points of what is drawn within a rectangle, half a millimetre apart."""
+        ink = np.concatenate([_dense(line) for line in self.ink])
+        return int(np.count_nonzero(((ink > low) & (ink < high)).all(axis=1)))
+
     def contours(self, x: Array, y: Array, z: Array, levels: int) -> None:
         """Thin lines of equal height over a grid."""
         self._depth += 1e-3
@@ -268,7 +359,7 @@ class Sheet:
     ) -> float:  # fmt: skip
         """A table under its title, first row bold lines; returns the height of its lower edge."""
         self.text(x, top + 1.2, title, size=3.0)
-        height, y = 5.2, top
+        height, y = ROW, top
         for number, row in enumerate(rows):
             at = x
             for width, words in zip(widths, row, strict=True):
@@ -277,6 +368,11 @@ class Sheet:
                 at += width
             y -= height
         return y
+
+
+def _long(words: str, size: float) -> float:
+    """How long words are, mm."""
+    return size * sum(_WIDE if letter.isupper() else _NARROW for letter in words)
 
 
 def _dense(line: Array) -> Array:

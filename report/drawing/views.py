@@ -1,7 +1,6 @@
 """Three views of a standard, drawn far to near so that what is behind is hidden."""
 
-from collections.abc import Callable
-from functools import partial
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -94,8 +93,10 @@ def _patch_from_above(sheet: Sheet, view: View, patch: FreeformPatch) -> None:
     x, y = (view.at(points[:, :2])[:, k].reshape(_SAMPLES, _SAMPLES) for k in (0, 1))
     z = points[:, 2].reshape(_SAMPLES, _SAMPLES)
     sheet.contours(x, y, z, _LEVELS)
-    middle = view.at(patch.T_artefact_patch[:2, 3])[0]
-    sheet.text(middle[0], middle[1] - 1.2, patch.name, size=3.0, ha="center")
+    x, y = view.at([rim[:, 0].min(), rim[:, 1].max()])[0] + [2.0, -5.0]
+    sheet.line([[x - 1.0, y - 1.0], [x + 9.0, y - 1.0], [x + 9.0, y + 3.5], [x - 1.0, y + 3.5]],
+               0.0, fill="white")  # fmt: skip
+    sheet.text(x, y, patch.name, size=3.0)
 
 
 def _cross(sheet: Sheet, view: View, middle: Array, radius: float) -> None:
@@ -115,15 +116,14 @@ def draw_from(
     """
     right = np.cross(towards, [0.0, 0.0, 1.0])
     base = standard.base
-    items: list[tuple[float, Callable[[], None]]] = []
-    for patch in standard.patches:
-        depth = float(patch.T_artefact_patch[:3, 3] @ towards)
-        items.append((depth, partial(_pillar, sheet, view, patch, right, base.thickness)))
-    for sphere in standard.spheres:
-        depth = float(sphere.centre @ towards)
-        items.append((depth, partial(_post, sheet, view, sphere, details, right)))
-    for _, draw in sorted(items, key=lambda item: -item[0]):
-        draw()
+    seen = [_pillar(patch, right, towards, base.thickness) for patch in standard.patches]
+    seen += [_post(sphere, details, right, towards) for sphere in standard.spheres]
+    seen.sort(key=lambda one: -one.depth)
+    for one in seen:
+        for outline in one.outlines:
+            sheet.line(view.at(outline), WIDE, fill="white")
+        if len(one.edge):
+            sheet.line(view.at(one.edge), THIN)
     half = float(np.abs(right[:2]) @ base.half_size)
     low = RELIEF if details.pads else 0.0
     block = [[-half, low], [half, low], [half, base.thickness], [-half, base.thickness]]
@@ -135,34 +135,67 @@ def draw_from(
         at = float(np.array([pad.x, pad.y]) @ right[:2])
         corners = [[at - pad.radius, low], [at - pad.radius, 0.0], [at + pad.radius, 0.0]]
         sheet.line(view.at([*corners, [at + pad.radius, low]]), WIDE)
+    _name_what_is_seen(sheet, view, seen)
 
 
-def _pillar(
-    sheet: Sheet, view: View, patch: FreeformPatch, right: Array, foot: float
-) -> None:  # fmt: skip
-    """Walls and the outline of the face, and its nearer edge."""
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """A pillar or a post with its ball, as one sees it from a side; millimetres of the part."""
+
+    name: str
+    depth: float
+    outlines: list[Array]
+    edge: Array
+    middle: Array
+
+
+def _name_what_is_seen(sheet: Sheet, view: View, seen: list[_Seen]) -> None:
+    """Names of bodies, from far to near, where nothing nearer stands before them."""
+    from matplotlib.path import Path
+
+    for k, one in enumerate(seen):
+        at = view.at(one.middle)[0]
+        half = np.array([0.9 * len(one.name), 1.3])
+        corners = at + half * [[-1, -1], [1, -1], [1, 1], [-1, 1], [0, 0]]
+        nearer = (Path(view.at(outline)) for body in seen[k + 1 :] for outline in body.outlines)
+        if not any(path.contains_points(corners).any() for path in nearer):
+            sheet.text(at[0], at[1] - 1.0, one.name, ha="center")
+
+
+def _pillar(patch: FreeformPatch, right: Array, towards: Array, foot: float) -> _Seen:
+    """Walls, the outline of the face, and its nearer edge."""
     a, b = patch.half_size
     u, v = np.linspace(-a, a, _SAMPLES), np.linspace(-b, b, _SAMPLES)
-    points = patch.point(grid_points(u, v))
-    grid = points.reshape(_SAMPLES, _SAMPLES, 3)
+    grid = patch.point(grid_points(u, v)).reshape(_SAMPLES, _SAMPLES, 3)
     if abs(right[0]) < 0.5:  # along x: what was one edge after the other is the depth
         grid = grid.transpose(1, 0, 2)
     along, top = (grid @ right).mean(axis=1), grid[:, :, 2].max(axis=1)
     front = grid[:, 0, 2]
-    ends = [[along[-1], foot], [along[0], foot]]
     rim = np.column_stack([along, top])
-    sheet.line(view.at(np.concatenate([rim, ends, rim[:1]])), WIDE, fill="white")
-    sheet.line(view.at(np.column_stack([along, front])), THIN)
-    middle = view.at([[along.mean(), 0.5 * (foot + front.mean())]])[0]
-    sheet.text(middle[0], middle[1] - 1.0, patch.name, ha="center")
+    outline = np.concatenate([rim, [[along[-1], foot], [along[0], foot]], rim[:1]])
+    return _Seen(
+        name=patch.name,
+        depth=float(patch.T_artefact_patch[:3, 3] @ towards),
+        outlines=[outline],
+        edge=np.column_stack([along, front]),
+        middle=np.array([along.mean(), 0.5 * (foot + front.mean())]),
+    )
 
 
-def _post(sheet: Sheet, view: View, sphere: DatumSphere, details: Details, right: Array) -> None:
+def _post(sphere: DatumSphere, details: Details, right: Array, towards: Array) -> _Seen:
     seat, at = details.seats[sphere.name], float(sphere.centre @ right)
     low, high = sphere.foot_radius, seat.top_radius
     flank = [[at - low, sphere.foot], [at - high, seat.top], [at + high, seat.top]]
-    sheet.line(view.at([*flank, [at + low, sphere.foot]]), WIDE, fill="white")
-    middle = view.at([[at, sphere.centre[2]]])[0]
-    sheet.circle(middle, view.scale * sphere.radius, fill="white")
+    flank += [[at + low, sphere.foot], flank[0]]
+    t = np.linspace(0.0, 2.0 * np.pi, 97)
+    middle = np.array([at, sphere.centre[2]])
+    ring = middle + sphere.radius * np.column_stack([np.cos(t), np.sin(t)])
     number = sphere.name.removeprefix("SPH")
-    sheet.text(middle[0], middle[1] - 0.9, number, ha="center")
+    depth = float(sphere.centre @ towards)
+    return _Seen(
+        name=number,
+        depth=depth,
+        outlines=[np.array(flank), ring],
+        edge=np.empty((0, 2)),
+        middle=middle,
+    )

@@ -20,8 +20,7 @@ from matstd.twin.words import listed
 
 _UNITS = {"mm": ("µm", UM), "rad": ("µrad", URAD), "1": ("ppm", 1e-6)}
 
-_TURNS = {"A": "X", "B": "Y", "C": "Z"}
-"""Direction of the rotation that a letter denotes."""
+_TURNS = {"A": "X", "B": "Y", "C": "Z"}  # direction of the rotation that a letter denotes
 
 ARM = (
     Quantity.JOINT_ZERO,
@@ -37,32 +36,21 @@ USUAL = (Quantity.SQUARENESS, Quantity.SCALE, *ARM)
 SPANS = (Quantity.STRAIGHTNESS, Quantity.ANGULAR, Quantity.ROTARY_MOTION)
 """Curves, reported by their peak to valley."""
 
-CLEAR = 2.0
-"""Standard uncertainties from which on a quantity is worth a line on the console."""
+CLEAR = 2.0  # standard uncertainties from which on a quantity is worth a line on the console
 
-NOTED = 8
-"""Quantities reported on the console."""
+NOTED = 8  # quantities reported on the console
 
 
 @dataclass(frozen=True, slots=True)
 class GeometryLine:
-    """One row of the table.
+    """One row of the table."""
 
-    Attributes:
-        name: `squareness of Y to X (EC0Y)`.
-        value: `3 ± 2 → 41 ± 2 µrad`; empty where the run does not determine it.
-        at_ends: Its effect over the travel.
-        expected: Its expected size.
-        note: Whether it exceeds its expected size, has changed, or shares its signature.
-        is_noted: Whether the note should be read first.
-    """
-
-    name: str
-    value: str
-    at_ends: str
-    expected: str
-    note: str
-    is_noted: bool
+    name: str  # `squareness of Y to X (EC0Y)`
+    value: str  # `3 ± 2 → 41 ± 2 µrad`; empty where the run does not determine it
+    at_ends: str  # its effect over the travel
+    expected: str  # its expected size
+    note: str  # whether it exceeds its expected size, has changed, or shares its signature
+    is_noted: bool  # whether the note should be read first
 
     @property
     def is_determined(self) -> bool:

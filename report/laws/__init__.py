@@ -9,12 +9,14 @@ from matstd.report.laws.law_words import (
     law_notes,
     law_sentence,
     learnt_words,
+    limits_sentences,
     no_law_sentence,
     rival_sentence,
     second_run_sentence,
+    short_words,
     size_words,
 )
-from matstd.report.laws.visit_words import visit_sentences
+from matstd.report.laws.visit_words import visit_lines, visit_sentences
 
 __all__ = [
     "LawCurve",
@@ -26,10 +28,13 @@ __all__ = [
     "law_sections",
     "law_sentence",
     "learnt_words",
+    "limits_sentences",
     "no_law_sentence",
     "rival_sentence",
     "second_run_sentence",
+    "short_words",
     "size_words",
+    "visit_lines",
     "visit_sentences",
     "write_law_page",
 ]

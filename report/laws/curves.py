@@ -12,15 +12,13 @@ from matstd.twin.laws import Driver, Law
 from matstd.twin.model import columns
 from matstd.twin.units import DEG, UM, URAD
 
-CURVE_POINTS = 400
-"""Points of a curve that are drawn."""
+CURVE_POINTS = 400  # points of a curve that are drawn
 
 BEYOND = 0.3
 """Share of the range by which a curve without a formula is drawn beyond it: there its uncertainty
 comes back."""
 
-MIN_LEVER = 0.2
-"""Share of the largest lever below which a touch shows noise rather than the law."""
+MIN_LEVER = 0.2  # share of the largest lever below which a touch shows noise rather than the law
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,32 +28,19 @@ class LawCurve:
     A touch feels the carrier by a lever: its residual with the law put back, over the lever, is
     what it says of the curve. Of a product of two shapes the lever holds what the other shape is
     at the touch.
-
-    Attributes:
-        title: `EBY`.
-        unit: Of the carrier.
-        scale: One of it in base units.
-        label: Of the variable, with its unit.
-        x: Of the curve, as it is shown, (M,).
-        value: Of the curve, in `unit`, (M,).
-        u: Its standard uncertainty, (M,).
-        touch_x: Of every touch, as it is shown, (N,).
-        touch_value: Of the curve at every touch, in `unit`, (N,).
-        lever: Of every touch, mm over the base unit; nan where it is too small, (N,).
-        put_back: Residual with the law put back over the lever, in `unit`, (N,).
     """
 
-    title: str
-    unit: str
-    scale: float
-    label: str
-    x: Array
-    value: Array
-    u: Array
-    touch_x: Array
-    touch_value: Array
-    lever: Array
-    put_back: Array
+    title: str  # `EBY`
+    unit: str  # of the carrier
+    scale: float  # one of it in base units
+    label: str  # of the variable, with its unit
+    x: Array  # of the curve, as it is shown, (M,)
+    value: Array  # of the curve, in `unit`, (M,)
+    u: Array  # its standard uncertainty, (M,)
+    touch_x: Array  # of every touch, as it is shown, (N,)
+    touch_value: Array  # of the curve at every touch, in `unit`, (N,)
+    lever: Array  # of every touch, mm over the base unit; nan where it is too small, (N,)
+    put_back: Array  # residual with the law put back over the lever, in `unit`, (N,)
 
 
 def law_curve(learning: Learning, law: Law, k: int) -> LawCurve:

@@ -2,6 +2,9 @@
 
 import math
 import re
+from collections.abc import Sequence
+
+import numpy as np
 
 from matstd.diagnosis.laws import (
     Estimate,
@@ -13,7 +16,7 @@ from matstd.diagnosis.laws import (
     places,
 )
 from matstd.report.numbers import digits, microns, with_uncertainty
-from matstd.twin.laws import Carrier, Driver, Law
+from matstd.twin.laws import Carrier, Driver, Factor, Law, drivers
 from matstd.twin.units import DEG, MINUTE, UM, URAD
 from matstd.twin.words import listed
 
@@ -66,6 +69,12 @@ _SHAPES = {
     "play": "a play that follows",
     "curve": "a smooth curve without a formula",
 }
+FEW_TOUCHES = 60
+"""Below it a run leaves few degrees of freedom beside geometry and set-ups."""
+
+_EDGES = ("x0", "x1", "x2")
+"""Parameters of shapes that are values of the variable."""
+
 _LOOKS = {
     ("bump", "linear"): "It looks like a hose or a cable chain, or a worn place of a guide.",
     ("plateau", "linear"): "It looks like a worn zone of a scale or of a guide.",
@@ -146,27 +155,48 @@ def place_words(one: Estimate) -> str:
 
 
 def law_sentence(learning: Learning, one: LearntLaw) -> str:
-    """What was learnt, in a sentence or two."""
-    law = one.law
-    size, shapes = _size(learning, law), " times ".join(_shape_words(learning, law))
-    alike = [c.name for c in one.alike]
-    borne = (
-        f", or {listed(alike, 'or')}, which this run cannot distinguish from it" if alike else ""
-    )
-    return f"{carrier_words(law.carrier)}{borne}: {size}, {shapes}".replace("  ", " ") + "."
-
-
-def _shape_words(learning: Learning, law: Law) -> list[str]:
-    """`a step over Y (x0 -19.8 ± 0.6 mm)` of every factor."""
-    left, out = places(learning, law), []
+    """What was learnt: where it moves the tool, what carries it, its shape with all numbers."""
+    law, left, shapes = one.law, places(learning, one.law), []
     for factor in law.factors:
         count = len(factor.shape.places)
-        own, left = left[:count], left[count:]
-        plain = [p._replace(name=p.name.removesuffix("-2")) for p in own if p.u is not None]
-        where = [place_words(p) for p in plain]
-        details = f" ({', '.join(where)})" if where else ""
-        out.append(f"{_SHAPES[factor.shape.word]} over {variable_words(factor.driver)}{details}")
-    return out
+        shapes.append((factor, [p for p in left[:count] if p.u is not None]))
+        left = left[count:]
+    size = _size(learning, law)
+    if len(shapes) > 1 or law.is_curve_alone:
+        what = f"{' times '.join(_shape_words(*s) for s in shapes)}, {size}"
+    else:
+        what = _shape_words(*shapes[0], size)
+    return f"{_carried_words(law.carrier, one.alike)}: {what}".replace("  ", " ") + "."
+
+
+def short_words(law: Law) -> str:
+    """A law without its numbers: `EBY as a parabola over the temperature spindle`."""
+    shapes = " times ".join(_shape_words(factor, ()) for factor in law.factors)
+    return f"{carrier_words(law.carrier)} as {shapes}"
+
+
+def _carried_words(carrier: Carrier, alike: Sequence[Carrier]) -> str:
+    """`along Z, carried by Y (EZY)`."""
+    same = listed([c.name for c in alike], "or")
+    notes = [f"this run cannot distinguish it from {same}"] if alike else []
+    if carrier.symbol is None:
+        words = carrier_words(carrier)
+    else:
+        words = f"{carrier.symbol.motion}, carried by {carrier.symbol.link}"
+        notes.insert(0, carrier.name)
+    return f"{words} ({'; '.join(notes)})" if notes else words
+
+
+def _shape_words(factor: Factor, numbers: Sequence[Estimate], size: str = "") -> str:
+    """`a bump of -10.3 ± 0.3 µm over Y at 7.7 ± 0.6 mm (w 48.0 ± 1.4 mm)`."""
+    plain = [p._replace(name=p.name.removesuffix("-2")) for p in numbers]
+    edges = [place_words(p).split(maxsplit=1)[1] for p in plain if p.name in _EDGES]
+    others = [place_words(p) for p in plain if p.name not in _EDGES]
+    words = _SHAPES[factor.shape.word] + (f" of {size}" if size else "")
+    words += f" over {variable_words(factor.driver)}"
+    if edges:
+        words += f" from {edges[0]} to {edges[1]}" if len(edges) > 1 else f" at {edges[0]}"
+    return f"{words} ({', '.join(others)})" if others else words
 
 
 def size_words(learning: Learning, law: Law) -> str:
@@ -205,7 +235,7 @@ def rival_sentence(one: LearntLaw) -> str:
     rival = one.second_choice
     if rival is None:
         return ""
-    return f"Second choice: {formula_words(rival.law)} (odds {odds_words(rival.log_odds)})."
+    return f"Second choice: {short_words(rival.law)} (odds {odds_words(rival.log_odds)})."
 
 
 def library_sentence(one: LearntLaw) -> str:
@@ -236,13 +266,34 @@ def instead_sentence(learning: Learning) -> str:
 
 
 def law_notes(learning: Learning) -> list[str]:
-    """What is to be known of the laws: the library, what they look like, the error elsewhere."""
+    """What is to be known of the laws beside their numbers: the library, what they look like."""
     out = []
     for one in learning.laws:
         out += [library_sentence(one), rivals_sentence(one), looks_like(one.law)]
-    if learning.laws:
-        out.append(held_out_sentence(learning))
-    return [line for line in out if line]
+    return [line for line in (*out, *limits_sentences(learning)) if line]
+
+
+def limits_sentences(learning: Learning) -> list[str]:
+    """What a run cannot show: of few touches, of one pose, of variables with two values."""
+    fit, out = learning.before, []
+    touches, count = fit.run.touches, int(fit.used.sum())
+    if count < FEW_TOUCHES and learning.refusal is not Refusal.FEW:
+        out.append(f"From {count} touches only a law far above the noise can be learnt.")
+    stays = np.column_stack([touches.setup, touches.q[:, touches.chain.rotary_columns]])
+    if touches.chain.rotary_axes and len(np.unique(stays.round(6), axis=0)) == 1:
+        out.append(
+            "All touches are in one pose: carriers that differ only in others are not "
+            "distinguished, and a law over a rotary axis is not seen."
+        )
+    two = [
+        variable_words(driver)
+        for driver in drivers(touches)
+        if driver.nature != "sign" and len(np.unique(driver.values(touches))) == 2
+    ]
+    if two:
+        each = "has two values" if len(two) == 1 else "have two values each"
+        out.append(f"Of {listed(two)}, which {each}, only a step can be learnt.")
+    return out
 
 
 def learnt_words(learning: Learning) -> str:
@@ -250,12 +301,7 @@ def learnt_words(learning: Learning) -> str:
     if not learning.laws:
         return "no law of any carrier and variable explains it"
     word = "learnt law" if len(learning.laws) == 1 else "learnt laws"
-    each = []
-    for one in learning.laws:
-        said = law_sentence(learning, one).removesuffix(".")
-        second = rival_sentence(one).removesuffix(".")
-        each.append(f"{said}; {second[0].lower()}{second[1:]}" if second else said)
-    return f"{word}: {'; '.join(each)}"
+    return f"{word}: {'; '.join(short_words(one.law) for one in learning.laws)}"
 
 
 def odds_words(log_odds: float) -> str:
@@ -280,9 +326,11 @@ def no_law_sentence(learning: Learning) -> str:
     touches = int(learning.before.used.sum())
     left = f"what the model leaves of {touches} touches ({noise} rms)"
     best = learning.refused
+    if learning.refusal is Refusal.FEW:
+        return f"No law was looked for: {touches} touches distinguish none from another."
     if best is None or learning.refusal in (None, Refusal.CHANCE):
         return f"No law: {left} follows no carrier and variable beyond chance."
-    name = formula_words(best.law)
+    name = short_words(best.law)
     if learning.refusal is Refusal.LIBRARY:
         return f"No law beside the library. {library_sentence(best)}"
     if learning.refusal is Refusal.MEMORY:

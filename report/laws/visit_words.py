@@ -3,7 +3,8 @@
 import numpy as np
 
 from matstd.diagnosis.next_visit import NoPlan, RivalPower, VisitPlan
-from matstd.report.laws.law_words import carrier_words, formula_words, odds_words
+from matstd.probe_paths.locate import VisitSchedule
+from matstd.report.laws.law_words import carrier_words, odds_words, short_words
 from matstd.report.layout import Section, Table
 from matstd.report.numbers import digits, span
 from matstd.twin.laws import Law
@@ -14,8 +15,8 @@ FILE = "next_visit.csv"
 
 _HOW = (
     "Touch the points in the order of the file, in the set-ups of the run and with the "
-    "temperatures recorded; then learn from both runs. The command writes no probing program for "
-    "it."
+    "temperatures recorded; then learn from both runs. Of a standard that was designed here "
+    "`matstd replan next_visit.csv --design OUT` writes the programs."
 )
 
 
@@ -48,7 +49,7 @@ def _row(one: RivalPower) -> list[str]:
 
 
 def _name(effect: Effect) -> str:
-    return formula_words(effect) if isinstance(effect, Law) else effect.name
+    return short_words(effect) if isinstance(effect, Law) else effect.name
 
 
 def _short(effect: Effect, law: Effect | None) -> str:
@@ -113,3 +114,23 @@ def _refusal_sentence(plan: VisitPlan) -> str:
         f"No next visit is planned: {plan.refusal.value}; the best reaches "
         f"{digits(best.separation, 2)} against {_name(best.effect)}."
     )
+
+
+def visit_lines(schedule: VisitSchedule, resumed: str, touches: int, duration: float) -> list[str]:
+    """What the operator does besides running the programs of a planned visit.
+
+    Args:
+        resumed: Name of the first program after the standstill; "" without one.
+        touches: That the programs made on the twin.
+        duration: Of the programs alone, s.
+    """
+    begin = "Begin with a cold machine."
+    if schedule.warm_up:
+        begin = f"Let the machine move for {span(schedule.warm_up)} before the first program."
+    lines = [f"The twin made all {touches} touches, {span(duration)} without standstill.", begin]
+    if resumed:
+        lines.append(f"Stand still for {span(schedule.pause)} before {resumed}.")
+    if schedule.slowness != 1.0:
+        share = f"{100.0 / schedule.slowness:.0f} %"
+        lines.append(f"The visit is planned slowly: feed override {share}.")
+    return [*lines, "Record the temperatures of the run, and learn from both runs."]

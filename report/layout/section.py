@@ -22,36 +22,23 @@ Heading = str | tuple[str, str]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Picture:
-    """A PNG of a page.
+    """A PNG of a page."""
 
-    Attributes:
-        file: Path as seen from the page.
-        caption: What it shows; its first sentence is the alternative text.
-        figure: Saved to the file with the page; None for a file that exists already.
-    """
-
-    file: str
-    caption: str
+    file: str  # path as seen from the page
+    caption: str  # what it shows; its first sentence is the alternative text
+    # saved to the file with the page; None for a file that exists already
     figure: Figure | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Rows of text. Cells that begin with a number are aligned as numbers.
+    """Rows of text. Cells that begin with a number are aligned as numbers."""
 
-    Attributes:
-        columns: Headings; without any, the first cell of each row is its heading.
-        rows: Cells; a line break in a cell is one on the page.
-        caption: Above the table.
-        best: Indices of rows in bold.
-        is_file: Whether the page has a link to its file in the place of its rows.
-    """
-
-    columns: Sequence[Heading]
-    rows: Sequence[Sequence[str]]
-    caption: str = ""
-    best: Collection[int] = ()
-    is_file: bool = False
+    columns: Sequence[Heading]  # headings; without any, the first cell of each row is its heading
+    rows: Sequence[Sequence[str]]  # cells; a line break in a cell is one on the page
+    caption: str = ""  # above the table
+    best: Collection[int] = ()  # indices of rows in bold
+    is_file: bool = False  # whether the page has a link to its file in the place of its rows
 
     @classmethod
     def of(
@@ -70,91 +57,54 @@ class Table:
 
 @dataclass(frozen=True, slots=True)
 class Section:
-    """One subject, shown in the order of the attributes.
+    """One subject, shown in the order of the attributes."""
 
-    Attributes:
-        title: Empty to continue the section above.
-        fold: Summary under which everything below the title is folded away; empty for open.
-        sentences: Paragraphs.
-        items: Points of a list.
-        is_ordered: Whether these are steps, in their order.
-        table: At most one; a further one goes into a section that continues this one.
-        pictures: Below the table.
-        code: Shown as it is.
-        notes: Set apart from the text.
-        warnings: Like notes, for what can cause damage or a wrong result.
-        is_part: Whether the title is one of a subsection.
-        is_unfolded: Whether a fold is open at first.
-        is_for_screen: Whether a fold is left out of print.
-    """
-
-    title: str = ""
-    fold: str = ""
-    sentences: Sequence[str] = ()
-    items: Sequence[str] = ()
-    is_ordered: bool = False
+    title: str = ""  # empty to continue the section above
+    fold: str = ""  # summary under which everything below the title is folded away; empty for open
+    sentences: Sequence[str] = ()  # paragraphs
+    items: Sequence[str] = ()  # points of a list
+    is_ordered: bool = False  # whether these are steps, in their order
+    # at most one; a further one goes into a section that continues this one
     table: Table | None = None
-    pictures: Sequence[Picture] = ()
-    code: str = ""
-    notes: Sequence[str] = ()
-    warnings: Sequence[str] = ()
-    is_part: bool = False
-    is_unfolded: bool = False
-    is_for_screen: bool = False
+    pictures: Sequence[Picture] = ()  # below the table
+    code: str = ""  # shown as it is
+    notes: Sequence[str] = ()  # set apart from the text
+    warnings: Sequence[str] = ()  # like notes, for what can cause damage or a wrong result
+    is_part: bool = False  # whether the title is one of a subsection
+    is_unfolded: bool = False  # whether a fold is open at first
+    is_for_screen: bool = False  # whether a fold is left out of print
 
 
 @dataclass(frozen=True, slots=True)
 class KeyFigure:
-    """One of the figures at the head of a page.
+    """One of the figures at the head of a page."""
 
-    Attributes:
-        value: With its unit.
-        words: What it is.
-        look: `good`, `fair`, `found` or `bad`; empty for neither.
-    """
-
-    value: str
-    words: str
-    look: str = ""
+    value: str  # with its unit
+    words: str  # what it is
+    look: str = ""  # `good`, `fair`, `found` or `bad`; empty for neither
 
 
 @dataclass(frozen=True, slots=True)
 class LiveView:
-    """What moves on a page, where its reader's browser runs scripts; HTML as it stands.
+    """What moves on a page, where its reader's browser runs scripts; HTML as it stands."""
 
-    Attributes:
-        style: Style sheet, in the head.
-        place: Element that the script fills, below the head of the page; hidden until then.
-        script: Data and script, behind everything else.
-    """
-
-    style: Markup
-    place: Markup
-    script: Markup
+    style: Markup  # style sheet, in the head
+    place: Markup  # element that the script fills, below the head of the page; hidden until then
+    script: Markup  # data and script, behind everything else
 
 
 @dataclass(frozen=True, slots=True)
 class Page:
-    """A whole page.
+    """A whole page."""
 
-    Attributes:
-        title: Of the window.
-        heading: Of the page.
-        lead: The result in a sentence or two.
-        key: Its figures.
-        sections: Those before the first title stand above the table of contents.
-        foot: What the figures rest upon.
-        means: What the result means for the user, in a box below the lead; empty for nothing.
-        next: What to do now, in the same box; empty for nothing.
-        live: What moves, above the sections, which are then folded; None for a page of pictures.
-    """
-
-    title: str
-    heading: str
-    lead: str
-    key: Sequence[KeyFigure]
-    sections: Sequence[Section]
-    foot: Sequence[str] = ()
+    title: str  # of the window
+    heading: str  # of the page
+    lead: str  # the result in a sentence or two
+    key: Sequence[KeyFigure]  # its figures
+    sections: Sequence[Section]  # those before the first title stand above the table of contents
+    foot: Sequence[str] = ()  # what the figures rest upon
+    # what the result means for the user, in a box below the lead; empty for nothing
     means: str = ""
-    next: str = ""
+    next: str = ""  # what to do now, in the same box; empty for nothing
+    # what moves, above the sections, which are then folded; None for a page of pictures
     live: LiveView | None = None

@@ -36,58 +36,38 @@ class Series:
     """One component of one error at one link.
 
     ``E = sum_jk c_jk T_j(u) T_k(v)``, u and v readings scaled to [-1, 1].
-
-    Attributes:
-        part: `twist` or `place`, as in a `Contribution`.
-        link: Index of the link.
-        component: Index in X Y Z A B C.
-        readings: Columns of the readings that it depends on; one past the last axis is the time.
-        coefficients: One dimension a reading, mm or rad.
-        side: Axis and sign of the last motion with which it applies; None for always.
-        off: Largest error of the series at the poses that were checked, mm or rad.
     """
 
-    part: str
-    link: int
-    component: int
+    part: str  # `twist` or `place`, as in a `Contribution`
+    link: int  # index of the link
+    component: int  # index in X Y Z A B C
+    # columns of the readings that it depends on; one past the last axis is the time
     readings: tuple[int, ...]
-    coefficients: Array
+    coefficients: Array  # one dimension a reading, mm or rad
+    # axis and sign of the last motion with which it applies; None for always
     side: tuple[int, int] | None
-    off: float
+    off: float  # largest error of the series at the poses that were checked, mm or rad
 
 
 @dataclass(frozen=True, eq=False)
 class ErrorFunction:
-    """One error that is switched as a whole.
+    """One error that is switched as a whole."""
 
-    Attributes:
-        name: Symbol of ISO 230-1, or effect.
-        words: Under which it is switched: its axis, class and kind.
-        series: What it adds.
-        size: Rms of the deviation of the tool point that it makes over the workspace, mm.
-        u: Standard uncertainty of that from the model, mm.
-        title: In words; empty for that of its symbol.
-        left_out: Whether it depends on more than a page can hold; then it has no series.
-    """
-
-    name: str
-    words: tuple[str, ...]
-    series: tuple[Series, ...]
-    size: float
-    u: float
-    title: str = ""
-    left_out: bool = False
+    name: str  # symbol of ISO 230-1, or effect
+    words: tuple[str, ...]  # under which it is switched: its axis, class and kind
+    series: tuple[Series, ...]  # what it adds
+    size: float  # rms of the deviation of the tool point that it makes over the workspace, mm
+    u: float  # standard uncertainty of that from the model, mm
+    title: str = ""  # in words; empty for that of its symbol
+    left_out: bool = False  # whether it depends on more than a page can hold; then it has no series
 
 
 @dataclass(frozen=True, eq=False)
 class _Space:
-    """Readings, and time behind them, over which the functions hold.
-
-    Attributes:
-        low, high: Of the readings and the time, (A + 1,).
-    """
+    """Readings, and time behind them, over which the functions hold."""
 
     errors: MachineErrors
+    # of the readings and the time, (A + 1,)
     low: Array
     high: Array
 
@@ -125,6 +105,7 @@ def error_functions(errors: MachineErrors, length: float, duration: float) -> li
         series = _series(space, rng)
         x = space.drawn(rng)
         sides = rng.choice([-1.0, 1.0], (len(x), len(errors.chain.axes)))
+        # sizes come from the model itself at random poses, not from the series that approximate it
         touches = alone.touches(x[:, :-1], length, sides, x[:, -1])
         columns = alone.columns(touches)
         theta = np.concatenate(alone.theta)

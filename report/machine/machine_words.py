@@ -18,41 +18,27 @@ _ASSUMED = (
     "No errors are given. Listed are those that this machine can have, each linear over its travel "
     "in the size expected of its class; all are switched off at first: switch them on one by one."
 )
-_NAMED = 3
-"""Errors that the box at the head names."""
+_NAMED = 3  # errors that the box at the head names
 _OWN_BODIES = "Bodies of {} are from your files."
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ShownMachine:
-    """What a page of a machine shows.
-
-    Attributes:
-        length: Of the tool at first, mm.
-        duration: Over which the errors hold after the time of their state, s.
-        errors: As functions of the readings.
-        source: Where they are from; empty where none are given.
-        is_assumed: Whether sizes are those expected of the classes.
-        bodies: Beside the plain ones, or in place of them.
-        replaced: Links whose plain bodies are left out.
-        from_files: Links whose bodies are from the user's files.
-        program: That is played, if any.
-        datum: Readings and tool length of the preset, to which deviations may refer.
-        remarks: Sentences on the model.
-    """
+    """What a page of a machine shows."""
 
     chain: Chain
-    length: float
-    duration: float
-    errors: Sequence[ErrorFunction] = ()
-    source: str = ""
-    is_assumed: bool = False
-    bodies: Sequence[Drawn] = ()
-    replaced: Sequence[str] = ()
-    from_files: Sequence[str] = ()
-    program: Played | None = None
+    length: float  # of the tool at first, mm
+    duration: float  # over which the errors hold after the time of their state, s
+    errors: Sequence[ErrorFunction] = ()  # as functions of the readings
+    source: str = ""  # where they are from; empty where none are given
+    is_assumed: bool = False  # whether sizes are those expected of the classes
+    bodies: Sequence[Drawn] = ()  # beside the plain ones, or in place of them
+    replaced: Sequence[str] = ()  # links whose plain bodies are left out
+    from_files: Sequence[str] = ()  # links whose bodies are from the user's files
+    program: Played | None = None  # that is played, if any
+    # readings and tool length of the preset, to which deviations may refer
     datum: tuple[np.ndarray, float] | None = None
-    remarks: Sequence[str] = ()
+    remarks: Sequence[str] = ()  # sentences on the model
 
 
 def shown_lines(shown: ShownMachine) -> list[str]:

@@ -17,8 +17,7 @@ from matstd.twin.units import DEG
 MAX_POSITIONS = 40_000
 """Positions of one page: of a longer program every second, third ... is left out."""
 
-_STILL = 1e-9
-"""An axis that moves less has not moved, mm or rad."""
+_STILL = 1e-9  # an axis that moves less has not moved, mm or rad
 
 _STEP = 6.0 * DEG
 """Between two positions while something turns, rad: even steps between them are 0.15 % short."""
@@ -26,37 +25,24 @@ _STEP = 6.0 * DEG
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Played:
-    """Positions of one or more programs in their order, and their text.
+    """Positions of one or more programs in their order, and their text."""
 
-    Attributes:
-        names: Of the programs.
-        texts: Of the programs.
-        time: Since the start, s, (K,).
-        q: Readings, (K, A).
-        sides: Sign of the last motion of every axis, (K, A).
-        length: Of the tool, (K,), mm.
-        line: Of the program's text, (K,).
-        which: Of the programs, (K,).
-        touch: Number of the touch that is being made, 0 for other moves, (K,); None of a part
-            program.
-        features: By the number of the touch, for each program.
-        normal: Outward normal of what is touched, table frame, (K, 3); zero elsewhere.
-        clearance: Of the probe from the nearest body, (K,), mm; nan where it is not known.
-        nearest: Name of that body, (K,); None without clearances.
-    """
-
-    names: Sequence[str]
-    texts: Sequence[str]
-    time: Array
-    q: Array
-    sides: IntArray
-    length: Array
-    line: IntArray
-    which: IntArray
+    names: Sequence[str]  # of the programs
+    texts: Sequence[str]  # of the programs
+    time: Array  # since the start, s, (K,)
+    q: Array  # readings, (K, A)
+    sides: IntArray  # sign of the last motion of every axis, (K, A)
+    length: Array  # of the tool, (K,), mm
+    line: IntArray  # of the program's text, (K,)
+    which: IntArray  # of the programs, (K,)
+    # number of the touch that is being made, 0 for other moves, (K,); None of a part program
     touch: IntArray | None = None
-    features: Sequence[dict[int, str]] = ()
+    features: Sequence[dict[int, str]] = ()  # by the number of the touch, for each program
+    # outward normal of what is touched, table frame, (K, 3); zero elsewhere
     normal: Array | None = None
+    # of the probe from the nearest body, (K,), mm; nan where it is not known
     clearance: Array | None = None
+    # name of that body, (K,); None without clearances
     nearest: np.ndarray | None = field(default=None)
 
     def __len__(self) -> int:

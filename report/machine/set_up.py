@@ -21,19 +21,12 @@ _NOSE = 150.0  # mm of the spindle's nose that are drawn
 
 
 class SetUp(NamedTuple):
-    """What stands on the machine while it probes.
+    """What stands on the machine while it probes."""
 
-    Attributes:
-        standard: That is probed.
-        setup: Where it stands.
-        probe: In the spindle.
-        workshop: What stands beside it.
-    """
-
-    standard: Standard
-    setup: Setup
-    probe: Probe
-    workshop: Workshop
+    standard: Standard  # that is probed
+    setup: Setup  # where it stands
+    probe: Probe  # in the spindle
+    workshop: Workshop  # what stands beside it
 
 
 def set_up_bodies(chain: Chain, stands: SetUp) -> list[Drawn]:

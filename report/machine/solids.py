@@ -7,25 +7,18 @@ import numpy as np
 
 from matstd.twin.frames import Array, unit
 
-FOUNDATION = "f"
-"""What carries the bodies that do not move; other names are those of links."""
+FOUNDATION = "f"  # what carries the bodies that do not move; other names are those of links
 
 _ROUND = 40  # sides of a cylinder
 
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """Triangles of one colour on one link.
+    """Triangles of one colour on one link."""
 
-    Attributes:
-        on: Link whose body they are: an axis, `w`, `t`, or `FOUNDATION`.
-        colour: As `#rrggbb`.
-        corners: In the frame of the machine with every axis at zero, (T, 3, 3), mm.
-    """
-
-    on: str
-    colour: str
-    corners: Array
+    on: str  # link whose body they are: an axis, `w`, `t`, or `FOUNDATION`
+    colour: str  # as `#rrggbb`
+    corners: Array  # in the frame of the machine with every axis at zero, (T, 3, 3), mm
 
 
 def box(half: tuple[float, float], low: float, high: float) -> Array:

@@ -25,23 +25,14 @@ from matstd.twin.model import Effect
 
 @dataclass(frozen=True, eq=False)
 class Proven:
-    """One random machine, probed with the emitted programs and identified.
+    """One random machine, probed with the emitted programs and identified."""
 
-    Attributes:
-        seed: Of its errors and noise, beside the project's.
-        errors: Its true errors.
-        campaign: The programs run on its twin.
-        fit: The identified model.
-        proof: Predicted against true volumetric error over the probed volume.
-        in_workspace: The same over the user's workspace.
-    """
-
-    seed: int
-    errors: list[tuple[Effect, Array]]
-    campaign: Campaign
-    fit: Fit
-    proof: Proof
-    in_workspace: Proof
+    seed: int  # of its errors and noise, beside the project's
+    errors: list[tuple[Effect, Array]]  # its true errors
+    campaign: Campaign  # the programs run on its twin
+    fit: Fit  # the identified model
+    proof: Proof  # predicted against true volumetric error over the probed volume
+    in_workspace: Proof  # the same over the user's workspace
 
 
 @dataclass(frozen=True, eq=False, repr=False)

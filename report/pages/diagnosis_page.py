@@ -9,7 +9,7 @@ from matstd.diagnosis.answer import Diagnosis, Step, Verdict
 from matstd.diagnosis.next_visit import VisitPlan
 from matstd.report.effects import class_words, effect_cell
 from matstd.report.geometry import fault_sentences, geometry_sections
-from matstd.report.laws import law_sections
+from matstd.report.laws import law_sections, short_words, size_words
 from matstd.report.layout import KeyFigure, Page, Picture, Section, Table, write_page
 from matstd.report.numbers import capital, digits, microns, p_value, sentence
 from matstd.report.pages.rival_sections import (
@@ -76,9 +76,6 @@ def write_diagnosis_page(
     """Write `report.html` and its pictures into a folder.
 
     Args:
-        result: The diagnosis.
-        folder: For the page.
-        title: Name of the run file.
         rng: Shuffles residuals, to show what chance produces.
         is_saved: Whether the model file has what was found.
         body: Triangles of what was probed, where it is known.
@@ -125,9 +122,9 @@ def is_open(result: Diagnosis) -> bool:
 
 def _key(result: Diagnosis) -> list[KeyFigure]:
     look = "bad" if is_open(result) else "found" if result.verdict is Verdict.MISSING else "good"
-    steps, stated = result.steps, stated_noise(result.run)
+    stated = stated_noise(result.run)
     before, after = result.promise_before, result.promise
-    fall = f"{before.elsewhere / UM:.2f} → " if len(steps) > 1 else ""
+    fall = f"{before.elsewhere / UM:.2f} → " if result.has_fallen else ""
     held_out = int((result.run.split == "test").sum())
     noise = result.standing.noise
     return [
@@ -162,6 +159,7 @@ def _notes(result: Diagnosis) -> Section:
 def _steps(result: Diagnosis) -> Section:
     """The error falling from step to step."""
     rows = [_step(result, step) for step in result.steps]
+    rows += _law_steps(result)
     columns = ("step", "size ± standard uncertainty", "probability by chance")
     errors = ("fitted, µm", "held out, µm", "chi-square per degree of freedom")
     pictures = []
@@ -186,6 +184,17 @@ def _step(result: Diagnosis, step: Step) -> list[str]:
     sign = "withdrawn:" if step.effect in result.withdrawn else "+"
     cell = f"{sign} {title}\n`{name}`" if name else f"{sign} {title}"
     return [cell, sizes(step, most=2), p_value(step.p_value), *figures(step.fit)]
+
+
+def _law_steps(result: Diagnosis) -> list[list[str]]:
+    """The model with the laws that were learnt, as the last step."""
+    laws = result.laws
+    if laws is None or not laws.laws:
+        return []
+    sign = "instead:" if laws.instead_of else "+"
+    names = "\n".join(short_words(one.law) for one in laws.laws)
+    size = "; ".join(size_words(laws, one.law) for one in laws.laws)
+    return [[f"{sign} {names}", size, "", *figures(laws.after)]]
 
 
 def _effect(result: Diagnosis, i: int) -> Section:

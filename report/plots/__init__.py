@@ -6,15 +6,12 @@ written whole or not at all.
 
 from matstd.report.plots.effect_pictures import draw_candidates, draw_effect, draw_fall, draw_rivals
 from matstd.report.plots.form_pictures import draw_form, is_form
-from matstd.report.plots.pattern_pictures import draw_pattern
-from matstd.report.plots.plan_pictures import draw_order, draw_touches
-from matstd.report.plots.proof_picture import draw_proof
+from matstd.report.plots.pattern_pictures import draw_pattern, draw_region
+from matstd.report.plots.plan_pictures import draw_order, draw_setup, draw_touches
+from matstd.report.plots.proof_pictures import draw_proof, draw_touch_curves
 from matstd.report.plots.reach_picture import draw_reach, draw_room
-from matstd.report.plots.region_picture import draw_region
 from matstd.report.plots.residual_pictures import draw_normal_plot, draw_over_variables
-from matstd.report.plots.setup_picture import draw_setup
 from matstd.report.plots.spatial_pictures import draw_on_standard, draw_pose_arrows, is_spread
-from matstd.report.plots.touch_curve_picture import draw_touch_curves
 from matstd.report.plots.trend_picture import draw_trend
 
 __all__ = [

@@ -1,18 +1,11 @@
 """Pictures of a diagnosis: the error falling, rival effects, and each effect alone."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from matstd.diagnosis.answer import (
-    Candidate,
-    ConfusionClass,
-    Diagnosis,
-    Step,
-)
+from matstd.diagnosis.answer import Candidate, ConfusionClass, Diagnosis, Step
 from matstd.diagnosis.fit import MIN_POSES, Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import BoolArray
@@ -29,6 +22,7 @@ from matstd.report.style import (
     ORANGE,
     RED,
     SOFT,
+    Figure,
     axis_of,
     figure,
     plain,
@@ -40,11 +34,7 @@ from matstd.twin.model import Effect
 from matstd.twin.numbers import rms
 from matstd.twin.units import UM
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-MOST_BARS = 14
-"""Rivals or candidates that get a bar."""
+MOST_BARS = 14  # rivals or candidates that get a bar
 
 TEN = float(np.log(10.0))
 
@@ -52,8 +42,7 @@ SLOW, SCATTERED = 0.01, 0.3
 """Mean squared step over the variance, up to which a course is slow, and up to which it is one: a
 cycle of a dozen touches is in between."""
 
-ROW = 0.34
-"""Height of a bar with two lines of words, inch."""
+ROW = 0.34  # height of a bar with two lines of words, inch
 
 RATIO = 12.0
 """Between the largest and the smallest error of a fall, from which its scale is logarithmic."""
@@ -61,12 +50,14 @@ RATIO = 12.0
 
 def draw_fall(diagnosis: Diagnosis) -> Figure:
     """Error of fitted and of held-out touches, step by step, against the noise."""
-    steps = diagnosis.steps
+    fits = [(_step_words(s), s.fit) for s in diagnosis.steps]
+    if diagnosis.laws is not None and diagnosis.laws.laws:
+        fits.append(("with the\nlearnt law", diagnosis.laws.after))
     drawn = figure(3.9)
     ax = drawn.subplots()
-    x = np.arange(len(steps))
-    fitted = np.array([s.fit.rms for s in steps]) / UM
-    held = np.array([s.fit.test_rms for s in steps]) / UM
+    x = np.arange(len(fits))
+    fitted = np.array([fit.rms for _, fit in fits]) / UM
+    held = np.array([fit.test_rms for _, fit in fits]) / UM
     u = rms(diagnosis.run.u) / UM
     low, high = min(fitted.min(), held.min(), u), max(fitted.max(), held.max())
     _noise_lines(ax, diagnosis.fit, u)
@@ -76,7 +67,7 @@ def draw_fall(diagnosis: Diagnosis) -> Figure:
     ):
         ax.step(x, y, where="mid", color=colour, lw=1.0, alpha=0.45)
         ax.plot(x, y, marker, ms=7, color=colour, label=word)
-    for i in range(len(steps)):
+    for i in range(len(fits)):
         # the larger of the two is named above its mark, the smaller below
         up = held[i] >= fitted[i]
         _value(ax, i, held[i], up, ORANGE)
@@ -86,8 +77,8 @@ def draw_fall(diagnosis: Diagnosis) -> Figure:
         ax.set_ylim(0.55 * low, 1.8 * high)
     else:
         ax.set_ylim(0.0, 1.18 * high)
-    ax.set_xlim(-0.5, max(len(steps) - 0.5, 1.5))
-    ax.set_xticks(x, [_step_words(s) for s in steps], fontsize=8.5)
+    ax.set_xlim(-0.5, max(len(fits) - 0.5, 1.5))
+    ax.set_xticks(x, [words for words, _ in fits], fontsize=8.5)
     ax.set_ylabel("root mean square error in µm")
     plain(ax, "y")
     drawn.legend(fontsize=8.5, frameon=False, loc="outside upper center", ncols=4)

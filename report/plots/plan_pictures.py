@@ -1,18 +1,80 @@
-"""Pictures of a plan: where the standard is touched, and how the table turns meanwhile."""
+"""Pictures of a plan: the set-up, where the standard is touched, how the table turns meanwhile."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from matstd.artefact.body import DatumSphere, FreeformPatch
+from matstd.artefact.body import DatumSphere, FreeformPatch, Plate
+from matstd.artefact.reach import table_face
 from matstd.probe_paths.plan import TouchPlan
-from matstd.report.style import BLUE, INK, RED, SOFT, figure, plain
+from matstd.report.style import BLUE, INK, RED, SOFT, Figure, figure, plain
+from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.units import DEG
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+
+def draw_setup(plan: TouchPlan) -> Figure:
+    """Table, standard and clamps from above, and the probe from the side."""
+    drawn = figure(4.6)
+    top, side = drawn.subplots(1, 2, width_ratios=(1.5, 1.0))
+    T_face_table = inverse(table_face(plan.setup.T_table_artefact))
+    T_face_artefact = T_face_table @ plan.setup.T_table_artefact
+    for solid in plan.options.workshop.solids:
+        outline = apply(solid.T_face_solid, _outline(solid.plate))
+        is_table = solid is plan.options.workshop.table
+        top.plot(*outline[:, :2].T, color=SOFT if is_table else RED, lw=1.2)
+        if not is_table:
+            top.annotate(solid.name, (solid.x, solid.y), color=RED, fontsize=7, ha="center")
+    base = apply(T_face_artefact, _outline(plan.standard.base.body))
+    top.plot(*base[:, :2].T, color=BLUE, lw=1.4)
+    for patch in plan.standard.patches:
+        a, b = patch.half_size
+        corners = np.array([[-a, -b, 0.0], [a, -b, 0.0], [a, b, 0.0], [-a, b, 0.0], [-a, -b, 0.0]])
+        face = apply(T_face_artefact @ patch.T_artefact_patch, corners)
+        top.fill(*face[:, :2].T, facecolor=BLUE, alpha=0.15, edgecolor=BLUE, lw=0.8)
+        top.annotate(patch.name, face[:4, :2].mean(axis=0), color=INK, fontsize=7, ha="center",
+                     va="center")  # fmt: skip
+    for sphere in plan.standard.spheres:
+        centre = apply(T_face_artefact, sphere.centre[None])[0]
+        top.plot(*centre[:2], "o", color=BLUE, ms=4)
+        top.annotate(sphere.name, centre[:2], color=INK, fontsize=7, xytext=(4, 3),
+                     textcoords="offset points")  # fmt: skip
+    for at, name in zip(np.eye(3)[:2] * 60.0, "xy", strict=True):
+        ends = apply(T_face_artefact, np.array([np.zeros(3), at]))
+        top.annotate(name, ends[0, :2], ends[1, :2], color=INK,
+                     arrowprops={"arrowstyle": "<-", "color": INK})  # fmt: skip
+    top.set_aspect("equal")
+    top.set_xlabel("x of the table in mm")
+    top.set_ylabel("y of the table in mm")
+    top.set_title("from above, rotary axes at zero", loc="left")
+    plain(top)
+    _probe(side, plan)
+    return drawn
+
+
+def _outline(plate: Plate) -> Array:
+    """Points round a plate, closed, (K, 3)."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 121)
+    inner = np.array(plate.half_size) - plate.corner_radius
+    unit = np.column_stack([np.cos(angle), np.sin(angle)])
+    corner = np.sign(np.round(unit, 9)) * inner + plate.corner_radius * unit
+    return np.column_stack([corner, np.zeros(len(angle))])
+
+
+def _probe(ax: Any, plan: TouchPlan) -> None:
+    """Ball and cylinders, to scale."""
+    probe, low = plan.probe, 0.0
+    angle = np.linspace(0.0, 2.0 * np.pi, 60)
+    ax.plot(probe.radius * np.cos(angle), probe.radius * np.sin(angle), color=RED, lw=1.2)
+    for high, radius in (*probe.stack, (probe.length + 30.0, probe.nose_radius)):
+        ax.plot([-radius, -radius, radius, radius, -radius], [low, high, high, low, low], color=INK,
+                lw=1.0)  # fmt: skip
+        low = high
+    ax.axhline(probe.length, color=SOFT, lw=0.8, ls="--")
+    ax.set_aspect("equal")
+    ax.set_xlabel("mm")
+    ax.set_ylabel("above the ball centre in mm")
+    ax.set_title("probe; dashed: gauge line", loc="left")
+    plain(ax)
 
 
 def draw_touches(plan: TouchPlan) -> Figure:
@@ -56,6 +118,7 @@ def _outlines(ax: Any, plan: TouchPlan, i: int, j: int) -> None:
         if isinstance(surface, FreeformPatch):
             a, b = surface.half_size
             s = np.linspace(-1.0, 1.0, 25)
+            # along all four edges: a freeform face bends them
             one = np.ones_like(s)
             ring = np.concatenate(
                 [np.stack(c, -1) for c in ((s, -one), (one, s), (-s, one), (-one, -s))]

@@ -148,11 +148,11 @@ def _placed(standard: Standard, eye: Array, pixel: float) -> dict[str, Array]:
     """Middle of every name, mm, so that none covers another one if that can be."""
     right, up = _picture_axes(eye)
     spheres = [(s.centre, 2.0 * s.radius) for s in standard.spheres]
-    balls = [_Box(at @ right, at @ up, size, size) for at, size in spheres]
+    balls = [_Box(float(at @ right), float(at @ up), size, size) for at, size in spheres]
     placed, taken = dict[str, Array](), list[_Box]()
     for name, places in _wanted(standard, eye, pixel):
         size = _LETTER * pixel * len(name), _LINE * pixel
-        boxes = [_Box(place @ right, place @ up, *size) for place in places]
+        boxes = [_Box(float(place @ right), float(place @ up), *size) for place in places]
         best = _freest(boxes, taken, balls)
         taken.append(boxes[best])
         placed[name] = places[best]

@@ -4,33 +4,25 @@ The scene itself is rendered in a process of its own, as pictures of a standard 
 and colour bars are put on it here, where the view is one linear map.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from matstd.cad_out.meshes import read_stl
 from matstd.report.scenes.renderer import render, shared_folder
-from matstd.report.style import INK, RED, WIDTH, figure, save
+from matstd.report.style import INK, RED, WIDTH, Figure, figure, save
 from matstd.twin.errors import DesignError, ShapeMismatch
 from matstd.twin.frames import Array, apply
 from matstd.twin.sampling import grid_points
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+IMAGE = "image.npy"  # what the renderer leaves
 
-IMAGE = "image.npy"
-"""What the renderer leaves."""
+PIXELS = 900  # height and width of one rendered scene
 
-PIXELS = 900
-"""Height and width of one rendered scene."""
-
-COLOURS = "viridis"
-"""Even in lightness, and readable without red and green."""
+COLOURS = "viridis"  # even in lightness, and readable without red and green
 
 _VIEW = (0.62, -0.74, 0.46)  # towards the eye: right of and in front of the machine, from above
 _WIDEST = 5.0  # inch, of one scene
@@ -39,28 +31,20 @@ _FREE = 1.03  # of the half height: nothing touches the edge of the picture
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Values over a box of three readings.
+    """Values over a box of three readings."""
 
-    Attributes:
-        title: What is shown, and at which other readings.
-        unit: Label of the colour bar.
-        labels: Of the three readings, with their unit.
-        readings: Their values, three arrays, growing.
-        values: In the unit of the label, one for every point, (n1, n2, n3); not a number where
-            there is none.
-        T_readings_artefact: Where the standard stands in the map, (4, 4); None to leave it out.
-        lines: Lines of rotary axes by name: a point and a unit direction each, (2, 3).
-        body: Lowest and highest corner of the standard in its own frame, (2, 3); `draw_volumes`
-            takes them from the STL file.
-    """
-
-    title: str
-    unit: str
-    labels: tuple[str, str, str]
-    readings: tuple[Array, ...]
+    title: str  # what is shown, and at which other readings
+    unit: str  # label of the colour bar
+    labels: tuple[str, str, str]  # of the three readings, with their unit
+    readings: tuple[Array, ...]  # their values, three arrays, growing
+    # in the unit of the label, one for every point, (n1, n2, n3); not a number where there is none
     values: Array
+    # where the standard stands in the map, (4, 4); None to leave it out
     T_readings_artefact: Array | None = None
+    # lines of rotary axes by name: a point and a unit direction each, (2, 3)
     lines: Mapping[str, Array] = field(default_factory=dict)
+    # lowest and highest corner of the standard in its own frame, (2, 3); `draw_volumes` takes them
+    # from the STL file
     body: Array | None = None
 
     def __post_init__(self) -> None:

@@ -12,6 +12,7 @@ from matstd.report.verdict.meanings import (
 )
 from matstd.report.verdict.part_words import (
     part_lines,
+    promise_sentence,
     promise_words,
     repeatability_words,
 )
@@ -20,6 +21,7 @@ __all__ = [
     "comparison_meaning",
     "diagnosis_meaning",
     "part_lines",
+    "promise_sentence",
     "promise_words",
     "repeatability_words",
     "study_meaning",

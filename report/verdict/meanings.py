@@ -36,7 +36,7 @@ def diagnosis_meaning(result: Diagnosis) -> str:
         return (
             "Something acts on the machine that no effect of the library accounts for. The learnt "
             "law describes it and model.toml predicts with it, within the range that was probed. "
-            f"Without the law predictions are off by {after} rms."
+            f"Without it predictions are off by {before} rms; with it {touched}."
         )
     if result.verdict is Verdict.UNEXPLAINED:
         return (

@@ -3,8 +3,11 @@
 import math
 from collections.abc import Sequence
 
+import numpy as np
+
 from matstd.diagnosis.accuracy import Promise, Repeatability, Scatter
 from matstd.diagnosis.answer import (
+    Comparison,
     Diagnosis,
     GeometryPart,
     NamedEffect,
@@ -13,19 +16,23 @@ from matstd.diagnosis.answer import (
 )
 from matstd.diagnosis.geometry import GeometryRow
 from matstd.diagnosis.policy import POLICY
+from matstd.diagnosis.remarks import EffectOfOtherRun
 from matstd.diagnosis.residual import Shape
 from matstd.report.effects import effect_words
 from matstd.report.geometry import estimate_words, fault_sentences, quantity_name
 from matstd.report.laws import learnt_words
 from matstd.report.numbers import digits, microns, noun, p_value, percent
 from matstd.report.words import sizes, structure_words
+from matstd.twin.library import title_of
 from matstd.twin.words import listed
 
-NAMED = 3
-"""Quantities of the geometry that are written out; of more, the first ones."""
+NAMED = 3  # quantities of the geometry that are written out; of more, the first ones
 
-MAX_LOG10 = 12.0
-"""Odds are not written with more zeros: beyond, their number means nothing."""
+MAX_LOG10 = 12.0  # odds are not written with more zeros: beyond, their number means nothing
+
+BROKEN = 1.1
+"""Ratio of error to promise from which a prediction is worse than promised; the figures themselves
+scatter by a few per cent."""
 
 HOLDS = 1.25
 """Errors of left-out blocks over their uncertainties up to which a model holds there."""
@@ -35,7 +42,7 @@ def part_lines(result: Diagnosis) -> list[tuple[str, str]]:
     """Heading and words of every part, in the order in which they are read."""
     parts = result.parts
     steps = {s.effect.name: s for s in result.steps if s.effect is not None}
-    before = result.promise_before if steps else None
+    before = result.promise_before if result.has_fallen else None
     gone = result.withdrawn
     named = [_named(one, steps[one.effect.name], one.effect in gone) for one in parts.named]
     beside = "beside the names withdrawn " if gone else ""
@@ -172,3 +179,33 @@ def promise_words(after: Promise, before: Promise | None = None) -> str:
         return words
     worst = listed([f"{noun(d.name)} ({digits(d.ratio, 2)} times)" for d in fails[:NAMED]])
     return f"{words}; blocks left out by {worst} are worse than their uncertainty"
+
+
+def promise_sentence(
+    found: Comparison, promised: Promise, others: Sequence[EffectOfOtherRun] = ()
+) -> str:
+    """The error of a prediction beside those that its model promised.
+
+    Args:
+        promised: Errors to expect when the model was made.
+        others: Effects of another run in the model, which the promise excludes.
+    """
+    limit = BROKEN * promised.elsewhere
+    word = "worse than promised" if found.rms > limit else "as good as promised"
+    why = ""
+    if found.expected > limit:
+        why = (
+            f" At these touches, which differ from those of the model, its uncertainty leads to "
+            f"an expected error of {microns(found.expected)}."
+        )
+    again = float(np.linalg.norm([promised.elsewhere, *(one.share for one in others)]))
+    if again > limit:
+        names = listed([title_of(one.effect).text for one in others], "or a")
+        why += (
+            f" If this run had a {names} of the same size as that run, an error of "
+            f"{microns(again)} would be expected."
+        )
+    return (
+        f"The prediction is {word}: {microns(found.rms)}. Promised when the model was made: "
+        f"{promise_words(promised)}.{why}"
+    )

@@ -3,11 +3,8 @@
 import math
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
 from matstd.diagnosis.answer import Comparison, Detectable, Step
 from matstd.diagnosis.fit import SINE_PREFIX, Fit, Reported, Role
-from matstd.diagnosis.remarks import EffectOfOtherRun
 from matstd.diagnosis.residual import Condition, Region, Shape, Side, Structure, Wrong
 from matstd.report.effects import words_of_name
 from matstd.report.numbers import (
@@ -22,7 +19,6 @@ from matstd.report.numbers import (
     with_uncertainty,
 )
 from matstd.report.words.remark_words import memory_words
-from matstd.twin.library import title_of
 from matstd.twin.numbers import rms
 from matstd.twin.record import Run
 from matstd.twin.units import UM, URAD
@@ -39,8 +35,7 @@ _WORDS = {
     "reversal_at_most": "reversal at most",
 }
 
-_GROUPS = ("feature", "pose", "setup")
-"""Columns that number rows without an order."""
+_GROUPS = ("feature", "pose", "setup")  # columns that number rows without an order
 
 _PARTS = {
     "bias": "the reading along the normal",
@@ -48,11 +43,9 @@ _PARTS = {
 }
 """Carriers of an error that are no component of an axis."""
 
-MOST_ALIKE = 4
-"""Carriers that are named beside the first."""
+MOST_ALIKE = 4  # carriers that are named beside the first
 
-ALL_NUMBERS = 7
-"""Numbers of an effect that are written out; of more, only those that sum them up."""
+ALL_NUMBERS = 7  # numbers of an effect that are written out; of more, only those that sum them up
 
 
 def named_value(reported: Reported) -> tuple[str, str]:
@@ -230,41 +223,6 @@ def comparison_sentence(found: Comparison) -> str:
     if not found.structure:
         return f"{text} The residual looks like noise."
     return f"{text} The residual is not noise: {structure_clause(found.structure[0])}."
-
-
-BROKEN = 1.1
-"""Ratio of error to promise from which a prediction is worse than promised; the figures themselves
-scatter by a few per cent."""
-
-
-def promise_sentence(
-    found: Comparison, promised: float, others: Sequence[EffectOfOtherRun] = ()
-) -> str:
-    """The error of a prediction beside the one that its model promised.
-
-    Args:
-        promised: Error of held-out rows when the model was made, mm.
-        others: Effects of another run in the model, which the promise excludes.
-    """
-    word = "worse than promised" if found.rms > BROKEN * promised else "as good as promised"
-    expected = found.expected
-    elsewhere = ""
-    if expected > BROKEN * promised:
-        elsewhere = (
-            f" At these touches, which differ from those of the model, its uncertainty leads to "
-            f"an expected error of {microns(expected)}."
-        )
-    again = float(np.linalg.norm([promised, *(one.share for one in others)]))
-    if again > BROKEN * promised:
-        names = listed([title_of(one.effect).text for one in others], "or a")
-        elsewhere += (
-            f" If this run had a {names} of the same size as that run, an error of "
-            f"{microns(again)} would be expected."
-        )
-    return (
-        f"The prediction is {word}: {microns(found.rms)}; promised {microns(promised)}, the error "
-        f"of held-out rows when the model was made.{elsewhere}"
-    )
 
 
 def figures(fit: Fit) -> tuple[str, str, str]:

@@ -14,14 +14,12 @@ from matstd.twin.words import listed
 NONE_CERTAIN = ", but none of its effects is significant in all rows"
 """Behind a way of choosing that added nothing."""
 
-STEEL_EXPANSION = 11e-6
-"""Expansion of steel, 1/K."""
+STEEL_EXPANSION = 11e-6  # expansion of steel, 1/K
 
 WARMED, SENSORS = 0.05, 4
 """Change of a temperature that is stated as a range, K; sensors that are named."""
 
-LISTED = 20
-"""Gross errors whose lines are listed."""
+LISTED = 20  # gross errors whose lines are listed
 
 
 def remark_sentence(remark: noticed.Remark) -> str:
@@ -265,6 +263,9 @@ _SENTENCES: dict[type | What, str | Callable[[Any], str]] = {
     "theory is doubtful there, and the compliance of its support matters as much",
     What.LOAD_TOO_SMALL: "loads of up to {r.load:.3g} N are too small to identify {r.effect}: "
     "its numbers are the prior ones; load the tool with about 100 N",
+    What.FIXING_NOT_STATED: "{r.effect}: the standard is taken to expand together with the table, "
+    "from the origin of the table frame. If it is held elsewhere and expands alone, state the "
+    "point: fixing_mm in [setup.NAME] of the run",
     What.SEARCH_ENDED: "the search was stopped after {r.sets:.0f} sets of effects: the reported "
     "effects passed every test, but another set may explain more",
     What.NOT_SIGNIFICANT: _not_significant,

@@ -7,22 +7,20 @@ from matstd.diagnosis.answer import Diagnosis, Step, Verdict
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.laws import Learning
 from matstd.report.effects import class_words
-from matstd.report.laws import held_out_sentence, instead_sentence, law_sentence
-from matstd.report.numbers import digits, microns
-from matstd.report.words.diagnosis_words import (
-    noise_words,
-    sizes,
-    stated_noise,
-    structure_clause,
+from matstd.report.laws import (
+    held_out_sentence,
+    instead_sentence,
+    law_sentence,
+    rival_sentence,
 )
+from matstd.report.numbers import digits, microns
+from matstd.report.words.diagnosis_words import noise_words, sizes, stated_noise, structure_clause
 from matstd.twin.units import DEG
 from matstd.twin.words import listed
 
-PERIODS_NAMED = 4
-"""Indistinguishable periods that are named, the longest ones."""
+PERIODS_NAMED = 4  # indistinguishable periods that are named, the longest ones
 
-WITHIN = 0.1
-"""Excess over the stated noise that is not reported: half a per cent of its size."""
+WITHIN = 0.1  # excess over the stated noise that is not reported: half a per cent of its size
 
 HALF = 0.5
 """Share of the mean square beyond the stated noise that a pattern must have to explain it."""
@@ -55,15 +53,19 @@ def _unexplained(diagnosis: Diagnosis) -> str:
 
 
 def _fall(diagnosis: Diagnosis) -> str:
+    """The error to expect, which falls: of what predicts, so elsewhere first."""
     if diagnosis.choice is not None and not diagnosis.fit.test_rows.any():
         first, best = diagnosis.choice.rules[0], diagnosis.choice.best
         return (
             "the error of blocks left out, with the choice repeated without each, falls from "
             f"{microns(first.error)} to {microns(best.error)}"
         )
+    before, after = diagnosis.promise_before, diagnosis.promise
+    verb = "falls" if after.elsewhere < before.elsewhere else "rises"
     return (
-        f"the error of held-out touches falls from {microns(diagnosis.start.test_rms)} to "
-        f"{microns(diagnosis.fit.test_rms)}"
+        f"the error to expect at other places {verb} from {microns(before.elsewhere)} to "
+        f"{microns(after.elsewhere)} (at the same touches: {microns(before.same)} to "
+        f"{microns(after.same)})"
     )
 
 
@@ -133,8 +135,11 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
     others = [s for s in steps if not s.is_named]
     found = [_added(diagnosis, s, most) for s in others if s.effect and s.effect.name in certain]
     doubtful = len(others) - len(found)
-    if diagnosis.laws is not None and diagnosis.withdrawn:
-        return _of_law(diagnosis.laws, named)
+    laws = diagnosis.laws if diagnosis.laws is not None and diagnosis.laws.laws else None
+    if laws is not None and diagnosis.withdrawn:
+        return _of_law(laws, named)
+    if laws is not None and diagnosis.verdict is Verdict.UNEXPLAINED:
+        return _of_law(laws, [*named, *found])
     also = f" Added by name: {'; '.join(named)}." if named else ""
     them = "it" if len(steps) == 1 else "them"
     if diagnosis.verdict is Verdict.MISSING:
@@ -142,7 +147,7 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
         more = f" ({_plural(doubtful)} not certain or too small to name)" if doubtful else ""
         return (
             f"The model lacks {what}: {'; '.join(found)}{more}.{also} With {them} "
-            f"{_fall(diagnosis)}{_elsewhere(diagnosis)}; the noise is "
+            f"{_fall(diagnosis)}; the noise is "
             f"{noise_words(diagnosis.fit)}.{_also_left(diagnosis)}{_covered(diagnosis)}"
         )
     if diagnosis.verdict is Verdict.UNEXPLAINED:
@@ -157,7 +162,8 @@ def verdict_sentence(diagnosis: Diagnosis) -> str:
     fall = f" With {them} {_fall(diagnosis)}." if named else ""
     return (
         f"No {'further ' if named else ''}effect is missing that this run could show: the error "
-        f"of held-out touches is {microns(diagnosis.fit.test_rms)}, and the noise is "
+        f"to expect at other places is {microns(diagnosis.promise.elsewhere)} (at the same "
+        f"touches: {microns(diagnosis.promise.same)}), and the noise is "
         f"{noise_words(diagnosis.fit)}.{also}{fall}{_covered(diagnosis)}"
     )
 
@@ -166,27 +172,27 @@ def _plural(count: int) -> str:
     return "one effect" if count == 1 else f"{count} effects"
 
 
-def _elsewhere(diagnosis: Diagnosis) -> str:
-    """The error to expect at other places, where it is another than at the same touches."""
-    promise = diagnosis.promise
-    if promise.elsewhere < (1.0 + WITHIN) * promise.same:
-        return ""
-    return f" (at other places expect {microns(promise.elsewhere)})"
-
-
 def _of_law(laws: Learning, added: Sequence[str]) -> str:
     """The laws, the names that they withdraw, and the error with them.
 
     Args:
-        added: Effects that the user named, which stand.
+        added: Effects that stand beside them.
     """
-    each = "; ".join(law_sentence(laws, one).removesuffix(".") for one in laws.laws)
     what = "a law that the library does" if len(laws.laws) == 1 else "laws that the library does"
-    also = f" Added by name: {'; '.join(added)}." if added else ""
-    return (
-        f"The model lacks {what} not have: {each}. {instead_sentence(laws)}{also} "
-        f"{held_out_sentence(laws)} The noise is {noise_words(laws.after)}."
-    )
+    beside = f"Beside {'it' if len(laws.laws) == 1 else 'them'}: {'; '.join(added)}."
+    said = [
+        f"The model lacks {what} not have: {_laws(laws)}.",
+        *(rival_sentence(one) for one in laws.laws),
+        instead_sentence(laws),
+        beside if added else "",
+        held_out_sentence(laws),
+        f"The noise is {noise_words(laws.after)}.",
+    ]
+    return " ".join(filter(None, said))
+
+
+def _laws(laws: Learning) -> str:
+    return "; ".join(law_sentence(laws, one).removesuffix(".") for one in laws.laws)
 
 
 def _also_left(diagnosis: Diagnosis) -> str:
@@ -198,7 +204,8 @@ def _also_left(diagnosis: Diagnosis) -> str:
         structure_clause(left.patterns[0]) if left.patterns else "it follows no recorded variable"
     )
     them = "it" if len(diagnosis.steps) == 2 else "them"
-    return f" Beside {them}, {microns(left.size)} rms remain: {what}."
+    learnt = "" if not diagnosis.laws or not diagnosis.laws.laws else f"; {_laws(diagnosis.laws)}"
+    return f" Beside {them}, {microns(left.size)} rms remain: {what}{learnt}."
 
 
 def _unexplained_sentence(diagnosis: Diagnosis, added: Sequence[str]) -> str:
@@ -215,13 +222,7 @@ def _unexplained_sentence(diagnosis: Diagnosis, added: Sequence[str]) -> str:
 
 
 def _nearest(diagnosis: Diagnosis) -> str:
-    """The learnt law or else the nearest effect, with the error it would leave; empty for none."""
-    if diagnosis.laws is not None and diagnosis.laws.laws and diagnosis.laws.held_out:
-        left_out = diagnosis.laws.held_out[0]
-        return (
-            f" A law was learnt of it: touches that were left out are predicted with "
-            f"{microns(left_out.after)} instead of {microns(left_out.before)}."
-        )
+    """The nearest effect, with the error it would leave; empty for none."""
     if not diagnosis.nearest:
         return ""
     best, *others = diagnosis.nearest

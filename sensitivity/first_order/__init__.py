@@ -5,9 +5,8 @@ parameter, its covariance over a population and the distribution of its length. 
 where is looked.
 """
 
-from matstd.sensitivity.first_order.by_parameter import jacobian_by_parameter
 from matstd.sensitivity.first_order.indices import covariance, rms, variance_parts, variance_shares
-from matstd.sensitivity.first_order.jacobians import jacobian, sensitivity
+from matstd.sensitivity.first_order.jacobians import jacobian, jacobian_by_parameter, sensitivity
 from matstd.sensitivity.first_order.normal_lengths import NormalLength, normal_length
 from matstd.sensitivity.first_order.workspace import Box, Workspace, latin_hypercube, section
 

@@ -5,8 +5,7 @@ from itertools import combinations, groupby
 
 import numpy as np
 
-from matstd.sensitivity.first_order.by_parameter import jacobian_blocks
-from matstd.sensitivity.first_order.jacobians import jacobian
+from matstd.sensitivity.first_order.jacobians import jacobian, jacobian_blocks
 from matstd.sensitivity.population import CONSTANT, Mix, Population, product_moment
 from matstd.twin.frames import Array
 from matstd.twin.machine import Symbol, checked_readings, shape, sine_argument

@@ -18,19 +18,15 @@ _MOST_POSES = 2_000_000  # Jacobians of more, with 60 errors, take over 3 GiB
 
 @dataclass(frozen=True, eq=False)
 class Workspace:
-    """Limits of the readings and of the tool point that a user needs.
-
-    Attributes:
-        limits: Smallest and largest reading by axis, mm or rad; an axis left out has its whole
-            range, a spindle that is not programmed stands at zero.
-        length: Tool length, mm.
-        volume: Lowest and highest corner of a box of the table frame in which the tool point has to
-            stay, mm, or None.
-    """
+    """Limits of the readings and of the tool point that a user needs."""
 
     chain: Chain
+    # smallest and largest reading by axis, mm or rad; an axis left out has its whole range, a
+    # spindle that is not programmed stands at zero
     limits: Mapping[str, tuple[float, float]] = field(default_factory=dict)
-    length: float = 0.0
+    length: float = 0.0  # tool length, mm
+    # lowest and highest corner of a box of the table frame in which the tool point has to stay, mm,
+    # or None
     volume: Box | None = None
 
     def __post_init__(self) -> None:

@@ -13,9 +13,9 @@ from matstd.sensitivity.population.sampling import (
     draw,
     drawn_errors,
     drawn_in_chunks,
+    drawn_scales,
     shape_columns,
 )
-from matstd.sensitivity.population.scales import drawn_scales
 
 __all__ = [
     "CLASSES",

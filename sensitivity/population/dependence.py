@@ -32,16 +32,13 @@ _HALVINGS = 60  # of the correlation: to the last digit
 class Dependence:
     """Correlated errors.
 
-    Attributes:
-        correlation: Correlation of their signed amplitudes, (n, n).
-        alike: Groups of names whose members also have shape, periods and phase in common.
-
     Raises:
         DesignError: The matrix is no matrix of correlations, or a name stands twice.
     """
 
     names: tuple[str, ...]
-    correlation: Array
+    correlation: Array  # correlation of their signed amplitudes, (n, n)
+    # groups of names whose members also have shape, periods and phase in common
     alike: tuple[tuple[str, ...], ...] = ()
 
     def __post_init__(self) -> None:

@@ -22,8 +22,7 @@ from matstd.artefact.worth.touch_choice import TouchOptions, poses_within
 from matstd.artefact.worth.touch_criterion import CriterionOptions
 from matstd.information.criteria.posterior import Posterior
 from matstd.sensitivity.population.dependence import Group, grouped
-from matstd.sensitivity.population.sampling import Population
-from matstd.sensitivity.population.scales import drawn_scales
+from matstd.sensitivity.population.sampling import Population, drawn_scales
 from matstd.twin.errors import DesignError, NotBuildable, NotReachable
 from matstd.twin.machine.kinematics import table_to_tool, tip
 from matstd.twin.model.model import Model, columns

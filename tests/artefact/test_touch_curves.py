@@ -6,7 +6,7 @@ import pytest
 from matstd.artefact.worth.touch_criterion import random_touches
 from matstd.artefact.worth.touch_curves import TouchCurve, touch_curve
 from matstd.information.criteria.posterior import Posterior
-from matstd.report.plots.touch_curve_picture import draw_touch_curves
+from matstd.report.plots.proof_pictures import draw_touch_curves
 from matstd.twin.errors import DesignError
 from matstd.twin.units import UM
 

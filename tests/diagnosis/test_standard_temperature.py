@@ -4,11 +4,15 @@ The standard grows by the simulator's own formula, true scales are its own produ
 `benchmarks/standard_temperature.py` measures coverage on a hundred machines.
 """
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from simulator_experiment import random_experiment
+from simulator import probe, run_text
+from simulator_case import read_back
+from simulator_effects import Hidden
+from simulator_experiment import MACHINES, STATED_NOISE, random_experiment
 from simulator_warmth import probed_warm, true_scales
 
 from matstd.diagnosis.answer.comparison import compare
@@ -16,10 +20,13 @@ from matstd.diagnosis.fit.identification import fit_run
 from matstd.diagnosis.geometry.functionals import Quantity
 from matstd.diagnosis.geometry.learnt import geometry_rows
 from matstd.diagnosis.remarks import BodySize
+from matstd.diagnosis.remarks.run_remarks import _fixing
 from matstd.diagnosis.task.visits import visits_of
 from matstd.report.words.remark_words import remark_sentence
-from matstd.twin.library.catalogue import proposals
+from matstd.twin.files.run_writer import run_text as written
+from matstd.twin.library.catalogue import parse_effect, proposals
 from matstd.twin.library.ordinary import ordinary_model
+from matstd.twin.model import Model
 from matstd.twin.record.body import StatedBody, with_body
 
 ALPHA = 10.5e-6
@@ -132,3 +139,36 @@ def test_what_the_size_leaves_open_is_in_the_budget_of_a_task(experiment) -> Non
     assert visits.shared[:, 1] == pytest.approx(visits.shared[:, 0] * 5e-6 / (ALPHA * 0.1))
     bare = [probed_warm(experiment, np.random.default_rng(k), ALPHA, 25.0) for k in range(2)]
     assert visits_of(bare, faces, [~f for f in faces], none).shared.shape[1] == 0
+
+
+def test_a_standard_expands_from_where_it_is_held() -> None:
+    """Held 280 mm beside the middle of the table: ``x = f + (1 + g)(x_0 - f)``, simulated exactly.
+
+    Stated, the point gives the coefficient back; without it the movement of the whole standard,
+    4 um a kelvin, is left over. It is read and written.
+    """
+    rng, held = np.random.default_rng(7), (280.0, 0.0, 0.0)
+    e = random_experiment(rng, "hsm600u", 6)
+    at = np.stack([(T @ [*held, 1.0])[:3] for T in e.actual])[e.setup]
+
+    def act(state, amplitude):
+        growth = amplitude * 1e-6 * (state.temperature["artefact"] - 20.0)
+        return {"growth": growth, "shift": -growth[:, None] * at}
+
+    hidden = Hidden("artefact-expansion(artefact)", "artefact-expansion", act)
+    hidden.amplitude = 15.0
+    noise = rng.normal(0.0, STATED_NOISE, len(e.time))
+    text = run_text(e, probe(e, [hidden], noise), False)
+    stated = re.sub(r"(# \[setup\.\w+\]\n)", rf"\1# fixing_mm = {list(held)}\n", text)
+    runs = [read_back(one, MACHINES["hsm600u"]) for one in (text, stated)]
+    effect = parse_effect("artefact-expansion(artefact)", runs[0].touches.chain)
+    fits = [
+        fit_run(run, Model(run.touches.chain, (*ordinary_model(run.touches.chain).effects, effect)))
+        for run in runs
+    ]
+    alpha, u = fits[1].theta[fits[1].of_effect(effect.name)][0], fits[1].spread
+    own = float(np.linalg.norm(u[fits[1].of_effect(effect.name)]))
+    assert alpha == pytest.approx(15e-6, abs=3.0 * own)
+    assert fits[1].rms < 0.96 * fits[0].rms
+    assert [bool(_fixing(fit)) for fit in fits] == [True, False]
+    assert "fixing_mm = [280.0, 0.0, 0.0]" in written(runs[1], "m.toml")

@@ -43,6 +43,18 @@ def machine() -> Chain:
     return make_chain("trunnion", "[w C' B' X' f Y Z (C1) t]", axes, (0.0, 0.0, -500.0))
 
 
+def machine_text() -> str:
+    """The machine as its file."""
+    chain = machine()
+    lines = [f'format = "machine/1"\nname = "{chain.name}"\nchain = "{chain.notation}"']
+    for letter in chain.programmed_axes:
+        link = chain.link(letter)
+        unit = 1.0 if link.kind == "linear" else DEG
+        lines.append(f"[axis.{letter}]\nrange = {[v / unit for v in link.range]}")
+        lines.append(f"point = {[float(v) for v in link.point]}")
+    return "\n".join([*lines, "[workpiece]\norigin = [0.0, 0.0, -500.0]"]) + "\n"
+
+
 def patch(name: str, x: float, z: float, tilt: float, phase: float) -> FreeformPatch:
     """A wavy face at (x, 0, z), tilted outwards about y, rad."""
     u, v = np.meshgrid(np.linspace(-1.0, 1.0, 8), np.linspace(-1.0, 1.0, 8), indexing="ij")

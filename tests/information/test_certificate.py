@@ -8,9 +8,8 @@ from scipy.optimize import LinearConstraint, minimize
 
 from matstd.information.criteria.design_criterion import DesignCriterion
 from matstd.information.criteria.measures import Determinant, MeanVariance
-from matstd.information.selection.bound import slope
 from matstd.information.selection.certificate import certificate, rounded
-from matstd.information.selection.relaxation import _candidates_to_search, relaxed
+from matstd.information.selection.relaxation import _candidates_to_search, relaxed, slope
 from matstd.information.selection.shares import largest_sum
 from matstd.information.selection.touch_selection import Selection, exchange, fill
 from matstd.twin.errors import DesignError

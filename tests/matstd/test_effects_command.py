@@ -13,7 +13,6 @@ from matstd.cli import main
 @pytest.fixture(autouse=True)
 def eighty_columns(monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
-    monkeypatch.setattr(library, "_REGISTER", dict(library._REGISTER))
 
 
 def test_every_kind_with_formula_units_size_and_source(capsys) -> None:

@@ -165,7 +165,7 @@ def test_a_full_disk_is_one_line(folder, tmp_path, capsys, monkeypatch) -> None:
     def full(figure: object, path: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr("matstd.report.style.sheet.save", full)
+    monkeypatch.setattr("matstd.report.style.save", full)
     monkeypatch.setattr("matstd.report.layout.html.save", full)
     words = ["compare", str(folder / "run.csv"), "-o", str(tmp_path / "o")]
     assert main(words) == BAD
@@ -248,11 +248,8 @@ LATE = Kind("late", "", "f", "u", "t", "s", lambda c, a: Late(), lambda t: (Late
     ],
 )
 def test_a_users_formula_that_fails_is_a_line_of_his_file(
-    folder, tmp_path, capsys, monkeypatch, old, new, expected
+    folder, tmp_path, capsys, old, new, expected
 ) -> None:
-    from matstd.twin.library import catalogue as library
-
-    monkeypatch.setattr(library, "_REGISTER", dict(library._REGISTER))
     (tmp_path / "late.py").write_text(LATE.replace(old, new) if old else LATE, encoding="utf-8")
     words = ["diagnose", str(folder / "run.csv"), "--effects", str(tmp_path / "late.py")]
     assert main([*words, "-o", str(tmp_path / "o"), "--no-report"]) == BAD

@@ -109,7 +109,7 @@ def shared(first: trimesh.Trimesh, second: trimesh.Trimesh) -> float:
 def test_clamps_in_the_base_are_those_that_share_volume_with_it(upright: bool) -> None:
     rng, seen = np.random.default_rng(11), {True: 0, False: 0}
     project = with_table(example(), sides_mm=[900.0, 900.0])
-    for _ in range(24):
+    for _ in range(16):
         place = np.array([*rng.uniform(-60.0, 60.0, 2), 0.0])
         T_face = pose(rotation(np.array([0.0, 0.0, rng.uniform(-0.6, 0.6)])), place)
         T = T_face.copy()
@@ -129,7 +129,7 @@ def test_clamps_in_the_base_are_those_that_share_volume_with_it(upright: bool) -
             assert "would do" in message
             at = literal_eval(message.rsplit("at_mm = ", 1)[1].removesuffix(" would do"))
             assert shared(base, clamp_mesh(body | {"at_mm": at})) < 1.0
-    assert min(seen.values()) > 4
+    assert min(seen.values()) > 2
 
 
 @pytest.mark.parametrize("is_disc", [True, False])
@@ -152,7 +152,7 @@ def test_standards_over_the_edge_are_those_with_volume_outside(is_disc: bool) ->
         return trimesh.boolean.union(parts, engine="manifold")
 
     tables = {more: table(more) for more in (allowed - NEAR, allowed + NEAR)}
-    for _ in range(40):
+    for _ in range(26):
         place = np.array([*rng.uniform(-80.0, 80.0, 2), 0.0])
         T = pose(rotation(np.array([0.0, 0.0, rng.uniform(-np.pi, np.pi)])), place)
         base = base_mesh().apply_transform(T)
@@ -167,7 +167,7 @@ def test_standards_over_the_edge_are_those_with_volume_outside(is_disc: bool) ->
             origin = literal_eval(message.rsplit("origin_mm = ", 1)[1].removesuffix(" would do"))
             moved = base_mesh().apply_transform(pose(T[:3, :3], np.array(origin)))
             assert moved.volume - shared(moved, tables[allowed + NEAR]) < 1.0
-    assert min(seen.values()) > 8
+    assert min(seen.values()) > 4
 
 
 def setup_at(x: float, y: float, z: float) -> Setup:
@@ -223,27 +223,32 @@ def test_a_mesh_that_surrounds_the_base_is_no_clamp_in_it(tmp_path: Path) -> Non
     assert "workshop.bodies.0.at_mm = [" in message
 
 
-def test_a_clamp_in_the_finished_standard_is_seen_by_its_mesh(tmp_path: Path) -> None:
-    """Above the base, in the middle of a post: the early look cannot know of it."""
-    post = trimesh.creation.cylinder(radius=12.0, height=100.0).apply_translation([60, 40, 75])
-    trimesh.boolean.union([base_mesh(), post], engine="manifold").export(tmp_path / "standard.stl")
+def with_post(folder: Path, x: float, y: float) -> tuple[type, object]:
+    """What stands for a standard with one post of 24 mm on its base, and its mesh."""
 
     class Standing:
         class _Post:
             @staticmethod
             def distance(points: np.ndarray) -> np.ndarray:
-                return np.hypot(points[:, 0] - 60.0, points[:, 1] - 40.0) - 12.0
+                return np.hypot(points[:, 0] - x, points[:, 1] - y) - 12.0
 
         bodies = {"POST1": _Post}  # noqa: RUF012
 
+    post = trimesh.creation.cylinder(radius=12.0, height=100.0).apply_translation([x, y, 75])
+    trimesh.boolean.union([base_mesh(), post], engine="manifold").export(folder / "standard.stl")
+    return Standing, read_stl(folder / "standard.stl")
+
+
+def test_a_clamp_in_the_finished_standard_is_seen_by_its_mesh(tmp_path: Path) -> None:
+    """Above the base, in the middle of a post: the early look cannot know of it."""
+    standing, mesh = with_post(tmp_path, 60.0, 40.0)
     clamp = {"name": "ARM", "at_mm": [80.0, 40.0, 60.0], "sides_mm": [30.0, 20.0], "height_mm": 9.0}
     project = with_bodies(example(), clamp)
-    mesh = read_stl(tmp_path / "standard.stl")
     check_seat(project)
     with pytest.raises(BadFile, match=r"ARM beside the standard: it reaches 7\.0 mm into POST1"):
-        check_beside(project, Standing, mesh, ZERO)  # type: ignore[arg-type]
+        check_beside(project, standing, mesh, ZERO)  # type: ignore[arg-type]
     clear = with_bodies(example(), clamp | {"at_mm": [88.0, 40.0, 60.0]})
-    check_beside(clear, Standing, mesh, ZERO)  # type: ignore[arg-type]
+    check_beside(clear, standing, mesh, ZERO)  # type: ignore[arg-type]
 
 
 def cradle_post(radius: float, **more: object) -> Brief:
@@ -276,26 +281,15 @@ def test_a_post_on_the_cradle_clear_of_what_turns_within_the_workspace() -> None
 
 def test_the_finished_standard_is_looked_at_where_it_is_probed(tmp_path: Path) -> None:
     """An arm of the cradle above the base meets a ball's post at C = 90 degrees alone."""
-    post = trimesh.creation.cylinder(radius=12.0, height=100.0).apply_translation([0, 100, 75])
-    trimesh.boolean.union([base_mesh(), post], engine="manifold").export(tmp_path / "standard.stl")
-
-    class Standing:
-        class _Post:
-            @staticmethod
-            def distance(points: np.ndarray) -> np.ndarray:
-                return np.hypot(points[:, 0], points[:, 1] - 100.0) - 12.0
-
-        bodies = {"POST1": _Post}  # noqa: RUF012
-
+    standing, mesh = with_post(tmp_path, 0.0, 100.0)
     arm = {"name": "ARM", "on": "B", "at_mm": [-100.0, 0.0, 60.0], "sides_mm": [30.0, 20.0],
            "height_mm": 9.0}  # fmt: skip
     project = with_bodies(example(), arm)
-    mesh = read_stl(tmp_path / "standard.stl")
-    check_beside(project, Standing, mesh, ZERO)  # type: ignore[arg-type]
+    check_beside(project, standing, mesh, ZERO)  # type: ignore[arg-type]
     turned = ZERO.copy()
     turned[0, project.chain.axis_index("C")] = np.pi / 2
     with pytest.raises(BadFile, match=r"into POST1 at C = -?90 degrees"):
-        check_beside(project, Standing, mesh, np.vstack([turned, -turned]))  # type: ignore[arg-type]
+        check_beside(project, standing, mesh, np.vstack([turned, -turned]))  # type: ignore[arg-type]
 
 
 def test_the_command_refuses_before_it_designs(tmp_path: Path, capsys, monkeypatch) -> None:

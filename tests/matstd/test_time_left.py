@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from matstd.commands.standard.design import LINEAR_PLAN, PLAN
-from matstd.progress import _whole
-from matstd.time_left import TimeLeft
+from matstd.progress import TimeLeft, _whole
 
 SHARES = {"first": 0.2, "second": 0.5, "third": 0.3}
 

@@ -1,11 +1,11 @@
 """`matstd uncertainty` on the golden standard, of which one face stands 5 µm too high."""
 
-import importlib.util
 import json
 import re
 from dataclasses import replace
 from pathlib import Path
 
+import make_programs as golden
 import numpy as np
 import pytest
 
@@ -28,7 +28,6 @@ from matstd.twin.machine import Contribution
 from matstd.twin.model import Model
 from matstd.twin.units import DEG, UM
 
-MACHINE = Path(__file__).parents[2] / "tests" / "golden" / "make_programs.py"
 HIGH = 5.0
 """How much too high FF1 stands along its own z, µm."""
 
@@ -36,41 +35,32 @@ HIGH = 5.0
 @pytest.fixture(scope="module")
 def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Three visits, the standard clamped anew for each, on a machine without errors."""
-    spec = importlib.util.spec_from_file_location("golden_programs", MACHINE)
-    golden = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(golden)
     folder = tmp_path_factory.mktemp("visits")
     small: Standard = golden.standard()
-    write_standard(folder / "standard.toml", small)
     low = small.patches[0]
     up = low.T_artefact_patch @ pose(np.eye(3), np.array([0.0, 0.0, HIGH * UM]))
     true = replace(small, patches=(replace(low, T_artefact_patch=up), *small.patches[1:]))
-    rng = np.random.default_rng(4)
-    chain = golden.machine()
+    visit(folder, 3, 4, true)
+    return folder
+
+
+def visit(folder: Path, count: int, seed: int, true: Standard, **disturbance: object) -> None:
+    """Files of a campaign on the golden standard, which really is another."""
+    small, chain, rng = golden.standard(), golden.machine(), np.random.default_rng(seed)
     stands = [
         VirtualMachine(
             chain,
             noise=0.2 * UM,
             setup_error=pose(rotation(rng.normal(0.0, 2e-4, 3)), rng.normal(0.0, 0.05, 3)),
+            **disturbance,
         )
-        for _ in range(3)
+        for _ in range(count)
     ]
+    write_standard(folder / "standard.toml", small)
+    (folder / "machine.toml").write_text(golden.machine_text())
     programs = golden.programs().write(folder / "programs")
-    (folder / "machine.toml").write_text(chain_text(chain))
     for k, made in enumerate(visits(programs, true, stands, rng, calibrated=small)):
         write_run(folder / f"v{k}.csv", made.run, "machine.toml")
-    return folder
-
-
-def chain_text(chain) -> str:
-    """The machine as its file."""
-    lines = [f'format = "machine/1"\nname = "{chain.name}"\nchain = "{chain.notation}"']
-    for letter in chain.programmed_axes:
-        link = chain.link(letter)
-        unit = 1.0 if link.kind == "linear" else DEG
-        lines.append(f"[axis.{letter}]\nrange = {[v / unit for v in link.range]}")
-        lines.append(f"point = {[float(v) for v in link.point]}")
-    return "\n".join([*lines, "[workpiece]\norigin = [0.0, 0.0, -500.0]"]) + "\n"
 
 
 def call(place: Path, *more: str, runs: int = 3) -> int:
@@ -123,8 +113,6 @@ def test_a_page_shows_the_same(place: Path) -> None:
 
 def test_a_task_chooses_places(place: Path) -> None:
     run = read_run(place / "v0.csv")
-    from matstd.artefact.body.standard_file import read_standard
-
     standard = read_standard(place / "standard.toml")
     t = run.touches
     faces = np.isin(t.feature, ["FF1", "FF2"])
@@ -201,8 +189,6 @@ def test_where_hardly_anything_was_touched(
 
 def test_a_run_of_another_standard(place: Path) -> None:
     run = read_run(place / "v0.csv")
-    from matstd.artefact.body.standard_file import read_standard
-
     other = replace(run.touches, feature=np.full(len(run), "PAD9"))
     with pytest.raises(DesignError, match="PAD9"):
         like_task(Task(), read_standard(place / "standard.toml"), other)
@@ -243,10 +229,6 @@ def test_another_file_of_the_standard_than_the_run_was_evaluated_with_is_refused
 
 def test_a_learnt_curve_corrects_where_it_has_been_alone(tmp_path: Path) -> None:
     """A worn stretch of Z lifts the reading by a bump; the curve knows all of it, or one side."""
-    spec = importlib.util.spec_from_file_location("golden_programs", MACHINE)
-    golden = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(golden)
-    small, chain, rng = golden.standard(), golden.machine(), np.random.default_rng(6)
     middle, width = -255.0, 20.0
 
     def worn(touches):
@@ -254,28 +236,17 @@ def test_a_learnt_curve_corrects_where_it_has_been_alone(tmp_path: Path) -> None
         bump = np.exp(-(((touches.reading("Z") - middle) / width) ** 2))
         return out._replace(bias=12.0 * UM * bump)
 
-    stands = [
-        VirtualMachine(
-            chain,
-            disturbance=worn,
-            noise=0.2 * UM,
-            setup_error=pose(rotation(rng.normal(0.0, 2e-4, 3)), rng.normal(0.0, 0.05, 3)),
-        )
-        for _ in range(4)
-    ]
-    write_standard(tmp_path / "standard.toml", small)
-    (tmp_path / "machine.toml").write_text(chain_text(chain))
-    made = visits(golden.programs().write(tmp_path / "programs"), small, stands, rng)
-    for k, one in enumerate(made):
-        write_run(tmp_path / f"v{k}.csv", one.run, "machine.toml")
+    visit(tmp_path, 4, 6, golden.standard(), disturbance=worn)
     first = read_run(tmp_path / "v3.csv")
     z = first.touches.reading("Z")
     budgets = {}
     for name, rows in (("whole", z < np.inf), ("part", z < -272.0)):
         part = first[rows]
         low, high = part.touches.reading("Z").min(), part.touches.reading("Z").max()
-        curve = parse_effect("law(bias,curve Z)", chain).tuned(low, high, 0.1, 20.0 * UM)
-        fit = fit_run(part, Model(chain, (curve,)))
+        curve = parse_effect("law(bias,curve Z)", part.touches.chain).tuned(
+            low, high, 0.1, 20.0 * UM
+        )
+        fit = fit_run(part, Model(part.touches.chain, (curve,)))
         (tmp_path / f"{name}.toml").write_text(model_text(fit, "v3.csv"), encoding="utf-8")
         assert call(tmp_path, "--model", str(tmp_path / f"{name}.toml")) == 0
         plain, corrected = json.loads((tmp_path / "u.json").read_text())["budgets"]

@@ -17,7 +17,7 @@ from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.emit.program import make_ball
-from matstd.probe_paths.locate.ball_plan import plan_ball
+from matstd.probe_paths.locate.beside import plan_ball
 from matstd.report.words.probe_words import ball_lines
 from matstd.twin.errors import BadFile, DesignError, NotReachable
 from matstd.twin.frames import pose

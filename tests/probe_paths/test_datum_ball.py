@@ -20,7 +20,7 @@ from matstd.probe_paths.control.steps import Move
 from matstd.probe_paths.emit.program import make_ball, make_programs
 from matstd.probe_paths.linuxcnc.replanned import shortened
 from matstd.probe_paths.locate.again import planned_again
-from matstd.probe_paths.locate.ball_plan import plan_ball
+from matstd.probe_paths.locate.beside import plan_ball
 from matstd.report.words.probe_words import ball_lines
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import pose, rotation

@@ -18,7 +18,7 @@ from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.control.steps import ProbeStep
 from matstd.probe_paths.emit.program import make_first
 from matstd.probe_paths.language.dialect_file import read_dialect
-from matstd.probe_paths.locate.ball_plan import plan_ball
+from matstd.probe_paths.locate.beside import plan_ball
 from matstd.twin.errors import BadFile, DesignError, NotReachable
 from matstd.twin.frames import pose
 from matstd.twin.units import NM

@@ -21,10 +21,9 @@ from matstd.probe_paths.control.interpreter import interpret, read_program
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.emit.program import make_programs, make_search
 from matstd.probe_paths.emit.writer import Feeds
-from matstd.probe_paths.locate.find import find_standard
+from matstd.probe_paths.locate.find import Spread, find_standard
 from matstd.probe_paths.locate.relief import Relief
 from matstd.probe_paths.locate.search_plan import plan_search
-from matstd.probe_paths.locate.spread import Spread
 from matstd.probe_paths.plan.clearance import ToolClearance
 from matstd.twin.errors import BadFile, NotEnoughData, NotReachable
 from matstd.twin.frames import fixed_xyz, pose

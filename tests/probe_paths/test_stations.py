@@ -23,8 +23,8 @@ from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.language.dialect import Dialect
 from matstd.probe_paths.plan.planner import plan_touches
 from matstd.probe_paths.plan.touch_plan import PlanOptions
+from matstd.probe_paths.stations.from_brief import all_programs, make_stations, with_tool
 from matstd.probe_paths.stations.planned import _in_other_clamping, plan_campaign
-from matstd.probe_paths.stations.programmed import all_programs, make_stations, with_tool
 from matstd.twin.effects.setup_error import setup_errors
 from matstd.twin.errors import BadFile, DesignError, NotReachable
 from matstd.twin.files.run_file import read_run

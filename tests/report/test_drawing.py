@@ -6,10 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from matstd.artefact.price import Construction
+from matstd.cad_out.details import DOT
 from matstd.cad_out.details.detail_list import details_of
-from matstd.report.drawing.drawing import Issuer, draw_sheet, write_drawing
+from matstd.cad_out.making.joints import joints_of
+from matstd.report.drawing.drawing import draw_sheet, write_drawing
+from matstd.report.drawing.marks import Views, draw_datums
 from matstd.report.drawing.sections import draw_screw
 from matstd.report.drawing.sheet import A2, Sheet, View
+from matstd.report.drawing.tables import COLUMN, Issuer
 from matstd.report.drawing.views import draw_from
 
 ISSUER = Issuer("A. Müller", "Workshop & Co", 6.2)
@@ -29,8 +34,16 @@ def test_every_feature_tolerance_and_party_is_on_the_sheet(upright, drawn):
     for name in ("FF1", "FF2", "SPH1", "SPH2", "SPH3", "HOLE1", "HOLE2", "HOLE3", "THERMO"):
         assert name in words
     assert {"A", "B", "C", "0.05", "0.02", "SØ0.2", "A. Müller", "Workshop & Co"} <= set(words)
-    assert {"B1", "B2", "C1", "0.01 CZ", "3 x pad", "2 x FF", "3 x SØ25, centre"} <= set(words)
-    assert {"170", "150", "R15", "25", "Ø26", "3 x ISO 4762 M10x30", "6.2 kg"} <= set(words)
+    assert {"B1", "B2", "C1", "0.01 CZ", "3 x pad", "2 x FF", "3 x SØ25 ±0.0025"} <= set(words)
+    assert {
+        "170",
+        "150",
+        "4 x R15",
+        "25",
+        "pad Ø26, R3, 1 high",
+        "3 x ISO 4762 M10x30",
+        "6.2 kg",
+    } <= set(words)
     x, y, z = upright.spheres[1].centre
     row = words.index("SPH2")
     assert words[row + 1 : row + 4] == [f"{x:.1f}", f"{y:.1f}", f"{z:.1f}"]
@@ -38,7 +51,7 @@ def test_every_feature_tolerance_and_party_is_on_the_sheet(upright, drawn):
     land, z = (
         f"{v:.2f}" for v in (2 * details.seats["SPH1"].top_radius, details.seats["SPH1"].top)
     )
-    assert (words[row + 10], words[row + 11]) == (f"Ø{land}", z)
+    assert (words[row + 11], words[row + 12]) == (f"Ø{land}", z)
     (thermo,) = (bore for bore in details.bores if bore.name == "THERMO")
     row = words.index("THERMO", words.index("pad"))
     assert words[row + 3 : row + 5] == [f"{thermo.mouth[2]:g}", "Ø6.2 x 40"]
@@ -54,13 +67,13 @@ def test_the_title_block_and_the_notes_leave_no_question(upright):
     words = words_of(sheet)
     named = {"legal owner", "created by", "approved by", "document type", "date of issue", "sheet"}
     assert named <= set(words)
-    assert {"B. Approver", "2026-11-23", "part drawing", "edges ISO 13715"} <= set(words)
+    assert {"B. Approver", "2026-11-23", "assembly drawing", "edges ISO 13715"} <= set(words)
     text = " ".join(words)
     assert "ISO 2768" not in text
     for stated in ("ISO 22081", "hardness 50 to 54 HRC", "epoxy", "stress-relieve", "No coating"):
         assert stated in text
     assert {"D-D", "E-E"} <= {w.split(" ")[0] for w in words}
-    assert words.count("D") == words.count("E") == 2
+    assert words.count("D") == words.count("E") == 4  # two are of the reference fields
     hatched = [p for p in sheet.axes.patches if p.get_hatch()]
     assert len(hatched) == 3
     sizes = [t.get_fontsize() / (1.35 * 72.0 / 25.4) for t in sheet.axes.texts]
@@ -78,6 +91,66 @@ def test_a_frame_points_at_what_it_holds_for(upright):
     assert any(np.allclose(end, top, atol=0.1) for end in leaders for top in tops)
 
 
+def test_the_parts_list_states_what_the_workshop_makes(upright):
+    """In one piece, or plate, studs and blocks with their threads; never both."""
+    whole, parts = (
+        words_of(draw_sheet(upright, details_of(upright), replace(ISSUER, make=make)))
+        for make in Construction
+    )
+    assert "body in one piece" in whole
+    assert not [w for w in whole if w.startswith(("stud,", "block ")) or "of parts" in w]
+    assert "plate" in parts
+    assert parts[parts.index("stud, thread as in the table") - 1] == f"{len(upright.spheres)}"
+    joints = joints_of(upright, details_of(upright))
+    assert f"M{joints.studs[0].thread:g}" in parts
+    assert [w for w in parts if "standard-parts.step" in w]
+    assert "body in one piece" not in parts
+
+
+def test_every_engraved_dot_is_drawn(upright, drawn):
+    """From above, to scale: as many small circles as letters that look up have dots."""
+    details = details_of(upright)
+    dots = [line.dots for line in details.lettering if line.T_artefact_text[2, 2] > 0.5]
+    wide = [np.ptp(p.get_path().vertices[:, 0]) for p in drawn.axes.patches]
+    scale = min(s for s in (0.5, 1.0, 2.0) if np.isclose(wide, 2.0 * s * DOT).any())
+    assert np.isclose(wide, 2.0 * scale * DOT).sum() == sum(map(len, dots)) > 20
+
+
+def test_no_words_leave_their_column(drawn):
+    """Tables and notes end where their column ends, and the title block where the sheet does."""
+    drawn.figure.set_dpi(36)
+    drawn.figure.canvas.draw()
+    edge = drawn.axes.transData.transform((drawn.right, 0.0))[0]
+    column = drawn.axes.transData.transform((drawn.right - COLUMN, 0.0))[0]
+    inside = drawn.axes.transData.transform((drawn.right + 1.0, 0.0))[0]
+    boxes = [text.get_window_extent() for text in drawn.axes.texts]
+    rows = [box for box in boxes if column < box.x0 < inside]
+    assert len(rows) > 60
+    assert max(box.x1 for box in rows) < edge + 4.0  # the letters of the fields stand beside it
+
+
+def test_frames_keep_clear_of_targets_on_a_small_plate(upright):
+    """On any plate the frame of datum B stands below its targets, not on them."""
+    small = replace(upright, base=replace(upright.base, half_size=(60.0, 60.0)))
+    sheet, views = Sheet(), Views(*(View(x, 200.0, 0.5) for x in (100.0, 250.0, 400.0)))
+    draw_datums(sheet, views, small, details_of(small))
+    (target,) = (t for t in sheet.axes.texts if t.get_text() == "B2")
+    frame = next(t for t in sheet.axes.texts if t.get_text() == "0.02")
+    assert frame.get_position()[1] < target.get_position()[1] - 6.0
+
+
+def test_a_name_that_something_hides_is_not_written(upright):
+    """Of two posts one behind the other only the nearer has its number."""
+    first, second, *_ = upright.spheres
+    behind = replace(second, centre=np.add(first.centre, [0.0, 30.0, 0.0]))
+    both = replace(upright, patches=(), spheres=(first, behind))
+    sheet = Sheet()
+    draw_from(sheet, View(200.0, 100.0, 0.5), both, details_of(both), np.array([0.0, 1.0, 0.0]))
+    names = [word for word in words_of(sheet)[-2:] if word in ("1", "2")]
+    assert names[-1:] == ["1"]
+    assert names.count("2") == 0
+
+
 def test_pads_of_two_sizes_are_not_said_to_be_alike(upright):
     """The outline leaves less relief beside the last."""
     near = replace(upright.holes[2], y=upright.base.half_size[1] - 15.0)
@@ -86,9 +159,9 @@ def test_pads_of_two_sizes_are_not_said_to_be_alike(upright):
     assert pads[2] < pads[0] == pytest.approx(26.0)
     assert 10.0 * pads[2] == pytest.approx(round(10.0 * pads[2]), abs=1e-9)
     sheet = Sheet()
-    draw_screw(sheet, View(200.0, 100.0, 1.0), moved, details_of(moved))
+    draw_screw(sheet, View(200.0, 100.0, 1.0), moved.holes[0], moved, details_of(moved))
     words = words_of(sheet)
-    assert f"Ø{pads[0]:g}" in words
+    assert f"pad Ø{pads[0]:g}, R3, 1 high" in words
     assert any("others with pads as in the table" in w for w in words)
 
 

@@ -11,8 +11,8 @@ from matstd.probe_paths.campaign.tolerance import STEPS_MM, setup_tolerance
 from matstd.probe_paths.emit.writer import Feeds
 from matstd.probe_paths.language.dialect import Dialect
 from matstd.probe_paths.locate.beside import companions
-from matstd.probe_paths.locate.spread import Spread
-from matstd.probe_paths.stations.programmed import Station
+from matstd.probe_paths.locate.find import Spread
+from matstd.probe_paths.stations.from_brief import Station
 from matstd.report.pages.setup_page import PAGE, PICTURE, write_setup_page
 from matstd.twin.frames import apply, inverse, pose, turn
 from matstd.twin.machine.kinematics import linear_directions, tip

@@ -4,8 +4,7 @@ import re
 
 import numpy as np
 
-from matstd.report.style.colours import series
-from matstd.report.style.labels import robust_limit
+from matstd.report.style import robust_limit, series
 
 
 def test_no_colour_comes_twice() -> None:

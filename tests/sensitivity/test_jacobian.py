@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from matstd.sensitivity.first_order.by_parameter import jacobian_by_parameter
-from matstd.sensitivity.first_order.jacobians import jacobian, sensitivity
+from matstd.sensitivity.first_order.jacobians import jacobian, jacobian_by_parameter, sensitivity
 from matstd.sensitivity.first_order.workspace import latin_hypercube
 from matstd.twin.machine.chain import Axis, make_chain
 from matstd.twin.machine.contribution import Contribution
@@ -88,7 +87,7 @@ def test_blocks_and_selections_change_nothing(chain, workspace, monkeypatch):
     q = latin_hypercube(workspace, 50, np.random.default_rng(2))
     length = np.linspace(100.0, 200.0, 50)
     whole = jacobian(chain, q, length)
-    monkeypatch.setattr("matstd.sensitivity.first_order.by_parameter._POSES_A_BLOCK", 7)
+    monkeypatch.setattr("matstd.sensitivity.first_order.jacobians._POSES_A_BLOCK", 7)
     np.testing.assert_array_equal(jacobian(chain, q, length), whole)
     some = [chain.symbols[i] for i in (70, 3, 40)]
     np.testing.assert_array_equal(jacobian(chain, q, length, some), whole[:, [70, 3, 40]])

@@ -137,15 +137,8 @@ BUMP = Kind.of(Bump, formula="f")
 LINE = 1 + FILE.splitlines().index("    def amounts(self, touches):")
 
 
-@pytest.fixture
-def own_register(monkeypatch):
-    """The register as it is, given back afterwards."""
-    monkeypatch.setattr(library, "_REGISTER", dict(library._REGISTER))
-    monkeypatch.setattr(library, "_FILES", {})
-
-
 @pytest.mark.parametrize("head", ["", "from __future__ import annotations\n"])
-def test_a_users_declared_effect_passes(own_register, tmp_path: Path, head: str) -> None:
+def test_a_users_declared_effect_passes(tmp_path: Path, head: str) -> None:
     path = tmp_path / "own.py"
     path.write_text(head + FILE, encoding="utf-8")
     (kind,) = library.load_user_effects(path)
@@ -164,7 +157,7 @@ def test_a_users_declared_effect_passes(own_register, tmp_path: Path, head: str)
         ("10 * UM", "0.0", "bump.parameters, size: found sd = 0, expected the size it may have"),
     ],
 )
-def test_a_slip_is_one_line(own_register, tmp_path: Path, old: str, new: str, expected) -> None:
+def test_a_slip_is_one_line(tmp_path: Path, old: str, new: str, expected) -> None:
     path = tmp_path / "own.py"
     path.write_text(FILE.replace(old, new), encoding="utf-8")
     (kind,) = library.load_user_effects(path)
@@ -181,7 +174,7 @@ def test_a_slip_is_one_line(own_register, tmp_path: Path, old: str, new: str, ex
     ],
 )
 def test_a_class_that_makes_no_kind_is_one_line(
-    own_register, tmp_path: Path, old: str, new: str, expected
+    tmp_path: Path, old: str, new: str, expected
 ) -> None:
     path = tmp_path / "own.py"
     path.write_text(FILE.replace(old, new), encoding="utf-8")

@@ -5,8 +5,11 @@ ball centre stands at (100, 50, 140) of the table frame, the line of B at height
 outward normal n reads dev = -n . (motion of the tip) + n . (shift of the standard) + bias.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from machines import HSM600U
 
 from matstd.twin.effects.joint_sag import KIND as JOINT_SAG
 from matstd.twin.errors import UnknownEffect
@@ -17,28 +20,18 @@ from matstd.twin.model.model import columns
 from matstd.twin.record.touches import Setup, Touches
 from matstd.twin.units import DEG, NM, UM, URAD
 
-HSM = make_chain(
-    "hsm600u",
-    "[w C' B' X' f Y Z (C1) t]",
-    {
-        "X": Axis((-400.0, 400.0)),
-        "Y": Axis((-300.0, 300.0)),
-        "Z": Axis((-500.0, 0.0)),
-        "B": Axis((-110.0 * DEG, 30.0 * DEG), (0.0, 0.0, -420.0)),
-        "C": Axis((-360.0 * DEG, 360.0 * DEG)),
-    },
-    (0.0, 0.0, -500.0),
-)
 PER_HAND = 0.5 * NM
 """Hand values are given to half a nanometre."""
 
 X, Y, Z = np.eye(3)
 
+HELD = Setup("a", fixing=(0.0, 0.0, 40.0))
+
 
 def touch(normal, X=100.0, Y=50.0, Z=-200.0, B=0.0, C=0.0, n=1, **more):
     """n touches in one pose (angles in deg), with normals in the table frame."""
     by_name = {"X": X, "Y": Y, "Z": Z, "B": B * DEG, "C": C * DEG, "C1": 0.0}
-    q = np.tile([by_name[a] for a in HSM.axes], (n, 1))
+    q = np.tile([by_name[a] for a in HSM600U.axes], (n, 1))
     given = {
         "time": np.zeros(n),
         "approach": np.zeros(q.shape),
@@ -47,7 +40,7 @@ def touch(normal, X=100.0, Y=50.0, Z=-200.0, B=0.0, C=0.0, n=1, **more):
         "point": np.tile((100.0, 50.0, 140.0), (n, 1)),
     }
     return Touches(
-        chain=HSM,
+        chain=HSM600U,
         q=q,
         length=np.full(n, 160.0),
         radius=np.full(n, 3.0),
@@ -58,7 +51,7 @@ def touch(normal, X=100.0, Y=50.0, Z=-200.0, B=0.0, C=0.0, n=1, **more):
 
 def deviation(name, theta, touches, *tuning):
     """dev in um of an effect with parameters theta (base units)."""
-    effect = parse_effect(name, HSM)
+    effect = parse_effect(name, HSM600U)
     if tuning:
         assert is_tunable(effect)
         effect = effect.tuned(*tuning)
@@ -67,14 +60,24 @@ def deviation(name, theta, touches, *tuning):
 
 def first(name, size, touches, *tuning, parameter=0):
     """dev in um of the first touch, with one parameter of the effect set."""
-    theta = np.zeros(len(parse_effect(name, HSM).parameters))
+    theta = np.zeros(len(parse_effect(name, HSM600U).parameters))
     theta[parameter] = size
     return deviation(name, theta, touches, *tuning)[0]
 
 
+def warm(normal, **sensors):
+    """A touch with temperatures of some sensors, degC."""
+    return touch(normal, temperature={name: np.array([t]) for name, t in sensors.items()})
+
+
+def pushed(normal, *force):
+    """A touch with a force on the tool, N."""
+    return touch(normal, force=np.array([force]))
+
+
 def moving(**signs):
     """Signs of the last motion of some axes, (1, A)."""
-    return np.array([[signs.get(a, 0.0) for a in HSM.axes]])
+    return np.array([[signs.get(a, 0.0) for a in HSM600U.axes]])
 
 
 # name, size, touch, parameter, hand value in um
@@ -103,20 +106,8 @@ BY_HAND = {
     "backlash of B": ("backlash(B)", 20 * URAD, touch(Z, approach=moving(B=1.0)), 0, 1.0),
     "backlash of B in x": ("backlash(B)", 20 * URAD, touch(X, approach=moving(B=-1.0)), 0, 0.6),
     # 10e-6 * 5 K * 100 mm
-    "expansion of a scale": (
-        "thermal-expansion(X,glass)",
-        10e-6,
-        touch(X, temperature={"glass": np.array([25.0])}),
-        0,
-        -5.0,
-    ),
-    "expansion at 20 degC": (
-        "thermal-expansion(X,glass)",
-        10e-6,
-        touch(X, temperature={"glass": np.array([20.0])}),
-        0,
-        0.0,
-    ),
+    "expansion of a scale": ("thermal-expansion(X,glass)", 10e-6, warm(X, glass=25.0), 0, -5.0),
+    "expansion at 20 degC": ("thermal-expansion(X,glass)", 10e-6, warm(X, glass=20.0), 0, 0.0),
     # overhang (0 - -250)/500 = 1/2, cubed
     "sag of a ram": ("gravity(EYZ)", 8 * UM, touch(Y, Z=-250.0), 0, -1.0),
     "ram drawn in": ("gravity(EYZ)", 8 * UM, touch(Y, Z=0.0), 0, 0.0),
@@ -125,45 +116,15 @@ BY_HAND = {
     # sin(-90) cos(180) = 1 in machine z, which is table x at B = -90, C = 0 and -x at C = 180
     "load off centre": ("gravity(EZB,C)", 2 * UM, touch(X, B=-90.0, C=180.0), 0, -2.0),
     # 50 N down on the tool: 5 um down
-    "stiffness of Z": (
-        "stiffness(Z)",
-        0.1 * UM,
-        touch(Z, force=np.array([[0.0, 0.0, -50.0]])),
-        0,
-        5.0,
-    ),
+    "stiffness of Z": ("stiffness(Z)", 0.1 * UM, pushed(Z, 0.0, 0.0, -50.0), 0, 5.0),
     # 10 N in +x at 60 mm above the line of B: 600 N mm; 1e-9 rad/(N mm) gives 0.6 urad * 60 mm
-    "stiffness of B": (
-        "stiffness(B)",
-        1e-9,
-        touch(X, force=np.array([[10.0, 0.0, 0.0]])),
-        0,
-        -0.036,
-    ),
-    "stiffness of the tool": (
-        "stiffness(t)",
-        0.5 * UM,
-        touch(Y, force=np.array([[0.0, 4.0, 0.0]])),
-        0,
-        -2.0,
-    ),
+    "stiffness of B": ("stiffness(B)", 1e-9, pushed(X, 10.0, 0.0, 0.0), 0, -0.036),
+    "stiffness of the tool": ("stiffness(t)", 0.5 * UM, pushed(Y, 0.0, 4.0, 0.0), 0, -2.0),
     # pushed down by 50 N: half of 8 um of play downwards
-    "play of Z": ("load-play(Z)", 8 * UM, touch(Z, force=np.array([[0.0, 0.0, -50.0]])), 0, 4.0),
-    "play of Z pulled": (
-        "load-play(Z)",
-        8 * UM,
-        touch(Z, force=np.array([[0.0, 0.0, 5.0]])),
-        0,
-        -4.0,
-    ),
+    "play of Z": ("load-play(Z)", 8 * UM, pushed(Z, 0.0, 0.0, -50.0), 0, 4.0),
+    "play of Z pulled": ("load-play(Z)", 8 * UM, pushed(Z, 0.0, 0.0, 5.0), 0, -4.0),
     # half of 0.1 um/N more under push than under pull, at 50 N: 2.5 um upwards, whichever way
-    "softer upwards": (
-        "load-play(Z)",
-        0.1 * UM,
-        touch(Z, force=np.array([[0.0, 0.0, -50.0]])),
-        1,
-        -2.5,
-    ),
+    "softer upwards": ("load-play(Z)", 0.1 * UM, pushed(Z, 0.0, 0.0, -50.0), 1, -2.5),
     "ball too large": ("probe-radius", 4 * UM, touch(Y), 0, 4.0),
     "stylus square to the wall": ("stylus-bending", 4 * UM, touch(Y), 0, 4.0),
     "stylus at 30 deg": ("stylus-bending", 4 * UM, touch((0.5, 0.0, np.sqrt(0.75))), 0, 1.0),
@@ -171,12 +132,14 @@ BY_HAND = {
     "stylus along the normal": ("stylus-bending", 4 * UM, touch(-X, B=-90.0), 0, 0.0),
     "stylus square at B -90": ("stylus-bending", 4 * UM, touch(Z, B=-90.0), 0, 4.0),
     # (T - 20) alpha p_z = 10 K * 10e-6 * 140 mm
-    "growing standard": (
+    "growing standard": ("artefact-expansion(block)", 10e-6, warm(Z, block=30.0), 0, 14.0),
+    # held 40 mm above the origin of the table: 10 K * 10e-6 * (140 - 40) mm
+    "growing standard, held": (
         "artefact-expansion(block)",
         10e-6,
-        touch(Z, temperature={"block": np.array([30.0])}),
+        replace(warm(Z, block=30.0), setups=(HELD,)),
         0,
-        14.0,
+        10.0,
     ),
     # 2 h at 3 um/h in +x carries the wall that faces +x outwards
     "drift": ("drift", 3 * UM, touch(X, time=np.array([7200.0])), 0, 6.0),
@@ -297,8 +260,8 @@ def test_a_position_table_is_a_curve_for_each_direction() -> None:
     """
     share = [1.0 / (1.0 + (0.3 * np.pi * k) ** 2) for k in range(1, 21)]
     curve = 4.0 * share[0] / np.sqrt(sum(w * w for w in share)) * np.cos(5.0 * np.pi / 8.0)
-    approach = np.zeros((3, len(HSM.axes)))
-    approach[:, HSM.axis_index("X")] = (1.0, -1.0, 0.0)
+    approach = np.zeros((3, len(HSM600U.axes)))
+    approach[:, HSM600U.axis_index("X")] = (1.0, -1.0, 0.0)
     touches = touch(X, n=3, approach=approach)
     theta = np.zeros(41)
     theta[0], theta[20] = 4 * UM, 2 * UM
@@ -359,4 +322,4 @@ def test_an_arm_that_is_stretched_out_sags() -> None:
 def test_machines_that_are_no_arm_have_no_joints_that_sag() -> None:
     assert not list(JOINT_SAG.propose(touch(Z)))
     with pytest.raises(UnknownEffect, match="carries the tool: none on this machine"):
-        parse_effect("joint-sag(B)", HSM)
+        parse_effect("joint-sag(B)", HSM600U)

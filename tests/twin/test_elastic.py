@@ -4,10 +4,9 @@ import numpy as np
 import pytest
 from beam_by_work import flexibility
 
-from matstd.twin.elastic.beam import SUPPORTS, bending
+from matstd.twin.elastic.beam import SUPPORTS, bending, section
 from matstd.twin.elastic.body import GRAVITY
 from matstd.twin.elastic.materials import material
-from matstd.twin.elastic.section import section
 from matstd.twin.errors import UnknownEffect
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.library.sized_effect import parse_sized_effect

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from run_text import COLUMNS, HEAD, ROW, later, write
 
 from matstd.twin.errors import BadFile
 from matstd.twin.files.run_file import read_run
@@ -11,46 +12,6 @@ from matstd.twin.files.run_writer import write_run
 from matstd.twin.machine.contribution import Where
 from matstd.twin.record.touches import computed_deviation
 from matstd.twin.units import NM, UM, URAD
-
-MACHINE = """format = "machine/1"
-name = "test"
-chain = "[w C' f X Y Z t]"
-[axis.X]
-range = [-400.0, 400.0]
-[axis.Y]
-range = [-300.0, 300.0]
-[axis.Z]
-range = [-500.0, 0.0]
-[axis.C]
-range = [-360.0, 360.0]
-point = [0.0, 0.0, 0.0]
-[workpiece]
-origin = [0.0, 0.0, -500.0]
-"""
-HEAD = """# format = "run/1"
-# machine = "machine.toml"
-# probe = { radius_mm = 3.0, length_mm = 160.0 }
-# u_um = 0.6
-# [setup.a]
-# origin_mm = [10.0, 0.0, 0.0]
-# rotation_deg = [0.0, 0.0, 90.0]
-"""
-COLUMNS = "feature,setup,pose,time_s,X_mm,Y_mm,Z_mm,C_deg,px_mm,py_mm,pz_mm,nx,ny,nz,dirC,T_s_degC"
-# The ball centre in the table frame is (20, 0, 40): X 20, Z -300 - 160 + 500; in the artefact
-# frame, at (10, 0, 0) turned by 90 deg, it is (0, -10, 40). A horizontal face at z = 36.998 is
-# believed to stand 2 um too high.
-ROW = "a,a,0,1.5,20.0,0.0,-300.0,0.0,0.0,-10.0,36.998,0.0,0.0,1.0,1,20.5"
-
-
-def write(folder: Path, rows: list[str], head: str = HEAD, columns: str = COLUMNS) -> Path:
-    (folder / "machine.toml").write_text(MACHINE)
-    path = folder / "run.csv"
-    path.write_text(head + columns + "\n" + "\n".join(rows) + "\n")
-    return path
-
-
-def later(row: str, time: float) -> str:
-    return row.replace(",1.5,", f",{time},")
 
 
 def test_deviation_by_hand(tmp_path: Path) -> None:

@@ -16,17 +16,17 @@ from matstd.twin.units import HOUR, UM, URAD
 
 ON_EACH_SIDE = 2
 """Touches of a set-up needed before and after a slip; a single one may be an outlier."""
-INSTANTS = 256
-"""Largest number of instants scanned for a slip; the search refines between them."""
+INSTANTS = 256  # largest number of instants scanned for a slip; the search refines between them
 
 
 @dataclass(frozen=True)
 class ArtefactExpansion(Declared):
     """The standard expands with the temperature of a sensor.
 
-    It expands from the origin of the table frame, which carries it along, in every direction alike;
-    p is the contact point in the table frame. One temperature holds for the whole body. The
-    expansion by the temperature that the run states is taken off already: this is what exceeds it.
+    It expands in every direction alike from the point f at which it is held (`fixing_mm` of the
+    set-up), or with the table that carries it along from the origin of the table frame; p is the
+    contact point. One temperature holds for the whole body. The expansion by the temperature that
+    the run states is taken off already: this is what exceeds it.
     """
 
     sensor: SensorName
@@ -37,7 +37,7 @@ class ArtefactExpansion(Declared):
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         warmth = sensor_record(touches, self.sensor) - touches.body_temperature
-        p = touches.point_table
+        p = touches.point_table - np.nan_to_num(touches.fixing_table)
         return tuple(Term(0, Where("shift", 0, i), warmth * p[:, i]) for i in range(3))
 
 
@@ -106,7 +106,8 @@ EXPANSION = Kind.of(
     ArtefactExpansion,
     title="thermal expansion of the standard",
     synonyms="growth of the artefact, temperature of the part, artefact expansion",
-    formula="shift = alpha (T - T_body) p, T_body as the run states it, else 20 degC",
+    formula="shift = alpha (T - T_body) (p - f), T_body as the run states it, else 20 degC; f: the "
+    "point that is held (fixing_mm of the set-up), else the origin of the table",
     units="alpha: µm/(m K)",
     typical="steel 10 to 12, aluminium 23, Invar 0.6 to 1.6 µm/(m K)",
     source="ISO 1 (20 degC)",

@@ -41,13 +41,10 @@ class Coupling(Declared):
     height of Z is ``EBX = a u_X u_Z``, u the reading scaled to [-1, 1]. Of a higher degree n it is
     any function of both, ``sum a_jk P_j(u_X) P_k(u_Z)``, j and k from 1 to n, P of Legendre (of an
     axis that turns, cosine and sine of its multiples): what each axis does by itself stays its own.
-
-    Attributes:
-        other: Name of the axis it also depends on.
     """
 
     symbol: ComponentSymbol
-    other: AxisName
+    other: AxisName  # name of the axis it also depends on
     degree: Annotated[int, Argument("degree", _degree)] = 1
 
     kind, called = "coupling", "{symbol.title}, which changes with {other}"

@@ -13,8 +13,7 @@ from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG
 
-HIGHEST = 12
-"""Highest degree accepted; faster variations are `periodic`."""
+HIGHEST = 12  # highest degree accepted; faster variations are `periodic`
 PROPOSED_DEGREE = 4
 """Two degrees beyond the ordinary model of a linear axis; what changes faster is `periodic`."""
 _DEGREES = re.compile(r"(?:(\d+)-)?(\d+)\Z")
@@ -26,18 +25,14 @@ class ComponentError(Declared):
     """One component error of an axis in one of the distributions of the D-MT paper.
 
     ``E(q) = a f(q)`` with f the constant, linear, parabolic or sinusoidal shape of unit peak
-    amplitude (`matstd.twin.machine.shapes`).
-
-    Attributes:
-        phase: Phase of the sinusoidal distribution, rad.
-        sd: Expected standard deviation of the amplitude, mm or rad.
+    amplitude (`matstd.twin.machine.ranges`).
     """
 
     symbol: Symbol
     shape: ShapeName
     periods: float = 1.0
-    phase: float = 0.0
-    sd: float = 1.0
+    phase: float = 0.0  # phase of the sinusoidal distribution, rad
+    sd: float = 1.0  # expected standard deviation of the amplitude, mm or rad
 
     kind, called = "geometric", "{symbol.title}"
     is_ordinary = True
@@ -76,14 +71,11 @@ class HigherOrder(Declared):
     the Chebyshev polynomials (T_1 and T_2 are the linear and the parabolic distribution) of u, the
     reading scaled to [-1, 1]. Constants are location errors and not in it. Coefficients are
     expected to fall as ``1/k^1.5`` from the size of the class.
-
-    Attributes:
-        sd: Expected standard deviation of the first coefficient, mm or rad.
     """
 
     symbol: Symbol
     degree: int
-    sd: float
+    sd: float  # expected standard deviation of the first coefficient, mm or rad
     rotary: bool = False
     lowest: int = 1
 

@@ -70,12 +70,9 @@ class OffCentreLoad(_Sag):
     """Tilt of a cradle under a load that lies off the centre of the table it carries.
 
     ``E = sin(q_tilt) (a cos(q_table) + b sin(q_table))``: the moment ``m g r sin B cos(C - phi)``.
-
-    Attributes:
-        table: Name of the axis that turns the load.
     """
 
-    table: AxisName
+    table: AxisName  # name of the axis that turns the load
 
     called = "tilt under a load off the centre of {table}"
     amplitudes = ("cos", "sin")  # of the load in phase with the table and a quarter turn on

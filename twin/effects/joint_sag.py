@@ -20,11 +20,9 @@ from matstd.twin.model import Declared, Kind, Parameter, Term, Title, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import URAD
 
-SAME_POINT = 1e-6
-"""Points closer than this (mm) with every axis at zero are equal."""
+SAME_POINT = 1e-6  # points closer than this (mm) with every axis at zero are equal
 
-FLANGE = "flange"
-"""Name of the gauge point among the places of weights."""
+FLANGE = "flange"  # name of the gauge point among the places of weights
 
 DOWN = np.array([0.0, 0.0, -1.0])
 """Direction of weights in the machine frame, whose Z stands upright (ISO 841)."""
@@ -45,16 +43,14 @@ class JointSag(Declared):
     W_k at points p_k; c is the compliance of the joint. One parameter, c W_k, for every point: a
     positive one, rad a millimetre of lever, turns the arm down.
 
-    Attributes:
-        places: Names of the joints at whose points weights are taken to be, and `flange` for the
-            gauge point, where a payload hangs.
-
     Reference:
         Static torque of gravity of an open chain; joint compliance is what remains of a calibrated
         arm: Judd and Knasinski, IEEE Trans. Robotics and Automation 6 (1990) 20.
     """
 
     joint: Annotated[str, Argument("axis", _joint)]
+    # names of the joints at whose points weights are taken to be, and `flange` for the gauge point,
+    # where a payload hangs
     places: tuple[str, ...] = ()
 
     kind = "joint-sag"

@@ -20,13 +20,10 @@ class LocationError(Declared):
     The chain knows how it reaches the tip (`matstd.twin.machine.kinematics.place_as_twist`): a
     squareness turns the direction of travel of a linear axis, `EX0C`, `EA0C` displace and tilt a
     rotary axis's line, `EX0X`, `EC0C` add to a reading.
-
-    Attributes:
-        sd: Expected standard deviation, mm or rad.
     """
 
     symbol: AnySymbol
-    sd: float = 1.0
+    sd: float = 1.0  # expected standard deviation, mm or rad
 
     kind, called = "location", "{symbol.title}"
     is_ordinary = True

@@ -112,12 +112,10 @@ class Overtones(Periodic):
     ``E = sum_k s_k sin(2 pi k q/p) + c_k cos(2 pi k q/p)``, k = 1 .. order. An encoder's lines, a
     worn thread or a stepping motor repeat exactly, but hardly ever as one sine. The k-th is
     expected to be smaller by ``k^1.5``.
-
-    Attributes:
-        near: Period around which p is looked for, mm; None for every one that can be seen.
     """
 
     order: int = 2
+    # period around which p is looked for, mm; None for every one that can be seen
     near: float | None = None
 
     @cached_property

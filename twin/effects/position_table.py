@@ -20,18 +20,15 @@ from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter, Title,
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
-ORDER = 20
-"""Half waves over the travel: the resolution of 20 targets; faster ones are `periodic`."""
+ORDER = 20  # half waves over the travel: the resolution of 20 targets; faster ones are `periodic`
 
 CORRELATION_LENGTHS = (0.04, 0.1, 0.3)
 """Tried correlation lengths, as shares of the travel: 0.04 is the distance of 25 targets; smoother
 curves than 0.3 are polynomials of low degree."""
 
-BY_DIRECTION = "directions"
-"""Argument for separate curves of the two directions."""
+BY_DIRECTION = "directions"  # argument for separate curves of the two directions
 
-MIN_TARGETS = 5
-"""Fewest targets of a positioning test of one metre (ISO 230-2)."""
+MIN_TARGETS = 5  # fewest targets of a positioning test of one metre (ISO 230-2)
 
 MIN_REVISITED_SHARE = 0.5
 """From this share of rows at readings approached before, readings are targets."""
@@ -60,19 +57,15 @@ class PositionTable(Declared):
     finer a wave the less is expected of it: ``w_k ~ 1/(1 + (k pi l)^2)``, ``sum w_k^2 = 1``, l the
     correlation length. A constant belongs to the location of the axis.
 
-    Attributes:
-        by_direction: Whether each direction has its own curve; a reversal that is alike everywhere
-            is `backlash`.
-        is_round: Whether the travel of a rotary axis closes in itself.
-        length: l, as a share of the travel.
-
     Reference:
         ISO 230-2 (mean deviation at every target for either direction, reversal at a target).
     """
 
     symbol: ComponentSymbol
+    # whether each direction has its own curve; a reversal that is alike everywhere is `backlash`
     by_direction: Annotated[bool, Argument("directions", _directions, _no_or_each)] = False
-    is_round: bool = False
+    is_round: bool = False  # whether the travel of a rotary axis closes in itself
+    # l, as a share of the travel
     length: float = scanned("1", CORRELATION_LENGTHS, continuous=False)
 
     kind = "position-table"

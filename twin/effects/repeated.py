@@ -15,14 +15,10 @@ class Repeated:
     """An effect with inner parameters of its own, beside one of the same name.
 
     Only an effect with inner parameters can be in a model twice, because others would be identical.
-
-    Attributes:
-        original: As if it stood there alone.
-        repetition: 2 for the second.
     """
 
-    original: Tunable
-    repetition: int = 2
+    original: Tunable  # as if it stood there alone
+    repetition: int = 2  # 2 for the second
 
     @property
     def kind(self) -> str:
@@ -66,16 +62,11 @@ class Change:
 
     The effect itself stays in the model and describes the runs before; a change lasts until the
     next one.
-
-    Attributes:
-        original: What changed.
-        since_run: Number of the first run that shows it, as in `Touches.run`.
-        since: Name of that run.
     """
 
-    original: Effect
-    since_run: int
-    since: str
+    original: Effect  # what changed
+    since_run: int  # number of the first run that shows it, as in `Touches.run`
+    since: str  # name of that run
 
     kind = "change"
 

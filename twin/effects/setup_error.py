@@ -23,8 +23,7 @@ STYLUS_SD = 100.0 * UM
 """Prior standard deviation of place and radius of a further stylus against the first, mm: also
 wide."""
 
-_MAX_STYLI = 10
-"""Largest number of further styli; more lengths belong to a target that is moved."""
+_MAX_STYLI = 10  # largest number of further styli; more lengths belong to a target that is moved
 
 
 def rigid_shift(here: Array, arm: Array) -> list[Term]:
@@ -48,15 +47,13 @@ class SetupError(Declared):
 
     ``shift = e + r x (x - c)`` in the table frame, with x the touched point and c the centre. Six
     parameters, mm and rad.
-
-    Attributes:
-        centre: c, table frame, mm: the middle of the touched points, so that displacement and
-            rotation are estimated nearly independently.
-        turns_only: Whether an instrument that feels angles alone stands there: three parameters.
     """
 
     setup: Annotated[str, Argument("setup", read_text)]
+    # c, table frame, mm: the middle of the touched points, so that displacement and rotation are
+    # estimated nearly independently
     centre: tuple[float, float, float]
+    # whether an instrument that feels angles alone stands there: three parameters
     turns_only: bool = False
 
     kind = "setup"
@@ -89,14 +86,10 @@ class StylusError(Declared):
     The ball stands e beside its calibrated place in the tool frame, and its effective radius is r
     larger: ``dev = -n . (R e) + r``. Four parameters, mm; what is wrong with all styli alike is an
     error of the tool or of the probe.
-
-    Attributes:
-        length: Calibrated length of the stylus, gauge point to ball centre, mm.
-        radius: Calibrated radius of its ball, mm.
     """
 
-    length: float
-    radius: float
+    length: float  # calibrated length of the stylus, gauge point to ball centre, mm
+    radius: float  # calibrated radius of its ball, mm
 
     kind = "stylus"
     parameters = tuple(Parameter(name, "mm", STYLUS_SD) for name in ("dx", "dy", "dz", "radius"))
@@ -211,12 +204,12 @@ class BodyScale(Declared):
 
 def _grown(touches: Touches, strain: Array) -> Sequence[Term]:
     """Shifts of a standard that is larger by a strain (N,) per unit."""
-    arm = touches.point_table - touches.T_table_artefact[:, :3, 3]
+    held = touches.fixing_table
+    arm = touches.point_table - np.where(np.isnan(held), touches.T_table_artefact[:, :3, 3], held)
     return [Term(0, Where("shift", 0, i), strain * arm[:, i]) for i in range(3)]
 
 
-BodyError = BodyTemperature | BodyExpansion | BodyScale
-"""Parameters of the size of a standard."""
+BodyError = BodyTemperature | BodyExpansion | BodyScale  # parameters of the size of a standard
 
 Free = SetupError | StylusError | BodyError
 """Parameters estimated beside the model of the machine."""

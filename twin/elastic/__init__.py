@@ -4,8 +4,7 @@ One kind a file, as in `effects`; `section` and `beam` are the mechanics. Weight
 a material, so a `beam` is stated by the user and never proposed.
 """
 
-from matstd.twin.elastic.body import Body
-from matstd.twin.elastic.doubts import short_beams
+from matstd.twin.elastic.body import Body, short_beams
 from matstd.twin.elastic.materials import Material, material, material_names
 
 __all__ = [

@@ -1,24 +1,22 @@
 """A carriage, ram, column or crossbeam as a Timoshenko beam that carries the frame of its axis."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from matstd.twin.elastic.beam import SUPPORTS, Plane, Support, along, bending
+from matstd.twin.elastic.beam import SUPPORTS, Plane, Section, Support, along, bending, section
 from matstd.twin.elastic.materials import MATERIALS, Material, material
-from matstd.twin.elastic.section import Section, section
 from matstd.twin.errors import UnknownEffect
 from matstd.twin.fields import Refuse, no_values, read_linear_axis, refusal
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
-from matstd.twin.model import Declared, Kind, Parameter, Term, Where
+from matstd.twin.model import Declared, Effect, Kind, Parameter, Term, Where
 from matstd.twin.record import Touches
 
-GRAVITY = 9.80665
-"""Standard acceleration, m/s2, N/kg."""
+GRAVITY = 9.80665  # standard acceleration, m/s2, N/kg
 
 SLENDER = 3.0
 """Below this ratio of length to depth the supports of a beam yield as much as the beam; a warning
@@ -292,3 +290,15 @@ KIND = Kind(
     propose=no_values,  # only the user knows sections
     classes=(Body,),
 )
+
+
+def short_beams(chain: Chain, effects: Iterable[Effect]) -> Iterator[tuple[str, float]]:
+    """Names of beams that are short for their depth over the whole travel, and length over depth.
+
+    Supports and walls of such a body yield as much as the beam.
+    """
+    for effect in effects:
+        if isinstance(effect, Body):
+            ratio = effect.slenderness(*chain.link(effect.axis).range)
+            if ratio < SLENDER:
+                yield effect.name, ratio

@@ -23,13 +23,10 @@ class LoadPlay(Declared):
     ``E = (P/2) sgn F + (D/2) |F|``, F the load along a linear axis or its moment about a rotary
     one: a play P, and by how much the compliance under a positive load exceeds that under a
     negative one, D. `stiffness` has their mean. Nothing acts without a load.
-
-    Attributes:
-        component: Index of the component along or about the axis.
     """
 
     axis: AxisName
-    component: int = 0
+    component: int = 0  # index of the component along or about the axis
 
     kind, called = "load-play", "play of {axis} under load"
     is_by_parameter = True

@@ -13,29 +13,17 @@ PPM_K = 1e-6
 
 @dataclass(frozen=True)
 class Material:
-    """An elastic solid that expands.
+    """An elastic solid that expands."""
 
-    Attributes:
-        young: N/mm2.
-        poisson: Poisson's ratio.
-        density: kg/mm3.
-        share: Standard uncertainty of the modulus, as a share of it.
-        source: Source of the modulus.
-        expansion: Coefficient of linear expansion, 1/K.
-        u_expansion: Its standard uncertainty, 1/K.
-        expansion_source: Source of the expansion.
-        hardness: Usual hardness, as a drawing states it.
-    """
-
-    young: float
-    poisson: float
-    density: float
-    share: float
-    source: str
-    expansion: float
-    u_expansion: float
-    expansion_source: str
-    hardness: str
+    young: float  # N/mm2
+    poisson: float  # Poisson's ratio
+    density: float  # kg/mm3
+    share: float  # standard uncertainty of the modulus, as a share of it
+    source: str  # source of the modulus
+    expansion: float  # coefficient of linear expansion, 1/K
+    u_expansion: float  # its standard uncertainty, 1/K
+    expansion_source: str  # source of the expansion
+    hardness: str  # usual hardness, as a drawing states it
 
     @property
     def shear(self) -> float:

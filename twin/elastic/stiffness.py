@@ -37,13 +37,10 @@ class Stiffness(Declared):
     F acts on the tool, M is its moment about the axis, d the direction of the axis; on either side
     of the machine the tool moves with the load relative to the workpiece. The tool, `t`, yields
     sideways and along: two compliances.
-
-    Attributes:
-        link: Name of the axis, or `t`.
-        components: Indices of the components that yield, and the parameter of each.
     """
 
-    link: Annotated[str, Argument("axis or t", _link, offered=_loaded)]
+    link: Annotated[str, Argument("axis or t", _link, offered=_loaded)]  # name of the axis, or `t`
+    # indices of the components that yield, and the parameter of each
     components: tuple[tuple[int, int], ...] = ((0, 0), (1, 0), (2, 1))
 
     kind = "stiffness"

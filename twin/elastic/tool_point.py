@@ -24,12 +24,9 @@ class ToolPointStiffness(Declared):
 
     ``d = C(p) F``, ``C(p) = C0 + sum over linear axes of Ca s``, s from -1 to 1 over the travel; C0
     and every Ca are symmetric, so a machine is as stiff one way as back. Quasi-static, below 1 Hz.
-
-    Attributes:
-        axes: Linear axes, of which the last carries the deflection.
     """
 
-    axes: tuple[str, ...]
+    axes: tuple[str, ...]  # linear axes, of which the last carries the deflection
 
     kind, called = "tool-point-stiffness", "stiffness at the tool point over the workspace"
     is_tensor = True

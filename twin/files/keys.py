@@ -41,8 +41,7 @@ UNITS = {
 }
 """Units by the end of a key; the longer ends stand before those that they contain."""
 
-LONG = 90
-"""Characters of a clause from which on what stands in brackets is left out of a refusal."""
+LONG = 90  # characters of a clause from which on what stands in brackets is left out of a refusal
 
 T = TypeVar("T", bound=BaseModel)
 
@@ -66,19 +65,12 @@ Fault = Callable[[Sequence[str], str, str], BadFile]
 
 @dataclass(frozen=True)
 class Key:
-    """What one key of a table holds.
+    """What one key of a table holds."""
 
-    Attributes:
-        about: Description; "" where the model has none.
-        holds: Kind of value with its range and unit: `a whole number from 100 to 2000`.
-        range: Limits and unit of a number: `from 1 to 25 mm`; "" for neither.
-        example: A valid value as it stands in a file; "" where there is none.
-    """
-
-    about: str
-    holds: str
-    range: str
-    example: str
+    about: str  # description; "" where the model has none
+    holds: str  # kind of value with its range and unit: `a whole number from 100 to 2000`
+    range: str  # limits and unit of a number: `from 1 to 25 mm`; "" for neither
+    example: str  # a valid value as it stands in a file; "" where there is none
 
     @property
     def short(self) -> str:

@@ -71,6 +71,10 @@ class SetupTable(Table):
     """origin of the artefact frame in the table frame"""
     rotation_deg: Vector = (0.0, 0.0, 0.0)
     """rotations about the fixed x, then y, then z of the table frame"""
+    fixing_mm: Vector | None = None
+    """point at which the standard is held, artefact frame: it expands from there. Default: by its
+    stated temperature from the origin of the artefact frame, by that of a sensor together with the
+    table from the origin of the table frame"""
     run: str = ""
     """run that this set-up belongs to, if a file holds several (years, days); the diagnosis
     reports what changed between them"""
@@ -78,7 +82,8 @@ class SetupTable(Table):
     def setup(self, name: str) -> Setup:
         """The set-up in base units."""
         rotation = fixed_xyz(np.array(self.rotation_deg) * DEG)
-        return Setup(name, pose(rotation, np.array(self.origin_mm)), self.run)
+        place = pose(rotation, np.array(self.origin_mm))
+        return Setup(name, place, self.run, fixing=self.fixing_mm)
 
 
 class BodyTable(Table):

@@ -55,6 +55,8 @@ def run_text(run: Run, machine: str) -> str:
         out.write(f"# [setup.{setup.name}]\n")
         out.write(f"# origin_mm = [{', '.join(f'{v:.9f}' for v in T[:3, 3])}]\n")
         out.write(f"# rotation_deg = [{', '.join(f'{v:.10f}' for v in angles)}]\n")
+        if setup.fixing is not None:
+            out.write(f"# fixing_mm = {[float(v) for v in setup.fixing]}\n")
         if setup.run:
             out.write(f"# run = {json.dumps(setup.run, ensure_ascii=False)}\n")
     columns = _columns_out(run, common_u)

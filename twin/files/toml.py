@@ -17,8 +17,7 @@ _NO_TEXT = {
 }
 """First bytes of files that users take for text, and what they are."""
 
-LARGEST_NUMBER = 1e18
-"""Largest number in our files; the product of two such does not overflow."""
+LARGEST_NUMBER = 1e18  # largest number in our files; the product of two such does not overflow
 
 _MANY_DIGITS = re.compile(r"[\d_]{4300,}")
 _TWICE = re.compile(r"Cannot declare \((.+?),?\) twice")

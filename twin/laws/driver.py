@@ -33,20 +33,13 @@ TREND_TOUCHES = 9
 
 @dataclass(frozen=True)
 class Driver:
-    """One variable, whatever the touches.
+    """One variable, whatever the touches."""
 
-    Attributes:
-        name: As it stands in the name of a law.
-        unit: Base unit: mm, rad, s, degC; "" for a number.
-        zero: Its natural zero: the middle of the travel, 20 degC, the start.
-        scale: What one unit of a polynomial is: half the travel, an hour, a kelvin.
-    """
-
-    name: str
+    name: str  # as it stands in the name of a law
     nature: Nature
-    unit: str
-    zero: float = 0.0
-    scale: float = 1.0
+    unit: str  # base unit: mm, rad, s, degC; "" for a number
+    zero: float = 0.0  # its natural zero: the middle of the travel, 20 degC, the start
+    scale: float = 1.0  # what one unit of a polynomial is: half the travel, an hour, a kelvin
 
     def values(self, touches: Touches) -> Array:
         """The variable at every touch, (N,), base unit; raises UnknownEffect if not recorded."""

@@ -40,15 +40,10 @@ PARTS = {SHIFT: 3, BIAS: 1, GROWTH: 1, TILT: 3, "shift-x": 1, "shift-y": 1, "shi
 
 @dataclass(frozen=True)
 class Carrier:
-    """What a law moves.
+    """What a law moves."""
 
-    Attributes:
-        name: A component error, `EZX`, or one of `PARTS`.
-        symbol: Symbol of a component error; None for one of `PARTS`.
-    """
-
-    name: str
-    symbol: Symbol | None = None
+    name: str  # a component error, `EZX`, or one of `PARTS`
+    symbol: Symbol | None = None  # symbol of a component error; None for one of `PARTS`
 
     @property
     def count(self) -> int:
@@ -126,17 +121,12 @@ class Factor(NamedTuple):
 
 @dataclass(frozen=True)
 class Law:
-    """Amplitudes times one or two shapes, at a carrier.
-
-    Attributes:
-        factors: Shapes with their variables, one or two.
-        places: Values of their parameters, one after the other, base units.
-        is_sought: Whether they are still to be found: by a scan over all that makes sense.
-    """
+    """Amplitudes times one or two shapes, at a carrier."""
 
     carrier: Carrier
-    factors: tuple[Factor, ...]
-    places: tuple[float, ...]
+    factors: tuple[Factor, ...]  # shapes with their variables, one or two
+    places: tuple[float, ...]  # values of their parameters, one after the other, base units
+    # whether they are still to be found: by a scan over all that makes sense
     is_sought: bool = False
 
     kind = "law"

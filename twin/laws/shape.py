@@ -19,27 +19,21 @@ Values = Callable[..., Sequence[Array]]
 
 @dataclass(frozen=True)
 class Shape:
-    """One family of curves.
+    """One family of curves."""
 
-    Attributes:
-        word: Its name, as in `law(EZX,bump Y)`.
-        formula: With x the variable.
-        code: The same as Python expressions on arrays, one per coefficient: x is the variable.
-        places: Names of its parameters: ending in `0` to `9` or named `phase` they are places,
-            `zero` and `unit` are fixed with the machine, others are widths.
-        coefficients: Words of its linear coefficients; one empty word where there is one alone.
-        jumps: Whether the curve jumps at its places, so that only touches on either side fix them.
-        remembers: Whether the order of touches matters.
-    """
-
-    word: str
-    formula: str
+    word: str  # its name, as in `law(EZX,bump Y)`
+    formula: str  # with x the variable
+    # the same as Python expressions on arrays, one per coefficient: x is the variable
     code: tuple[str, ...]
     values: Values
+    # names of its parameters: ending in `0` to `9` or named `phase` they are places, `zero` and
+    # `unit` are fixed with the machine, others are widths
     places: tuple[str, ...] = ()
+    # words of its linear coefficients; one empty word where there is one alone
     coefficients: tuple[str, ...] = ("",)
+    # whether the curve jumps at its places, so that only touches on either side fix them
     jumps: bool = False
-    remembers: bool = False
+    remembers: bool = False  # whether the order of touches matters
 
     @property
     def free(self) -> tuple[int, ...]:
@@ -50,8 +44,7 @@ class Shape:
 FIXED = ("zero", "unit", "k", "low", "high", "length", "size")
 """Parameters that follow from the machine or from the data before a formula is fitted."""
 
-WAVES = 32
-"""Waves of a curve without a formula: half waves over its domain, from none on."""
+WAVES = 32  # waves of a curve without a formula: half waves over its domain, from none on
 
 
 def play(x: Array, width: float) -> Array:

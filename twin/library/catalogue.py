@@ -52,8 +52,7 @@ from matstd.twin.words import listed, nearest
 
 ENTRY_POINT_GROUP = "material_standard.effects"
 
-SIZE_ROUNDING = 1e-3 * NM
-"""Deviations below this are those of floating-point numbers, mm."""
+SIZE_ROUNDING = 1e-3 * NM  # deviations below this are those of floating-point numbers, mm
 
 _NAME = re.compile(r"\s*([A-Za-z][\w-]*)\s*(?:\((.*)\))?\s*\Z")
 

@@ -14,34 +14,26 @@ Kind = Literal["linear", "rotary", "fixed"]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Link:
-    """One member of the chain: an axis, the workpiece `w` or the tool `t`.
+    """One member of the chain: an axis, the workpiece `w` or the tool `t`."""
 
-    Attributes:
-        name: Axis letter with number, `w` or `t`.
-        kind: Linear, rotary, or fixed (`w` and `t`, which only carry set-up errors).
-        carries_workpiece: Primed axes and `w`.
-        direction: Positive direction of the *reading* (tool relative to workpiece), unit, (3,).
-        point: Reference point of the angular errors and of a rotary axis's line, machine frame with
-            every axis at zero, (3,), mm.
-        range: Smallest and largest reading, mm or rad.
-        programmed: False in brackets: a spindle that is not programmed, a quill that stays in.
-        pitch: Pitch of a linear axis's screw or scale, mm, as its owner states it; None where it is
-            unknown. It is no part of the kinematics.
-        expected: Size of each translational error of a linear axis, mm, beyond which it is unusual
-            for such an axis; None for that of its class. No part of its kinematics either.
-        is_joint: A rotary axis whose line is known by how it lies to the lines of its neighbours,
-            in an open chain (`chain.OPEN_CHAIN`); its errors are of a class of their own.
-    """
-
-    name: str
-    kind: Kind
-    carries_workpiece: bool
-    direction: Array
+    name: str  # axis letter with number, `w` or `t`
+    kind: Kind  # linear, rotary, or fixed (`w` and `t`, which only carry set-up errors)
+    carries_workpiece: bool  # primed axes and `w`
+    direction: Array  # positive direction of the *reading* (tool relative to workpiece), unit, (3,)
+    # reference point of the angular errors and of a rotary axis's line, machine frame with every
+    # axis at zero, (3,), mm
     point: Array
-    range: tuple[float, float]
+    range: tuple[float, float]  # smallest and largest reading, mm or rad
+    # False in brackets: a spindle that is not programmed, a quill that stays in
     programmed: bool = True
+    # pitch of a linear axis's screw or scale, mm, as its owner states it; None where it is unknown.
+    # It is no part of the kinematics
     pitch: float | None = None
+    # size of each translational error of a linear axis, mm, beyond which it is unusual for such an
+    # axis; None for that of its class. No part of its kinematics either
     expected: float | None = None
+    # a rotary axis whose line is known by how it lies to the lines of its neighbours, in an open
+    # chain (`chain.OPEN_CHAIN`); its errors are of a class of their own
     is_joint: bool = False
 
     @property

@@ -26,63 +26,55 @@ class Wave(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True, slots=True)
 class Traits:
-    """Traits of one effect.
+    """Traits of one effect."""
 
-    Attributes:
-        symbol: The error parameter that it acts on, where it acts on one alone.
-        axis: Name of its axis, where it has no symbol.
-        is_ordinary: Whether it is one distribution of an error parameter, as the ordinary model
-            has them (`ordinary_model`).
-        distribution: For an ordinary component error: constant, linear, parabolic, sinusoidal.
-        is_curve: Whether its parameters are coefficients of one curve over a reading, which is
-            reported from peak to valley.
-        is_reported_whole: For a curve, whether it is reported as the effect alone explains
-            it, without what the rest of the model could take over.
-        is_tensor: Whether its parameters have no common size: reported is the rms that it explains.
-        is_by_parameter: Whether every parameter is a quantity of its own, without a common size.
-        changes: For an effect that outlasts the run: what is reported in place of its final
-            values, as names of changes, each with two touches, before and after.
-        is_shrunk: Whether its parameters share a prior whose size the run chooses; reported as a
-            tensor, and weighed against single effects by what it predicts.
-        is_table: Whether it could imitate most other effects; it is chosen only where it predicts
-            clearly better than effects with a cause.
-        reversal: For a curve by direction: forward minus backward at every touch, per unit of
-            every parameter, (N, P).
-        harmonic: Waves a turn of what repeats over a rotary axis; 0 of a curve, which has many.
-        wave: What repeats over a linear axis.
-        with_sines: For a wave: the same error with another period and number of sines.
-        driver: Of an effect that follows a record: the sensor, `spindle_rpm` or own column; a field
-            `sensor` states it.
-        parameter_drives: For an effect with several drives: the drive of every parameter.
-        needs_history: Whether it depends on what drove it before the first touch.
-        stated_number: Number of a run that is wrong where this effect acts: `radius`.
-        original: The effect that this one repeats, or whose change it is. All other traits are then
-            asked of the original.
-        repetition: 2 for the second of two effects that differ in their inner parameters alone.
-        since_run: For a change: number of the first run that shows it, as in `Touches.run`.
-    """
-
-    symbol: Symbol | None = None
-    axis: str = ""
+    symbol: Symbol | None = None  # the error parameter that it acts on, where it acts on one alone
+    axis: str = ""  # name of its axis, where it has no symbol
+    # whether it is one distribution of an error parameter, as the ordinary model has them
+    # (`ordinary_model`)
     is_ordinary: bool = False
+    # for an ordinary component error: constant, linear, parabolic, sinusoidal
     distribution: str = ""
+    # whether its parameters are coefficients of one curve over a reading, which is reported from
+    # peak to valley
     is_curve: bool = False
+    # for a curve, whether it is reported as the effect alone explains it, without what the rest of
+    # the model could take over
     is_reported_whole: bool = False
+    # whether its parameters have no common size: reported is the rms that it explains
     is_tensor: bool = False
+    # whether every parameter is a quantity of its own, without a common size
     is_by_parameter: bool = False
+    # for an effect that outlasts the run: what is reported in place of its final values, as names
+    # of changes, each with two touches, before and after
     changes: Callable[[Touches], Sequence[tuple[str, Touches]]] | None = None
+    # whether its parameters share a prior whose size the run chooses; reported as a tensor, and
+    # weighed against single effects by what it predicts
     is_shrunk: bool = False
+    # whether it could imitate most other effects; it is chosen only where it predicts clearly
+    # better than effects with a cause
     is_table: bool = False
+    # for a curve by direction: forward minus backward at every touch, per unit of every parameter,
+    # (N, P)
     reversal: Callable[[Touches], Array] | None = None
+    # waves a turn of what repeats over a rotary axis; 0 of a curve, which has many
     harmonic: float | None = None
-    wave: Wave | None = None
+    wave: Wave | None = None  # what repeats over a linear axis
+    # for a wave: the same error with another period and number of sines
     with_sines: Callable[[float, int], Effect] | None = None
+    # of an effect that follows a record: the sensor, `spindle_rpm` or own column; a field `sensor`
+    # states it
     driver: str = ""
+    # for an effect with several drives: the drive of every parameter
     parameter_drives: tuple[str, ...] = ()
-    needs_history: bool = False
-    stated_number: str = ""
+    needs_history: bool = False  # whether it depends on what drove it before the first touch
+    stated_number: str = ""  # number of a run that is wrong where this effect acts: `radius`
+    # the effect that this one repeats, or whose change it is. All other traits are then asked of
+    # the original
     original: Effect | None = None
+    # 2 for the second of two effects that differ in their inner parameters alone
     repetition: int = 1
+    # for a change: number of the first run that shows it, as in `Touches.run`
     since_run: int | None = None
 
     @property

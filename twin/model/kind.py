@@ -16,39 +16,26 @@ from matstd.twin.record import Touches
 
 @dataclass(frozen=True)
 class Kind:
-    """A family of effects under one word of the trade.
-
-    Attributes:
-        word: First word of the names of its effects, `backlash`.
-        arguments: What stands in the brackets, for help: "axis"; empty where there are none.
-        formula: The closed formula, one line.
-        units: Units of its parameters and inner parameters, as a user sees them.
-        typical: Size that is met in practice.
-        source: Where the formula and the size are from.
-        make: Effect from the arguments of its name; raises a child of DesignError.
-        propose: Every effect of the kind that makes sense for some touches.
-        classes: Classes of its effects, whose docstrings describe them.
-        about: What the family is, in one line; empty for the first line of its first class.
-        title: Its name on the shop floor.
-        synonyms: Other words for it, commas between them.
-        belongs_to: One of OWNERS, where it is to be expected again: in every run of the
-            machine, in those with the same probe, or in no other run, as a slip on a certain day.
-    """
+    """A family of effects under one word of the trade."""
 
     OWNERS: ClassVar[tuple[str, ...]] = ("machine", "probe", "run")
 
-    word: str
-    arguments: str
-    formula: str
-    units: str
-    typical: str
-    source: str
+    word: str  # first word of the names of its effects, `backlash`
+    arguments: str  # what stands in the brackets, for help: "axis"; empty where there are none
+    formula: str  # the closed formula, one line
+    units: str  # units of its parameters and inner parameters, as a user sees them
+    typical: str  # size that is met in practice
+    source: str  # where the formula and the size are from
+    # effect from the arguments of its name; raises a child of DesignError
     make: Callable[[Chain, Sequence[str]], Effect]
+    # every effect of the kind that makes sense for some touches
     propose: Callable[[Touches], Iterable[Effect]]
-    classes: tuple[type, ...] = ()
-    about: str = ""
-    title: str = ""
-    synonyms: str = ""
+    classes: tuple[type, ...] = ()  # classes of its effects, whose docstrings describe them
+    about: str = ""  # what the family is, in one line; empty for the first line of its first class
+    title: str = ""  # its name on the shop floor
+    synonyms: str = ""  # other words for it, commas between them
+    # one of OWNERS, where it is to be expected again: in every run of the machine, in those with
+    # the same probe, or in no other run, as a slip on a certain day
     belongs_to: str = "machine"
 
     @classmethod

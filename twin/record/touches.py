@@ -26,8 +26,7 @@ IntArray = NDArray[np.int64]
 Labels = NDArray[np.str_]
 
 
-METRE = 1000.0
-"""Arm, mm, at which a deviation in µm equals the angle in µrad."""
+METRE = 1000.0  # arm, mm, at which a deviation in µm equals the angle in µrad
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +50,8 @@ class Setup:
     run: str = ""  # name of the run that it belongs to, where several were joined
     start: float = 0.0  # time at which that run started, s
     body: Body | None = None  # the standard as it expands; None where the run does not state it
+    # point at which the standard is held, artefact frame, mm; None where the run does not state it
+    fixing: tuple[float, float, float] | None = None
 
 
 class Signature:
@@ -81,51 +82,35 @@ class Signature:
 
 @dataclass(frozen=True, eq=False)
 class Touches:
-    """N contacts of a probe with a standard (or readings of any instrument along a direction).
-
-    Attributes:
-        q: Axis readings at the trigger, (N, A), mm and rad.
-        commanded: The same without what was measured, (N, A), which is what errors are functions
-            of; None where `q` is that already (`with_commanded`).
-        length: Probe length to the ball centre, (N,), mm.
-        offset: Ball centre, or reflector, relative to the tool axis, x and y of the tool
-            frame, (N, 2), mm; on the axis where nothing is given.
-        radius: Radius of the ball, (N,), mm.
-        point: Calibrated contact point, artefact frame, (N, 3), mm.
-        normal: Outward unit normal there, artefact frame, (N, 3).
-        setups: The placements of the standard.
-        setup: Index into `setups`, (N,).
-        time: s since the start of the run, of joined runs of the first one, (N,).
-        approach: Sign of the last motion of each axis, (N, A); 0 where unknown.
-        temperature: degC by sensor name, each (N,).
-        spindle_rpm: (N,), or None where it was not recorded.
-        force: Load on the tool in table-frame directions, (N, 3), N.
-        feature: Label of the touched feature, (N,).
-        pose: Label of the table pose, (N,).
-        instrument: What measured them all.
-        value: Columns of the user's own by name and unit (`coolant_l_min`), each (N,).
-        body_temperature: Temperature of the standard where stated, else 20, (N,), degC.
-    """
+    """N contacts of a probe with a standard (or readings of any instrument along a direction)."""
 
     chain: Chain
-    q: Array
-    length: Array
-    radius: Array
-    point: Array
-    normal: Array
-    setups: tuple[Setup, ...]
-    setup: IntArray
-    time: Array
-    approach: Array
-    temperature: Mapping[str, Array] = field(default_factory=dict)
-    spindle_rpm: Array | None = None
-    force: Array | None = None
+    q: Array  # axis readings at the trigger, (N, A), mm and rad
+    length: Array  # probe length to the ball centre, (N,), mm
+    radius: Array  # radius of the ball, (N,), mm
+    point: Array  # calibrated contact point, artefact frame, (N, 3), mm
+    normal: Array  # outward unit normal there, artefact frame, (N, 3)
+    setups: tuple[Setup, ...]  # the placements of the standard
+    setup: IntArray  # index into `setups`, (N,)
+    time: Array  # s since the start of the run, of joined runs of the first one, (N,)
+    approach: Array  # sign of the last motion of each axis, (N, A); 0 where unknown
+    temperature: Mapping[str, Array] = field(default_factory=dict)  # degC by sensor name, each (N,)
+    spindle_rpm: Array | None = None  # (N,), or None where it was not recorded
+    force: Array | None = None  # load on the tool in table-frame directions, (N, 3), N
+    # label of the touched feature, (N,)
     feature: Labels = field(default_factory=lambda: np.zeros(0, dtype="U1"))
+    # label of the table pose, (N,)
     pose: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    instrument: Instrument = Instrument.TOUCH_PROBE
+    instrument: Instrument = Instrument.TOUCH_PROBE  # what measured them all
+    # columns of the user's own by name and unit (`coolant_l_min`), each (N,)
     value: Mapping[str, Array] = field(default_factory=dict)
+    # ball centre, or reflector, relative to the tool axis, x and y of the tool frame, (N, 2), mm;
+    # on the axis where nothing is given
     offset: Array = field(default_factory=lambda: np.zeros((0, 2)))
+    # the same without what was measured, (N, A), which is what errors are functions of; None where
+    # `q` is that already (`with_commanded`)
     commanded: Array | None = None
+    # temperature of the standard where stated, else 20, (N,), degC
     body_temperature: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
@@ -205,15 +190,26 @@ class Touches:
         return apply(self.T_table_artefact, self.point)
 
     @cached_property
+    def fixing_table(self) -> Array:
+        """Where the standard is held, table frame, (N, 3), mm; not a number where not stated."""
+        unknown = (np.nan, np.nan, np.nan)
+        held = np.array([s.fixing or unknown for s in self.setups])[self.setup]
+        return apply(self.T_table_artefact, held)
+
+    @cached_property
     def normal_table(self) -> Array:
         """Outward normals in the table frame, (N, 3)."""
         return turn(self.T_table_artefact, self.normal)
 
     @cached_property
     def growth(self) -> Array:
-        """Growth of the surface along its normal from 20 degC, (N,), mm: ``alpha dT n . p``."""
+        """Growth of the surface along its normal from 20 degC, (N,), mm: ``alpha dT n . (p - f)``.
+
+        It grows from the point f at which it is held, or from the origin of its frame.
+        """
         alpha = np.array([0.0 if s.body is None else s.body.alpha for s in self.setups])[self.setup]
-        along = np.einsum("ni,ni->n", self.normal, self.point)
+        held = np.array([s.fixing or (0.0, 0.0, 0.0) for s in self.setups])[self.setup]
+        along = np.einsum("ni,ni->n", self.normal, self.point - held)
         return np.asarray(alpha * (self.body_temperature - T_REF) * along)
 
     @cached_property

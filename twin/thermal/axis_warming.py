@@ -34,17 +34,14 @@ class AxisWarming(Declared):
     from its fixed bearing, wherever that is, and the bearing may move. A positioning test has no
     times, but its order: then t counts cycles.
 
-    Attributes:
-        clock: Own column `V_name` that grows in step with time; empty for the time itself.
-        tau: Time constant, s, or in units of the clock.
-
     Reference:
         ISO 230-3 (thermal distortion caused by moving linear axes); ISO 230-2 (drift over cycles).
     """
 
     axis: LinearAxisName
+    # own column `V_name` that grows in step with time; empty for the time itself
     clock: Annotated[str, Argument("V_column that grows with time", _clock_name)] = ""
-    tau: float = 20.0 * MINUTE
+    tau: float = 20.0 * MINUTE  # time constant, s, or in units of the clock
 
     kind, called = "axis-warming", "growth of the screw or scale of {axis} while it warms"
     parameters = tuple(Parameter(f"{end} end", "mm", 30 * UM) for end in ("low", "high"))

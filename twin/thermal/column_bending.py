@@ -29,18 +29,12 @@ class ColumnBending(Declared):
     L is the travel. The carriage turns by E_r and moves across by E_e, for the bending about
     either axis across the column. Holds for a linear gradient over the depth h of the column,
     ``a = alpha L/h``.
-
-    Attributes:
-        axis: Linear axis that travels along the column.
-        warm: Sensor on one side.
-        cold: Sensor on the other.
-        component: Index of the component along the axis.
     """
 
-    axis: LinearAxisName
-    warm: SensorName
-    cold: SensorName
-    component: int = 2
+    axis: LinearAxisName  # linear axis that travels along the column
+    warm: SensorName  # sensor on one side
+    cold: SensorName  # sensor on the other
+    component: int = 2  # index of the component along the axis
 
     kind, called = "column-bending", "bending of the column of {axis}"
 

@@ -19,19 +19,10 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Symbol
 from matstd.twin.model import Amounts, Declared, Effect, Kind, Title, scanned
 from matstd.twin.record import Touches
-from matstd.twin.thermal.drive_columns import (
-    CYCLE,
-    OWN,
-    PROGRESS,
-    driven,
-    drives,
-    is_own,
-    step_of,
-)
+from matstd.twin.thermal.drive_columns import CYCLE, OWN, PROGRESS, driven, drives, is_own, step_of
 from matstd.twin.units import UM, URAD
 
-USUAL_AMPLITUDE = (6 * UM, 20 * URAD)
-"""Usual size of an error after a kelvin or a step, mm and rad."""
+USUAL_AMPLITUDE = (6 * UM, 20 * URAD)  # usual size of an error after a kelvin or a step, mm and rad
 
 
 @dataclass(frozen=True)
@@ -76,14 +67,12 @@ class Follows(Declared):
     ``E = a v / s``. The column is in a unit that only its user knows, so the amplitude a, mm or
     rad, is that of a step s, a round number near the spread of the column, which stays with the
     effect: the same model means the same on another run.
-
-    Attributes:
-        column: Name of the column without `V_`, its unit included.
-        step: s, in the unit of the column.
     """
 
     symbol: ComponentSymbol
+    # name of the column without `V_`, its unit included
     column: Annotated[str, Argument("column of the user's own", _column)]
+    # s, in the unit of the column
     step: float = scanned("1", _steps, default=1.0, continuous=False)
 
     kind, usual = "follows", USUAL_AMPLITUDE

@@ -42,17 +42,13 @@ class ThermalField(Declared):
     linearly. All amplitudes share one prior, whose size is chosen by what it predicts: the data
     decide how many of them count.
 
-    Attributes:
-        axis: Whose body warms.
-        drives: Names of sensors, `spindle_rpm`, or own columns `V_name_unit`.
-        steps: Steps of the user's own columns among them, in their units; empty for 1 each.
-
     Reference:
         ISO 230-3; ridge regression of thermal errors on many sensors.
     """
 
-    axis: str
-    drives: tuple[str, ...]
+    axis: str  # whose body warms
+    drives: tuple[str, ...]  # names of sensors, `spindle_rpm`, or own columns `V_name_unit`
+    # steps of the user's own columns among them, in their units; empty for 1 each
     steps: tuple[float, ...] = ()
 
     kind, called = "thermal-field", "warming of the body of {axis}"

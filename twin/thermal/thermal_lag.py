@@ -53,16 +53,13 @@ class ThermalLag(Declared):
     a column of the user's own is in equilibrium at the first record; one that follows the spindle
     speed is cold at time zero. The touches must be the whole run: a part of it has lost what drove
     it before.
-
-    Attributes:
-        drive: Sensor, `spindle_rpm`, an own column `V_name_unit`, or "" for switching on.
-        tau: Time constant, s.
-        step: Step of the user's own column, in its unit; the amplitude is that after such a step.
     """
 
     symbol: ComponentSymbol
+    # sensor, `spindle_rpm`, an own column `V_name_unit`, or "" for switching on
     drive: Annotated[str, Argument("sensor, spindle_rpm or V_column", _drive)] = ""
-    tau: float = scanned("s", _time_constants, default=20.0 * MINUTE)
+    tau: float = scanned("s", _time_constants, default=20.0 * MINUTE)  # time constant, s
+    # step of the user's own column, in its unit; the amplitude is that after such a step
     step: float = scanned("1", _step, default=1.0, continuous=False)
 
     kind, usual = "thermal-lag", (30 * UM, 100 * URAD)

@@ -8,19 +8,16 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import NamedTuple
 
+from matstd.console import say
+from matstd.twin.errors import BadArgument
+
 
 class Example(NamedTuple):
-    """One example.
+    """One example."""
 
-    Attributes:
-        files: Patterns of its files within the examples.
-        about: What it shows.
-        first: The command to begin with, seen from the folder of the copy.
-    """
-
-    files: tuple[str, ...]
-    about: str
-    first: str
+    files: tuple[str, ...]  # patterns of its files within the examples
+    about: str  # what it shows
+    first: str  # the command to begin with, seen from the folder of the copy
 
 
 RUNS = ("*.csv", "*.toml", "*.json", "README.md")
@@ -82,8 +79,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print the list, or copy an example; no file of the user's is replaced unasked."""
-    from matstd.console import say
-    from matstd.twin.errors import BadArgument
     from matstd.twin.files.whole import copy_into
 
     if args.name is None:

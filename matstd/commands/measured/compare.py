@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from matstd.console import say
 from matstd.options import add_measured, asked_printer, pitches, starting_model
 
 if TYPE_CHECKING:
@@ -45,25 +46,22 @@ def run(args: argparse.Namespace) -> int:
 
 def _report(args: argparse.Namespace, found: Comparison, arm: str) -> None:
     """The comparison in words, beside what the model promised, or what it was learnt with."""
-    from matstd.console import say
     from matstd.report.geometry import console_lines
-    from matstd.report.verdict import promise_words, repeatability_words
+    from matstd.report.verdict import promise_sentence, promise_words, repeatability_words
     from matstd.report.words import (
         comparison_sentence,
         learnt_lines,
-        promise_sentence,
         region_sentence,
         remark_sentence,
     )
-    from matstd.twin.units import UM
 
     saved = found.saved
     say(comparison_sentence(found), style="bold")
     if found.learnt is not None and saved is not None:
         for line in learnt_lines(found.learnt, saved.reported):
             say(line)
-    elif saved is not None and saved.source.held_out_um > 0.0:
-        say(promise_sentence(found, saved.source.held_out_um * UM, saved.left_out))
+    elif saved is not None and saved.source.promise is not None:
+        say(promise_sentence(found, saved.source.promise, saved.left_out))
     say(f"- repeatability: {repeatability_words(found.repeatability, found.scatter)}")
     if found.promise is not None:
         say(f"- error to expect: {promise_words(found.promise)}")

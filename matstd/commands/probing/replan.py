@@ -1,19 +1,22 @@
-"""`matstd replan`: programs planned again for the standard's actual position, from a log."""
+"""`matstd replan`: programs planned again for the standard's actual position, or for a visit."""
 
 from __future__ import annotations
 
 import argparse
 
-from matstd.options import SHEET, add_output, add_pdf, asked_printer
+from matstd.console import say, say_each
+from matstd.options import SHEET, add_options, add_output, add_pdf, asked_printer
+from matstd.twin.units import DEG
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument(
         "logs",
-        metavar="LOG.TXT",
+        metavar="LOG.TXT|VISIT.csv",
         nargs="+",
-        help="logs of the search in OUT/setup, or of programs that missed the standard",
+        help="logs of the search in OUT/setup, or of programs that missed the standard; or the "
+        "touches of a planned visit (next_visit.csv of learn and diagnose)",
     )
     parser.add_argument(
         "--design",
@@ -21,39 +24,45 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         required=True,
         help="output folder of `matstd design` or `matstd replan`",
     )
-    parser.add_argument(
-        "--control",
-        metavar="NAME|FILE.toml",
-        help="control that the programs are written for (default: that of the programs in OUT)",
-    )
-    parser.add_argument(
-        "--within-mm",
-        type=float,
-        help="largest expected offset of the standard from its planned position, mm "
-        "(default: that of the search in OUT/setup)",
-    )
-    parser.add_argument(
-        "--within-deg",
-        type=float,
-        help="largest expected rotation of the standard from its planned orientation, degrees "
-        "(default: as --within-mm)",
+    add_options(
+        parser,
+        {
+            "--control NAME|FILE.toml": "control that the programs are written for (default: that "
+            "of the programs in OUT)",
+            "--within-mm": (
+                "largest expected offset of the standard from its planned position, mm "
+                "(default: that of the search in OUT/setup)",
+                float,
+            ),
+            "--within-deg": (
+                "largest expected rotation of the standard from its planned orientation, degrees "
+                "(default: as --within-mm)",
+                float,
+            ),
+        },
     )
     add_pdf(parser)
     add_output(parser)
 
 
+def is_visit(files: list[str]) -> bool:
+    """Whether a planned visit was given, and no log."""
+    return len(files) == 1 and files[0].lower().endswith(".csv")
+
+
 def run(args: argparse.Namespace) -> int:
     """Find the place, plan, write programs and set-up sheet; the folder appears whole or not."""
-    from matstd.api.replanning import OURS, replan
-    from matstd.console import say, say_each
+    from matstd.api.replanning import OURS, planned_visit, replan
     from matstd.twin.files import results_folder
-    from matstd.twin.units import DEG
 
     printed_by = asked_printer(args)
     angle = None if args.within_deg is None else args.within_deg * DEG
-    found = replan(
-        args.logs, args.design, control=args.control, distance=args.within_mm, angle=angle
-    )
+    if is_visit(args.logs):
+        found = planned_visit(args.logs[0], args.design, control=args.control)
+    else:
+        found = replan(
+            args.logs, args.design, control=args.control, distance=args.within_mm, angle=angle
+        )
     for line in found.lines:
         say(line)
     with results_folder(args.output, args.force, OURS) as folder:

@@ -1,22 +1,58 @@
-"""What is left out together, so that what predicts it has not seen it, and what that shows."""
+"""What is left out together, so that what predicts it has not seen it.
 
-from collections.abc import Sequence
-from dataclasses import replace
+A pose that is left out has neighbours that were touched with the same sensors at nearly the same
+temperatures; so a law and a promise are judged by `domains`, the halves of what was probed, and a
+choice, which is made anew without every block, by a few blocks that follow how the data came.
+"""
+
+from collections.abc import Iterator
 
 import numpy as np
 
-from matstd.diagnosis.evidence import EffectSet, ResidualSpace, ScaledEffect, projected
 from matstd.diagnosis.fit import MIN_POSES, Fit
-from matstd.diagnosis.regression import Memory
-from matstd.twin.model import traits
-from matstd.twin.numbers import rms
-from matstd.twin.record import IntArray
+from matstd.diagnosis.regression import BoolArray, Memory
+from matstd.twin.frames import Array
+from matstd.twin.record import IntArray, Touches
+
+PARTS_OF_TIME = 5
+"""Stretches of time that are left out in turn; a law of warming up is seen in one of them."""
+
+MIN_ROWS = 4
+"""Touches that a block must leave out to be a test."""
 
 MAX_BLOCKS = 6
 """Blocks of a choice by prediction: each is one more search."""
 
 MEMORY_LENGTHS = 3.0
 """Times that a block is longer than the memory of the residual: 5 % are left at its middle."""
+
+
+def domains(touches: Touches, used: BoolArray) -> dict[str, tuple[IntArray, ...]]:
+    """Blocks of every domain that has several, by its column; `time_s`, `setup`, `force`.
+
+    Halves of the readings of every axis and of the load, stretches of time, set-ups; rows by their
+    numbers within those used.
+    """
+    inside = {name: b for name, b in _all_domains(touches, used) if len(b) > 1}
+    return {name: b for name, b in inside.items() if min(map(len, b)) >= MIN_ROWS}
+
+
+def _all_domains(touches: Touches, used: BoolArray) -> Iterator[tuple[str, tuple[IntArray, ...]]]:
+    for axis in touches.chain.programmed_axes:
+        yield touches.chain.link(axis).column, _each(_is_upper(touches.reading(axis)[used]))
+    order = np.argsort(touches.time[used], kind="stable")
+    yield "time_s", tuple(np.array_split(order, PARTS_OF_TIME))
+    yield "setup", _each(touches.setup[used])
+    if touches.force is not None:
+        yield "force", _each(_is_upper(np.linalg.norm(touches.force, axis=1)[used]))
+
+
+def _is_upper(values: Array) -> BoolArray:
+    return np.asarray(values > np.median(values))
+
+
+def _each(label: BoolArray | IntArray) -> tuple[IntArray, ...]:
+    return tuple(np.flatnonzero(label == one) for one in np.unique(label))
 
 
 def blocks(fit: Fit, memory: Memory | None) -> tuple[IntArray, ...]:
@@ -59,46 +95,3 @@ def _touches(fit: Fit, memory: Memory | None) -> float:
         t = fit.run.touches
         places = len(np.unique(np.column_stack([t.point, t.normal])[fit.used], axis=0))
     return memory.length * places
-
-
-def prune_by_held_out_error(
-    complement: ResidualSpace, effects: Sequence[ScaledEffect], groups: Sequence[IntArray]
-) -> tuple[ScaledEffect, ...]:
-    """The set without effects that do not lower the error of left-out blocks, the worst first.
-
-    Args:
-        effects: The set, at inner parameters found with all rows in use.
-        groups: Rows of the run in every block; those not in use are passed over.
-    """
-    place = np.full(len(complement.used), -1)
-    place[complement.used] = np.arange(int(complement.used.sum()))
-    inside = tuple(g for g in (place[rows][place[rows] >= 0] for rows in groups) if len(g))
-    by_block = replace(complement, groups=inside)
-    out = list(effects)
-    error = _error(by_block, out)
-    while out:
-        without = [_error(by_block, out[:i] + out[i + 1 :]) for i in range(len(out))]
-        i = int(np.argmin(without))
-        if without[i] > error:
-            break
-        error = without[i]
-        out.pop(i)
-    return _renumbered(out)
-
-
-def _error(complement: ResidualSpace, effects: Sequence[ScaledEffect]) -> float:
-    """Plain root mean square error of blocks left out, mm."""
-    left = EffectSet(complement, projected(complement, effects)).held_out
-    return rms(left.error * complement.u)
-
-
-def _renumbered(effects: Sequence[ScaledEffect]) -> tuple[ScaledEffect, ...]:
-    """The effects renumbered so that no second one exists without a first."""
-    names = {s.effect.name for s in effects}
-    out = []
-    for sized in effects:
-        own = traits(sized.effect)
-        if own.repetition > 1 and own.original is not None and own.original.name not in names:
-            sized = replace(sized, effect=own.original)
-        out.append(sized)
-    return tuple(out)

@@ -1,0 +1,116 @@
+"""A planned visit as `matstd learn` writes it: touches, their order and sides, standstills."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import Requests
+from matstd.probe_paths.campaign import foot_points
+from matstd.probe_paths.plan import StatedVisits
+from matstd.twin.errors import BadFile
+from matstd.twin.files import CsvTable, read_text, reading_columns
+from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
+
+OFF_THE_SURFACE = 0.1
+"""Distance from its feature beyond which a touch is that of another standard, mm."""
+
+
+@dataclass(frozen=True, eq=False)
+class PlannedVisit:
+    """Touches of one set-up in the order in which they are wanted.
+
+    Attributes:
+        order: Visits of the poses, with their sides and the standstills between them.
+    """
+
+    requests: Requests
+    order: StatedVisits
+
+
+@dataclass(frozen=True)
+class VisitSchedule:
+    """What the operator does besides the programs.
+
+    Attributes:
+        warm_up: How long the machine has moved before the first touch, s.
+        pause: How long it stands still, s.
+        slowness: Time from touch to touch over that of the programs.
+    """
+
+    warm_up: float = 0.0
+    pause: float = 0.0
+    slowness: float = 1.0
+
+
+def read_visit(
+    path: str | Path, chain: Chain, standard: Standard
+) -> tuple[dict[str, PlannedVisit], VisitSchedule]:
+    """The touches of every set-up by its name, and the schedule.
+
+    Raises:
+        BadFile: A column or number missing, or a touch that is not on a feature of the standard.
+    """
+    lines = read_text(path).splitlines()
+    head = [line for line in lines if line.startswith("#")]
+    table = CsvTable("\n".join(lines[len(head) :]), path, len(head) + 1)
+    names = reading_columns(chain)
+    rotary = [names[axis] for axis in chain.rotary_axes]
+    sides = [f"dir{axis}" for axis in chain.rotary_axes]
+    table.require(["feature", "setup", *_PLACES, *(name for name, _ in rotary), *sides])
+    if not len(table):
+        raise BadFile(path, "file", "no touch", "a row for every touch of the visit")
+    requests = Requests(
+        np.array(table.text("feature")),
+        *_on_surfaces(table, standard),
+        np.stack([table.numbers(name) * unit for name, unit in rotary], axis=1),
+    )
+    side = np.where(np.stack([table.numbers(name) for name in sides], axis=1) < 0.0, -1.0, 1.0)
+    schedule, after = _schedule(" ".join(head))
+    setup, out = np.array(table.text("setup")), {}
+    stretch = (np.arange(len(table)) >= after).astype(int)
+    stay = np.column_stack([requests.rotary, side, stretch])
+    for name in dict.fromkeys(setup.tolist()):
+        rows = np.flatnonzero(setup == name)
+        starts = np.any(np.diff(stay[rows], axis=0) != 0.0, axis=1)
+        number = np.concatenate([[0], np.cumsum(starts)])
+        out[name] = PlannedVisit(requests[rows], StatedVisits(number, side[rows], stretch[rows]))
+    return out, schedule
+
+
+_PLACES = tuple(f"p{c}_mm" for c in "xyz")
+
+
+def _on_surfaces(table: CsvTable, standard: Standard) -> tuple[Array, Array]:
+    """Points and normals of the standard at the touches; they are stated to a nanometre."""
+    stated = np.stack([table.numbers(name) for name in _PLACES], axis=1)
+    feature = np.array(table.text("feature"))
+    for i, name in enumerate(feature.tolist()):
+        if name not in standard.features:
+            where = f"line {table.lines[i]}, feature"
+            raise BadFile(table.path, where, name, f"one of {', '.join(standard.features)}")
+    point, normal = foot_points(standard, feature, stated)
+    away = np.linalg.norm(point - stated, axis=1)
+    for i in np.flatnonzero(~(away < OFF_THE_SURFACE))[:1]:
+        where = f"line {table.lines[i]}, {_PLACES[0]} to {_PLACES[2]}"
+        place = " ".join(f"{v:g}" for v in stated[i])
+        raise BadFile(table.path, where, place, f"a place on {feature[i]} of this standard")
+    return point, normal
+
+
+def _schedule(head: str) -> tuple[VisitSchedule, float]:
+    """The schedule of the first lines, and the number of touches before the standstill."""
+
+    def number(pattern: str, otherwise: float) -> float:
+        found = re.search(pattern + r"([\d.]+)", head)
+        return float(found[1]) if found else otherwise
+
+    schedule = VisitSchedule(
+        warm_up=number("warm_up_s = ", 0.0),
+        pause=number("pause_s = ", 0.0),
+        slowness=number("slowness = ", 1.0),
+    )
+    return schedule, number("after touch ", np.inf)
