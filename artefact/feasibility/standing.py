@@ -88,7 +88,7 @@ def check_seat(brief: Brief) -> None:
         BadFile: Body and distance, and a change of that body that was tried.
     """
     _refuse(brief, None)
-    sign, axis = brief.down
+    sign, axis = brief.down[0], brief.down[1]
     down = (1.0 if sign == "+" else -1.0) * np.eye(3)["XYZ".index(axis)]
     if down @ table_face(brief.setup.T_table_artefact)[:3, 2] > _AWAY:
         expected = "a direction of weight that does not pull the standard off its seat"
