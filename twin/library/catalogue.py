@@ -228,7 +228,9 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
     except SyntaxError as cause:
         line = f"line {cause.lineno}" if cause.lineno else "file"
         found = f"{(cause.text or '').strip()!r} ({cause.msg})" if cause.text else cause.msg
-        raise BadFile(path, line, found, "Python") from cause
+        expected = "Python saved as UTF-8" if "codec" in cause.msg else "Python"
+        found = "a byte that is no UTF-8" if "codec" in cause.msg else found
+        raise BadFile(path, line, found, expected) from cause
     except (Exception, SystemExit) as cause:  # whatever is wrong is one line about that file
         expected = "a Python file that runs"
         if isinstance(cause, ModuleNotFoundError) and str(cause.name).startswith("twin"):
