@@ -16,6 +16,7 @@ from matstd.report.laws.law_words import (
     instead_sentence,
     law_sentence,
     library_sentence,
+    limits_sentences,
     looks_like,
     no_law_sentence,
     odds_words,
@@ -90,10 +91,11 @@ def law_sections(
     learning: Learning, visit: VisitPlan | None, second: SecondRun | None = None
 ) -> list[Section]:
     """What was learnt: every law with picture and rivals, the next visit, the error elsewhere."""
+    limits = limits_sentences(learning)
     if not learning.laws:
-        return [Section(sentences=[no_law_sentence(learning)])]
+        return [Section(sentences=[no_law_sentence(learning), *limits])]
     instead = instead_sentence(learning)
-    out = [Section(sentences=[f"**{instead}**", _WHAT] if instead else [_WHAT])]
+    out = [Section(sentences=[*([f"**{instead}**"] if instead else []), _WHAT, *limits])]
     for i, one in enumerate(learning.laws, start=1):
         out += _law_sections(learning, one, i)
     return [*out, *(visit_section(visit) if visit else []), _held_out(learning, second)]

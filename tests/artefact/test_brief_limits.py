@@ -102,7 +102,16 @@ def test_a_workspace_in_other_units_is_refused(tmp_path, workspace, words):
         read_project(project(tmp_path, f"[workspace]\n{workspace}\n"))
 
 
-@pytest.mark.parametrize("workspace", ["X = [0.0, 0.0]", "B = [-1.5, 0.5]", "X = [-5.0, 5.0]"])
+@pytest.mark.parametrize("poses", ["99", "100001", "500.0"])
+def test_poses_beyond_what_a_study_takes_are_refused(tmp_path, poses):
+    with pytest.raises(BadFile, match=rf"workspace\.poses: found {poses}, expected a whole number"):
+        read_project(project(tmp_path, f"[workspace]\nposes = {poses}\n"))
+
+
+@pytest.mark.parametrize(
+    "workspace",
+    ["X = [0.0, 0.0]", "B = [-1.5, 0.5]", "X = [-5.0, 5.0]", "poses = 100", "poses = 100000"],
+)
 def test_a_narrow_workspace_is_read(tmp_path, workspace):
     read_project(project(tmp_path, f"[workspace]\n{workspace}\n"))
 
