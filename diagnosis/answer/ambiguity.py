@@ -18,7 +18,7 @@ from matstd.diagnosis.evidence import (
     signatures,
 )
 from matstd.diagnosis.policy import POLICY
-from matstd.diagnosis.search import explained, follows_driver, refined
+from matstd.diagnosis.search import explained, follows_driver, is_series, refined
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, original_of, traits
 from matstd.twin.record import Touches
@@ -108,6 +108,7 @@ def plausibility(effects: Sequence[Effect], touches: Touches) -> dict[str, float
     return {
         e.name: POLICY.log_odds_own_sensor * (is_sensor and driver.endswith(_axis(e)))
         - chosen * follows_driver(e)
+        - POLICY.log_odds_series * is_series(e, touches.chain)
         - float(np.log(labels.count((kind, is_sensor))))
         for e, driver, (kind, is_sensor) in zip(effects, drivers, labels, strict=True)
     }

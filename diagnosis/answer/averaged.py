@@ -4,7 +4,8 @@ Members that a run does not distinguish may differ at other places, or on a day 
 part. Which of them it is, nothing has shown; so prediction takes their mean. All of them stand in
 one fit, each with a prior variance ``w_k a_k^2``, w_k its probability and a_k the size at which it
 alone would do: given their sum the members then have the variances ``w_k (1 - w_k) a_k^2`` of a
-mixture, in the uncertainty of a prediction and in the error to expect.
+mixture, in the uncertainty of a prediction and in the error to expect. A sum of n times its
+uncertainty is drawn to zero by one n-th of that.
 """
 
 from collections.abc import Iterator, Sequence
@@ -26,9 +27,6 @@ from matstd.twin.record import Touches
 
 MAX_MEMBERS = 6
 """Most members of one class, the likeliest first; what a further one adds is less than a tenth."""
-
-MEMBER_FREEDOM = 2.0
-"""Factor on these sizes: a sum of twice its uncertainty is drawn to zero by 6 %, not by 20."""
 
 MIN_DIFFERENCE = 0.01
 """Share of the square of its columns at other places that those before it must leave of a member: a
@@ -79,7 +77,7 @@ def _size(effect: Effect, explained: Array, touches: Touches) -> float:
     """Scale of the prior of an effect that explains a deviation (N,) by itself."""
     theta = np.linalg.lstsq(columns([effect], touches), explained, rcond=None)[0]
     size = rms(theta / np.array([p.sd for p in effect.parameters]))
-    return max(MEMBER_FREEDOM * size, 1e-6) / FREEDOM
+    return max(size, 1e-6) / FREEDOM
 
 
 def _different(members: Sequence[Rival], there: Touches) -> Iterator[Rival]:

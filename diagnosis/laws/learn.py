@@ -24,6 +24,7 @@ from matstd.diagnosis.laws.space import Space
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.frames import Array
 from matstd.twin.laws import Carrier, Law
+from matstd.twin.library import owner_of
 from matstd.twin.model import Effect, Model, columns
 from matstd.twin.record import Run
 
@@ -151,10 +152,14 @@ class Learning:
         return tuple(out)
 
     def predicted(self, run: Run) -> Array:
-        """Deviation that the laws add at the touches of any run, (N,), mm."""
-        out = np.zeros(len(run))
+        """Deviation that the laws add at the touches of any run, (N,), mm.
+
+        A law that belongs to the run that it was learnt from adds nothing elsewhere.
+        """
+        out, is_own = np.zeros(len(run)), run.fingerprint == self.before.run.fingerprint
         for law, theta, share in self.members:
-            out += share * (columns([law], run.touches) @ theta)
+            if is_own or owner_of(law) == "machine":
+                out += share * (columns([law], run.touches) @ theta)
         return out
 
     @property
@@ -233,32 +238,32 @@ def _each_anew(
     """Every law searched anew with the others in place, until none of them changes.
 
     The first of several laws is found while the others are part of the noise, and may hold a part
-    of them. Another law takes its place where it explains the run better, all charges taken off,
-    and predicts touches left out no worse.
+    of them. Another law takes its place where it explains the run better, all charges taken off.
 
     Args:
         laws: Those that were learnt; the last one with all others in place. Changed in place.
         charges: What each was charged; changed with them.
         fit: With all of them.
     """
-    last = len(laws) - 1
-    for _ in range(policy.most_turns if last else 0):
-        before = [one.law.name for one in laws]
-        for i in [k for k in range(len(laws)) if k != last]:
-            base = white.fitted([one.law for k, one in enumerate(laws) if k != i])
-            best = _learnt(search_law(Space.of(base), policy))
-            if best is None:
-                continue
-            margin = 0.0 if best.law.name == laws[i].law.name else policy.shorter
-            if best.score < log_odds(fit, base, charges[i]) + margin:
-                continue
-            tried = white.fitted([(best if k == i else one).law for k, one in enumerate(laws)])
-            if predicts_better(fit, tried, policy):
-                laws[i] = replace(best, library=laws[i].library, memory=laws[i].memory)
-                charges[i], fit = log_odds(tried, base, best.score), tried
-        if before == [one.law.name for one in laws]:
+    waiting = set(range(len(laws) - 1))
+    for _ in range(policy.most_turns * len(laws)):
+        if not waiting:
             break
-        last = -1
+        i = min(waiting)
+        waiting.remove(i)
+        others = set(range(len(laws))) - {i}
+        base = white.fitted([laws[k].law for k in sorted(others)])
+        best = _learnt(search_law(Space.of(base), policy))
+        if best is None or best.score < policy.min_score:
+            continue
+        is_same = best.law.name == laws[i].law.name
+        margin = 0.0 if is_same else policy.shorter
+        if best.score < log_odds(fit, base, charges[i]) + margin:
+            continue
+        laws[i] = replace(best, library=laws[i].library, memory=laws[i].memory)
+        fit = white.fitted([one.law for one in laws])
+        charges[i] = log_odds(fit, base, best.score)
+        waiting |= set() if is_same else others
     return fit
 
 

@@ -30,6 +30,9 @@ class Policy:
             all rows in sight of them.
         log_odds_unrecorded: Log odds before any measurement that what a run follows was not
             recorded, against any one recorded driver with any lag; the grid comes on top.
+        log_odds_series: Log odds before any measurement against a series over a turn (harmonics,
+            products of them), for a law of weights and warmth that it can imitate: 20 to 1, as for
+            any gain of evidence. A series goes on with another payload as if nothing had changed.
         log_odds_alike: Log odds below which two explanations are not distinguished: 100 to 1.
         log_odds_ruled_out: Log odds by which a rival on a coarse grid is behind beyond what a finer
             one could mend.
@@ -84,6 +87,7 @@ class Policy:
     error_share: float = 0.97
     error_share_beside_memory: float = 0.85
     log_odds_unrecorded: float = 1.5
+    log_odds_series: float = 3.0
     log_odds_alike: float = 4.605170185988092  # log 100
     log_odds_ruled_out: float = 15.0
     log_odds_own_sensor: float = 2.0

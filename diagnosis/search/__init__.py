@@ -19,7 +19,7 @@ from matstd.diagnosis.search.search_loop import (
     refined_named,
     searched,
 )
-from matstd.diagnosis.search.selection import Search
+from matstd.diagnosis.search.selection import Search, is_series
 from matstd.diagnosis.search.task import FREEDOM, DiagnosisTask
 
 __all__ = [
@@ -38,6 +38,7 @@ __all__ = [
     "clearly_best",
     "explained",
     "follows_driver",
+    "is_series",
     "most_evident",
     "refined",
     "refined_named",

@@ -47,7 +47,8 @@ from matstd.diagnosis.search.missing_driver import (
 from matstd.diagnosis.search.refine import refined, refined_set
 from matstd.diagnosis.search.screening import Budget
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect, traits
+from matstd.twin.machine import Chain
+from matstd.twin.model import Effect, original_of, traits
 from matstd.twin.thermal import drives
 
 MIN_CORRELATION_ALIKE = 0.95
@@ -67,6 +68,17 @@ MAX_REFINED_DRIVERS = 4
 
 USUAL_SET_SIZE = 6
 """Effects at which a search is reported as nearly done; it continues while more pass."""
+
+
+SERIES = ("geometric", "periodic", "coupling")
+"""Kinds that, over the turn of an axis, are series of harmonics."""
+
+
+def is_series(effect: Effect, chain: Chain) -> bool:
+    """Whether an effect only describes an error over the turn of an axis."""
+    symbol = traits(original_of(effect)).symbol
+    is_turned = symbol is not None and chain.link(symbol.link).kind == "rotary"
+    return is_turned and original_of(effect).kind in SERIES
 
 
 class Search:
@@ -185,10 +197,11 @@ class Search:
         """What was believed of an effect before the run.
 
         A law of a recorded driver was chosen among many drivers and lags, and one that was not
-        recorded may stand behind it, unless the sensor is that of the body itself.
+        recorded may stand behind it, unless the sensor is that of the body itself. A series over a
+        turn imitates the physics of whatever turns.
         """
         if not follows_driver(effect):
-            return 0.0
+            return -POLICY.log_odds_series * is_series(effect, self.complement.touches.chain)
         chosen = POLICY.log_odds_unrecorded + np.log(max(len(drives(self.complement.touches)), 1))
         return float(-np.log(tries) - chosen * (not is_own_sensor(effect)))
 

@@ -69,6 +69,11 @@ _SHAPES = {
     "play": "a play that follows",
     "curve": "a smooth curve without a formula",
 }
+_COURSE = (
+    "A curve over time is a driver that was not recorded: its course belongs to this run, and "
+    "other runs are predicted without it."
+)
+
 FEW_TOUCHES = 60
 """Below it a run leaves few degrees of freedom beside geometry and set-ups."""
 
@@ -270,6 +275,7 @@ def law_notes(learning: Learning) -> list[str]:
     out = []
     for one in learning.laws:
         out += [library_sentence(one), rivals_sentence(one), looks_like(one.law)]
+        out.append(_COURSE if one.law.belongs_to == "run" else "")
     return [line for line in (*out, *limits_sentences(learning)) if line]
 
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 import simulator_effects as effects
 from simulator import probe, run_text
+from simulator_case import read_back
 from simulator_experiment import MACHINES, STATED_NOISE, placed, random_experiment
 
 from matstd.cli import main
@@ -157,6 +158,28 @@ def test_what_the_probe_does_is_applied_where_the_same_probe_touched(visits, tmp
         assert ("probe-radius" in effects_there) == is_there
     (one,) = read_model(path, runs=[longer]).left_out
     assert "belongs to the probe of calm.csv" in remark_sentence(one)
+
+
+def test_lobes_of_a_head_predict_another_run_with_it(tmp_path):
+    """Three lobes of 6 um, another day, a standard placed anew: with them noise is left."""
+    rng = np.random.default_rng(23)
+    first = random_experiment(rng, "fork", 6)
+    head = replace(effects.lobes(3, 0.7), amplitude=6.0)
+    runs = []
+    for one in (first, replace(first, actual=placed(rng, first.stated))):
+        noise = rng.normal(0.0, STATED_NOISE, len(one.time))
+        runs.append(read_back(run_text(one, probe(one, [head], noise), False), MACHINES["fork"]))
+    start = ordinary_model(runs[0].touches.chain)
+    lobing = parse_effect("probe-lobing", start.chain)
+    fit = fit_run(runs[0], Model(start.chain, (*start.effects, lobing)))
+    path = tmp_path / "model.toml"
+    path.write_text(model_text(fit, "first.csv"), encoding="utf-8")
+    same, machine = read_model(path, runs=[runs[1]]), read_model(path)
+    with_head, without = (
+        compare(runs[1], saved.model, saved.estimates).rms / UM for saved in (same, machine)
+    )
+    assert with_head < 1.15 * STATED_NOISE / UM
+    assert without > 2.0 * with_head
 
 
 def test_what_is_left_is_known_as_well_as_before(visits):

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_up import arm_poses
 
 from matstd.diagnosis.answer.ambiguity import confusion_class, plausibility
 from matstd.diagnosis.evidence.effect_signatures import (
@@ -20,7 +21,7 @@ from matstd.diagnosis.search.further_parts import further_periods, tables
 from matstd.diagnosis.search.refine import refined
 from matstd.diagnosis.search.screening import MOST_SETS, Library, joined_shortlists
 from matstd.diagnosis.search.search_loop import clearly_best
-from matstd.diagnosis.search.selection import Search
+from matstd.diagnosis.search.selection import Search, is_series
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.model.model import columns
@@ -234,3 +235,13 @@ def test_a_sensor_is_believed_of_its_own_axis(case) -> None:
     odds = plausibility(effects, t)
     own, other = odds["thermal-expansion(Y,scaleY)"], odds["thermal-expansion(Y,scaleX)"]
     assert own > other
+
+
+@pytest.mark.parametrize("name", ["coupling(EBB,B1)", "periodic(EBB)"])
+def test_weight_comes_before_harmonics_that_can_imitate_it(name) -> None:
+    """A series over a turn goes on with another payload as if nothing had changed."""
+    touches = arm_poses()
+    both = [parse_effect(one, touches.chain) for one in (name, "joint-sag(B)")]
+    assert [is_series(effect, touches.chain) for effect in both] == [True, False]
+    odds = plausibility(both, touches)
+    assert odds["joint-sag(B)"] - odds[name] == pytest.approx(POLICY.log_odds_series)

@@ -117,9 +117,10 @@ def title_of(effect: Effect) -> Title:
 
 
 def owner_of(effect: Effect) -> str:
-    """What an effect belongs to, one of `Kind.OWNERS`, as its kind states."""
+    """What an effect belongs to, one of `Kind.OWNERS`, as its kind states, or the effect itself."""
     kind = _REGISTER.get(effect.kind)
-    return "machine" if kind is None else kind.belongs_to
+    usual = "machine" if kind is None else kind.belongs_to
+    return str(getattr(effect, "belongs_to", usual))
 
 
 def parse_effect(text: str, chain: Chain) -> Effect:
