@@ -40,6 +40,7 @@ RUNS: dict[str, tuple[str, ...]] = {
     "trend_alarms": (),
     "contradictory_projects": (),
     "standard_temperature": (),
+    "wavy_face": (),
     "live_page": (),
     "machine_page": (),
 }

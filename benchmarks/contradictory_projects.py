@@ -99,6 +99,28 @@ IMPOSSIBLE: dict[str, dict[str, Any]] = {
     "standard beside the table": {"p.setup.a.origin_mm": [300.0, 0.0, 0.0]},
     "noise of nothing": {"p.simulation.noise_um": -1.0},
     "an error of no size": {"p.errors.parameters.EXX": []},
+    "machine: travel in micrometres": {"m.axis.Y.range": [-300000.0, 300000.0]},
+    "machine: B turns about Z": {"m.axis.B.direction": [0.0, 0.0, 1.0]},
+    "machine: table in metres": {"m.workpiece.origin": [0.0, 0.0, -0.5]},
+    "a post of a metre": {
+        "p.workshop.bodies": [
+            {"name": "P", "at_mm": [200.0, 0.0, 0.0], "diameter_mm": 20.0, "height_mm": 1000.0}
+        ]
+    },
+    "ball of the workshop a metre away": {
+        "p.workshop.ball": {
+            "at_mm": [1000.0, 0.0, 80.0],
+            "diameter_mm": 25.0,
+            "stem_diameter_mm": 10.0,
+        }
+    },
+    "clearance of half a metre": {"p.workshop.clearance_mm": 500.0},
+    "weight upwards": {"p.standard.down": "+Z"},
+    "standard upside down": {"p.setup.a.rotation_deg": [180.0, 0.0, 0.0]},
+    "a name with a blank": {"p.standard.name": "Test 1"},
+    "two set-ups at one place": {"p.setup.b": {"origin_mm": [0.0, 0.0, 0.0]}},
+    "steel as heavy as lead": {"p.material.density_kg_m3": 11300.0},
+    "steel that does not expand": {"p.material.expansion_1_K": 0.0},
     "an error that ends below its begin": {"p.errors.parameters.EXX": [10.0, 5.0]},
 }
 

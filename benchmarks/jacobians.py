@@ -1,9 +1,8 @@
 """How fast are the Jacobians of all error parameters?   python benchmarks/jacobians.py
 
-Prints poses per second of `matstd.sensitivity.first_order.jacobians` for the 71 parameters of
-the HSM 600U and for
-the 60 of the same machine without its spindle axis, beside two measures of the same run: central
-differences of the exact product, and filling an array of that size with a number.
+Prints poses per second of `matstd.sensitivity.first_order.jacobians` for the 71 parameters of the
+HSM 600U and for the 60 of the same machine without its spindle axis, beside two measures of the
+same run: central differences of the exact product, and filling an array with a number.
 """
 
 import platform

@@ -1,13 +1,16 @@
 """Effects that no model has: balls, small faces, a plane and a wavy face, touched or scanned.
 
-    OMP_NUM_THREADS=1 python benchmarks/wavy_face.py [--project machines/vertical] [--poses 1]
-        [--touches 300] [--size MM] [--slope DEG] [--turn DEG] [--form-um U]
+    OMP_NUM_THREADS=1 python benchmarks/wavy_face.py [--project wavy_face] [--poses 1]
+        [--touches 300] [--size MM] [--slope DEG] [--radius MM] [--turn DEG] [--lines MM]
+        [--form-um U]
 
 For every layout the signal (root of the noncentrality) and the power at 5 % risk of effects of 2 µm
 rms: fields over all linear axes (40 and 25 mm) and short errors of one axis (40 and 20 mm), along
 X, Y and Z; set-up, ordinary geometry and calibration with its form are projected out. Balls come
-from the optimiser of the design. 49 of them leave no room for a cutter between their posts: they
-are placed with only the balls clear of each other. A minute of processor time.
+from the optimiser of the design; those of a plane or a wavy face stand beside it as in a design,
+and what they leave unknown in the workspace is compared with the best 13 balls. 49 balls leave no
+room for a cutter between their posts: they are placed with only the balls clear of each other. Two
+minutes of processor time.
 """
 
 import argparse
@@ -17,7 +20,13 @@ from pathlib import Path
 
 import numpy as np
 
-from matstd.artefact.body import FreeformPatch, Standard, graph_patch
+from matstd.artefact.body import (
+    FreeformPatch,
+    Standard,
+    graph_patch,
+    max_slope,
+    min_concave_radius,
+)
 from matstd.artefact.brief import Brief, read_project
 from matstd.artefact.hidden import (
     HiddenPower,
@@ -39,17 +48,22 @@ from matstd.artefact.layout import (
     wavy_face,
     with_spheres,
 )
+from matstd.artefact.place import balls_beside, left_unknown
 from matstd.artefact.reach import joined, spread_poses
 from matstd.artefact.worth import (
     BallPlaces,
     Criterion,
     ball_places,
+    chosen_poses,
+    chosen_touches_on,
     criterion_for,
     each_at,
     poses_within,
     sphere_grid,
+    touches_to_choose_from,
 )
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
 from matstd.twin.units import DEG, UM
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -78,6 +92,7 @@ class Bench:
             brief.population,
         )
         possible = poses_within(brief.chain, brief.rotary, max(poses, 8))
+        self.possible = possible
         self.poses = spread_poses(possible, poses)
         self.balls: BallPlaces = ball_places(self.criterion, brief.blank, possible, rng)
         self.places = possible_places(
@@ -108,6 +123,23 @@ class Bench:
             at.reshape(-1), np.unique(area[first], return_inverse=True)[1],
         )  # fmt: skip
         return touched(tried[rows], noise)
+
+    def beside(self, face: FreeformPatch) -> Standard:
+        """The best 13 balls that stand beside a face."""
+        ring = ball_places(self.criterion.plain, self.brief.blank, self.possible, self.rng, [face])
+        made = balls_beside([face], 13, ring, self.touches)
+        if made is None:
+            raise SystemExit(f"13 balls do not fit beside a face of {2 * face.half_size[0]:g} mm")
+        return made
+
+    def left(self, body: Standard) -> float:
+        """What as many touches on the balls of a body leave unknown in the workspace, mm rms."""
+        criterion, bare = self.criterion, replace(body, patches=())
+        choice = replace(self.brief.options.choice, touches=self.touches)
+        poses = chosen_poses(criterion.plain.on(bare), body, body.spheres, self.possible, choice)
+        tried = touches_to_choose_from(criterion.reach, body, body.spheres, poses, self.touches)
+        chosen, _ = chosen_touches_on(criterion.on(bare), tried, choice)
+        return rms(left_unknown(criterion, body, tried[chosen]))
 
     def show(self, name: str, body: Standard, measured: Measurement) -> HiddenPower:
         """Print the figures of a layout."""
@@ -155,11 +187,13 @@ def flat(face: FreeformPatch) -> FreeformPatch:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--project", default="machines/vertical")
+    parser.add_argument("--project", default="wavy_face")
     parser.add_argument("--poses", type=int, default=1)
     parser.add_argument("--touches", type=int, default=300)
-    parser.add_argument("--size", type=float, default=240.0, help="side of plane and wavy face, mm")
-    parser.add_argument("--slope", type=float, default=51.0, help="of the wavy face, degrees")
+    parser.add_argument("--size", type=float, default=236.0, help="side of plane and wavy face, mm")
+    parser.add_argument("--slope", type=float, default=50.0, help="of the wavy face, degrees")
+    parser.add_argument("--radius", type=float, default=8.0, help="of its cutter, mm")
+    parser.add_argument("--lines", type=float, default=4.0, help="between lines of the scan, mm")
     parser.add_argument("--wavelength", type=float, default=60.0, help="of the wavy face, mm")
     parser.add_argument("--turn", type=float, default=45.0, help="of its waves against x, degrees")
     parser.add_argument("--form-um", type=float, default=0.3, help="of the calibrated faces")
@@ -186,15 +220,23 @@ def main() -> None:
     for name, some in (("small faces", faces), ("flat pads there", tuple(map(flat, faces)))):
         both = replace(body, patches=some)
         bench.show(f"13 balls + {len(some)} {name}", both, bench.some(both, args.touches))
-    limits = replace(brief.blank.limits, max_slope=60.0 * DEG)
+    limits = replace(brief.blank.limits, max_slope=60.0 * DEG, min_concave_radius=args.radius)
+    bench.brief = brief = replace(brief, blank=replace(brief.blank, limits=limits))
     side = (0.5 * args.size, 0.5 * args.size)
     wave = Wave((0.0, 0.0), side, args.wavelength, args.slope * DEG, turn=args.turn * DEG)
-    face = wavy_face("FF1", replace(brief.blank, limits=limits), wave)
+    face, best = wavy_face("FF1", brief.blank, wave), bench.left(body)
+    body = bench.beside(face)
+    cost = bench.left(body) / best
+    print(
+        f"face of {args.size:g} mm, slopes to {max_slope(face) / DEG:.0f} degrees, cutter R "
+        f"{min_concave_radius(face):.1f}: 13 balls beside it leave {cost:.2f} of the best 13 balls"
+    )
+    bare = replace(body, patches=())
     for name, one in (("plane", flat(face)), ("wavy face", face)):
         both = replace(body, patches=(one,))
         bench.show(f"13 balls + {name}, touched", both, bench.some(both, args.touches))
-        on_balls = bench.some(body, half)
-        scan = Scan()
+        on_balls = bench.some(bare, half)
+        scan = Scan(between=args.lines)
         lines = scanned(one, scan, bench.poses, brief.reach)
         words = f"{scan.points(one)} points, {scan.minutes(one):.0f} min"
         bench.show(

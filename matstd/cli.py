@@ -7,6 +7,8 @@ import os
 import sys
 from collections.abc import Sequence
 
+from matstd.command_line import CommandLine
+
 FOLDERS = {
     "standard": {
         "design": "design a material standard: geometry, STEP and STL, probing programs, "
@@ -61,8 +63,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         keeps its traceback.
     """
     arguments = list(sys.argv[1:] if arguments is None else arguments)
-    parser = _parser(arguments)
-    args = parser.parse_args(arguments)
+    args, rest = _parser(arguments).parse_known_args(arguments)
+    if rest:  # the command knows which options it has
+        args.parser.error(f"unrecognized arguments: {' '.join(rest)}")
     from matstd.twin.errors import BadArgument, DesignError
 
     try:
@@ -128,9 +131,9 @@ def _users_fault(error: BaseException) -> Exception | None:
     return None
 
 
-def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
+def _parser(arguments: Sequence[str]) -> CommandLine:
     """Parser that imports only the command that is called, so that help answers at once."""
-    parser = argparse.ArgumentParser(
+    parser = CommandLine(
         prog="matstd",
         description="Designs freeform material standards for multi-axis machine tools, probes "
         "them on the machine's digital twin, and identifies the effects that a model "
@@ -149,7 +152,7 @@ def _parser(arguments: Sequence[str]) -> argparse.ArgumentParser:
                 file = f"matstd.commands.{folder}.{name.replace('-', '_')}"
                 module = importlib.import_module(file)
                 module.add_arguments(command)
-                command.set_defaults(run=module.run)
+                command.set_defaults(run=module.run, parser=command)
     return parser
 
 

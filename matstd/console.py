@@ -11,8 +11,7 @@ if TYPE_CHECKING:
 
     from matstd.twin.machine import Chain
 
-DEFAULT_WIDTH = 120
-"""Letters of a line where neither a terminal nor COLUMNS says how wide it is."""
+DEFAULT_WIDTH = 120  # letters of a line where neither a terminal nor COLUMNS says how wide it is
 
 
 def console() -> "Console":

@@ -8,8 +8,7 @@ from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
 
-LOGS = "LOG.TXT ..."
-"""Logs of the control, whose names only the user knows."""
+LOGS = "LOG.TXT ..."  # logs of the control, whose names only the user knows
 
 
 def next_line(args: Namespace) -> str:
@@ -33,28 +32,30 @@ def called(command: str, *words: object, more: str = "") -> str:
     return f"{line} {more}".rstrip()
 
 
+def _beside(output: str, name: str) -> Path:
+    """A file or folder in the folder of an output."""
+    return Path(output).parent / name
+
+
 def _design(args: Namespace) -> Step:
     out = Path(args.output)
     kinds = (out / "programs").glob("*_A_*.*")
     program = next((f"*_A_*{p.suffix}" for p in sorted(kinds) if p.suffix in (".H", ".ngc")), "*.H")
     where = ["--standard", out / "standard.toml", "--machine", out / "machine.toml"]
-    run = ["--random-errors", "-o", "run.csv"]
+    run = ["--random-errors", "-o", _beside(args.output, "run.csv")]
     words = called("simulate", *where, *run, more=f"{shlex.quote(str(out / 'programs'))}/{program}")
     sheet = out / "setup" / "setup.html"
     return words, f"a trial on the twin; on the machine follow {sheet}"
 
 
-def _simulate(args: Namespace) -> Step:
-    if not Path(args.output).exists():
-        return None
-    return called("diagnose", args.output, "-o", "diagnosis"), ""
-
-
 def _run_file(args: Namespace) -> Step:
-    """Of a run file: what the model lacks."""
+    """Of a run file: what the model lacks, drawn on the standard that was probed."""
     if not Path(args.output).exists():
         return None
-    return called("diagnose", args.output, "-o", "diagnosis"), "what the model lacks"
+    standard = getattr(args, "standard", None)
+    probed = ["--standard", standard] if standard else []
+    words = called("diagnose", args.output, *probed, "-o", _beside(args.output, "diagnosis"))
+    return words, "what the model lacks"
 
 
 def _control_test(args: Namespace) -> Step:
@@ -64,7 +65,8 @@ def _control_test(args: Namespace) -> Step:
 def _replan(args: Namespace) -> Step:
     design = Path(args.design)
     where = ["--standard", design / "standard.toml", "--machine", design / "machine.toml"]
-    words = called("evaluate", *where, "-o", "run.csv", more=LOGS)
+    out = "visit.csv" if args.logs[0].lower().endswith(".csv") else "run.csv"
+    words = called("evaluate", *where, "-o", out, more=LOGS)
     return words, f"after the programs in {Path(args.output) / 'programs'} have run"
 
 
@@ -123,10 +125,11 @@ def _new(args: Namespace) -> Step:
     if args.output is None:
         return None
     output = args.output
+    project, folder = _beside(output, "project.toml"), _beside(output, "out")
     return {
-        "machine": (called("new", "project", "--machine", output, "-o", "project.toml"), ""),
-        "project": (called("design", output, "-o", "OUT"), ""),
-        "run": (called("diagnose", output, "-o", "diagnosis"), ""),
+        "machine": (called("new", "project", "--machine", output, "-o", project), ""),
+        "project": (called("design", output, "-o", folder), ""),
+        "run": (called("diagnose", output, "-o", _beside(output, "diagnosis")), ""),
         "effect": (called("effects", "--effects", output), "reads it and tries it"),
     }[args.kind]
 
@@ -136,7 +139,7 @@ _AFTER: dict[str, Callable[[Namespace], Step]] = {
     "sensitivity": _sensitivity,
     "calibrate": _calibrate,
     "uncertainty": _uncertainty,
-    "simulate": _simulate,
+    "simulate": _run_file,
     "control-test": _control_test,
     "evaluate": _run_file,
     "replan": _replan,

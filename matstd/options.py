@@ -5,20 +5,18 @@ from __future__ import annotations
 import argparse
 import math
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from matstd.twin.errors import DesignError
 
 if TYPE_CHECKING:
     from matstd.report.pages import Printer
 
-SETUP, GEOMETRY = "setup", "geometry"
-"""Words of `--start`."""
+SETUP, GEOMETRY = "setup", "geometry"  # words of `--start`
 
-SHEET = "setup"
-"""Folder of the set-up sheet, and of the programs that are run before the others."""
+SHEET = "setup"  # folder of the set-up sheet, and of the programs that are run before the others
 
 SHEET_FILES = (
     f"{SHEET}/setup.pdf",
@@ -28,6 +26,31 @@ SHEET_FILES = (
     "programs/*_[0-9]*.*",
 )
 """Of it and of the programs, what not every run leaves."""
+
+
+Option = str | tuple[str, str | float | Sequence[str] | type[int] | type[float]]
+"""Meaning of an option for the help; in a pair also what it takes."""
+
+
+def add_options(parser: argparse._ActionsContainer, options: Mapping[str, Option]) -> None:
+    """Options as the help lists them: `--name` is a switch, `--name WORD` takes a word.
+
+    In a pair, `int` or `float` is the type of a number; a number or a word is what holds without
+    the option; of several words one is chosen, the first without the option.
+    """
+    for words, meaning in options.items():
+        name, _, metavar = words.partition(" ")
+        about, kind = (meaning, None) if isinstance(meaning, str) else meaning
+        more: dict[str, Any] = {"metavar": metavar or None}
+        if isinstance(kind, type):
+            more["type"] = kind
+        elif isinstance(kind, str | int | float):
+            more |= {"type": type(kind), "default": kind}
+        elif kind is not None:
+            more |= {"choices": kind, "default": kind[0]}
+        elif not metavar:
+            more = {"action": "store_true"}
+        parser.add_argument(name, help=about, **more)
 
 
 def add_output(parser: argparse.ArgumentParser, name: str = "OUT", force: str = "") -> None:
@@ -62,13 +85,16 @@ def add_effects(parser: argparse.ArgumentParser) -> None:
 
 def add_body(parser: argparse.ArgumentParser, meaning: str) -> None:
     """Options that state the temperature of the standard."""
-    parser.add_argument("--body-degC", metavar="T", type=float, help=meaning)
-    parser.add_argument(
-        "--body-u-K",
-        metavar="U",
-        type=float,
-        help="standard uncertainty of the temperature of the standard, K (0.3 if the "
-        "temperature is stated; otherwise 2, about 20 °C)",
+    add_options(
+        parser,
+        {
+            "--body-degC T": (meaning, float),
+            "--body-u-K U": (
+                "standard uncertainty of the temperature of the standard, K (0.3 if the "
+                "temperature is stated; otherwise 2, about 20 °C)",
+                float,
+            ),
+        },
     )
 
 
@@ -91,14 +117,14 @@ def add_measured(parser: argparse.ArgumentParser, without: str) -> None:
 def add_results(parser: argparse.ArgumentParser) -> None:
     """The user's effects, the page and the folder of results."""
     add_effects(parser)
-    parser.add_argument(
-        "--standard",
-        metavar="FILE",
-        help="what was probed, drawn on the page: STANDARD.toml, or a drawing in the frame of the "
-        "standard (.stl, .obj, .ply, .step). Default: standard.toml beside the run, if it is its",
-    )
-    parser.add_argument(
-        "--no-report", action="store_true", help="do not write the report page and its figures"
+    add_options(
+        parser,
+        {
+            "--standard FILE": "what was probed, drawn on the page: STANDARD.toml, or a drawing "
+            "in the frame of the standard (.stl, .obj, .ply, .step). Default: standard.toml "
+            "beside the run, if it is its",
+            "--no-report": "do not write the report page and its figures",
+        },
     )
     add_pdf(parser)
     add_output(parser)
@@ -141,12 +167,13 @@ def add_start(parser: argparse.ArgumentParser, without: str) -> None:
     Args:
         without: What it does without a model, for the help.
     """
-    parser.add_argument("--model", metavar="MODEL.toml", help=f"model of an earlier run; {without}")
-    parser.add_argument(
-        "--start",
-        metavar="WHAT",
-        help=f"starting model: {SETUP} (position of the standard only), {GEOMETRY} (the ordinary "
-        "geometric model, the default) or MODEL.toml (as --model)",
+    add_options(
+        parser,
+        {
+            "--model MODEL.toml": f"model of an earlier run; {without}",
+            "--start WHAT": f"starting model: {SETUP} (position of the standard only), {GEOMETRY} "
+            "(the ordinary geometric model, the default) or MODEL.toml (as --model)",
+        },
     )
 
 

@@ -94,8 +94,7 @@ class TimeLeft:
         return self.shown
 
 
-PERIOD = 10.0
-"""Seconds between two lines where there is no terminal."""
+PERIOD = 10.0  # seconds between two lines where there is no terminal
 
 
 TIME_LEFT_TOLERANCE = 1.2

@@ -12,8 +12,7 @@ from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
-EXIT_STOPPED = 130
-"""Exit code of a command that was asked to stop."""
+EXIT_STOPPED = 130  # exit code of a command that was asked to stop
 
 _LAST_WORDS = threading.Lock()
 

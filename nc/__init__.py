@@ -7,5 +7,4 @@ moves nothing (`matstd.compensation`). `linuxcnc` has the
 files of that control: INI, HAL, variables and tools.
 """
 
-PARTS = ("grammar", "linuxcnc")
-"""From bottom to top: each imports only from those before it."""
+PARTS = ("grammar", "linuxcnc")  # from bottom to top: each imports only from those before it

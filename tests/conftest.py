@@ -97,7 +97,7 @@ def _as_in_a_test():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("matstd.progress.PERIOD", 1e6)
         patch.setattr("matstd.twin.beside.CORES", 1)
-        patch.setattr("matstd.report.style.sheet.DPI", 80)
+        patch.setattr("matstd.report.style.DPI", 80)
         yield
 
 

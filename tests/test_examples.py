@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from matstd.diagnosis.answer.verdict import Verdict
-from matstd.twin.library import catalogue as library
 from matstd.twin.units import UM
 
 ROOT = Path(__file__).parents[1]
@@ -182,11 +181,7 @@ def test_09_the_hidden_backlash_is_named_and_the_error_falls_to_the_noise() -> N
 
 
 @pytest.mark.slow  # the hose of tests/test_examples_diagnosis.py says the same
-def test_10_an_effect_of_ones_own_turns_unexplained_into_found(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    # what the example adds to the library must not be seen by other tests
-    monkeypatch.setattr("matstd.twin.library.catalogue._REGISTER", dict(library._REGISTER))
+def test_10_an_effect_of_ones_own_turns_unexplained_into_found() -> None:
     result = load(10).main()
     before, after = result["before"], result["after"]
     assert before.verdict is Verdict.UNEXPLAINED
@@ -211,6 +206,7 @@ def test_11_the_plate_is_as_large_as_drawn_and_tables_hold_what_they_can() -> No
     assert left["sinumerik"] > 5 * UM  # pitch far from the datum
 
 
+@pytest.mark.usefixtures("unrendered")
 def test_12_the_drift_of_the_machine_of_1995_is_found_and_taken_back(tmp_path: Path) -> None:
     result = load(12).main(tmp_path)
     found = result["diagnosis"]

@@ -89,6 +89,26 @@ def test_a_wheel_is_whole(wheel: Path) -> None:
                 assert (inner if room.name == "matstd" else f"matstd/{inner}") in inside, inner
 
 
+@pytest.mark.slow
+def test_a_users_type_checker_reads_the_wheel(user: Path) -> None:
+    """`py.typed`: strict mypy knows what the door returns, and finds the one mistake."""
+    (user / "script.py").write_text(
+        "import matstd\n\n"
+        "found: matstd.Diagnosis = matstd.diagnose('run.csv')\n"
+        "wrong: int = matstd.read_run('run.csv')\n"
+    )
+    python = next((user / "env").glob("*/python"))
+    command = [sys.executable, "-m", "mypy", "--strict", "--python-executable", str(python)]
+    done = subprocess.run(
+        [*command, "script.py"], cwd=user, capture_output=True, text=True, check=False
+    )
+    assert done.stdout.splitlines() == [
+        'script.py:4: error: Incompatible types in assignment (expression has type "Run", variable '
+        'has type "int")  [assignment]',
+        "Found 1 error in 1 file (checked 1 source file)",
+    ]
+
+
 def test_every_example_is_in_the_wheel(wheel: Path) -> None:
     """What `matstd examples` copies; pictures and records of other licences stay behind."""
     inside = {name for name in zipfile.ZipFile(wheel).namelist() if "/examples/" in name}

@@ -22,14 +22,6 @@ def test_every_command_is_one_that_the_command_line_reads(words):
     assert _parser(words).parse_args(words).command == words[0]
 
 
-def test_the_first_steps_run_as_they_stand(tmp_path, monkeypatch):
-    """Machine and project; the design begins where its own tests do."""
-    monkeypatch.chdir(tmp_path)
-    for words in commands()[:2]:
-        assert main(words) == 0
-    assert Path("mine/project.toml").exists()
-
-
 @pytest.mark.slow
 def test_the_session_ends_with_tables_for_the_control(tmp_path, monkeypatch, capsys):
     """The effect that was planted is found, and the tables are written."""

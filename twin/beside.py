@@ -16,8 +16,7 @@ from typing import Any, ParamSpec, TypeVar
 
 from matstd.twin.compute import one_blas_thread
 
-CORES = os.cpu_count() or 1
-"""On a single one every call is made in this process."""
+CORES = os.cpu_count() or 1  # on a single one every call is made in this process
 
 _SERVE = "from matstd.twin.beside import serve; serve()"
 _WORD = 8  # bytes that state the length of a call

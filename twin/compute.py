@@ -43,9 +43,6 @@ def compiled_loop(function: Callable[..., None], **options: Any) -> Callable[...
 
     The compiled code is cached beside the file or in the user's cache; this saves the next process
     a second or two per loop.
-
-    Args:
-        function: Function of a module that loops over arrays.
     """
     try:
         from numba import njit

@@ -19,8 +19,7 @@ import numpy as np
 from matstd.twin.errors import MissingLibrary
 from matstd.twin.text import csv_text
 
-MAX_VALUE_CHARACTERS = 40
-"""Longest value of a field that is shown in full, in characters."""
+MAX_VALUE_CHARACTERS = 40  # longest value of a field that is shown in full, in characters
 
 _BEFORE: list[Callable[[], object]] = []
 

@@ -114,8 +114,7 @@ class MissingLibrary(DesignError, ImportError):
     """Something outside this package is needed for what was asked; the message names it."""
 
 
-MOST_FAULTS = 4
-"""Faults of one file that are described in one line; of more, their number."""
+MOST_FAULTS = 4  # faults of one file that are described in one line; of more, their number
 
 
 def _short(value: object, most: int = 120) -> str:

@@ -1,9 +1,11 @@
 """Keys of a project that contradict each other, all of them found before any work is done."""
 
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
+from matstd.artefact.body import Material
 from matstd.artefact.brief.material_table import MaterialTable, names_with_values
 from matstd.artefact.brief.standard_tables import (
     BASE_THICKNESS,
@@ -15,6 +17,13 @@ from matstd.artefact.brief.standard_tables import (
 )
 from matstd.artefact.brief.workshop_tables import WorkshopTable
 from matstd.twin.errors import BadFile
+from matstd.twin.units import KG_M3
+
+_IN_PROGRAMS = re.compile(r"[A-Za-z0-9_.+-]{1,24}")
+
+_DENSITY_OFF, _EXPANSION_OFF = 0.2, 6e-6
+"""By which stated values of a named material differ from its usual ones: a share, and 1/K. Alloys
+of one name differ by half of that."""
 
 MIN_SLOT_PITCH = 20.0
 """Smallest distance between two slots of a table, mm (ISO 299)."""
@@ -61,7 +70,10 @@ def as_written(error: BadFile, names: Mapping[str, str]) -> BadFile:
 
 
 def standard_faults(wanted: StandardTable, path: Path) -> Iterator[BadFile]:
-    """Keys of `[standard]` that contradict each other."""
+    """Keys of `[standard]` that contradict each other, and a name that no program can state."""
+    if not _IN_PROGRAMS.fullmatch(wanted.name):
+        expected = "1 to 24 letters, digits, _ . + or -, as programs can state them"
+        yield BadFile(path, "standard.name", repr(wanted.name), expected)
     if wanted.robust_share < 1.0 and not wanted.robust_machines:
         yield BadFile(
             path,
@@ -79,7 +91,7 @@ def standard_faults(wanted: StandardTable, path: Path) -> Iterator[BadFile]:
 
 
 def material_faults(material: MaterialTable, path: Path) -> Iterator[BadFile]:
-    """Density or expansion of a name without usual values."""
+    """Density or expansion of a name without usual values, or far from its usual ones."""
     for key in material.missing:
         yield BadFile(
             path,
@@ -87,6 +99,19 @@ def material_faults(material: MaterialTable, path: Path) -> Iterator[BadFile]:
             f"no value beside name = '{material.name}'",
             f"that of this material, or a name with usual values: {names_with_values()}",
         )
+
+    usual = Material.usual_of(material.name)
+    if usual is None:
+        return
+    density, expansion = material.density, material.expansion_1_K
+    if abs(density - usual.density) > _DENSITY_OFF * usual.density:
+        found = f"{density / KG_M3:g} beside name = '{material.name}'"
+        expected = f"about {usual.density / KG_M3:g}, or another name"
+        yield BadFile(path, "material.density_kg_m3", found, expected)
+    if expansion is not None and abs(expansion - usual.expansion) > _EXPANSION_OFF:
+        found = f"{expansion:g} beside name = '{material.name}'"
+        expected = f"about {usual.expansion:g}, or another name"
+        yield BadFile(path, "material.expansion_1_K", found, expected)
 
 
 def table_key(workshop: WorkshopTable) -> str:

@@ -1,7 +1,8 @@
 """Correction of a face to measured points: a smooth change of its control heights.
 
 A penalised least-squares fit of the deviations along the normal; `calibration_fit` has the
-equation. The linear fit is repeated because the foot points move with the surface.
+equation. It is repeated because the deviations change with the surface; foot points move by slope
+times correction, micrometres, and stay where they are.
 """
 
 from dataclasses import dataclass, replace
@@ -14,7 +15,8 @@ from matstd.twin.frames import Array
 from matstd.twin.numbers import rms
 
 _WEIGHTS = np.logspace(-8.0, 4.0, 49)  # of the bending: from no penalty to a plane
-_ROUNDS = 3  # foot points move by slope times correction, micrometres: constant after two rounds
+_ROUNDS = 3  # constant after two
+_UNIT, _RIDGE = 1e-4, 1e-12  # weight at which the fit is made diagonal; of its trace
 _GRID = 3.0  # mm between the places over which the uncertainty of the surface is averaged
 
 
@@ -50,18 +52,18 @@ def corrected_face(
         u_point: Smallest standard uncertainty of a point, mm; raised to the scatter of the points.
         waviness: Assumed root mean square of waves along a direction without a line, mm.
     """
-    bend = _bending(patch)
     heights = patch.heights
     judging, seen = dense_lines(patch.project(points), patch.half_size)
     fitted = points[~judging]
+    uv, deviation, tilt = _deviations(patch, fitted)
+    # a change of height moves the surface along its normal by the cosine of the slope
+    B = _basis(patch, uv) / tilt[:, None]
+    smooth = _Smooth.of(B, _bending(patch), u_point)
+    before = np.zeros(len(B))
     for _ in range(_ROUNDS):
-        uv, deviation, tilt = _deviations(replace(patch, heights=heights), fitted)
-        B = (
-            _basis(patch, uv) / tilt[:, None]
-        )  # a change of height moves the surface along its normal by the cosine of the slope
-        before = B @ (heights - patch.heights).ravel()
-        c, root, excess = _smooth(B, deviation + before, bend, u_point)
-        heights = patch.heights + c.reshape(heights.shape)
+        c, root, excess = smooth.fit(deviation + before)
+        heights, before = patch.heights + c.reshape(heights.shape), B @ c
+        _, deviation, _ = _deviations(replace(patch, heights=heights), fitted)
     made = replace(patch, heights=heights)
     grid = patch.grid(_GRID)
     slope = np.hypot(patch.jet(grid).hu, patch.jet(grid).hv)
@@ -95,49 +97,80 @@ def _deviations(patch: FreeformPatch, points: Array) -> tuple[Array, Array, Arra
 
 def _basis(patch: FreeformPatch, uv: Array) -> Array:
     """Height at uv per unit of every control height, (N, poles)."""
-    nu, nv = patch.heights.shape
-    columns = []
-    for k in range(nu * nv):
-        one = np.zeros(nu * nv)
-        one[k] = 1.0
-        columns.append(replace(patch, heights=one.reshape(nu, nv)).height(uv))
-    return np.stack(columns, axis=1)
+    along_u, along_v = (_splines(patch, k, uv[:, k]) for k in (0, 1))
+    return np.asarray((along_u[:, :, None] * along_v[:, None, :]).reshape(len(uv), -1))
+
+
+def _splines(patch: FreeformPatch, k: int, x: Array, order: int = 0) -> Array:
+    """Derivatives of all B-splines along u (0) or v (1), (N, poles along it)."""
+    from scipy.interpolate import BSpline
+
+    knots = (patch.knots_u, patch.knots_v)[k]
+    return np.asarray(BSpline(knots, np.eye(patch.heights.shape[k]), patch.degree[k])(x, order))
 
 
 def _bending(patch: FreeformPatch) -> Array:
-    """Root of the mean squared second derivatives of a correction, (3 M, poles), per mm."""
-    nu, nv = patch.heights.shape
-    grid = patch.grid(_GRID, beyond=1.0)
-    rows = []
-    for k in range(nu * nv):
-        one = np.zeros(nu * nv)
-        one[k] = 1.0
-        j = replace(patch, heights=one.reshape(nu, nv)).jet(grid)
-        rows.append(np.concatenate([j.huu, np.sqrt(2.0) * j.huv, j.hvv]))
-    R = np.linalg.qr(np.stack(rows, axis=1), mode="r")
-    return np.asarray(R / np.sqrt(len(grid)) * max(patch.half_size) ** 2)
+    """Quadratic form of the bending, mean of ``h_uu^2 + 2 h_uv^2 + h_vv^2``, (poles, poles).
 
-
-def _smooth(B: Array, d: Array, bend: Array, u_point: float) -> tuple[Array, Array, float]:
-    """Coefficients, square root of their covariance, and scatter beyond that of a point, mm.
-
-    The weight minimises ``n |d - H d|^2 / (n - tr H)^2``.
+    It is relative to the size of the face.
     """
-    n, best = len(d), None
-    gram, right, penalty = B.T @ B / n, B.T @ d / n, bend.T @ bend
-    ridge = 1e-12 * np.trace(gram) * np.eye(len(gram))
-    for weight in _WEIGHTS:
-        M = gram + weight * penalty + ridge
-        c = np.linalg.solve(M, right)
-        used = float(np.trace(np.linalg.solve(M, gram)))
-        left = d - B @ c
-        score = n * float(left @ left) / max(n - used, 1e-3) ** 2
-        if used < 0.8 * n and (best is None or score < best[0]):
-            best = score, c, M, used, float(left @ left)
-    assert best is not None
-    _, c, M, used, squares = best
-    scatter = float(np.sqrt(squares / max(n - used, 1.0)))
-    noise = max(u_point, scatter)
-    # the Bayesian covariance of the penalised fit includes the bias by the penalty
-    root = np.linalg.cholesky(np.linalg.inv(M)) * noise / np.sqrt(n)
-    return c, root, float(np.sqrt(max(scatter**2 - u_point**2, 0.0)))
+    gram = []
+    for k in (0, 1):
+        x = np.unique(patch.grid(_GRID, beyond=1.0)[:, k])
+        ways = [_splines(patch, k, x, order) for order in (0, 1, 2)]
+        gram.append([one.T @ one / len(x) for one in ways])
+    (u0, u1, u2), (v0, v1, v2) = gram
+    form = np.kron(u2, v0) + 2.0 * np.kron(u1, v1) + np.kron(u0, v2)
+    return np.asarray(form * max(patch.half_size) ** 4)
+
+
+@dataclass(frozen=True, eq=False)
+class _Smooth:
+    """A penalised fit at fixed foot points, solved for every weight at once.
+
+    With the vectors V that make gram + w0 penalty the unit and gram diagonal (mu), the matrix of
+    the fit with the weight w is ``mu + w / w0 (1 - mu)``, and so is its trace.
+
+    Attributes:
+        B: Deviations per coefficient, (N, M).
+        V: The vectors, (M, M).
+        mu: Share of the points in each, (M,).
+        u_point: Smallest standard uncertainty of a point, mm.
+    """
+
+    B: Array
+    V: Array
+    mu: Array
+    u_point: float
+
+    @staticmethod
+    def of(B: Array, penalty: Array, u_point: float) -> "_Smooth":
+        """For deviations per coefficient (N, M) and a penalty (M, M)."""
+        from scipy.linalg import eigh
+
+        gram = B.T @ B / len(B)
+        unit = gram + _UNIT * penalty + _RIDGE * np.trace(gram) * np.eye(len(gram))
+        mu, V = eigh(gram, unit)
+        return _Smooth(B, V, np.clip(mu, 0.0, 1.0), u_point)
+
+    def fit(self, d: Array) -> tuple[Array, Array, float]:
+        """Coefficients, square root of their covariance, and scatter beyond that of a point, mm.
+
+        The weight minimises ``n |d - H d|^2 / (n - tr H)^2``.
+        """
+        n, best = len(d), None
+        right, BV = self.V.T @ (self.B.T @ d) / n, self.B @ self.V
+        for weight in _WEIGHTS:
+            stiff = self.mu + weight / _UNIT * (1.0 - self.mu) + _RIDGE
+            used = float(np.sum(self.mu / stiff))
+            left = d - BV @ (right / stiff)
+            score = n * float(left @ left) / max(n - used, 1e-3) ** 2
+            if used < 0.8 * n and (best is None or score < best[0]):
+                best = score, stiff, used, float(left @ left)
+        assert best is not None
+        _, stiff, used, squares = best
+        scatter = float(np.sqrt(squares / max(n - used, 1.0)))
+        noise = max(self.u_point, scatter)
+        # the Bayesian covariance of the penalised fit includes the bias by the penalty
+        root = self.V / np.sqrt(stiff) * noise / np.sqrt(n)
+        return self.V @ (right / stiff), root, float(np.sqrt(max(scatter**2 - self.u_point**2, 0)))

@@ -19,7 +19,9 @@ from matstd.artefact.seat import (
     common_part,
     off_table,
     over_edge,
+    over_table,
     overlap,
+    same_place,
     seat_height,
 )
 from matstd.twin.errors import BadFile
@@ -31,6 +33,12 @@ SEAT_TOLERANCE = 1.0
 """Allowed gap or overlap between seat and support, mm: set-ups are measured values."""
 
 Mesh = tuple[Array, np.ndarray]
+
+_AWAY = 0.5
+"""Cosine between weight and the way out of the seat from which on a standard hangs."""
+
+_BALL_BESIDE = 100.0
+"""A bracket on the table holds a ball so far beside its face, mm."""
 
 _OVERHANG, _MORE = 40.0, 5.0
 """Default overhang of a base over the edge of the table, mm, and the margin over the overhang in
@@ -80,6 +88,11 @@ def check_seat(brief: Brief) -> None:
         BadFile: Body and distance, and a change of that body that was tried.
     """
     _refuse(brief, None)
+    sign, axis = brief.down[0], brief.down[1]
+    down = (1.0 if sign == "+" else -1.0) * np.eye(3)["XYZ".index(axis)]
+    if down @ table_face(brief.setup.T_table_artefact)[:3, 2] > _AWAY:
+        expected = "a direction of weight that does not pull the standard off its seat"
+        raise BadFile(brief.path, "standard.down", brief.down, expected)
 
 
 def check_beside(brief: Brief, standard: Standard, mesh: Mesh, q: Array) -> None:
@@ -140,6 +153,8 @@ def _setup_faults(brief: Brief, setup: Setup) -> Iterator[Fault]:
         angles = np.round(fixed_xyz_angles(T[:3, :3]) / DEG, 6).tolist()
         words = "a standard that looks towards the tool with every axis at zero: its seat does"
         yield Fault(f"{key}.rotation_deg", angles, words)
+    if twin := same_place(brief.setups, setup):
+        yield Fault(f"{key}.origin_mm", place, f"another place or turn than that of set-up {twin}")
     key = f"{key}.origin_mm"
     if above - brief.riser > SEAT_TOLERANCE and not _is_carried(brief, setup):
         yield Fault(
@@ -202,6 +217,10 @@ def _body_faults(brief: Brief, setup: Setup) -> Iterator[Fault]:
             words = f"{body.name} on the table: it reaches {depth:.1f} mm into it"
             yield Fault(key, place, words, np.array([0.0, 0.0, depth]))
     if ball is not None:
+        foot = over_table(table, ball.x, ball.y)
+        if foot > _BALL_BESIDE:
+            words = f"the ball on the table: its stem stands {foot:.0f} mm beside the face"
+            yield Fault("workshop.ball.at_mm", [ball.x, ball.y, ball.z], words)
         stem = Solid("stem", (ball.stem, ball.stem), True, table.high, ball.z, ball.x, ball.y)
         met = overlap(stem.corners(), base)
         if met.depth > CONTACT_DEPTH:

@@ -17,6 +17,7 @@ from matstd.artefact.reach import (
     Limit,
     PlacesInReach,
     ProbeReach,
+    Solid,
     places_on,
     reach_of,
     spread_poses,
@@ -40,6 +41,7 @@ from matstd.twin.units import DEG
 _RISER = 300.0  # mm above the table to which a change may raise the standard
 _POSES = 60  # table poses that are tried
 _PLACES_A_PATCH = 2  # reached, of a few hundred: with fewer, no choice of patches was ever found
+_LOWER_STEP = 10.0  # mm between two heights of a body that are tried
 _SHIFTS = (20.0, 50.0, 100.0, 200.0, 400.0)  # mm
 _SCALES = (1.0, 1.25, 1.5, 2.0, 3.0)  # multiples of the shift by which touches miss their travels
 _LENGTHS = (-100.0, -50.0, -25.0, 25.0, 50.0, 100.0, 200.0)  # mm by which a probe may differ
@@ -76,11 +78,13 @@ class Travels:
         tried: Places, table poses, and the distances beyond the limits.
         poses: Candidate table poses, (K, R), rad, at which Z can rise above the standard.
         against: Binding limit, in words; empty where enough is reached.
+        wish: Change of a body that brings enough within reach, in words; empty where none binds.
     """
 
     tried: PlacesInReach
     poses: Array
     against: str = ""
+    wish: str = ""
 
 
 def travels(brief: Brief) -> Travels:
@@ -99,11 +103,12 @@ def travels(brief: Brief) -> Travels:
         rises = to_rise <= retract
         if rises.any():
             tried = reach_of(wanted, *places, spread_poses(poses[rises], _POSES))
-    against = ""
+    against = wish = ""
     if not rises.any():
+        name, wish = _lower_body(brief, wanted, spread_poses(poses, _POSES))
         against = (
             f"Z would have to rise to {np.ceil(to_rise.min()):.0f} mm for the probe to clear "
-            f"standard and table while they turn, it retracts to {retract:.0f} mm"
+            f"{name or 'standard and table'} while they turn, it retracts to {retract:.0f} mm"
         )
     elif tried.places < enough:
         pose, asked = tried.wanting(enough)
@@ -115,7 +120,7 @@ def travels(brief: Brief) -> Travels:
             f"{enough} have to be; {f'even at {at} ' if at else ''}"
             f"{' and '.join(_limit_words(m, v) for m, v in asked)}"
         )
-    return Travels(tried, poses[rises], against)
+    return Travels(tried, poses[rises], against, wish)
 
 
 def nearest_in_reach(brief: Brief, tried: PlacesInReach) -> tuple[str, ...]:
@@ -145,6 +150,32 @@ def _to_rise(brief: Brief, wanted: ProbeReach, poses: Array) -> tuple[Array, flo
     turning = np.array(ways) + 0.5 * programs.clearance
     to_rise[turns] = np.maximum(to_rise[turns], turning)
     return to_rise, retract
+
+
+def _lower_body(brief: Brief, wanted: ProbeReach, poses: Array) -> tuple[str, str]:
+    """The body above which Z cannot rise, and the height at which it can; "" where it is none."""
+    bodies = wanted.workshop.bodies
+    for number, body in enumerate(bodies):
+
+        def rises(high: float, number: int = number, body: Solid = body) -> bool:
+            lower = replace(body, high=high)
+            changed = (*bodies[:number], lower, *bodies[number + 1 :])
+            reach = replace(wanted, workshop=replace(wanted.workshop, bodies=changed))
+            to_rise, retract = _to_rise(brief, reach, poses)
+            return bool(np.any(to_rise <= retract))
+
+        steps = np.arange(body.low + _LOWER_STEP, body.high, _LOWER_STEP)
+        low, high = 0, len(steps)
+        if high and rises(float(steps[0])):
+            while high - low > 1:
+                middle = (low + high) // 2
+                low, high = (middle, high) if rises(float(steps[middle])) else (low, middle)
+            size = f"{body.high - body.low:.0f} mm high"
+            return (
+                f"{body.name}, {size},",
+                f"a height of {steps[low] - body.low:.0f} mm of {body.name}",
+            )
+    return "", ""
 
 
 def _with_overshoot(chain: Chain, poses: Array) -> Array:

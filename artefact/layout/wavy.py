@@ -23,6 +23,7 @@ from matstd.twin.units import DEG
 _POLES_PER_WAVE = 9.0  # of the control net: straight flanks need more than a sine
 _GRID_MARGIN = 1.03  # on slope and radius: evaluated on a grid of a twentieth of the wave
 _GRID = 20.0  # points of that grid in a wave
+_LEAST_SLOPE = 15.0 * DEG  # of waves that see more than a plane: a quarter of what is across them
 _LOWEST = 10.0  # mm between base and the lowest valley: fillet, and room for the ball
 
 
@@ -53,7 +54,7 @@ def wavy_face(name: str, blank: Blank, wave: Wave) -> FreeformPatch:
     """The face with its lowest valley just above the base.
 
     Raises:
-        NotBuildable: The blank is too low for it, or no cutter of the limits makes such waves.
+        NotBuildable: The blank is too low for it, or no cutter of the limits makes steep waves.
     """
     heights = _wave_heights(wave, blank.limits)
     rise, base = float(np.abs(heights).max()), blank.base.thickness
@@ -85,9 +86,15 @@ def _wave_heights(wave: Wave, limits: Limits) -> Array:
         float(steepest / np.hypot(j.hu, j.hv).max()),
         _GRID_MARGIN * limits.min_concave_radius,
     )
-    if radius * plane.plus(j, high).curvature[:, 0].max() <= 1.0:
-        return h * high
-    return h * bent_to(lambda f: plane.plus(j, f).curvature, high, radius)
+    if radius * plane.plus(j, high).curvature[:, 0].max() > 1.0:
+        high = bent_to(lambda f: plane.plus(j, f).curvature, high, radius)
+    if (slope := np.arctan(high * np.hypot(j.hu, j.hv).max())) < _LEAST_SLOPE:
+        raise NotBuildable(
+            f"waves of {wave.wavelength:g} mm with a concave radius of {radius:.0f} mm rise by "
+            f"{slope / DEG:.0f} degrees, expected {_LEAST_SLOPE / DEG:.0f} or more: see "
+            "limits.min_concave_radius_mm and limits.max_slope_deg"
+        )
+    return h * high
 
 
 def _profile(x: Array, flatness: float) -> Array:

@@ -4,7 +4,9 @@ In: a `Brief`. Out: a `Placement`: the standard checked against every limit, its
 criterion, its rivals, and a certificate.
 """
 
+from matstd.artefact.place.body_choice import balls_beside
 from matstd.artefact.place.family import CLEAR_LEAD, Family, FamilyFigures, score_of
+from matstd.artefact.place.identifying import left_unknown
 from matstd.artefact.place.placement import Placement, design_standard
 from matstd.artefact.place.proving import proving_touches
 from matstd.artefact.place.wavy_proof import scan_poses
@@ -14,7 +16,9 @@ __all__ = [
     "Family",
     "FamilyFigures",
     "Placement",
+    "balls_beside",
     "design_standard",
+    "left_unknown",
     "proving_touches",
     "scan_poses",
     "score_of",

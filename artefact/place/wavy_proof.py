@@ -72,7 +72,8 @@ def showing_on_body(
         point, at = np.unique(tried.point, axis=0, return_inverse=True)
         if len(point) < count:
             raise NotReachable(
-                f"{len(point)} places of the wavy face can be touched, {count} wanted"
+                f"{len(point)} places of the wavy face can be touched, {count} wanted; "
+                "a smaller limits.max_slope_deg leaves the probe more room"
             )
         u = np.hypot(criterion.noise, criterion.calibration.form)
         may = replace(may, u=np.full(len(tried), u))

@@ -4,7 +4,7 @@ In: a `Standard`. Out: a `Price` of each construction, every figure with its unc
 changed in `rates`, a material added in `stocks`.
 """
 
-from matstd.artefact.price.price import Construction, Price, prices_of
+from matstd.artefact.price.price import Construction, Price, construction_to_make, prices_of
 from matstd.artefact.price.rates import Estimate
 
-__all__ = ["Construction", "Estimate", "Price", "prices_of"]
+__all__ = ["Construction", "Estimate", "Price", "construction_to_make", "prices_of"]

@@ -80,6 +80,21 @@ def prices_of(standard: Standard) -> tuple[Price, ...]:
     return tuple(_price(standard, stock, one) for one in Construction)
 
 
+def construction_to_make(prices: Iterable[Price], has_joints: bool) -> Construction:
+    """Of parts, each of which can be made again, unless the billet is clearly cheaper.
+
+    Args:
+        prices: Of both constructions; none for a material without rates.
+        has_joints: Whether the parts find room for their threads and screws.
+    """
+    total = {one.construction: one.total for one in prices}
+    if not has_joints or not total:
+        return Construction.BILLET
+    billet, parts = total[Construction.BILLET], total[Construction.PARTS]
+    dearer = parts.value - billet.value > max(parts.u, billet.u)
+    return Construction.BILLET if dearer else Construction.PARTS
+
+
 def _price(standard: Standard, stock: Stock, construction: Construction) -> Price:
     is_billet = construction is Construction.BILLET
     balls, faces = len(standard.spheres), standard.patches

@@ -10,7 +10,9 @@ from matstd.artefact.seat.seating import (
     middle_room,
     off_table,
     over_edge,
+    over_table,
     overlap,
+    same_place,
     seat_height,
 )
 
@@ -21,6 +23,8 @@ __all__ = [
     "middle_room",
     "off_table",
     "over_edge",
+    "over_table",
     "overlap",
+    "same_place",
     "seat_height",
 ]

@@ -3,16 +3,23 @@
 Outlines are looked at in the frame of the table's face, bodies as hulls of their corners.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 
 import numpy as np
 
 from matstd.artefact.body import Base, outline_distance
 from matstd.artefact.reach import Solid, table_face
-from matstd.twin.frames import Array, apply, inverse
+from matstd.twin.frames import Array, apply, fixed_xyz_angles, inverse
+from matstd.twin.record import Setup
+from matstd.twin.units import DEG
 
 CONTACT_DEPTH = 0.1
 """Depth up to which bodies count as touching, mm: a clamp lies on what it holds."""
+
+SAME_PLACE = 1.0
+"""Distance up to which two set-ups are one, mm, if they are turned by less than a degree."""
 
 _ARC = 17  # corners of the hull on each rounded corner: 0.03 mm inside one of 25 mm
 
@@ -60,6 +67,23 @@ def over_edge(table: Solid, base: Base, T_table_artefact: Array) -> float:
     seat = apply(inverse(table.T_face_solid), corners[: len(corners) // 2])
     round_ = table.half_size[0] if table.is_disc else 0.0
     return float(outline_distance(seat[:, :2], table.half_size, round_).max())
+
+
+def over_table(table: Solid, x: float, y: float) -> float:
+    """How far a place stands beside the table's face, mm; negative on it."""
+    at = apply(inverse(table.T_face_solid), np.array([[x, y, 0.0]]))[:, :2]
+    round_ = table.half_size[0] if table.is_disc else 0.0
+    return float(outline_distance(at, table.half_size, round_)[0])
+
+
+def same_place(setups: Sequence[Setup], setup: Setup) -> str:
+    """Name of an earlier set-up in which the standard stands as in this one; "" for none."""
+    for other in takewhile(lambda one: one.name != setup.name, setups):
+        moved = inverse(other.T_table_artefact) @ setup.T_table_artefact
+        turned = np.abs(fixed_xyz_angles(moved[:3, :3])).max()
+        if np.linalg.norm(moved[:3, 3]) < SAME_PLACE and turned < DEG:
+            return other.name
+    return ""
 
 
 def off_table(table: Solid, base: Base, T_table_artefact: Array) -> float:

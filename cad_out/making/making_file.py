@@ -5,11 +5,19 @@ from pathlib import Path
 from typing import Any
 
 from matstd.artefact.body import Material, Standard
-from matstd.artefact.price import Estimate, Price, prices_of
-from matstd.cad_out.details import details_of
+from matstd.artefact.price import (
+    Construction,
+    Estimate,
+    Price,
+    construction_to_make,
+    prices_of,
+)
+from matstd.cad_out.details import Details, details_of
 from matstd.cad_out.making.cutting import OVERHANG, RADIUS, Cutting, cutting_of
 from matstd.cad_out.making.hints import ROUGHNESS, FaceHint, hints_of
+from matstd.cad_out.making.joints import joints_of
 from matstd.cad_out.making.stiffness import Stiffness
+from matstd.twin.errors import NotBuildable
 from matstd.twin.files.whole import write_json
 from matstd.twin.units import DEG, UM
 
@@ -26,6 +34,7 @@ class Making:
         stiffness: First mode and sag; None where the modulus of the material is not known.
         hints: How every face is milled.
         prices: Estimates of both constructions; none for a material without rates.
+        make: The construction that the workshop should make.
     """
 
     cutting: Cutting
@@ -33,18 +42,29 @@ class Making:
     hints: dict[str, FaceHint]
     material: Material
     prices: tuple[Price, ...] = ()
+    make: Construction = Construction.BILLET
 
 
 def making_of(standard: Standard, stiffness: Stiffness | None) -> Making:
     """Cutters of a standard, beside its stiffness."""
-    cutting, hints = cutting_of(standard, details_of(standard)), hints_of(standard)
+    details, prices = details_of(standard), prices_of(standard)
+    cutting, hints = cutting_of(standard, details), hints_of(standard)
     return Making(
         cutting=cutting,
         stiffness=stiffness,
         hints=hints,
         material=standard.material,
-        prices=prices_of(standard),
+        prices=prices,
+        make=construction_to_make(prices, _has_joints(standard, details)),
     )
+
+
+def _has_joints(standard: Standard, details: Details) -> bool:
+    try:
+        joints_of(standard, details)
+    except NotBuildable:
+        return False
+    return True
 
 
 def write_making(path: Path, making: Making) -> None:
@@ -69,6 +89,7 @@ def write_making(path: Path, making: Making) -> None:
         },
         **_stiffness_table(making.stiffness, making.material),
         "constructions": {price.construction: _price_table(price) for price in making.prices},
+        "make": making.make,
         "first_mode_limit_Hz": FIRST_MODE,
         "sag_limit_um": SAG / UM,
     }

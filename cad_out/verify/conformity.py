@@ -80,7 +80,7 @@ class Conformity:
         missing: Faces that should and do not, or are not parts in the file of single faces.
         missing_details: Workshop details that found no room, in words.
         parts: How often each part of `standard-parts.step` is there; none where a face leans.
-        not_as_designed: Tolerances, notes and drawn signs that a reader does not find as designed.
+        misread: Tolerances, notes and drawn signs that a reader does not find as designed.
         face_deviation: Largest distance from the design by face, in both STEP files, without any
             CAD kernel.
         area_error: Of every patch's trimmed face in the mesh against the design, relative.
@@ -112,7 +112,7 @@ class Conformity:
     missing: tuple[str, ...]
     missing_details: tuple[str, ...]
     parts: dict[str, int]
-    not_as_designed: tuple[str, ...]
+    misread: tuple[str, ...]
     face_deviation: dict[str, float]
     area_error: dict[str, float]
     is_watertight: bool
@@ -159,7 +159,7 @@ class Conformity:
             ),
             (self.is_millimetre, "the STEP file is not in millimetres"),
             (not self.missing, f"faces without their name: {', '.join(self.missing)}"),
-            (not self.not_as_designed, f"not as designed: {', '.join(self.not_as_designed)}"),
+            (not self.misread, f"not in the STEP file as meant: {', '.join(self.misread)}"),
             (drift <= VOLUME_LIMIT, f"the volume changes by {drift:.1e} on re-reading"),
             (
                 deviation <= FACE_LIMIT,
@@ -258,7 +258,7 @@ def measure(
         ),
         missing_details=details.missing,
         parts=built["parts"],
-        not_as_designed=missing_annotations(standard, details, entities, found),
+        misread=missing_annotations(standard, details, entities, found),
         face_deviation={name: max(one[name] for one in apart) for name in apart[0]},
         area_error=area_errors(standard, face_areas(corners, triangles, owner)),
         is_watertight=is_watertight(corners, triangles),

@@ -279,8 +279,7 @@ def group_of(effect: Effect) -> str:
     return symbol.name if symbol is not None and effect.kind in _PLAIN else effect.name
 
 
-_PLAIN = ("geometric", "location")
-"""Kinds of effects that are the errors of ISO 230-1 themselves."""
+_PLAIN = ("geometric", "location")  # kinds of effects that are the errors of ISO 230-1 themselves
 
 
 def words_of(chain: Chain, effect: Effect) -> set[str]:

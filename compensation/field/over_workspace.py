@@ -13,8 +13,7 @@ from matstd.twin.numbers import rms, rms_length
 from matstd.twin.record import Touches
 from matstd.twin.sampling import even_points
 
-RESULT_POSES = 256
-"""Poses of the figures: their rms is then known to some 4 %."""
+RESULT_POSES = 256  # poses of the figures: their rms is then known to some 4 %
 
 
 def sample_workspace(
@@ -113,8 +112,6 @@ def result_of(
     """Before and after over some poses, and the remainder of every error.
 
     Args:
-        q: Poses, (N, A).
-        datum: With the tool that is meant.
         unheld: What the compensation leaves per unit of every parameter, first order, (N, 3, P);
             None where nothing is broken down.
     """

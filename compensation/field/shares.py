@@ -11,8 +11,7 @@ from matstd.twin.numbers import rms_length
 from matstd.twin.record import Touches
 from matstd.twin.sampling import spread_rows
 
-MAX_U_POSES = 100
-"""Poses at which the uncertainty of a share is taken: it varies slowly over them."""
+MAX_U_POSES = 100  # poses at which the uncertainty of a share is taken: it varies slowly over them
 
 
 class Share(NamedTuple):

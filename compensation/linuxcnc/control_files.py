@@ -18,8 +18,7 @@ HEAD = "# matstd serve --linuxcnc wrote this"
 LARGEST_RATIO = 0.9
 """Share of an axis's speed and acceleration that LinuxCNC lets external offsets have."""
 
-BESIDE = Path(__file__).parent / "beside"
-"""The component, which runs in the Python of the system."""
+BESIDE = Path(__file__).parent / "beside"  # the component, which runs in the Python of the system
 
 
 class Control(Ini):

@@ -9,8 +9,7 @@ from matstd.compensation.part_programs.motion import Arc, Corner, Item, Motion, 
 from matstd.compensation.part_programs.radius import MAX_OVERSHOOT, Element, cuts
 from matstd.twin.frames import Array
 
-MAX_SMOOTH_SINE = 1e-6
-"""Largest sine of the angle of a smooth transition, which is no corner."""
+MAX_SMOOTH_SINE = 1e-6  # largest sine of the angle of a smooth transition, which is no corner
 
 
 def without_corners(items: Sequence[Item | Corner], reading: Reading) -> list[Item]:

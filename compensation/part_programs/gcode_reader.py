@@ -47,8 +47,7 @@ _NOT_PLAIN = re.compile(r"[/$]|O\d|O<|.*[#\[=]")
 _CHANGE = re.compile(r"M0*6(?!\d)", re.IGNORECASE)
 
 _IN_CYCLES = frozenset("XYZRPQFLHSTK")
-MAX_HOLES = 1000
-"""Holes of one line; beyond it the word is no number of holes."""
+MAX_HOLES = 1000  # holes of one line; beyond it the word is no number of holes
 
 
 class _Block(NamedTuple):

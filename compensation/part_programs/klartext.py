@@ -14,8 +14,7 @@ from matstd.twin.frames import Array
 ENDING = ".H"
 HAS_INVERSE_TIME = False
 OPENS = re.compile("BEGIN", re.IGNORECASE)
-_DECIMALS = 4
-"""Steps in which the control takes coordinates: 0.1 µm, 0.0001 degrees."""
+_DECIMALS = 4  # steps in which the control takes coordinates: 0.1 µm, 0.0001 degrees
 
 
 def comment(text: str) -> str:

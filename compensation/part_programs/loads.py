@@ -10,8 +10,7 @@ from matstd.twin.files import CsvTable, read_text
 from matstd.twin.frames import Array
 
 COLUMNS = ("first_line", "last_line", "Fx_N", "Fy_N", "Fz_N")
-MAX_FORCE = 1e5
-"""Largest plausible cutting force, N."""
+MAX_FORCE = 1e5  # largest plausible cutting force, N
 
 
 class Load(NamedTuple):

@@ -23,8 +23,7 @@ CHECKED_SHARES = (0.25, 0.5, 0.75)
 """Shares of a line at which it is checked: the error of a chord is a parabola, largest in its
 middle; that of a jump of the error is not."""
 
-LINES_PER_BLOCK = 20_000
-"""Lines that are checked together: bounds the memory."""
+LINES_PER_BLOCK = 20_000  # lines that are checked together: bounds the memory
 
 
 def off_path(path: ProgramPath, which: IntArray, share: Array, written: Array) -> Array:
@@ -77,8 +76,7 @@ TOLERANCE = 1.0 * UM
 MAX_LINE = 20.0
 """Longest line of a motion that is checked as one, mm: no guide repeats an error over less."""
 
-MIN_LINE = 0.01
-"""A line that is shorter is not divided, mm: controls round there."""
+MIN_LINE = 0.01  # a line that is shorter is not divided, mm: controls round there
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,8 +191,7 @@ def passed(program: Program, errors: MachineErrors) -> tuple[Touches, IntArray]:
     return path.touches(which, share), which
 
 
-MAX_U_POINTS = 200
-"""Points at which the uncertainty is taken: it varies slowly along a program."""
+MAX_U_POINTS = 200  # points at which the uncertainty is taken: it varies slowly along a program
 
 
 def _begun(path: ProgramPath, tolerance: float) -> IntArray:

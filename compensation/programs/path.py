@@ -129,8 +129,7 @@ class ProgramPath:
         return np.where(moving != 0.0, moving, self.last[which])
 
 
-_STEP = 1e-4
-"""Share of a motion over which its direction is taken."""
+_STEP = 1e-4  # share of a motion over which its direction is taken
 
 
 def _feels_approach(errors: MachineErrors) -> bool:

@@ -21,11 +21,9 @@ if TYPE_CHECKING:
 NAMESPACE = "urn:material-standard:compensation"
 """Namespace of the nodes."""
 
-OUTPUT_PERIOD = 0.005
-"""Time between two outputs without a request, s."""
+OUTPUT_PERIOD = 0.005  # time between two outputs without a request, s
 
-MOVING = 0.002
-"""The same while a correction is moving."""
+MOVING = 0.002  # the same while a correction is moving
 
 _KNOWN_EVERY = 1.0  # s, uncertainty: it changes slowly and takes longer than a correction
 

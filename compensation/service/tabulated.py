@@ -153,6 +153,7 @@ def _dependence(
     """Readings and directions on which an effect depends, and whether it changes with the state."""
     chain, rng, terms = errors.chain, np.random.default_rng(0), [(effect, theta)]
     low, high = chain.travels.T
+    # found by trial, as for a user's own effect: each reading is changed alone at random poses
     q, other = rng.uniform(low, high, (2, _POSES, len(low)))
     still = np.zeros_like(q)
     at = _twist(errors, terms, q, still, length)

@@ -28,8 +28,7 @@ from matstd.twin.numbers import rms_length
 from matstd.twin.record import Touches
 from matstd.twin.units import NM
 
-MIN_GAIN = 50.0 * NM
-"""A table that lowers the rms error by less is not written, mm."""
+MIN_GAIN = 50.0 * NM  # a table that lowers the rms error by less is not written, mm
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,7 +186,6 @@ def most_useful(
     that it helps.
 
     Args:
-        q: Poses, (N, A).
         most: Tables that a control holds.
     """
     left, effects = _fields(tables, errors, datum, q)
@@ -207,9 +205,6 @@ def harmless(tables: AxisTables, errors: MachineErrors, datum: Datum, q: Array) 
 
     A table keeps what depends on the direction of motion alone, which is right beside the datum
     too.
-
-    Args:
-        q: Poses, (N, A).
     """
     left, effects = _fields(tables, errors, datum, q)
     kept = dict(enumerate(effects))

@@ -11,15 +11,13 @@ from matstd.twin.machine import Chain, Contribution, Link
 from matstd.twin.record import Touches
 from matstd.twin.units import NM
 
-FIRST_POINTS = 17
-"""Points of an axis from which the number is doubled until they are enough."""
+FIRST_POINTS = 17  # points of an axis from which the number is doubled until they are enough
 
 MAX_INTERPOLATION = 20.0 * NM
 """What interpolation of one component may leave at the tool point, mm: far below what a machine
 repeats."""
 
-CHECKED_PLACES = 4
-"""Places between two points at which interpolation is looked at."""
+CHECKED_PLACES = 4  # places between two points at which interpolation is looked at
 
 
 @dataclass(frozen=True, eq=False)

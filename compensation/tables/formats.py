@@ -188,9 +188,6 @@ def verify_tables(
 ) -> VerifiedTables:
     """Read tables back and simulate them on the exact twin.
 
-    Args:
-        q: Poses over which they are judged, (N, A).
-
     Raises:
         BadFile: Files that cannot be read, or are of another machine or datum.
     """

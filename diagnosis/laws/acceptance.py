@@ -26,6 +26,7 @@ MEMORY_PARAMETERS = 2
 class Refusal(Enum):
     """Why the best law of a search was not kept."""
 
+    FEW = "so few touches distinguish no law from another"
     CHANCE = "its evidence is within chance"
     PREDICTION = "touches left out are not predicted better with it"
     MEMORY = "noise that remembers explains the run better"

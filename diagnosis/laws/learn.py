@@ -16,7 +16,7 @@ from matstd.diagnosis.laws.acceptance import (
     predicts_better,
     stands_beside_memory,
 )
-from matstd.diagnosis.laws.beginning import Beginning
+from matstd.diagnosis.laws.beginning import Beginning, log_odds
 from matstd.diagnosis.laws.library import LibraryEffect, nearest_of_library
 from matstd.diagnosis.laws.policy import POLICY, LawPolicy
 from matstd.diagnosis.laws.search import Searched, search_law
@@ -24,6 +24,7 @@ from matstd.diagnosis.laws.space import Space
 from matstd.twin.compute import one_blas_thread
 from matstd.twin.frames import Array
 from matstd.twin.laws import Carrier, Law
+from matstd.twin.library import owner_of
 from matstd.twin.model import Effect, Model, columns
 from matstd.twin.record import Run
 
@@ -151,10 +152,14 @@ class Learning:
         return tuple(out)
 
     def predicted(self, run: Run) -> Array:
-        """Deviation that the laws add at the touches of any run, (N,), mm."""
-        out = np.zeros(len(run))
+        """Deviation that the laws add at the touches of any run, (N,), mm.
+
+        A law that belongs to the run that it was learnt from adds nothing elsewhere.
+        """
+        out, is_own = np.zeros(len(run)), run.fingerprint == self.before.run.fingerprint
         for law, theta, share in self.members:
-            out += share * (columns([law], run.touches) @ theta)
+            if is_own or owner_of(law) == "machine":
+                out += share * (columns([law], run.touches) @ theta)
         return out
 
     @property
@@ -163,6 +168,7 @@ class Learning:
         return np.sqrt(np.diag(self.tangent.covariance))
 
 
+@one_blas_thread()
 def learn_laws(run: Run, model: Model | None = None, policy: LawPolicy = POLICY) -> Learning:
     """Laws that explain what a model leaves of a run.
 
@@ -186,9 +192,12 @@ def learn_beside(
             a law takes nothing from it.
     """
     white = replace(start, memory=None)
-    current, refused, refusal = start.fit, None, None
+    current, refused = start.fit, None
     laws: list[LearntLaw] = []
-    for _ in range(policy.most_laws if int(current.used.sum()) >= MIN_TOUCHES_OF_LAW else 0):
+    charges: list[float] = []
+    is_enough = int(current.used.sum()) >= MIN_TOUCHES_OF_LAW
+    refusal = None if is_enough else Refusal.FEW
+    for _ in range(policy.most_laws if is_enough else 0):
         searched = search_law(Space.of(current), policy)
         best = _learnt(searched)
         if best is None:
@@ -205,7 +214,8 @@ def learn_beside(
             refused = best
             break
         laws.append(best)
-        current = fit
+        charges.append(log_odds(fit, current, best.score))
+        current = _each_anew(white, laws, charges, fit, policy)
     learnt = [one.law for one in laws]
     if start.memory is not None and laws:
         start = replace(start, memory=memory_left(current, start.memory))
@@ -220,6 +230,41 @@ def learn_beside(
         held_out=tuple(held_out(start.fit, current, learnt)),
         policy=policy,
     )
+
+
+def _each_anew(
+    white: Beginning, laws: list[LearntLaw], charges: list[float], fit: Fit, policy: LawPolicy
+) -> Fit:
+    """Every law searched anew with the others in place, until none of them changes.
+
+    The first of several laws is found while the others are part of the noise, and may hold a part
+    of them. Another law takes its place where it explains the run better, all charges taken off.
+
+    Args:
+        laws: Those that were learnt; the last one with all others in place. Changed in place.
+        charges: What each was charged; changed with them.
+        fit: With all of them.
+    """
+    waiting = set(range(len(laws) - 1))
+    for _ in range(policy.most_turns * len(laws)):
+        if not waiting:
+            break
+        i = min(waiting)
+        waiting.remove(i)
+        others = set(range(len(laws))) - {i}
+        base = white.fitted([laws[k].law for k in sorted(others)])
+        best = _learnt(search_law(Space.of(base), policy))
+        if best is None or best.score < policy.min_score:
+            continue
+        is_same = best.law.name == laws[i].law.name
+        margin = 0.0 if is_same else policy.shorter
+        if best.score < log_odds(fit, base, charges[i]) + margin:
+            continue
+        laws[i] = replace(best, library=laws[i].library, memory=laws[i].memory)
+        fit = white.fitted([one.law for one in laws])
+        charges[i] = log_odds(fit, base, best.score)
+        waiting |= set() if is_same else others
+    return fit
 
 
 def _refusal(

@@ -45,9 +45,16 @@ def nearest_of_library(space: Space) -> LibraryEffect | None:
     return best
 
 
-def charge_of(effect: Effect, touches: Touches, freedom: float) -> float:
-    """Log evidence that an effect costs: its parameters by Schwarz's criterion, and its choice."""
-    count = len(effect.parameters) + len(inner_values(effect, touches))
+def charge_of(
+    effect: Effect, touches: Touches, freedom: float, determined: float | None = None
+) -> float:
+    """Log evidence that an effect costs: its parameters by Schwarz's criterion, and its choice.
+
+    Args:
+        determined: How many of its parameters a run determines; all without it.
+    """
+    count = len(effect.parameters) if determined is None else determined
+    count += len(inner_values(effect, touches))
     return 0.5 * count * float(np.log(max(freedom, 2.0))) + CHARGE
 
 

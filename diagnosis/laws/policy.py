@@ -22,6 +22,7 @@ class LawPolicy:
         shorter: Log evidence below which the shorter of two formulas is taken.
         class_odds: Log odds below which laws form a class; predictions average over its members.
         most_laws: Laws learnt one after the other.
+        most_turns: How often each of several laws is searched anew with the others in place.
         most_members: Most laws over which a prediction averages.
         most_rivals: Rivals that are reported.
     """
@@ -37,6 +38,7 @@ class LawPolicy:
     shorter: float = 2.0
     class_odds: float = 4.0
     most_laws: int = 3
+    most_turns: int = 2
     most_members: int = 6
     most_rivals: int = 8
 

@@ -37,13 +37,13 @@ def learn_remainder(
         start: Of the model without the effects that were found.
         end: With them.
         known: What was known of the starting model from another run.
-        is_left: Whether anything remains beside these effects; else laws are learnt in the place of
-            `IMITATORS` only.
+        is_left: Whether anything remains beside these effects; else laws are learnt only in the
+            place of a set of `IMITATORS`.
     """
     base = start.model
     names = {e.name for e in base.effects}
     found = tuple(e for e in end.model.effects if e.name not in names)
-    if not is_left and not any(e.kind in IMITATORS for e in found):
+    if not is_left and not (found and all(e.kind in IMITATORS for e in found)):
         return None
     rest = policy if is_left else replace(policy, most_laws=0)
     beside = learn_beside(Beginning.of_fit(end, base, known), rest, True)
@@ -62,8 +62,19 @@ def _odds(alone: Learning, beside: Learning, found: Sequence[Effect]) -> float:
     fits = [_white(one, len(one.laws), gross) for one in (alone, beside)]
     charges = [_charges(one, gross) for one in (alone, beside)]
     touches, freedom = alone.before.run.touches, max(fits[1].solution.dof, 1.0)
-    named = sum(charge_of(effect, touches, freedom) for effect in found)
+    before = beside.before
+    named = sum(charge_of(e, touches, freedom, _determined(before, e)) for e in found)
     return log_odds(fits[0], fits[1], charges[0] - charges[1] - named)
+
+
+def _determined(fit: Fit, effect: Effect) -> float:
+    """How many parameters of an effect the data determine, its prior the others.
+
+    ``sum (1 - u^2/sd^2)``: the form of a face has 21 coefficients of which a run sees a few.
+    """
+    rows = fit.of_effect(effect.name)
+    u2 = np.diag(fit.covariance)[rows]
+    return float(np.clip(1.0 - u2 / fit.prior.sd[rows] ** 2, 0.0, 1.0).sum())
 
 
 def _white(learning: Learning, count: int, gross: GrossErrors) -> Fit:

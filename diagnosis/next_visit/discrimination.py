@@ -16,8 +16,10 @@ def separation(own: Predicted, other: Predicted) -> float:
     ``sqrt(d^T (1 + S S^T)^-1 d)``: with S the root of the covariance of the other explanation, what
     its own uncertain parameters could make up for does not count.
     """
-    d = own[0] - other[0]
-    squared = float(d @ np.linalg.solve(_covariance(other), d))
+    d, S = own[0] - other[0], other[1]
+    along = S.T @ d
+    known = np.eye(S.shape[1]) + S.T @ S
+    squared = float(d @ d - along @ np.linalg.solve(known, along))
     return float(np.sqrt(max(squared, 0.0)))
 
 

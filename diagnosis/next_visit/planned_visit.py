@@ -27,8 +27,9 @@ from matstd.twin.frames import Array
 from matstd.twin.model import Effect
 from matstd.twin.record import IntArray, Run, Touches
 
-POSES, OFFERED_EACH, TOUCHES = 16, 24, 128
-"""Poses that are offered, touches at each, and touches of the plan: an hour on the machine."""
+SIZES, OFFERED_EACH = ((16, 128), (32, 256)), 24
+"""Poses that are offered and touches of the plan: an hour on the machine, or two where an hour
+decides nothing; and touches that are offered at every pose."""
 
 EVENLY = 0.25
 """Share of the touches that is spread over all poses whatever the rivals predict: the new set-ups
@@ -144,12 +145,26 @@ def plan_visit(learning: Learning, rng: np.random.Generator) -> VisitPlan:
 
 
 def _planned(found: Sequence[Hypothesis], run: Run, rng: np.random.Generator) -> VisitPlan:
+    visits = _Visits.of(run)
+    for size in SIZES:
+        plan = _of_size(found, visits, size, rng)
+        if plan.refusal is not NoPlan.ALIKE:
+            break
+    return plan
+
+
+def _of_size(
+    found: Sequence[Hypothesis],
+    visits: "_Visits",
+    size: tuple[int, int],
+    rng: np.random.Generator,
+) -> VisitPlan:
     if not found:
         return VisitPlan(refusal=NoPlan.NO_LAW)
-    law, visits = found[0].law, _Visits.of(run)
+    law = found[0].law
     if len(found) < 2:
         return VisitPlan(law, refusal=NoPlan.DECIDED)
-    tried = _tried(found, visits, rng)
+    tried = _tried(found, visits, size, rng)
     if not tried:
         return VisitPlan(law, refusal=NoPlan.FEW)
     most = np.max([one.apart for one in tried], axis=0)
@@ -159,7 +174,7 @@ def _planned(found: Sequence[Hypothesis], run: Run, rng: np.random.Generator) ->
         return VisitPlan(law, alike=alike, refusal=NoPlan.SAME)
     found, seen = [found[0], *(found[int(k) + 1] for k in differ)], most[differ] >= LEAST_SEPARATION
     best = max((one.of(differ) for one in tried), key=lambda one: _worst(one.apart, seen))
-    picked = _picked(best.predicted, seen, best.offers.pose)
+    picked = _picked(best.predicted, seen, size[1], len(best.offers))
     touches = visits.at(best.offers[picked], best.schedule)
     rivals, power = _power(found, visits, touches, rng)
     known = VisitPlan(law, schedule=best.schedule, rivals=rivals, alike=alike)
@@ -169,16 +184,19 @@ def _planned(found: Sequence[Hypothesis], run: Run, rng: np.random.Generator) ->
 
 
 def _tried(
-    found: Sequence[Hypothesis], visits: "_Visits", rng: np.random.Generator
+    found: Sequence[Hypothesis],
+    visits: "_Visits",
+    size: tuple[int, int],
+    rng: np.random.Generator,
 ) -> list[_Tried]:
     """Sequences of poses with every schedule; none where too few touches can be made."""
-    out = []
+    out, (poses, touches) = [], size
     for _ in range(SEQUENCES):
-        drawn = visiting_touches(visits.run, POSES, OFFERED_EACH, rng)
-        if len(drawn) < TOUCHES:
+        drawn = visiting_touches(visits.run, poses, OFFERED_EACH, rng)
+        if len(drawn) < touches:
             continue
         for schedule in SCHEDULES:
-            offers = visits.at(drawn, schedule, TOUCHES / len(drawn))
+            offers = visits.at(drawn, schedule, touches / len(drawn))
             predicted = predictions(found, offers)
             apart = np.array([separation(predicted[0], other) for other in predicted[1:]])
             out.append(_Tried(schedule, offers, predicted, apart))
@@ -190,13 +208,14 @@ def _worst(apart: Array, seen: BoolArray) -> float:
     return float(np.min(apart[seen])) if seen.any() else float(np.max(apart))
 
 
-def _picked(predicted: Sequence[Predicted], seen: BoolArray, pose: IntArray) -> IntArray:
+def _picked(
+    predicted: Sequence[Predicted], seen: BoolArray, touches: int, offered: int
+) -> IntArray:
     """Rows of the plan in their order: those that separate, and some at every pose."""
     own, *others = predicted
     served = [one for one, is_seen in zip(others, seen, strict=True) if is_seen] or others
-    n = len(pose)
-    evenly = np.unique(np.linspace(0, n - 1, int(EVENLY * TOUCHES)).astype(int))
-    best = greedy(own, served, TOUCHES - len(evenly))
+    evenly = np.unique(np.linspace(0, offered - 1, int(EVENLY * touches)).astype(int))
+    best = greedy(own, served, touches - len(evenly))
     return np.unique(np.concatenate([evenly, np.array(best, dtype=np.int64)]))
 
 

@@ -24,8 +24,7 @@ _LIMITS = {
 }
 """Columns of the limits of the joints."""
 
-SLACK = 0.5 * DEG
-"""By which a reading may lie beyond a limit."""
+SLACK = 0.5 * DEG  # by which a reading may lie beyond a limit
 
 
 def arm_from_dh(sheet: Sheet, readings: Array, is_modified: bool = False) -> tuple[Chain, Array]:

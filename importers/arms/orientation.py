@@ -30,8 +30,7 @@ joints that were never calibrated are off by 10 mrad."""
 MAX_SECOND_SHARE = 0.99
 """Second singular value over the first from which poses do not determine the orientations."""
 
-EXPLAINED_SHARE = 0.2
-"""Inverse orientations explain the angles if at most this share remains."""
+EXPLAINED_SHARE = 0.2  # inverse orientations explain the angles if at most this share remains
 
 PAIRS = ((0, 1), (1, 2), (2, 0))
 """Direction of the arm and direction of the reading of each pair of points."""

@@ -26,8 +26,7 @@ MAX_SCATTER = 5.0
 UNEXPLAINED_SHARE = 0.5
 """From this share of the spread of the measured places, residuals are no errors of an arm."""
 
-MIN_COMPONENT = 0.05
-"""From this component of a unit vector a parameter belongs to a direction."""
+MIN_COMPONENT = 0.05  # from this component of a unit vector a parameter belongs to a direction
 
 
 @dataclass(frozen=True, eq=False)

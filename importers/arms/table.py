@@ -24,11 +24,9 @@ _CYCLE = re.compile(r"cycle|zyklus|\brep(lica\w*|eat\w*|etition\w*)?\b|trial", r
 _COUPLED = re.compile(r"J?(\d{1,2})\s*([+-])\s*J?(\d{1,2})\Z", re.IGNORECASE)
 
 
-MAX_FIXED_MOTION = 2.0
-"""Range (mm) of a fixed target in the frame of a tracker that drifts."""
+MAX_FIXED_MOTION = 2.0  # range (mm) of a fixed target in the frame of a tracker that drifts
 
-MIN_MOTION_RATIO = 20.0
-"""Least motion of the reflectors on the arm, in ranges of a fixed target."""
+MIN_MOTION_RATIO = 20.0  # least motion of the reflectors on the arm, in ranges of a fixed target
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,6 +154,7 @@ def _reflectors(
             around = match.string[: match.start()] + match.string[match.end() :]
             key = around.strip().lower(), match[1].isupper()
             found.setdefault(key, {}).setdefault(match[1].lower(), i)
+    # three coordinates of one name are a place; a single x or z is something else
     whole = {key: of for key, of in found.items() if len(of) == 3}
     fixed = {words: of for (words, _), of in whole.items() if _FIXED.search(_words(words))}
     whole = {key: of for key, of in whole.items() if key[0] not in fixed}

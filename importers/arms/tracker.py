@@ -35,11 +35,9 @@ from matstd.twin.record import (
 )
 from matstd.twin.units import UM
 
-IMPLAUSIBLE_RMS = 5.0
-"""Deviations (mm rms) beyond those of an uncalibrated arm (about 1 mm)."""
+IMPLAUSIBLE_RMS = 5.0  # deviations (mm rms) beyond those of an uncalibrated arm (about 1 mm)
 
-EXPLAINED_SHARE = 0.2
-"""A mistake explains the deviations if at most this share remains."""
+EXPLAINED_SHARE = 0.2  # a mistake explains the deviations if at most this share remains
 
 
 def likely_mistake(
@@ -78,8 +76,7 @@ def _mistakes(q: Array) -> Iterator[tuple[str, Array]]:
     yield "joints are in degrees ([deg] behind the names of their columns)", np.deg2rad(q)
 
 
-SAME_READING = 1e-4
-"""Readings that agree within this (mm, rad) are one pose, held out as a whole."""
+SAME_READING = 1e-4  # readings that agree within this (mm, rad) are one pose, held out as a whole
 
 _TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
 
@@ -204,6 +201,7 @@ def tracker_run(
         seen = _by_poses(table, chain, u, reflector, u_angle)
     clock, force = sheet.find(_TIME), loads(sheet)
     which, n = seen.row, len(seen.row)
+    # a pose that was visited again must not predict itself: both visits are held out together
     near = np.round(table.q[which] / SAME_READING).astype(np.int64)
     touches = replace(
         at_poses(chain, table.q[which], -seen.target[:, 2]),

@@ -37,8 +37,7 @@ class ColumnTable(Table):
     missing: float | None = None
 
 
-How = ColumnTable | float | int | str
-"""Source of a column: one of the table, or a constant."""
+How = ColumnTable | float | int | str  # source of a column: one of the table, or a constant
 
 
 class MappingTable(Table):
@@ -50,8 +49,7 @@ class MappingTable(Table):
     rows: list[dict[str, How]] = Field(default_factory=list)
 
 
-_TEXT = ("feature", "setup", "pose", "split")
-"""Columns of a run that hold names."""
+_TEXT = ("feature", "setup", "pose", "split")  # columns of a run that hold names
 
 
 class MappedRun(NamedTuple):

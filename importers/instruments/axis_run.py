@@ -10,14 +10,12 @@ from matstd.twin.machine import LETTERS, Axis, Chain, Link, make_chain, tip
 from matstd.twin.record import Instrument, Run, Setup, at_poses
 from matstd.twin.thermal import CYCLE, PROGRESS
 
-ARM = 1000.0
-"""Arm (mm) by which an angle is written as a length: 1 µrad is 1 µm."""
+ARM = 1000.0  # arm (mm) by which an angle is written as a length: 1 µrad is 1 µm
 
 MIN_CYCLES_TO_HOLD_OUT = 4
 """Cycles needed to hold one out; with fewer it would be more than a quarter of the test."""
 
-MIN_SINE = 0.5
-"""Sine below which an axis and the direction it turns about count as parallel."""
+MIN_SINE = 0.5  # sine below which an axis and the direction it turns about count as parallel
 
 
 def one_axis_machine(axis: str, target: Array) -> Chain:

@@ -21,11 +21,9 @@ from matstd.twin.machine import Axis, Chain, linear_directions, make_chain
 from matstd.twin.record import Instrument, IntArray, Labels, Run, Setup, at_poses
 from matstd.twin.units import MINUTE
 
-PAUSE_BETWEEN_RUNS = 10.0
-"""Assumed pause between two runs, s."""
+PAUSE_BETWEEN_RUNS = 10.0  # assumed pause between two runs, s
 
-ANGLE_BEFORE_READING = 1e-6
-"""Angle (rad) before a reading at which its axes were still moving."""
+ANGLE_BEFORE_READING = 1e-6  # angle (rad) before a reading at which its axes were still moving
 
 RADIUS_TOLERANCE = 0.1
 """A column holds radii if its mean differs from the radius by less than this share of it."""

@@ -2,12 +2,7 @@
 
 from matstd.importers.points.point_list import PointList, joined_points
 from matstd.importers.points.reading import Meaning, read_points
-from matstd.importers.points.runs import (
-    PointsImport,
-    import_points,
-    linear_machine,
-    points_run,
-)
+from matstd.importers.points.runs import PointsImport, import_points, linear_machine, points_run
 from matstd.importers.points.scan_log import ScanLog, read_scan_log
 
 __all__ = [

@@ -28,8 +28,7 @@ the linear fit of the set-up."""
 OFF_FRAME_RATIO = 5.0
 """Points farther off than this multiple of the median are outliers and left out of the fit."""
 
-MAX_FRAME_ROUNDS = 20
-"""Repetitions of the choice of near points; two are usual."""
+MAX_FRAME_ROUNDS = 20  # repetitions of the choice of near points; two are usual
 
 MIRROR_RATIO = 10.0
 """A mirrored frame must fit better by this factor before an axis counts as reversed."""

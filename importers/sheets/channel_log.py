@@ -19,11 +19,9 @@ _LINE = re.compile(r"(\S+)\s+(\d{4}-\d{2}-\d{2})[T\s]+(\d{2}:\d{2}:\d{2}(?:\.\d+
 _CLOCK = re.compile(r"ts|t|time|timestamp|eventtime|zeit", re.IGNORECASE)
 """Keys of the time of an object."""
 
-MIN_LOG_SHARE = 0.8
-"""Share of the lines that must be readings; others are remarks and alarms."""
+MIN_LOG_SHARE = 0.8  # share of the lines that must be readings; others are remarks and alarms
 
-MIN_VALUES = 3
-"""Values that distinguish a channel from a setting."""
+MIN_VALUES = 3  # values that distinguish a channel from a setting
 
 
 class Reading(NamedTuple):

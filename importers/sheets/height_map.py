@@ -16,17 +16,13 @@ _REPRAP = re.compile(r"\W*RepRapFirmware height map file", re.IGNORECASE)
 _MESH = re.compile(r"(?:#\*#\s*)?\[bed_mesh\s+([^\]]+)\]\s*\Z")
 _SECTION = re.compile(r"(?:#\*#\s*)?\[")
 _KEY = re.compile(r"(?:#\*#\s*)?([a-z_]+)\s*[=:]\s*(.*?)\s*\Z")
-_NOT_PROBED = ("0", "nan")
-"""Cells of points that were not probed; a height of zero has decimals."""
+_NOT_PROBED = ("0", "nan")  # cells of points that were not probed; a height of zero has decimals
 
-HEADER = ["x [mm]", "y [mm]", "dz [mm]", "set-up"]
-"""Columns of the table that a height map becomes."""
+HEADER = ["x [mm]", "y [mm]", "dz [mm]", "set-up"]  # columns of the table that a height map becomes
 
-Rows = list[tuple[int, list[str]]]
-"""Rows of a table, each with its line."""
+Rows = list[tuple[int, list[str]]]  # rows of a table, each with its line
 
-Axes = Sequence[tuple[float, float, int]]
-"""First place, spacing and number of places along X and Y."""
+Axes = Sequence[tuple[float, float, int]]  # first place, spacing and number of places along X and Y
 
 
 def by_heights(path: Path, text: str) -> Rows:

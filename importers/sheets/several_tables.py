@@ -4,11 +4,9 @@ import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-Row = tuple[int, Sequence[str | float]]
-"""A line of the file with its cells."""
+Row = tuple[int, Sequence[str | float]]  # a line of the file with its cells
 
-MIN_EQUAL_NAMES = 0.5
-"""From this share of equal names two headers belong to parts of one table."""
+MIN_EQUAL_NAMES = 0.5  # from this share of equal names two headers belong to parts of one table
 
 _AXIS = re.compile(r"\b(?:axis|achse|axe|eje)\b\W*([XYZABC])\b", re.IGNORECASE)
 
@@ -50,6 +48,7 @@ def separate_tables(
         names = _names(row)
         axis = axis_in(" ".join(c for c in row if isinstance(c, str))) or axis
         if names and is_data(below) and len(names) == sum(c != "" for c in below):
+            # a header that comes again, as of the way back, continues its table
             own = (i for i, h in enumerate(headers) if h.axis == axis and _alike(h.names, names))
             at = next(own, len(headers))
             headers += [_Header(names, axis)] if at == len(headers) else []

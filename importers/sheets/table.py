@@ -22,8 +22,7 @@ from matstd.importers.sheets.units import is_unit
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files import read_any_text
 
-Row = tuple[int, Sequence[str | float]]
-"""Cells of a line, with its number."""
+Row = tuple[int, Sequence[str | float]]  # cells of a line, with its number
 
 WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 """Endings of files that are read as workbooks."""
@@ -31,11 +30,9 @@ WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 _SEPARATORS = (";", "\t", ",", "|")
 """In the order of trial: a comma late, because it may be a decimal mark."""
 
-MIN_NUMBER_SHARE = 0.6
-"""From this share of numbers a column is one of numbers."""
+MIN_NUMBER_SHARE = 0.6  # from this share of numbers a column is one of numbers
 
-MAX_LISTED_TABLES, MAX_LISTED_NAMES = 12, 6
-"""Tables, and columns of each, that a message lists."""
+MAX_LISTED_TABLES, MAX_LISTED_NAMES = 12, 6  # tables, and columns of each, that a message lists
 
 _RULE = re.compile(r":?-{2,}:?\Z|\Z")
 """Cells of a line that separates the header, as in tables of a wiki."""

@@ -10,10 +10,8 @@ MM = {"mm": 1.0, "µm": 1e-3, "um": 1e-3, "micron": 1e-3, "nm": 1e-6, "m": 1e3, 
 ANGLES = {"deg": math.pi / 180.0, "°": math.pi / 180.0, "rad": 1.0, "mrad": 1e-3, "µrad": 1e-6,
           "urad": 1e-6, "arcsec": math.pi / 648000.0, '"': math.pi / 648000.0}  # fmt: skip
 """Units of angles, rad."""
-SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": MINUTE, "h": HOUR}
-"""Units of time, s."""
-DEGC = ("°C", "degC", "deg C")
-"""Units of temperature."""
+SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "min": MINUTE, "h": HOUR}  # units of time, s
+DEGC = ("°C", "degC", "deg C")  # units of temperature
 
 _UNIT = re.compile(
     r"[\s_]*[\[(]\s*([^\])]+?)\s*[\])]\s*\Z|[\s_/]*(°C|deg ?C)\Z|[\s_/]+([A-Za-zµμ°]+)\Z"

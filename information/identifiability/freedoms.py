@@ -12,8 +12,7 @@ from matstd.twin.model import Effect, Parameter, traits
 _SHAPED = re.compile(r"geometric\((\w+),([^,)]+)\)\Z")
 _ORDER = ("linear", "parabolic", "sinusoidal", "sinusoidal@90")
 
-Parameters = Sequence[tuple[Effect, Parameter]]
-"""Those of a model, each with its effect."""
+Parameters = Sequence[tuple[Effect, Parameter]]  # those of a model, each with its effect
 
 
 class Reason(Enum):

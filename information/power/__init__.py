@@ -5,8 +5,7 @@ measurement. Out: a `FieldTest` with its threshold, and how probably it finds a 
 any deviation of a stated covariance. Exact up to a saddlepoint: nothing is simulated.
 """
 
-from matstd.information.power.pivoted_cholesky import low_rank
 from matstd.information.power.quadratic import exceedance, quantile
-from matstd.information.power.smooth_field import FieldTest, decorrelated, field_test
+from matstd.information.power.smooth_field import FieldTest, decorrelated, field_test, low_rank
 
 __all__ = ["FieldTest", "decorrelated", "exceedance", "field_test", "low_rank", "quantile"]

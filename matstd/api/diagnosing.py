@@ -33,7 +33,6 @@ from matstd.diagnosis.files import (
     plan_text,
 )
 from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.geometry import learnt_geometry
 from matstd.diagnosis.laws import learn_remainder
 from matstd.diagnosis.next_visit import VisitPlan
 from matstd.report.pages import Printer, write_compare_page, write_diagnosis_page, write_pdf
@@ -99,12 +98,11 @@ class Diagnosis(Saveable, answer.Diagnosis):
         made_with = f"material-standard {versions()['material-standard']}"
         is_all = self.learnt is self.predicting and self.choice is not None
         promised = self.choice.best.error if is_all and self.choice else None
-        geometry = self.geometry
         if self.laws is not None and self.learnt is self.laws.after and self.laws.laws:
             promised = self.laws.held_out[0].after
-            geometry = learnt_geometry(self.learnt)
         reported = {s.effect.name: s.reported for s in self.steps if s.effect is not None}
-        known = [row for row in geometry.rows if row.is_determined]
+        # with a law in the model, too, as console and page report them: one error has one value
+        known = [row for row in self.geometry.rows if row.is_determined]
         return model_text(
             self.learnt, self.title, self.before, made_with, promised, reported, known
         )

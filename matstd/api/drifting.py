@@ -51,14 +51,12 @@ SOMETIMES = (
 )
 """Files that not every run leaves."""
 
-HELD = 0.3
-"""Share of a log that is held out where nothing is said."""
+HELD = 0.3  # share of a log that is held out where nothing is said
 
 STEP = 5.0 * MINUTE
 """Between two rows, s: machines drift in tens of minutes, and shorter steps add no information."""
 
-LEAST = 40
-"""Rows to learn from: ten for each of the blocks that are left out."""
+LEAST = 40  # rows to learn from: ten for each of the blocks that are left out
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -123,8 +123,10 @@ def evaluate(
     planned = [(part.radius, part.heading.probe.radius) for part in first]
     radii = effective_radii(parts, chain, u, dialect)
     of_probe = tuple(ball_lines(changes, probe_limit, heights, radii, planned))
+    # logs of the ball or of the commissioning program alone answer for the probe, and hold no run
     if not any(part.is_measuring for part in parts) and of_probe:
         return Evaluation(None, chain, of_probe)
+    # only now: a run that shall be evaluated needs one probe, the words above report any change
     check_changes(changes, probe_limit)
     run = with_program_lines(evaluate_parts(parts, piece, chain, u, dialect), known)
     twice: list[str] = []
@@ -185,7 +187,6 @@ def evaluate_scan_log(
 
     Args:
         log: See `matstd.importers.points.scan_log`.
-        standard: As calibrated.
         face: Name of the scanned face.
         radius: Of the ball, mm.
         length: From the gauge point to its centre, mm.

@@ -13,12 +13,7 @@ from matstd.diagnosis.files import SavedModel, model_of, read_model
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.remarks import Remark
 from matstd.twin.errors import BadArgument, DesignError, UnknownEffect
-from matstd.twin.files import (
-    parse_toml,
-    read_errors,
-    read_machine,
-    read_text,
-)
+from matstd.twin.files import parse_toml, read_errors, read_machine, read_text
 from matstd.twin.library import parse_effect, parse_sized_effect
 
 

@@ -16,12 +16,7 @@ from matstd.diagnosis.geometry import LearntGeometry, learnt_geometry
 from matstd.diagnosis.laws import SecondRun, learn_laws, second_run
 from matstd.diagnosis.next_visit import VisitPlan
 from matstd.diagnosis.search import DiagnosisTask, refined_named
-from matstd.report.laws import (
-    effect_text,
-    law_sentence,
-    no_law_sentence,
-    write_law_page,
-)
+from matstd.report.laws import effect_text, law_sentence, no_law_sentence, write_law_page
 from matstd.report.pages import Printer, write_pdf
 from matstd.report.run_view import Framed, learnt_view
 from matstd.twin.files import write_whole

@@ -22,11 +22,9 @@ from matstd.twin.record import at_poses
 from matstd.twin.units import UM, URAD
 from matstd.twin.words import did_you_mean
 
-BLOCK = 10_000
-"""Rows of a table that are computed at once: a second or two, some hundred MB."""
+BLOCK = 10_000  # rows of a table that are computed at once: a second or two, some hundred MB
 
-ERRORS = "-errors"
-"""Ending of the name of a machine's error file."""
+ERRORS = "-errors"  # ending of the name of a machine's error file
 
 Poses = str | Path | tuple[Array, Array]
 """The path of a pose file, or readings (N, A), mm and rad, with tool lengths (N,), mm."""

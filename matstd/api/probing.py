@@ -37,8 +37,7 @@ from matstd.twin.machine import Chain
 from matstd.twin.record import Run, StatedBody, with_body
 from matstd.twin.units import UM
 
-T_NORMAL = 20.0
-"""What the control reads of a sensor that no record has, degC."""
+T_NORMAL = 20.0  # what the control reads of a sensor that no record has, degC
 
 
 def virtual_machine(

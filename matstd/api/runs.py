@@ -14,12 +14,7 @@ from matstd.report.geometry import copy_lines, fault_sentences
 from matstd.report.words import remark_sentence
 from matstd.twin import files
 from matstd.twin.errors import BadArgument, BadFile, DesignError, NotEnoughData
-from matstd.twin.library import (
-    kinds,
-    ordinary_model,
-    try_kind,
-    users_files,
-)
+from matstd.twin.library import kinds, ordinary_model, try_kind, users_files
 from matstd.twin.model import Model
 from matstd.twin.record import Run, joined
 
@@ -67,8 +62,6 @@ def starting_run(
     """What compare and diagnose begin with.
 
     Args:
-        runs: Measurements of one machine.
-        model: With which the work begins.
         same: What follows where the model was learnt from this very run, for the remark.
         hold_out: Names of runs of which nothing is to be learnt.
         pitch: Of axes whose pitch is stated, mm.

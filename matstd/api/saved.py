@@ -25,8 +25,7 @@ EFFECT, LAW, VISIT = "effect.py", "law.json", "next_visit.csv"
 """Files of a law that was learnt: as an effect of the user's own, for other programs, and the
 touches that distinguish it from its rivals."""
 
-FOUND = "machine_found.toml"
-"""Machine file of a serial arm with the lines of all joints as found."""
+FOUND = "machine_found.toml"  # machine file of a serial arm with the lines of all joints as found
 
 
 class Saveable(ABC):
@@ -93,12 +92,7 @@ def next_visit(laws: Learning) -> VisitPlan:
 def write_learnt(
     folder: Path, laws: Learning, title: str, visit: VisitPlan, second: SecondRun | None = None
 ) -> None:
-    """Write law.json and, with a law, effect.py; next_visit.csv where touches are planned.
-
-    Args:
-        title: Names of the runs.
-        second: What a second run says of the laws.
-    """
+    """Write law.json and, with a law, effect.py; next_visit.csv where touches are planned."""
     write_json(folder / LAW, law_table(laws, title, visit, second))
     if laws.laws:
         write_whole(folder / EFFECT, effect_text(laws, title))

@@ -41,12 +41,7 @@ from matstd.twin.compute import Progress, silent
 from matstd.twin.display import Displayed, html, text
 from matstd.twin.effects import ComponentError, LocationError
 from matstd.twin.errors import BadArgument, BadFile
-from matstd.twin.files import (
-    read_any_text,
-    read_errors,
-    refuse_to_overwrite,
-    write_whole,
-)
+from matstd.twin.files import read_any_text, read_errors, refuse_to_overwrite, write_whole
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Ranges
 from matstd.twin.model import Effect
@@ -55,8 +50,7 @@ from matstd.twin.units import HOUR
 TOOL_LENGTH = 150.0
 """Of the tool that is drawn unless another is stated, mm."""
 
-DURATION = 8.0 * HOUR
-"""After the start over which drifts are shown at least, s: a shift."""
+DURATION = 8.0 * HOUR  # after the start over which drifts are shown at least, s: a shift
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -163,6 +157,7 @@ def show(
     duration = max(DURATION, float(played.time[-1]) if played else 0.0)
     progress("errors", 1, 2)
     with drives_stated(source or chain.name):
+        # after the program: errors that drift are needed over all of its time
         functions = error_functions(known, tool_length, duration)
     return MachinePage(
         ShownMachine(

@@ -325,8 +325,6 @@ def probed_body(probed: Probed, runs: Runs, run: Run) -> Array | None:
 
     Args:
         probed: As the user states it; without it the file of the standard beside the run.
-        runs: Measurements as given.
-        run: The same, read.
 
     Raises:
         BadFile: A file that is no standard and no drawing.

@@ -122,9 +122,10 @@ def trend(
             f"{where}{len(given)} runs or models, expected at least {FEWEST}; two runs are "
             "compared by matstd diagnose FIRST.csv SECOND.csv"
         )
+    # model files hold their estimates: nothing is fitted again
     is_of_models = all(isinstance(one, str) and one.endswith(".toml") for one in given)
     made = _of_models(given) if is_of_models else _of_runs(given, add, progress)
-    occasions = [replace(one, date=one.date or date_of(one.name)) for one in made]
+    occasions = dated(made)
     found = history(occasions)
     order = {one.name: path for one, path in zip(occasions, given, strict=True)}
     known = {f.name: getattr(found, f.name) for f in fields(found)}
@@ -136,6 +137,17 @@ def trend(
         left_out=tuple(left_out),
         is_of_models=is_of_models,
     )
+
+
+def dated(occasions: Sequence[Occasion]) -> list[Occasion]:
+    """Occasions with the dates of their heads, else of their names.
+
+    Where two heads state the same (the clock of the twin is always the same) the names count.
+    """
+    stated = [one.date for one in occasions if one.date is not None]
+    if len(set(stated)) == len(stated):
+        return [replace(one, date=one.date or date_of(one.name)) for one in occasions]
+    return [replace(one, date=date_of(one.name) or one.date) for one in occasions]
 
 
 def date_of(name: str) -> datetime | None:

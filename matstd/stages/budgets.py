@@ -22,8 +22,7 @@ from matstd.twin.model import Model
 from matstd.twin.record import Run
 from matstd.twin.units import UM, URAD
 
-UNCORRECTED = "as measured"
-"""Results that no model corrects."""
+UNCORRECTED = "as measured"  # results that no model corrects
 
 CLAMPING_SCATTER = (50.0 * UM, 200.0 * URAD)
 """How far from where it is believed a standard stands in a virtual visit, mm and rad: less than
@@ -108,6 +107,7 @@ def virtual_budgets(
         body.stated_in(visits(programs, piece, [stand], rng, calibrated=standard)[0].run)
         for piece, stand in zip(pieces, stands, strict=True)
     ]
+    # the model learns from the balls alone: the features that prove stay unseen
     held_back = np.where(that_prove(standard, runs[0].touches), "test", "train")
     fit = fit_run(replace(runs[0], split=held_back), brief.population.expected())
     count = len(fit.model.parameters)

@@ -19,6 +19,7 @@ from matstd.artefact.compare import WorstRegions, identifiability_report, worst_
 from matstd.artefact.feasibility import check_beside, check_seat, feasibility
 from matstd.artefact.hidden import write_scan_path
 from matstd.artefact.place import Family, Placement, design_standard, scan_poses
+from matstd.artefact.price import Construction
 from matstd.cad_out.details import details_of
 from matstd.cad_out.making import Stiffness, making_of, stiffness_of, with_sag, write_making
 from matstd.cad_out.meshes import read_stl
@@ -50,8 +51,7 @@ from matstd.sensitivity.study import Study
 from matstd.stages.budgets import virtual_budgets
 from matstd.stages.cmm import cmm_program
 from matstd.stages.refusals import REACH, ROOM
-from matstd.stages.streams import Streams, streams
-from matstd.stages.study_run import study_and_maps
+from matstd.stages.study_run import Streams, streams, study_and_maps
 from matstd.stages.warm_body import WarmBody
 from matstd.twin.beside import beside
 from matstd.twin.compute import Progress, silent
@@ -123,7 +123,7 @@ def _made(
         study, maps = studied()
         progress("STEP and STL", 0, 1)
         conformity = cad.result()  # the last: the kernel takes as long as all of these
-    _draw(brief, placement.standard, conformity, folder)
+    _draw(brief, placement.standard, conformity.mass, making.make, folder)
     return Design(
         brief=brief,
         study=study,
@@ -201,14 +201,15 @@ def _export(brief: Brief, standard: Standard, folder: Path, q: Array) -> Conform
     return made
 
 
-def _draw(brief: Brief, standard: Standard, conformity: Conformity, folder: Path) -> None:
-    """The drawing of a standard, with the mass that was measured."""
+def _draw(brief: Brief, standard: Standard, mass: float, make: Construction, folder: Path) -> None:
+    """The drawing of a standard as the workshop makes it, with the mass that was measured."""
     issuer = Issuer(
         brief.author,
         brief.organisation,
-        mass=conformity.mass,
+        mass=mass,
         approved=brief.approved,
         date=brief.date,
+        make=make,
     )
     write_drawing(folder, standard, issuer)
 
@@ -273,6 +274,7 @@ def _prove(
     rng: np.random.Generator,
 ) -> Proven:
     """Probe one random machine by the text of the programs, identify it, compare with its truth."""
+    # a stream for each use: more draws of one leave the numbers of the others as they were
     rng_errors, rng_noise, rng_volume, rng_workspace, rng_body = rng.spawn(5)
     population = brief.population
     errors = drawn_errors(population, rng_errors)

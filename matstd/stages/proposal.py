@@ -25,14 +25,12 @@ USUAL, LARGEST, LEAST = 320.0, 400.0, 160.0
 """Sides of a base, mm: the largest that is proposed unasked (24 kg), the largest that the gain is
 stated of, and the smallest there is."""
 
-SIZE_STEP = 40.0
-"""Between two bases that are tried, mm."""
+SIZE_STEP = 40.0  # between two bases that are tried, mm
 
 HEIGHT, LEAST_HEIGHT = 220.0, 120.0
 """Height of a standard, mm, of a base of 280 and more, and the smallest there is."""
 
-SLENDER = 0.8
-"""Height over base of smaller ones."""
+SLENDER = 0.8  # height over base of smaller ones
 
 LENGTHS = (160.0, 100.0, 220.0)
 """Lengths of probes that are tried, mm: the usual one, one for small machines, one for deep."""
@@ -43,8 +41,7 @@ FACES = {280.0: 6, 240.0: 5, 200.0: 4, 0.0: 3}
 SHARE_OF_TRAVEL = 0.8
 """Size of a table over the shorter travel across the tool, where no size is stated."""
 
-ROOM = 1.25
-"""Workspace over base: workpieces are a quarter larger than what is probed."""
+ROOM = 1.25  # workspace over base: workpieces are a quarter larger than what is probed
 
 UPRIGHT, ON_ITS_SIDE = (0.0, 0.0, 0.0), (-90.0, 0.0, 0.0)
 """Ways to stand that are tried: on a face that looks along Z, or along Y; degrees."""
@@ -53,11 +50,9 @@ STEP_OF_PLACE, MOST_PLACES = 10.0, 3
 """Between two places of a second set-up, mm, and how many are tried with the reach of the machine
 (1.5 s of processor each)."""
 
-_GRID = 200
-"""Points a side by which areas are counted: to 1 %."""
+_GRID = 200  # points a side by which areas are counted: to 1 %
 
-ROUNDING = 1e-6
-"""By which a travel may miss a whole millimetre or degree."""
+ROUNDING = 1e-6  # by which a travel may miss a whole millimetre or degree
 
 
 @dataclass(frozen=True)
@@ -107,6 +102,7 @@ def propose(machine: Path, named: str, table: tuple[float, ...] | None = None) -
             f"{machine}: a table of {min(size):g} mm: the smallest standard is "
             f"{LEAST:g} x {LEAST:g} x {LEAST_HEIGHT:g} mm; this machine is too small for the tool"
         )
+    # from the usual size down; the first refusal is reported, since it binds what is wanted most
     first: DesignError | None = None
     for base, length, turn in product(_bases(size, USUAL), LENGTHS, _turns(chain)):
         made = _tables(chain, base, length, turn, size, machine)

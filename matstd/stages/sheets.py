@@ -22,7 +22,6 @@ def write_sheets(
     """Write a sheet for every station, and the programs that go with it.
 
     Args:
-        stations: In their order.
         printed_by: Prints a sheet as PDF; None for no PDF.
         raised: By how much dry runs are raised, mm.
         errors: Of the machine that plays the programs on the page; None for none.

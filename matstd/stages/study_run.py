@@ -1,6 +1,7 @@
-"""A study of a project's random machines: where, how many, and its figures in a few lines."""
+"""A study of a project's machines: streams of random numbers, poses, and its figures."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,11 +12,33 @@ from matstd.report.words import sampling_words
 from matstd.sensitivity.first_order import Workspace
 from matstd.sensitivity.montecarlo import Workers
 from matstd.sensitivity.study import Study, run_study, write_study
-from matstd.stages.streams import Streams, streams
 from matstd.twin.compute import Progress
 from matstd.twin.errors import BadFile
 from matstd.twin.files import read_poses
 from matstd.twin.frames import Array
+
+
+class Streams(NamedTuple):
+    """Independent streams of one seed.
+
+    The order is part of the results: a stream depends on its place in it, so a new one goes to the
+    end.
+    """
+
+    study: np.random.Generator  # random machines of the sensitivity study
+    placement: np.random.Generator  # candidates and restarts of the search for standard and touches
+    # machines that are probed and identified, their noise, poses that judge them
+    proof: np.random.Generator
+    # random machines that show what errors do to the length of the deviation
+    maps: np.random.Generator
+    other_setups: np.random.Generator  # poses at which other ways to measure are weighed
+    # what calibration leaves open of the standard, noise and clamping of every visit
+    visits: np.random.Generator
+
+
+def streams(seed: int) -> Streams:
+    """The streams of a seed."""
+    return Streams(*np.random.default_rng(seed).spawn(len(Streams._fields)))
 
 
 def study_project(

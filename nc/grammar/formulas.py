@@ -5,8 +5,7 @@ import operator
 import re
 from collections.abc import Callable
 
-Read = Callable[[str], float]
-"""Gives the value of a word: a number, or a parameter with its sign."""
+Read = Callable[[str], float]  # gives the value of a word: a number, or a parameter with its sign
 
 COMPARISONS: dict[str, Callable[[float, float], bool]] = {
     "EQU": operator.eq,

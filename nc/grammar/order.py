@@ -19,8 +19,7 @@ from matstd.nc.grammar.formulas import (
 )
 from matstd.twin.errors import BadFile
 
-MAX_BLOCKS = 1_000_000
-"""Largest number of executed blocks; beyond it a program does not end."""
+MAX_BLOCKS = 1_000_000  # largest number of executed blocks; beyond it a program does not end
 
 _VALUE = rf"[+-]?Q\d+|{NUMBER}"
 _NAME = r'\d+|"[^"]+"'

@@ -25,8 +25,7 @@ from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.machine import Chain
 from matstd.twin.units import HOUR, UM
 
-COVERAGE = 2.0
-"""Coverage factor of a significant change."""
+COVERAGE = 2.0  # coverage factor of a significant change
 
 _UNKNOWNS = 4
 _EXCESS_SCATTER = 3.0  # times the stated noise in what the four numbers leave over

@@ -22,21 +22,17 @@ from matstd.twin.units import UM
 _NOISE = 2.0 * UM
 """Least uncertainty of a touch in the fit, mm: errors that the model lacks are of this size."""
 
-_HUBER = 3.0
-"""Multiple of the median residual beyond which Huber weights decrease."""
+_HUBER = 3.0  # multiple of the median residual beyond which Huber weights decrease
 
 _DISPLACED = 50.0 * UM
 """Displacement of a feature that means it was moved or calibrated wrongly, mm: no machine model
 leaves residuals of this size at all touches of one feature alone."""
 
-_SIGNIFICANT = 4.0
-"""Least ratio of such a displacement to its standard error."""
+_SIGNIFICANT = 4.0  # least ratio of such a displacement to its standard error
 
-_ROUNDS = 4
-"""With errors of ordinary size and a standard 1 mm beside its place three were enough."""
+_ROUNDS = 4  # with errors of ordinary size and a standard 1 mm beside its place three were enough
 
-_CONVERGED = 1e-5
-"""Change of deviations in a round below which the iteration has converged, mm."""
+_CONVERGED = 1e-5  # change of deviations in a round below which the iteration has converged, mm
 
 
 def foot_points(

@@ -16,11 +16,9 @@ from matstd.twin.machine import Chain, Contribution, exact_tip, linear_direction
 from matstd.twin.record import IntArray, Setup, Touches
 from matstd.twin.units import NM
 
-CONTACT_TOLERANCE = 1e-3 * NM
-"""The ball touches when its gap is this small, mm."""
+CONTACT_TOLERANCE = 1e-3 * NM  # the ball touches when its gap is this small, mm
 
-_STEPS = 12
-"""Limit for Newton's method; with errors of ordinary size four sufficed."""
+_STEPS = 12  # limit for Newton's method; with errors of ordinary size four sufficed
 
 _BEYOND_END = 10.0  # mm beyond the end of a touch: far more than the errors of a working machine
 

@@ -31,8 +31,7 @@ from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.record import Labels, Touches
 
-CHANGEOVER = 60.0
-"""Between two programs, s."""
+CHANGEOVER = 60.0  # between two programs, s
 
 
 class Outcome(StrEnum):

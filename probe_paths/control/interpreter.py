@@ -36,8 +36,7 @@ from matstd.probe_paths.plan import Heading, Probe, ProgramFrame
 from matstd.twin.errors import BadFile
 from matstd.twin.machine import Chain
 
-_BEYOND = 1.05
-"""Multiple of its limit by which a value is off when the program has to stop."""
+_BEYOND = 1.05  # multiple of its limit by which a value is off when the program has to stop
 
 
 def read_program(

@@ -2,8 +2,7 @@
 
 from matstd.twin.units import DAY, HOUR
 
-_BACK = 0.5 * DAY
-"""A step of more than this, s, is a step back within the same day."""
+_BACK = 0.5 * DAY  # a step of more than this, s, is a step back within the same day
 
 _PAUSE = 600.0
 """Usual limit of a pause between two touches, s: a step of an hour and less than this is a clock

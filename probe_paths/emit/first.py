@@ -13,8 +13,7 @@ from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.units import MINUTE
 
-_FROM_ABOVE = -0.999
-"""Z component of the direction of a touch from above."""
+_FROM_ABOVE = -0.999  # Z component of the direction of a touch from above
 
 
 class FirstWriter(Writer):

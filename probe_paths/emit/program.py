@@ -208,6 +208,9 @@ class _Maker:
         count = len(parts)
         names = [self.only] if self.only else [str(i + 1) for i in range(count)]
         titles = [f"FREEFORM STANDARD, PART {i + 1} OF {count}" for i in range(count)]
+        stretch = [self.plan.visits[part[0]].stretch for part in parts]
+        for i in np.flatnonzero(np.diff(stretch)) + 1:
+            titles[i] += ", AFTER STANDSTILL"
         named = zip(names, titles, parts, strict=True)
         return tuple(
             self._program(checked_name(f"{self.dialect.prefix}_{setup}_{name}"), title, part)

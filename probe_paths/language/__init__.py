@@ -8,14 +8,7 @@ form in every language, a pattern in its reader and an execution in
 """
 
 from matstd.probe_paths.language.blocks import Block, Kind
-from matstd.probe_paths.language.dialect import (
-    FREE,
-    TOOL_LENGTH,
-    Dialect,
-    ErrorText,
-    Label,
-    Q,
-)
+from matstd.probe_paths.language.dialect import FREE, TOOL_LENGTH, Dialect, ErrorText, Label, Q
 from matstd.probe_paths.language.dialect_file import read_dialect
 from matstd.probe_paths.language.interlock import Interlock, interlocks, turn_tests
 from matstd.probe_paths.language.language import Datum, Terms, Touch

@@ -13,8 +13,7 @@ from matstd.twin.errors import BadFile
 _XYZ = rf"X({SIGNED}) Y({SIGNED}) Z({SIGNED})"
 _PATH = r"[A-Z0-9_:\\.-]+"
 
-LONGEST_BLOCK = 1000
-"""Characters of a block; the longest of our programs has 71."""
+LONGEST_BLOCK = 1000  # characters of a block; the longest of our programs has 71
 
 
 class Kind(Enum):

@@ -63,8 +63,7 @@ TERMS = Terms(
     back="a retract",
 )
 
-TOUCH = 94
-"""Subprogram of one touch."""
+TOUCH = 94  # subprogram of one touch
 
 # [#1 #2 #3] unit vector, #4 longest path, #5 fast feed, #6 retract, #7 slow feed, #8 step back
 TOUCH_BODY = f"""\

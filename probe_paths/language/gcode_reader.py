@@ -51,8 +51,7 @@ _LOG = re.compile(r"\(LOG,(.*)\)\Z")
 _APPEND = re.compile(r"\(LOGAPPEND,([A-Z0-9_.]+)\)\Z")
 _VALUE = re.compile(r"#(\d+)")
 
-LONGEST_LINE = 255
-"""Characters of a line that LinuxCNC reads."""
+LONGEST_LINE = 255  # characters of a line that LinuxCNC reads
 
 _EXPECTED = (
     (r"G[01] |G53", "G53 G0 Z<signed>, G0 <axis><signed> ... or G1 <axis><signed> ... F<whole>"),

@@ -14,14 +14,12 @@ from matstd.probe_paths.plan import LINEAR, ProgramFrame
 PRESET_LIMIT = 1.0
 """Largest displacement of the preset, mm: the clearance that is planned at a touch."""
 
-ANGLE_LIMIT = 0.05
-"""Largest basic rotation and rotary zero, degrees: 0.2 mm at 200 mm."""
+ANGLE_LIMIT = 0.05  # largest basic rotation and rotary zero, degrees: 0.2 mm at 200 mm
 
 OFFSET_LIMIT = 0.05
 """Largest offset of a tool from the spindle axis, mm: the program moves by all of it."""
 
-RADIUS_LIMIT = 0.2
-"""Largest difference of the calibrated ball's radius, mm."""
+RADIUS_LIMIT = 0.2  # largest difference of the calibrated ball's radius, mm
 
 TOP_LIMIT = 5.0
 """Largest missing height at the upper end of Z, mm: turns are planned with that clearance."""

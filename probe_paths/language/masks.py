@@ -43,8 +43,7 @@ _SENSORS_A_LINE = 4
 
 LINE_END = "\r\n"
 
-Fields = tuple[str, Sequence[str]]
-"""Text with formats, and what they print."""
+Fields = tuple[str, Sequence[str]]  # text with formats, and what they print
 
 
 class LogForm(NamedTuple):
@@ -58,8 +57,7 @@ class LogForm(NamedTuple):
     closes: str = ""  # word of a mask that closes the file, or ""
 
 
-KEYWORDS = ("M_APPEND", "M_CLOSE")
-"""Words of a mask that print nothing: what becomes of the file."""
+KEYWORDS = ("M_APPEND", "M_CLOSE")  # words of a mask that print nothing: what becomes of the file
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,9 @@ from collections.abc import Mapping
 
 from matstd.twin.errors import DesignError
 
-MAX_NAME = 16
-"""Longest program name that the oldest software displays whole."""
+MAX_NAME = 16  # longest program name that the oldest software displays whole
 
-MAX_VALUE = 99999.9999
-"""Largest coordinate that the control takes, mm or degrees."""
+MAX_VALUE = 99999.9999  # largest coordinate that the control takes, mm or degrees
 
 MAX_LINE = 72
 """Longest physical line that is emitted, characters; the iTNC's own limit is not documented."""

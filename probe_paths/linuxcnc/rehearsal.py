@@ -11,8 +11,7 @@ from matstd.artefact.body import Standard
 from matstd.probe_paths.campaign import VirtualMachine, check_moves, evaluate, read_program_of
 from matstd.probe_paths.control import MAX_FEED, read_log, read_program
 from matstd.probe_paths.emit import Feeds, ProgramSet, make_programs
-from matstd.probe_paths.linuxcnc.latch import latch_error, latch_u
-from matstd.probe_paths.linuxcnc.machine_config import machine_files
+from matstd.probe_paths.linuxcnc.machine_config import latch_error, latch_u, machine_files
 from matstd.probe_paths.linuxcnc.replanned import shortened
 from matstd.probe_paths.linuxcnc.session import machine_folder, run_on_linuxcnc
 from matstd.probe_paths.linuxcnc.twin_contact import TwinContact

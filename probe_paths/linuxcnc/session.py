@@ -22,16 +22,14 @@ from matstd.probe_paths.linuxcnc.twin_contact import TwinContact
 from matstd.twin.errors import DesignError
 
 NEEDED = ("linuxcnc", "halcmd", "halrun")
-LOCK = Path("/tmp/linuxcnc.lock")
-"""LinuxCNC's own: one runs on a computer at a time."""
+LOCK = Path("/tmp/linuxcnc.lock")  # LinuxCNC's own: one runs on a computer at a time
 
 _TROUBLE = re.compile(r"error|failed|exited|abort|killed", re.IGNORECASE)
 
 _PATIENCE = 3.0
 """Multiple of its planned duration, beside a minute, after which a program is stopped."""
 
-_SHUTDOWN = 30.0
-"""How long LinuxCNC may take to end, s; it took 3 s."""
+_SHUTDOWN = 30.0  # how long LinuxCNC may take to end, s; it took 3 s
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,7 @@ from matstd.probe_paths.plan import TouchPlan, plan_touches
 from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
 
-DROPPED = 0.1
-"""Share of the touches that may be refused at another place, each with its reason."""
+DROPPED = 0.1  # share of the touches that may be refused at another place, each with its reason
 
 
 def planned_again(

@@ -35,11 +35,9 @@ standard of tall posts may leave a short stylus no room to come down over a wide
 _TRIED, _FEWEST_TRIED = 40_000, 2_000
 """Places in the first round for a spread of 20 mm and 5 degrees, and for a small one."""
 
-_KEPT = 60
-"""Number improved on the relief."""
+_KEPT = 60  # number improved on the relief
 
-_EXACT = 3
-"""Number improved on the exact surfaces."""
+_EXACT = 3  # number improved on the exact surfaces
 
 _ROUNDS, _EXACT_ROUNDS, _LAST_ROUNDS = 25, 15, 15
 _RESTARTS, _RESTART_PLACES = 6, 24

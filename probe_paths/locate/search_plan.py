@@ -27,8 +27,7 @@ from matstd.twin.machine import Chain, inverse_linear, linear_directions
 from matstd.twin.record import Setup
 from matstd.twin.units import DEG
 
-TOUCHES = 20
-"""Touches of the search; about five minutes of machine time."""
+TOUCHES = 20  # touches of the search; about five minutes of machine time
 
 _FEWEST_TOUCHES = 9
 """Fewer touches cannot distinguish a false place from the true one: six numbers are sought."""
@@ -38,15 +37,12 @@ _TRIED, _DETERMINED = 60, 0.6
 the more informative edges. For 15 mm and 4 degrees 18 of the example's 20 touches meet the flat
 base, and determine 0.5; for 10 mm and 3 degrees, 1.0."""
 
-_NOISE = 0.03
-"""Standard uncertainty of a touch of a search, the errors of the machine included, mm."""
+_NOISE = 0.03  # standard uncertainty of a touch of a search, the errors of the machine included, mm
 
-_FREE_BESIDE = 3.0
-"""Kept free beside the ball's way and under the body besides everything else, mm."""
+_FREE_BESIDE = 3.0  # kept free beside the ball's way and under the body besides everything else, mm
 
 _UPRIGHT = np.cos(1.0 * DEG)
-BACK = 5.0
-"""Retract after a contact, mm."""
+BACK = 5.0  # retract after a contact, mm
 
 
 def plan_search(

@@ -125,6 +125,7 @@ def _gaps_to(
             gap[near] = _least_to_parts(bodies.parts[i], sweeps[near], limit[near])
         return gap
 
+    # the gap of enclosing balls is cheap and never too large: most pairs need no exact one
     bound = balls_apart(_sweeps(place, tool, move, piece), bodies.hulls[of])
     gap = least_gaps(bound, move, enough[move], search)
     best = np.full((len(place[0]), len(rows)), np.inf)

@@ -23,8 +23,7 @@ from matstd.twin.units import DEG
 
 LINEAR = "XYZ"
 
-_PARALLEL = 1e-9
-"""Largest angle between an axis of a tilted plane and one of the machine, rad."""
+_PARALLEL = 1e-9  # largest angle between an axis of a tilted plane and one of the machine, rad
 
 
 @dataclass(frozen=True, eq=False)

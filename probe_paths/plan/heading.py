@@ -40,8 +40,7 @@ _BALL_SIZE = re.compile(rf"DATUM R{_NUMBER} S{_NUMBER} F{_NUMBER} U{_NUMBER}")
 _EARLIER = re.compile(r"(STYLUS L.* BODY R.*|NOSE R.* TABLE R.*)")
 _TABLE_WORD, _HASH = "TABLE", 12
 
-_FIRST_PARAMETER = 100
-"""In which a PLC hands values to programs; there are eight."""
+_FIRST_PARAMETER = 100  # in which a PLC hands values to programs; there are eight
 
 
 class Sensor(NamedTuple):

@@ -23,8 +23,7 @@ LONGEST_TURN = 170.0 * DEG
 
 _PART, _NO_GAIN = 3, 1e-9  # places that are put elsewhere together; mm
 
-_ROUNDING = 1e-9
-"""A reading at the very end of the travel is inside, whatever its last digit, rad."""
+_ROUNDING = 1e-9  # a reading at the very end of the travel is inside, whatever its last digit, rad
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,11 +17,9 @@ from numpy.typing import NDArray
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
-CORNERS = 8
-"""Most corners of a body."""
+CORNERS = 8  # most corners of a body
 
-EXACT = 0.01
-"""Accuracy of a gap that matters, mm."""
+EXACT = 0.01  # accuracy of a gap that matters, mm
 
 _ROUNDS = 60  # of the search; cylinders beside cylinders took up to 35
 _INSIDE = 1e-7  # mm: nearer than this the bodies are in each other

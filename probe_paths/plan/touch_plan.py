@@ -19,8 +19,7 @@ from matstd.twin.machine import Chain
 from matstd.twin.record import IntArray, Labels, Setup
 from matstd.twin.units import DEG
 
-GRID = 1e-4 * DEG
-"""Rotary readings are rounded to what a program can state, rad."""
+GRID = 1e-4 * DEG  # rotary readings are rounded to what a program can state, rad
 
 
 @dataclass(frozen=True)

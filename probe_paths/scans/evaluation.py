@@ -39,8 +39,7 @@ from matstd.twin.units import NM, UM
 STRETCH = 8.0
 """Length of line in one row, mm: less than half of the narrowest effect that is looked for."""
 
-LARGEST_GAP = 3.0
-"""Largest distance of a ball from its face after the set-up is fitted, mm."""
+LARGEST_GAP = 3.0  # largest distance of a ball from its face after the set-up is fitted, mm
 
 LARGEST_RMS = 0.1
 """Root mean square of the deviations with the set-up fitted, mm: no machine in use is that wrong,
@@ -206,6 +205,8 @@ def _fitted(
     Args:
         moved: Displacements of the face by its weight, artefact frame, (N, 3), mm.
     """
+    # foot points are projected anew for every set-up; points may lie 10 mm off where the set-up is
+    # believed, 3 mm once it has settled; rotations are lengths at an arm of 100 mm
     T_table_artefact, limit = setup.T_table_artefact, _BELIEVED
     for _ in range(_ROUNDS):
         ball = apply(inverse(T_table_artefact), place) - moved

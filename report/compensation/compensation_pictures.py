@@ -1,29 +1,34 @@
 """Pictures of a compensation: over the workspace, error by error, along a program or path."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from matstd.compensation.field import Result, Share, UncorrectedError
 from matstd.compensation.programs import Compensated
 from matstd.report.numbers import with_uncertainty
-from matstd.report.style import BLUE, FAINT, INK, NEUTRAL, RED, SOFT, figure, nothing, plain, series
+from matstd.report.style import (
+    BLUE,
+    FAINT,
+    INK,
+    NEUTRAL,
+    RED,
+    SOFT,
+    Figure,
+    figure,
+    nothing,
+    plain,
+    series,
+)
 from matstd.twin.frames import Array
 from matstd.twin.numbers import rms_length
 from matstd.twin.sampling import spread_rows
 from matstd.twin.units import MINUTE, UM
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+LONGEST_NAME = 32  # letters of a label
 
-LONGEST_NAME = 32
-"""Letters of a label."""
-
-LINES, SHARES = 6, 16
-"""Errors that are drawn along the path, and as bars, at most."""
+LINES, SHARES = 6, 16  # errors that are drawn along the path, and as bars, at most
 
 
 def draw_shares_along(time: Array, whole: Array, shares: Sequence[Share]) -> Figure:
@@ -76,11 +81,9 @@ def _size(share: Share) -> str:
     return with_uncertainty(rms_length(share.field) / UM, share.u / UM or None, "µm")
 
 
-SHOWN = 0.06
-"""Share of the path's size as which its largest deviation is drawn."""
+SHOWN = 0.06  # share of the path's size as which its largest deviation is drawn
 
-DRAWN_POINTS = 6000
-"""Points that are drawn at most."""
+DRAWN_POINTS = 6000  # points that are drawn at most
 
 
 def draw_program(done: Compensated) -> Figure:
@@ -142,11 +145,9 @@ def _path(ax: Any, done: Compensated, rows: np.ndarray) -> None:
     ax.legend(fontsize=8, frameon=False)
 
 
-BARS = 16
-"""Errors that are drawn at most."""
+BARS = 16  # errors that are drawn at most
 
-LEAST = 1e-3
-"""µm: a logarithmic scale begins there, at a nanometre."""
+LEAST = 1e-3  # µm: a logarithmic scale begins there, at a nanometre
 
 
 def draw_errors_left(results: Mapping[str, Result]) -> Figure:

@@ -52,8 +52,7 @@ _TITLES = {
     "heidenhain": "iTNC 530 positioning tables (.COM)",
 }
 
-MAX_NAMED_ERRORS = 5
-"""Errors that a control cannot represent, named on the console."""
+MAX_NAMED_ERRORS = 5  # errors that a control cannot represent, named on the console
 
 
 def control_title(name: str) -> str:

@@ -59,11 +59,7 @@ def write_compensation_page(
     done: Sequence[VerifiedTables],
     title: str,
 ) -> None:
-    """Write `report.html` and its pictures into a folder.
-
-    Args:
-        title: Name of the model file.
-    """
+    """Write `report.html` and its pictures into a folder."""
     first = done[0].result
     tools = _TOOLS.format(u=digits(first.u_tool / UM, 2)) if first.u_tool > 0.1 * UM else ""
     names = ", ".join(f"`{name}`" for name in errors.left_out)

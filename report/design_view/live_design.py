@@ -67,8 +67,7 @@ def feature_shares(
     return out
 
 
-GRAIN = 0.05
-"""Of the corners of bodies, mm."""
+GRAIN = 0.05  # of the corners of bodies, mm
 
 
 @dataclass(frozen=True, eq=False)

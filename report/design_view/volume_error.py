@@ -14,8 +14,7 @@ from matstd.twin.model import Effect
 from matstd.twin.record import Setup, at_poses
 from matstd.twin.sampling import grid_points
 
-COUNTS = (11, 11, 9)
-"""Places along the three linear axes."""
+COUNTS = (11, 11, 9)  # places along the three linear axes
 
 _SHARES = (0.5, 0.15, 0.85)  # of the range of every rotary axis, at which the field is worked out
 
@@ -63,6 +62,7 @@ def error_field(
         proof = prove(
             fit, truth, brief.setup, seen_from(at_poses(chain, q, brief.probe.length), believed)
         )
+        # shown as what each linear axis would have to move, so that its own error fills one picture
         to_table = believed.T_table_artefact[:3, :3]
         outside = ~workspace.in_volume(q)
         for vectors, into in ((proof.before, before), (proof.after, after)):

@@ -75,7 +75,7 @@ def draw_sheet(standard: Standard, details: Details, issuer: Issuer) -> Sheet:
     Raises:
         NotBuildable: No paper up to A0 holds them.
     """
-    blocks = blocks_of(standard, details)
+    blocks = blocks_of(standard, details, issuer.make)
     for paper, scale in _formats(standard):
         sheet, views = Sheet(paper), _views(paper, standard, scale)
         draw_from(sheet, views.front, standard, details, np.array([0.0, 1.0, 0.0]))

@@ -28,14 +28,11 @@ A2, A1, A0 = Paper("A2", 594.0, 420.0), Paper("A1", 841.0, 594.0), Paper("A0", 1
 PAPERS = (A2, A1, A0)
 """Papers of drawings, the smallest first."""
 
-WIDE, THIN = 0.5, 0.25
-"""Lines of ISO 128-2, mm."""
+WIDE, THIN = 0.5, 0.25  # lines of ISO 128-2, mm
 
-HATCH = "hatch"
-"""Filling of a cut solid (ISO 128-3)."""
+HATCH = "hatch"  # filling of a cut solid (ISO 128-3)
 
-LETTER_HEIGHT = 2.5
-"""Height of lettering, mm (ISO 3098-1); smaller letters do not survive a copy."""
+LETTER_HEIGHT = 2.5  # height of lettering, mm (ISO 3098-1); smaller letters do not survive a copy
 
 ROW = 5.2
 """Height of a row of a table, mm."""

@@ -8,6 +8,7 @@ from textwrap import wrap
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, Standard, max_slope, min_concave_radius
+from matstd.artefact.price import Construction
 from matstd.cad_out.details import (
     BALL,
     CUTTER,
@@ -33,7 +34,7 @@ TITLE = (180.0, 48.0)
 _FLAT = 10_000.0  # mm: a ball of 3 mm cannot distinguish such a face from a plane
 _HEADING = 9.0  # mm above a table, for its title
 _LINE = 4.2  # mm from a line of a note to the next
-_LETTERS = 82  # of a line of a note
+_LETTERS = 80  # of a line of a note
 _ERRORS = 2  # dominant errors that a row names
 
 
@@ -47,6 +48,7 @@ class Issuer:
         mass: Mass of body and balls, kg.
         approved: Who approved the drawing.
         date: Date of its issue.
+        make: The construction that the workshop makes.
     """
 
     author: str
@@ -54,11 +56,12 @@ class Issuer:
     mass: float
     approved: str = "not stated"
     date: str = "not stated"
+    make: Construction = Construction.BILLET
 
 
-def blocks_of(standard: Standard, details: Details) -> list[Block]:
+def blocks_of(standard: Standard, details: Details, make: Construction) -> list[Block]:
     """Tables of faces, balls, datum targets, holes and parts, then every note, in this order."""
-    joints = _joints(standard, details)
+    joints = _joints(standard, details) if make is Construction.PARTS else None
     tables = [_balls(standard, details, joints), _targets(standard), _holes(standard, details)]
     if standard.patches:
         tables.insert(0, _faces(standard))
@@ -96,14 +99,15 @@ def _face_row(patch: FreeformPatch) -> list[str]:
         *(f"{c:.1f}" for c in (x, y, z)),
         f"{2 * patch.half_size[0]:g} x {2 * patch.half_size[1]:g}",
         f"{max_slope(patch) / DEG:.0f}°",
-        f"{radius:.4g}" if radius < _FLAT else "convex",
+        f"{radius:.{1 if radius < 1e3 else 0}f}" if radius < _FLAT else "convex",
         shares or "a face of a workpiece",
     ]
 
 
 def _balls(standard: Standard, details: Details, joints: Joints | None) -> Block:
     threads = {stud.ball: f"M{stud.thread:g}" for stud in joints.studs} if joints else {}
-    head = ["ball", "x", "y", "z", "SØ", "foot", "land", "land z", "sink", "stud", "use"]
+    last = "stud" if joints else ""
+    head = ["ball", "x", "y", "z", "SØ", "foot", "land", "land z", "sink", last, "use"]
     rows = [head, *(_ball_row(one, details, threads) for one in standard.spheres)]
     title = "Balls (centres, theoretically exact) and their posts"
     return _table(title, (14, 14, 14, 14, 9, 15, 17, 15, 12, 11, 19), rows)
@@ -150,12 +154,14 @@ def _holes(standard: Standard, details: Details) -> Block:
 
 
 def _parts(standard: Standard, details: Details, joints: Joints | None) -> Block:
-    """Parts list of ISO 7573; body parts of the second construction are sub-items of the body."""
+    """Parts list of ISO 7573; parts of the body are its sub-items."""
     material, cm = standard.material.name, SCREW.name.removeprefix("steel, ")
     rows = [["item", "pieces", "part", "material or standard"]]
-    rows.append(["1", "1", "body in one piece", material])
-    if joints:
-        rows.append(["1.1", "1", "or of parts: plate", material])
+    if joints is None:
+        rows.append(["1", "1", "body in one piece", material])
+    else:
+        rows.append(["1", "1", "body, joined of 1.1 to 1.4", ""])
+        rows.append(["1.1", "1", "plate", material])
         if joints.studs:
             rows.append(["1.2", f"{len(joints.studs)}", "stud, thread as in the table", material])
         if joints.blocks:
@@ -223,7 +229,7 @@ def _joint_words(joints: Joints | None) -> list[str]:
     if joints is None:
         return []
     threads = sorted({stud.thread for stud in joints.studs})
-    words = "Of parts (standard-parts.step): "
+    words = "Made of parts (standard-parts.step): "
     studs = [f"M{d:g} {0.5 * _TORQUES[d]:.0f} N m" for d in threads]
     if studs:
         words += (

@@ -1,7 +1,6 @@
 """Laws of a thermal drift in words, pictures and on a page: each beside the others."""
 
-from matstd.report.drift.drift_page import write_drift_page
-from matstd.report.drift.drift_pictures import draw_drift
+from matstd.report.drift.drift_page import draw_drift, write_drift_page
 from matstd.report.drift.drift_words import clock_line, drift_lines, kept_line, law_title
 
 __all__ = [

@@ -75,8 +75,6 @@ def kept_line(result: ProbedPrediction, record: DriftRecord, rows: IntArray, eve
     """Error with occasional probing, with a law and without.
 
     Args:
-        result: With the probings.
-        rows: Rows that are evaluated.
         every: Time between two probings, s.
     """
     left, plain = (

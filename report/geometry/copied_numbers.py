@@ -110,6 +110,7 @@ def _way(touches: Touches, numbers: Sequence[FoundNumber]) -> Way:
             size = with_uncertainty(number.change / DEG, number.u / DEG, "°")
         return Way(name, f"the zero of {axis} is wrong by {size}")
     if name[1] in "ABC":
+        # a small rotation turns the stated direction; a file takes it as a unit vector again
         omega, u = (v * np.eye(3)[LETTERS.index(name[1]) - 3] for v in (number.change, number.u))
         d = link.direction + np.cross(omega, link.direction)
         spread = np.abs(np.cross(u, link.direction))

@@ -20,8 +20,7 @@ from matstd.twin.words import listed
 
 _UNITS = {"mm": ("µm", UM), "rad": ("µrad", URAD), "1": ("ppm", 1e-6)}
 
-_TURNS = {"A": "X", "B": "Y", "C": "Z"}
-"""Direction of the rotation that a letter denotes."""
+_TURNS = {"A": "X", "B": "Y", "C": "Z"}  # direction of the rotation that a letter denotes
 
 ARM = (
     Quantity.JOINT_ZERO,
@@ -37,11 +36,9 @@ USUAL = (Quantity.SQUARENESS, Quantity.SCALE, *ARM)
 SPANS = (Quantity.STRAIGHTNESS, Quantity.ANGULAR, Quantity.ROTARY_MOTION)
 """Curves, reported by their peak to valley."""
 
-CLEAR = 2.0
-"""Standard uncertainties from which on a quantity is worth a line on the console."""
+CLEAR = 2.0  # standard uncertainties from which on a quantity is worth a line on the console
 
-NOTED = 8
-"""Quantities reported on the console."""
+NOTED = 8  # quantities reported on the console
 
 
 @dataclass(frozen=True, slots=True)

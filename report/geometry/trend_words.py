@@ -22,11 +22,9 @@ from matstd.report.numbers import digits, microns
 from matstd.twin.record import Touches
 from matstd.twin.units import UM
 
-MAX_NAMED_CHANGES = 4
-"""Changes of one run that a sentence lists, the largest over the travel first."""
+MAX_NAMED_CHANGES = 4  # changes of one run that a sentence lists, the largest over the travel first
 
-NEARLY = 3.0
-"""Standard uncertainties from which a change below the limit is mentioned."""
+NEARLY = 3.0  # standard uncertainties from which a change below the limit is mentioned
 
 
 def change_sentences(trend: Trend) -> list[str]:

@@ -19,8 +19,7 @@ from matstd.report.numbers import shown
 from matstd.twin.machine import Chain, Link
 from matstd.twin.numbers import significant
 
-FORMAT = "identifiability/1"
-"""Format of the file."""
+FORMAT = "identifiability/1"  # format of the file
 
 
 def identifiability_table(known: IdentifiabilityReport) -> dict[str, Any]:

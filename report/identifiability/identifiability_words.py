@@ -23,11 +23,9 @@ from matstd.report.numbers import shown
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 
-MAX_NAMED_PARAMETERS = 4
-"""Parameters of a combination that are written out at most."""
+MAX_NAMED_PARAMETERS = 4  # parameters of a combination that are written out at most
 
-SHARE = 0.1
-"""A parameter below this share of the largest weight is left out of the words."""
+SHARE = 0.1  # a parameter below this share of the largest weight is left out of the words
 
 _FULL = 0.9995  # a correlation that rounds to 1.000
 _SAME = 1e-6  # relative, of two weights
@@ -118,7 +116,6 @@ def combination_words(
     """`EXX + 0.52 EXZ - 0.03 µm/µrad EBX ...`: the most important parameters with their weights.
 
     Args:
-        units: Base units of the parameters.
         weights: Shape (P,), the leading one's is one.
         importance: Weights in units of the expected size of each parameter, (P,).
     """

@@ -12,15 +12,13 @@ from matstd.twin.laws import Driver, Law
 from matstd.twin.model import columns
 from matstd.twin.units import DEG, UM, URAD
 
-CURVE_POINTS = 400
-"""Points of a curve that are drawn."""
+CURVE_POINTS = 400  # points of a curve that are drawn
 
 BEYOND = 0.3
 """Share of the range by which a curve without a formula is drawn beyond it: there its uncertainty
 comes back."""
 
-MIN_LEVER = 0.2
-"""Share of the largest lever below which a touch shows noise rather than the law."""
+MIN_LEVER = 0.2  # share of the largest lever below which a touch shows noise rather than the law
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,11 +51,7 @@ goes beyond the domain: there it has died away."""
 
 
 def effect_text(learning: Learning, run: str) -> str:
-    """Text of `effect.py`.
-
-    Args:
-        run: Name of the run file.
-    """
+    """Text of `effect.py`."""
     names = learning.effect_names
     blocks = [
         _class(learning, one.law, name, run) for one, name in zip(learning.laws, names, strict=True)

@@ -16,6 +16,7 @@ from matstd.report.laws.law_words import (
     instead_sentence,
     law_sentence,
     library_sentence,
+    limits_sentences,
     looks_like,
     no_law_sentence,
     odds_words,
@@ -44,10 +45,13 @@ _ALIKE = (
     "course of time for a temperature."
 )
 _NEXT = (
-    "Try it on another run: `matstd compare RUN.csv --model model.toml --effects effect.py`; only "
-    "then compensate with it."
+    "Give the law its name in effect.py, and try it on another run: `matstd compare RUN.csv "
+    "--model model.toml --effects effect.py`; only then compensate with it."
 )
-_VISIT = "Probe `next_visit.csv` and learn from both runs, to distinguish the law from its rivals."
+_VISIT = (
+    "To distinguish the law from its rivals, probe `next_visit.csv` and learn from both runs: "
+    "`matstd learn {runs} visit.csv`."
+)
 _WITHOUT = "Record what could cause it (a temperature, a load, a speed) and probe again."
 _FOOT = (
     "Uncertainties are standard uncertainties (k = 1) of the fit with all parameters of the law; "
@@ -74,7 +78,7 @@ def write_law_page(
         heading=f"What the model leaves of {title}",
         lead=_lead(learning),
         means=_meaning(learning),
-        next=_next(learning, visit),
+        next=_next(learning, visit, title),
         key=_key(learning, second),
         sections=law_sections(learning, visit, second),
         foot=[_FOOT],
@@ -87,10 +91,11 @@ def law_sections(
     learning: Learning, visit: VisitPlan | None, second: SecondRun | None = None
 ) -> list[Section]:
     """What was learnt: every law with picture and rivals, the next visit, the error elsewhere."""
+    limits = limits_sentences(learning)
     if not learning.laws:
-        return [Section(sentences=[no_law_sentence(learning)])]
+        return [Section(sentences=[no_law_sentence(learning), *limits])]
     instead = instead_sentence(learning)
-    out = [Section(sentences=[f"**{instead}**", _WHAT] if instead else [_WHAT])]
+    out = [Section(sentences=[*([f"**{instead}**"] if instead else []), _WHAT, *limits])]
     for i, one in enumerate(learning.laws, start=1):
         out += _law_sections(learning, one, i)
     return [*out, *(visit_section(visit) if visit else []), _held_out(learning, second)]
@@ -108,10 +113,10 @@ def _meaning(learning: Learning) -> str:
     )
 
 
-def _next(learning: Learning, visit: VisitPlan) -> str:
+def _next(learning: Learning, visit: VisitPlan, title: str) -> str:
     if not learning.laws:
         return _WITHOUT
-    return _NEXT if visit.touches is None else f"{_VISIT} {_NEXT}"
+    return _NEXT if visit.touches is None else f"{_VISIT.format(runs=title)} {_NEXT}"
 
 
 def _lead(learning: Learning) -> str:

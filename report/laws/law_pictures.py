@@ -1,19 +1,24 @@
 """Pictures of laws: the law with the data, and the residual before and after."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from matstd.diagnosis.laws import Learning
 from matstd.report.laws.curves import axis_label, law_curve
-from matstd.report.style import BLUE, FAINT, INK, NEUTRAL, ORANGE, figure, plain, robust_limit
+from matstd.report.style import (
+    BLUE,
+    FAINT,
+    INK,
+    NEUTRAL,
+    ORANGE,
+    Figure,
+    figure,
+    plain,
+    robust_limit,
+)
 from matstd.twin.laws import Law
 from matstd.twin.units import UM
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def draw_law(learning: Learning, law: Law) -> Figure:

@@ -4,6 +4,8 @@ import math
 import re
 from collections.abc import Sequence
 
+import numpy as np
+
 from matstd.diagnosis.laws import (
     Estimate,
     Learning,
@@ -14,7 +16,7 @@ from matstd.diagnosis.laws import (
     places,
 )
 from matstd.report.numbers import digits, microns, with_uncertainty
-from matstd.twin.laws import Carrier, Driver, Factor, Law
+from matstd.twin.laws import Carrier, Driver, Factor, Law, drivers
 from matstd.twin.units import DEG, MINUTE, UM, URAD
 from matstd.twin.words import listed
 
@@ -67,6 +69,14 @@ _SHAPES = {
     "play": "a play that follows",
     "curve": "a smooth curve without a formula",
 }
+_COURSE = (
+    "A curve over time is a driver that was not recorded: its course belongs to this run, and "
+    "other runs are predicted without it."
+)
+
+FEW_TOUCHES = 60
+"""Below it a run leaves few degrees of freedom beside geometry and set-ups."""
+
 _EDGES = ("x0", "x1", "x2")
 """Parameters of shapes that are values of the variable."""
 
@@ -265,7 +275,31 @@ def law_notes(learning: Learning) -> list[str]:
     out = []
     for one in learning.laws:
         out += [library_sentence(one), rivals_sentence(one), looks_like(one.law)]
-    return [line for line in out if line]
+        out.append(_COURSE if one.law.belongs_to == "run" else "")
+    return [line for line in (*out, *limits_sentences(learning)) if line]
+
+
+def limits_sentences(learning: Learning) -> list[str]:
+    """What a run cannot show: of few touches, of one pose, of variables with two values."""
+    fit, out = learning.before, []
+    touches, count = fit.run.touches, int(fit.used.sum())
+    if count < FEW_TOUCHES and learning.refusal is not Refusal.FEW:
+        out.append(f"From {count} touches only a law far above the noise can be learnt.")
+    stays = np.column_stack([touches.setup, touches.q[:, touches.chain.rotary_columns]])
+    if touches.chain.rotary_axes and len(np.unique(stays.round(6), axis=0)) == 1:
+        out.append(
+            "All touches are in one pose: carriers that differ only in others are not "
+            "distinguished, and a law over a rotary axis is not seen."
+        )
+    two = [
+        variable_words(driver)
+        for driver in drivers(touches)
+        if driver.nature != "sign" and len(np.unique(driver.values(touches))) == 2
+    ]
+    if two:
+        each = "has two values" if len(two) == 1 else "have two values each"
+        out.append(f"Of {listed(two)}, which {each}, only a step can be learnt.")
+    return out
 
 
 def learnt_words(learning: Learning) -> str:
@@ -298,6 +332,8 @@ def no_law_sentence(learning: Learning) -> str:
     touches = int(learning.before.used.sum())
     left = f"what the model leaves of {touches} touches ({noise} rms)"
     best = learning.refused
+    if learning.refusal is Refusal.FEW:
+        return f"No law was looked for: {touches} touches distinguish none from another."
     if best is None or learning.refusal in (None, Refusal.CHANCE):
         return f"No law: {left} follows no carrier and variable beyond chance."
     name = short_words(best.law)

@@ -15,8 +15,8 @@ FILE = "next_visit.csv"
 
 _HOW = (
     "Touch the points in the order of the file, in the set-ups of the run and with the "
-    "temperatures recorded; then learn from both runs. The command writes no probing program for "
-    "it."
+    "temperatures recorded; then learn from both runs. Of a standard that was designed here "
+    "`matstd replan next_visit.csv --design OUT` writes the programs."
 )
 
 

@@ -6,15 +6,7 @@ A `Page` is a verdict with key figures and a list of `Section`s: sentences, a ta
 
 from matstd.report.layout.html import marked, picture, write_page
 from matstd.report.layout.pdf import Printer, printer, write_pdf
-from matstd.report.layout.section import (
-    Heading,
-    KeyFigure,
-    LiveView,
-    Page,
-    Picture,
-    Section,
-    Table,
-)
+from matstd.report.layout.section import Heading, KeyFigure, LiveView, Page, Picture, Section, Table
 
 __all__ = [
     "Heading",

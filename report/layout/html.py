@@ -19,8 +19,7 @@ from matstd.twin.files import write_whole
 from matstd.twin.versions import versions
 from matstd.twin.words import in_own_unit
 
-MIN_SECTIONS = 3
-"""Sections from which a page has a table of contents."""
+MIN_SECTIONS = 3  # sections from which a page has a table of contents
 
 _MARKS = (
     (re.compile(r"\*\*(.+?)\*\*"), r"<b>\1</b>"),
@@ -29,8 +28,7 @@ _MARKS = (
     (re.compile(r"\n"), "<br>"),
 )
 _NEARLY_WHITE = 248  # of 255
-PROSE = 60
-"""Characters from which a cell that begins with a number is a sentence, which is wrapped."""
+PROSE = 60  # characters from which a cell that begins with a number is a sentence, which is wrapped
 
 _NUMBER = re.compile(r"[<±+\-−]?\s?\d")
 
@@ -138,7 +136,6 @@ def picture(path: str | Path, is_small: bool = False) -> str:
     """A PNG or SVG file as a data address, so that the page stands alone.
 
     Args:
-        path: The file.
         is_small: Whether a PNG keeps 256 colours: charts look the same at a third of the size.
     """
     path = Path(path)

@@ -41,11 +41,6 @@ def printer() -> Printer:
 def write_pdf(page: Path, path: Path, printed_by: Printer) -> None:
     """Print a page.
 
-    Args:
-        page: HTML file that loads nothing.
-        path: The PDF; written whole or not at all.
-        printed_by: As `printer` gives it.
-
     Raises:
         DesignError: The browser fails.
     """

@@ -8,8 +8,7 @@ from matstd.twin.files import write_whole, written_whole
 from matstd.twin.text import csv_text
 from matstd.twin.words import in_own_unit
 
-FOLDER, WORKBOOK = "tables", "tables.xlsx"
-"""Where they go, beside the page."""
+FOLDER, WORKBOOK = "tables", "tables.xlsx"  # where they go, beside the page
 
 _LONGEST = 31  # letters of a sheet's name, by the format
 _WIDEST = 60  # letters of a column before its text is cut off on the screen
@@ -36,11 +35,7 @@ def page_tables(page: Page) -> list[tuple[str, str, Table]]:
 
 
 def write_tables(folder: Path, page: Page) -> list[Path]:
-    """Write every table of a page as CSV into `tables/`, and all of them into one workbook.
-
-    Returns:
-        The files.
-    """
+    """Write every table of a page as CSV into `tables/`, and all of them into one workbook."""
     from openpyxl import Workbook
     from openpyxl.styles import Font
     from openpyxl.utils import get_column_letter

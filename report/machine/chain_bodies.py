@@ -20,8 +20,7 @@ from matstd.report.style import series
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Link
 
-TOOL_RADIUS, BALL_RADIUS = 4.0, 6.0
-"""Of the tool that is drawn, mm."""
+TOOL_RADIUS, BALL_RADIUS = 4.0, 6.0  # of the tool that is drawn, mm
 
 _NOSE_RADIUS, _NOSE = 45.0, 170.0  # of the spindle, mm: those of a spindle HSK 63
 _STEEL, _RAIL, _BED = "#aeb6c0", "#6b7685", "#d3d8de"
@@ -257,6 +256,7 @@ def _cradle(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> N
     plate, arm = 0.3 * _LEAST + 0.05 * wide, 0.25 * _LEAST + 0.06 * wide
     round_line = max(1.2 * arm, 0.4 * _LEAST)
     end = max(side.end, line[2] - round_line)
+    # the line may lie above or below the plate: arms reach over both
     level = sorted((line[2] - round_line, end + plate))
     parts = [
         block(
@@ -281,6 +281,7 @@ def _cradle(side: _Side, link: Link, carrier: str, colour: tuple[str, str]) -> N
         [*(b.corners.reshape(-1, 3) for b in side.bodies if b.on == link.name)]
     )
     local = corners @ axes.T - line
+    # bearings stand on a foot that nothing which swings can reach
     swing = float(np.hypot(local[:, 1], local[:, 2]).max()) + 15.0
     foot = line[2] + swing
     bearings = []
@@ -355,5 +356,4 @@ def _column(bed: Array, low: Array, high: Array) -> list[Array]:
     return [beam, block(foot, np.array([high[0] + 0.5 * _LEAST, back + deep, high[_UP]]))]
 
 
-_UP = 2
-"""Index of Z, along which the tool points on every machine."""
+_UP = 2  # index of Z, along which the tool points on every machine

@@ -105,6 +105,7 @@ def error_functions(errors: MachineErrors, length: float, duration: float) -> li
         series = _series(space, rng)
         x = space.drawn(rng)
         sides = rng.choice([-1.0, 1.0], (len(x), len(errors.chain.axes)))
+        # sizes come from the model itself at random poses, not from the series that approximate it
         touches = alone.touches(x[:, :-1], length, sides, x[:, -1])
         columns = alone.columns(touches)
         theta = np.concatenate(alone.theta)

@@ -21,12 +21,9 @@ from matstd.report.machine.solids import Drawn
 from matstd.twin.machine import Chain, Family, parse_symbol
 from matstd.twin.units import UM
 
-_LEAST_GRAIN = 0.05
-"""Of the corners of bodies, mm."""
-_REACH = 32_000
-"""Steps of a corner's coordinate that fit into 16 bits."""
-_DRAWN_AS = 25.0
-"""Length as which the largest errors together are drawn at first, mm."""
+_LEAST_GRAIN = 0.05  # of the corners of bodies, mm
+_REACH = 32_000  # steps of a corner's coordinate that fit into 16 bits
+_DRAWN_AS = 25.0  # length as which the largest errors together are drawn at first, mm
 _HELP = (
     "Drag the picture to turn it, with Shift to move it, wheel to zoom; or Tab to it and use the "
     "arrow keys, + and -."

@@ -18,8 +18,7 @@ _ASSUMED = (
     "No errors are given. Listed are those that this machine can have, each linear over its travel "
     "in the size expected of its class; all are switched off at first: switch them on one by one."
 )
-_NAMED = 3
-"""Errors that the box at the head names."""
+_NAMED = 3  # errors that the box at the head names
 _OWN_BODIES = "Bodies of {} are from your files."
 
 

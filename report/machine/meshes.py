@@ -11,11 +11,9 @@ from matstd.twin.errors import BadFile, NotBuildable
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 
-MAX_TRIANGLES = 20_000
-"""Triangles of one body on a page: half a megabyte."""
+MAX_TRIANGLES = 20_000  # triangles of one body on a page: half a megabyte
 
-FARTHEST = 1e5
-"""A corner that lies farther from the machine's origin is a slip of units, mm."""
+FARTHEST = 1e5  # a corner that lies farther from the machine's origin is a slip of units, mm
 
 _MESHES, _STEPS = (".stl", ".obj", ".ply"), (".step", ".stp")
 _DIVISIONS = (160, 112, 80, 56, 40, 28, 20, 12, 6)  # cells a side, from fine to coarse

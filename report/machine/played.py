@@ -17,8 +17,7 @@ from matstd.twin.units import DEG
 MAX_POSITIONS = 40_000
 """Positions of one page: of a longer program every second, third ... is left out."""
 
-_STILL = 1e-9
-"""An axis that moves less has not moved, mm or rad."""
+_STILL = 1e-9  # an axis that moves less has not moved, mm or rad
 
 _STEP = 6.0 * DEG
 """Between two positions while something turns, rad: even steps between them are 0.15 % short."""

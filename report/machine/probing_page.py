@@ -33,10 +33,8 @@ def write_playback(
     """Write the page.
 
     Args:
-        page: To be written.
         plan: What is set up, and with which probe.
         programs: As written; their text is read again, and nothing else is played.
-        dialect: Of the control.
         errors: Of the machine on which the programs were tried; None for none.
     """
     chain = plan.chain

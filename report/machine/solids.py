@@ -7,8 +7,7 @@ import numpy as np
 
 from matstd.twin.frames import Array, unit
 
-FOUNDATION = "f"
-"""What carries the bodies that do not move; other names are those of links."""
+FOUNDATION = "f"  # what carries the bodies that do not move; other names are those of links
 
 _ROUND = 40  # sides of a cylinder
 

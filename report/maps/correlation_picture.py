@@ -1,17 +1,10 @@
 """Heat map of the correlations after the fit."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from matstd.information.identifiability import Ties
 from matstd.report.identifiability import short
-from matstd.report.style import INK, figure, nothing
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from matstd.report.style import INK, Figure, figure, nothing
 
 _SHOWN = 34  # parameters: their names stay readable in print
 

@@ -1,21 +1,16 @@
 """Tornado of the variance shares: one chart a region, the errors that matter there."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from matstd.report.style import INK, axis_title, figure, nothing, plain, series
+from matstd.report.style import INK, Figure, axis_title, figure, nothing, plain, series
 from matstd.report.words import place_words
 from matstd.sensitivity.shares import Region, RegionTotals
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.units import UM
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _BARS = 8
 _COLUMNS = 3
@@ -86,6 +81,7 @@ def _tornado(
             total, y, xerr=2.0 * u, color=INK, mfc="white", lw=0.0, elinewidth=1.0, **_TOTAL
         )
         top = max(top, (total + 2.0 * u).max())
+    # all regions share one scale: an axis grows with each and never shrinks
     axes.set_xlim(min(0.0, axes.get_xlim()[0], low.min()), max(axes.get_xlim()[1], 1.04 * top))
     title = f"{place_words(region.place)}\n{region.rms / UM:.0f} µm rms"
     axes.set_title(title, fontsize=9.5, loc="left", color=INK)

@@ -1,14 +1,13 @@
 """Pictures of S, the sensitivity of the tool point to every error parameter."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from matstd.report.style import (
     INK,
     NEUTRAL,
+    Figure,
     axis_title,
     figure,
     nothing,
@@ -21,9 +20,6 @@ from matstd.sensitivity.study import Study
 from matstd.twin.frames import Array
 from matstd.twin.machine import LETTERS, Family, Symbol
 from matstd.twin.units import UM, URAD
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _COLUMNS = 4  # maps in a row: their numbers stay readable in print
 _PLANE = 31  # values of each reading of a map of S

@@ -22,18 +22,12 @@ from matstd.report.pages.run_sections import (
 )
 from matstd.report.run_view import comparison_step, comparison_view
 from matstd.report.verdict import comparison_meaning, promise_words, repeatability_words
-from matstd.report.words import (
-    comparison_sentence,
-    learnt_lines,
-    remark_sentence,
-    structure_words,
-)
+from matstd.report.words import comparison_sentence, learnt_lines, remark_sentence, structure_words
 from matstd.twin.frames import Array
 from matstd.twin.units import UM
 
 PAGE = "report.html"
-PATTERN_ROWS = 12
-"""Patterns that the table lists."""
+PATTERN_ROWS = 12  # patterns that the table lists
 
 _PREDICTED = (
     "The machine is as estimated before this run; only the set-ups of the standard were estimated "
@@ -63,9 +57,6 @@ def write_compare_page(
     """Write `report.html` and its pictures into a folder.
 
     Args:
-        found: The comparison.
-        folder: For the page.
-        title: Name of the run file.
         rng: Shuffles residuals, to show what chance produces.
         reported: Numbers of effects as the model file keeps them, by name.
         body: Triangles of what was probed, where it is known.

@@ -40,8 +40,7 @@ from matstd.twin.units import UM
 
 _STEP_FACE = "largest deviation of a STEP face from its design"
 
-MAPS = "sensitivity"
-"""Folder of the maps."""
+MAPS = "sensitivity"  # folder of the maps
 
 GREEN, YELLOW = 0.8, 0.5
 """Shares of a tolerance in which conformity can be proved from which it is green and yellow. Green:
@@ -80,10 +79,6 @@ _LIMITS = (
 
 def write_design_page(design: Design, folder: Path) -> list[str]:
     """Draw the pictures and write report.html.
-
-    Args:
-        design: What was made; its files lie in the folder.
-        folder: The results.
 
     Returns:
         What could not be drawn and why, one line each; the page states it too.

@@ -76,9 +76,6 @@ def write_diagnosis_page(
     """Write `report.html` and its pictures into a folder.
 
     Args:
-        result: The diagnosis.
-        folder: For the page.
-        title: Name of the run file.
         rng: Shuffles residuals, to show what chance produces.
         is_saved: Whether the model file has what was found.
         body: Triangles of what was probed, where it is known.

@@ -27,12 +27,7 @@ from matstd.report.numbers import microns
 from matstd.report.pages.design_result import Design
 from matstd.report.plots import draw_fall, draw_over_variables
 from matstd.report.style import save
-from matstd.report.words import (
-    comparison_sentence,
-    features_words,
-    study_words,
-    verdict_sentence,
-)
+from matstd.report.words import comparison_sentence, features_words, study_words, verdict_sentence
 from matstd.sensitivity.shares import regions
 from matstd.sensitivity.study import Study
 from matstd.twin.display import Displayed, Tabular, html, text

@@ -23,17 +23,14 @@ from matstd.twin.frames import Array
 from matstd.twin.record import Run, Touches
 from matstd.twin.units import UM
 
-PICTURES = "pictures"
-"""Folder beside a page."""
+PICTURES = "pictures"  # folder beside a page
 
 FIRST, WHOLE = 12, 40
 """Variables that are shown unfolded, and at most."""
 
-PATTERN_PICTURES = 3
-"""Patterns that are drawn at most."""
+PATTERN_PICTURES = 3  # patterns that are drawn at most
 
-REGIONS = 2
-"""Regions that are drawn."""
+REGIONS = 2  # regions that are drawn
 
 _REGION = (
     "Residual of each touch divided by its lever on this error, the region (shaded) in the model, "
@@ -41,8 +38,7 @@ _REGION = (
     "with standard errors. Line: the size found."
 )
 
-DEPENDENCES = 8
-"""Variables that a table lists with their patterns; further ones are named below it."""
+DEPENDENCES = 8  # variables that a table lists with their patterns; further ones are named below it
 
 _OVER = (
     "Residual over each recorded variable, the strongest dependence first. Grey: touches. Dots: "
@@ -64,7 +60,6 @@ def residual_sections(name: str, fit: Fit, z: Array | None = None) -> list[Secti
 
     Args:
         name: First word of the files.
-        fit: The fit.
         z: Residuals over their standard uncertainty where that exceeds the touch's own, (N,).
     """
     panels, file = rank_variables(fit), f"{PICTURES}/{name}"
@@ -96,9 +91,7 @@ def pattern_pictures(
     """What a residual varies with, each beside the same residual shuffled.
 
     Args:
-        fit: The fit.
         found: Patterns in its residual, the most certain first.
-        rng: Shuffles.
     """
     out: list[Picture] = []
     seen: set[tuple[tuple[str, ...], float]] = set()

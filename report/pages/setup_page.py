@@ -7,13 +7,7 @@ from matstd.compensation.field import MachineErrors
 from matstd.probe_paths.campaign import setup_tolerance
 from matstd.probe_paths.language import LANGUAGES, Label, Q, interlocks
 from matstd.probe_paths.locate import Companions
-from matstd.probe_paths.plan import (
-    SMALLEST_GAP,
-    Heading,
-    ProgramFrame,
-    TouchPlan,
-    calibration_hash,
-)
+from matstd.probe_paths.plan import SMALLEST_GAP, Heading, ProgramFrame, TouchPlan, calibration_hash
 from matstd.probe_paths.stations import Station
 from matstd.report.layout import Page, Picture, Section, Table, write_page
 from matstd.report.machine import PLAYBACK, write_playback
@@ -22,8 +16,7 @@ from matstd.report.plots import draw_setup
 from matstd.twin.frames import fixed_xyz_angles
 from matstd.twin.units import DEG, MINUTE
 
-PAGE, PICTURE = "setup.html", "setup.png"
-"""Names in the folder of the sheet."""
+PAGE, PICTURE = "setup.html", "setup.png"  # names in the folder of the sheet
 
 _REMEDY = {
     Label.OTHER_PROBE: "number and length of the probe in the tool table, to the ball's far pole",

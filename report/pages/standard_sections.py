@@ -76,7 +76,6 @@ def comparison_table(design: Design, on_machine: dict[str, float]) -> Table:
     """The standard beside other artefacts.
 
     Args:
-        design: The design.
         on_machine: Minutes of every artefact; nan without a body.
     """
     placement, user, volume = design.placement, "in your workspace, µm", "in the probed volume, µm"
@@ -200,7 +199,7 @@ def making_rows(made: Making) -> list[tuple[str, str]]:
         *_stiffness_rows(made),
         *[
             (words.partition(": ")[0], words.partition(": ")[2])
-            for words in price_lines(made.prices)
+            for words in price_lines(made.prices, made.make)
         ],
         *((f"milling {face} with 6 mm", _milling(hint)) for face, hint in made.hints.items()),
     ]

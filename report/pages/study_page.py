@@ -34,8 +34,7 @@ _S_SCENES = 3
 _STILL = 0.02  # relative range of S in a volume below which its map would be one colour
 _ALIKE = 0.98  # correlation of two maps of S that show the same
 
-Shown = tuple[str, str]
-"""File and caption of a picture."""
+Shown = tuple[str, str]  # file and caption of a picture
 
 _VARIANCE = "Errors that make half of the variance, region by region (exact to first order)"
 
@@ -46,8 +45,6 @@ def write_study_page(
     """Write report.html of a study by itself, with its maps in three dimensions.
 
     Args:
-        study: The study.
-        folder: The results, with the pictures.
         pictures: File and caption of those that exist already, in any order.
         project: Source of the study, for the foot of the page.
 
@@ -92,7 +89,6 @@ def study_sections(
         study: The study.
         pictures: File and caption of every map.
         place: Folder of the maps as seen from the page, with a slash at its end.
-        title: Of the section.
         shown_first: File of the map that is shown; the others are folded. All are, without one.
     """
     v, names = study.volumetric, [s.name for s in study.chain.symbols]
@@ -133,8 +129,6 @@ def draw_study_volumes(
     """Draw volumetric error and S in three dimensions.
 
     Args:
-        study: The study.
-        folder: For the pictures.
         remarks: Receives a line if they cannot be drawn, as without OpenGL.
         stl: STL file of the standard; None for none.
         T_table_artefact: Pose of the standard, (4, 4).

@@ -47,9 +47,6 @@ def write_uncertainty_page(
     """Write the page, and its tables beside it.
 
     Args:
-        path: HTML file.
-        task: What is measured.
-        standard: Name of what was measured.
         sentence: How much was measured.
         found: Budgets by what results are corrected with.
         lines: Sentences on them.

@@ -1,18 +1,11 @@
 """Pictures of a diagnosis: the error falling, rival effects, and each effect alone."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from matstd.diagnosis.answer import (
-    Candidate,
-    ConfusionClass,
-    Diagnosis,
-    Step,
-)
+from matstd.diagnosis.answer import Candidate, ConfusionClass, Diagnosis, Step
 from matstd.diagnosis.fit import MIN_POSES, Fit
 from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import BoolArray
@@ -29,6 +22,7 @@ from matstd.report.style import (
     ORANGE,
     RED,
     SOFT,
+    Figure,
     axis_of,
     figure,
     plain,
@@ -40,11 +34,7 @@ from matstd.twin.model import Effect
 from matstd.twin.numbers import rms
 from matstd.twin.units import UM
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-MOST_BARS = 14
-"""Rivals or candidates that get a bar."""
+MOST_BARS = 14  # rivals or candidates that get a bar
 
 TEN = float(np.log(10.0))
 
@@ -52,8 +42,7 @@ SLOW, SCATTERED = 0.01, 0.3
 """Mean squared step over the variance, up to which a course is slow, and up to which it is one: a
 cycle of a dozen touches is in between."""
 
-ROW = 0.34
-"""Height of a bar with two lines of words, inch."""
+ROW = 0.34  # height of a bar with two lines of words, inch
 
 RATIO = 12.0
 """Between the largest and the smallest error of a fall, from which its scale is logarithmic."""

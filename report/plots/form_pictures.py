@@ -1,20 +1,15 @@
 """Picture of the form of one patch of the standard, as the touches show it."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.regression import BoolArray
-from matstd.report.style import DIVERGING, INK, figure, plain, robust_limit
+from matstd.report.style import DIVERGING, INK, Figure, figure, plain, robust_limit
 from matstd.twin.frames import Array
 from matstd.twin.model import Effect, columns
 from matstd.twin.units import UM
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 LEVELS = 15
 

@@ -1,9 +1,7 @@
 """Pictures of a pattern without a name and of a region: a residual over what it depends on."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -28,6 +26,7 @@ from matstd.report.style import (
     INK,
     RED,
     SOFT,
+    Figure,
     axis_of,
     figure,
     plain,
@@ -36,9 +35,6 @@ from matstd.report.style import (
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 from matstd.twin.units import UM, URAD
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def draw_region(fit: Fit, region: Region) -> Figure | None:
@@ -79,8 +75,7 @@ def _bounds(region: Region, name: str, values: Array) -> tuple[float, float]:
     return own.get(Side.FROM, float(values.min())), own.get(Side.BELOW, float(values.max()))
 
 
-NEIGHBOURS = 14
-"""Touches over which a map of two variables is averaged."""
+NEIGHBOURS = 14  # touches over which a map of two variables is averaged
 
 BINS = 24
 

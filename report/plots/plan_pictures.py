@@ -1,20 +1,15 @@
 """Pictures of a plan: the set-up, where the standard is touched, how the table turns meanwhile."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, FreeformPatch, Plate
 from matstd.artefact.reach import table_face
 from matstd.probe_paths.plan import TouchPlan
-from matstd.report.style import BLUE, INK, RED, SOFT, figure, plain
+from matstd.report.style import BLUE, INK, RED, SOFT, Figure, figure, plain
 from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.units import DEG
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 
 def draw_setup(plan: TouchPlan) -> Figure:
@@ -123,6 +118,7 @@ def _outlines(ax: Any, plan: TouchPlan, i: int, j: int) -> None:
         if isinstance(surface, FreeformPatch):
             a, b = surface.half_size
             s = np.linspace(-1.0, 1.0, 25)
+            # along all four edges: a freeform face bends them
             one = np.ones_like(s)
             ring = np.concatenate(
                 [np.stack(c, -1) for c in ((s, -one), (one, s), (-s, one), (-one, -s))]

@@ -1,19 +1,14 @@
 """Pictures of the proof: error before and after, pose by pose, and over the number of touches."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from matstd.artefact.worth import TouchCurve
 from matstd.diagnosis.accuracy import Proof
-from matstd.report.style import BLUE, INK, RED, SOFT, figure, plain, series
+from matstd.report.style import BLUE, INK, RED, SOFT, Figure, figure, plain, series
 from matstd.twin.units import UM
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _MARKERS = "osD^vPX*"
 _NOT_A_BODY = "ideal"  # first word of scatter without a body: dashed

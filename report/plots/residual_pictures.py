@@ -1,9 +1,7 @@
 """Pictures of a residual as a sample: over every variable, and against the normal distribution."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -16,6 +14,7 @@ from matstd.report.style import (
     LINE,
     RED,
     SOFT,
+    Figure,
     axis_of,
     figure,
     plain,
@@ -26,11 +25,7 @@ from matstd.twin.record import IntArray
 from matstd.twin.sampling import spread_rows
 from matstd.twin.units import UM
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-MOST_DRAWN = 4000
-"""Touches that are drawn as points; means are always over all."""
+MOST_DRAWN = 4000  # touches that are drawn as points; means are always over all
 
 COLUMNS = 4
 

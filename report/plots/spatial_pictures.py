@@ -1,8 +1,6 @@
 """Pictures of a residual in space: on the standard, and table pose by table pose."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,6 +16,7 @@ from matstd.report.style import (
     ORANGE,
     SOFT,
     WASH,
+    Figure,
     figure,
     plain,
     robust_limit,
@@ -26,17 +25,11 @@ from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 from matstd.twin.units import DEG, UM
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+EXTENT = 1.0  # touched points closer together than this (mm) are a place, not a standard
 
-EXTENT = 1.0
-"""Touched points closer together than this (mm) are a place, not a standard."""
+UNSURE = 3.0  # times the usual uncertainty of a pose's vector from which no arrow is drawn of it
 
-UNSURE = 3.0
-"""Times the usual uncertainty of a pose's vector from which no arrow is drawn of it."""
-
-MOST_NAMED = 24
-"""Features whose names are written on the standard."""
+MOST_NAMED = 24  # features whose names are written on the standard
 
 
 def is_spread(touches: Touches) -> bool:
@@ -208,6 +201,7 @@ def _is_sure(spread: Array) -> BoolArray:
 def _arrows(drawn: Any, ax: Any, fit: Fit, rows: IntArray, vectors: Array, sure: BoolArray) -> None:
     """Arrows in X and Y at the rotary readings, coloured by Z; their longest marks the scale."""
     x, y, x_name, y_name = _where(fit.run.touches, rows)
+    # uncertain poses get a circle: their arrows would set the scale of all others
     limit = robust_limit(vectors[sure, 2], 1.0)
     length = float(np.linalg.norm(vectors[sure, :2], axis=1).max()) or 1.0
     marks = ax.quiver(

@@ -1,26 +1,18 @@
 """Picture of a machine over several runs: changes, and how well each run is predicted."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from matstd.diagnosis.answer import Trend
 from matstd.diagnosis.geometry import GeometryRow
 from matstd.report.geometry import quantity_name, shown_unit
-from matstd.report.style import BLUE, INK, RED, figure, plain, series
+from matstd.report.style import BLUE, INK, RED, Figure, figure, plain, series
 from matstd.twin.units import UM
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+ACROSS = 3  # quantities side by side
 
-ACROSS = 3
-"""Quantities side by side."""
-
-HEIGHT = 2.3
-"""Height of one row of pictures, inch."""
+HEIGHT = 2.3  # height of one row of pictures, inch
 
 
 def draw_trend(trend: Trend, rows: Sequence[tuple[GeometryRow, Sequence[bool]]]) -> Figure:

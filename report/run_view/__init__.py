@@ -5,10 +5,15 @@ In: a `Board`, which holds what the error of any set of effects follows from. Ou
 browser.
 """
 
-from matstd.report.run_view.frame import Framed
 from matstd.report.run_view.next_step import comparison_step, diagnosis_step
 from matstd.report.run_view.run_data import Findings
-from matstd.report.run_view.view import comparison_view, diagnosis_view, learnt_view, run_view
+from matstd.report.run_view.view import (
+    Framed,
+    comparison_view,
+    diagnosis_view,
+    learnt_view,
+    run_view,
+)
 
 __all__ = [
     "Findings",

@@ -8,8 +8,6 @@ def diagnosis_step(result: Diagnosis, title: str, is_saved: bool = False) -> str
     """After a diagnosis.
 
     Args:
-        result: The diagnosis.
-        title: Name of the run file.
         is_saved: Whether the model file has what was found.
     """
     if result.verdict is Verdict.UNDECIDED:

@@ -20,14 +20,12 @@ from matstd.twin.record import Run, Touches
 from matstd.twin.units import UM
 from matstd.twin.words import in_own_unit
 
-GRAIN = 0.02
-"""Of the corners of bodies, mm; larger ones are coarser."""
+GRAIN = 0.02  # of the corners of bodies, mm; larger ones are coarser
 
 LONG = 4000
 """Touches from which less is kept of each: fewer columns to plot, residuals at one noise."""
 
-MOST_COLUMNS, FEWER_COLUMNS = 40, 10
-"""Recorded columns that can be plotted; of a long run."""
+MOST_COLUMNS, FEWER_COLUMNS = 40, 10  # recorded columns that can be plotted; of a long run
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,8 +49,6 @@ def run_data(
     """Data of `run_page.js`.
 
     Args:
-        board: The run with its effects.
-        findings: What the report says of it.
         curves: Of laws among the switches, by their names, one for every variable.
     """
     fit = board.fit
@@ -85,6 +81,7 @@ def _touches(fit: Fit) -> TREE:
     t, run = fit.run.touches, fit.run
     features, feature = np.unique(t.feature, return_inverse=True)
     state = np.where(fit.gross.rows | fit.gross_test_rows, 1, np.where(run.split == "test", 2, 0))
+    # the largest number of two bytes stands for no group, as the script of the page knows
     group = np.full(len(run), 65535)
     names = _group_names(fit)
     if not fit.test_rows.any():

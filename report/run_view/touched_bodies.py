@@ -9,26 +9,20 @@ import numpy as np
 from matstd.twin.frames import Array
 from matstd.twin.record import Touches
 
-MIN_POINTS = 4
-"""Distinct points of a feature from which a surface is drawn between them."""
+MIN_POINTS = 4  # distinct points of a feature from which a surface is drawn between them
 
-MAX_MISFIT = 0.05
-"""Distance of a point from the ball that is drawn through it, mm."""
+MAX_MISFIT = 0.05  # distance of a point from the ball that is drawn through it, mm
 
-MIN_TURN = 0.3
-"""Spread of normals from which a feature can be a ball."""
+MIN_TURN = 0.3  # spread of normals from which a feature can be a ball
 
-MAX_RADIUS = 60.0
-"""Of a ball, mm; larger ones are faces that bend."""
+MAX_RADIUS = 60.0  # of a ball, mm; larger ones are faces that bend
 
-ROUND = 16
-"""Meridians of a ball."""
+ROUND = 16  # meridians of a ball
 
 MOST_TRIANGLES = 20_000
 """Of all features together; of more, every second, third ... point is left out."""
 
-SUNK = 0.15
-"""Depth of surfaces below their points, mm, so that these stand before them."""
+SUNK = 0.15  # depth of surfaces below their points, mm, so that these stand before them
 
 
 def touched_bodies(touches: Touches) -> list[Array]:

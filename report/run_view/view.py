@@ -1,6 +1,9 @@
 """The live view as a page takes it: elements, style and script."""
 
 from collections.abc import Mapping, Sequence
+from html import escape
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from markupsafe import Markup
 
@@ -9,16 +12,45 @@ from matstd.diagnosis.geometry import LearntGeometry, Rung
 from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.reduced import Board, compared_board, diagnosed_board, learnt_board
 from matstd.report.laws import LawCurve, law_curve, no_law_sentence, size_words
-from matstd.report.layout import LiveView
+from matstd.report.layout import LiveView, Page, write_page
 from matstd.report.live import scripted, style
 from matstd.report.numbers import sentence
 from matstd.report.run_view.run_data import Findings, run_data
 from matstd.report.verdict import part_lines
 from matstd.report.words import sizes, structure_words
+from matstd.twin.files import write_whole
 from matstd.twin.frames import Array
 
-PATTERNS_IN_VIEW = 2
-"""Patterns of a residual that are named."""
+HEIGHT = 760  # of the frame, pixels
+
+
+class Framed:
+    """A live view that a notebook shows; `save` writes it as a page of its own.
+
+    Attributes:
+        page: The HTML.
+    """
+
+    def __init__(self, title: str, lead: str, view: LiveView) -> None:
+        """Make the page of a view; arguments as of `Page`."""
+        page = Page(title=title, heading=title, lead=lead, key=(), sections=(), live=view)
+        with TemporaryDirectory() as folder:
+            path = Path(folder) / "view.html"
+            write_page(path, page)
+            self.page = path.read_text(encoding="utf-8")
+
+    def _repr_html_(self) -> str:
+        """The page in a frame of its own, so that neither disturbs the other."""
+        style = f"width:100%;height:{HEIGHT}px;border:0"
+        return f'<iframe srcdoc="{escape(self.page)}" style="{style}"></iframe>'
+
+    def save(self, path: str | Path) -> Path:
+        """Write the page."""
+        write_whole(path, self.page)
+        return Path(path)
+
+
+PATTERNS_IN_VIEW = 2  # patterns of a residual that are named
 
 _PLACE = Markup(
     '<section id="live" class="live run" hidden '
@@ -32,7 +64,6 @@ def run_view(
     """The view of a run and its effects.
 
     Args:
-        board: As `diagnosed_board`, `learnt_board` or `compared_board` makes it.
         findings: What the report says of it.
         curves: Of laws among its effects, by their names.
     """
@@ -47,8 +78,6 @@ def diagnosis_view(result: Diagnosis, title: str, body: Array | None = None) -> 
     """Of a diagnosis: found effects on, and laws that were learnt of what they leave.
 
     Args:
-        result: The diagnosis.
-        title: Name of the run.
         body: Triangles of what was probed, where it is known.
     """
     laws = result.laws if result.laws is not None and result.laws.laws else None

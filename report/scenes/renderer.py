@@ -16,8 +16,7 @@ from matstd.twin.frames import Array
 FACTS, STL = "facts.npz", "standard.stl"
 """Names of the files through which the two processes speak."""
 
-SECONDS = 600.0
-"""After which the renderer is stopped."""
+SECONDS = 600.0  # after which the renderer is stopped
 
 # Without this the renderer looks for an X server and complains when there is none.
 _EGL = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"}

@@ -17,7 +17,6 @@ def draw_standard(standard: Standard, stl: str | Path, path: str | Path) -> None
     Args:
         standard: Whose exact faces are drawn.
         stl: Its STL file, for the body.
-        path: The picture; written whole or not at all.
 
     Raises:
         MissingLibrary: No OpenGL without a screen on this machine; names the system package.

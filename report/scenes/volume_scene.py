@@ -4,33 +4,25 @@ The scene itself is rendered in a process of its own, as pictures of a standard 
 and colour bars are put on it here, where the view is one linear map.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from matstd.cad_out.meshes import read_stl
 from matstd.report.scenes.renderer import render, shared_folder
-from matstd.report.style import INK, RED, WIDTH, figure, save
+from matstd.report.style import INK, RED, WIDTH, Figure, figure, save
 from matstd.twin.errors import DesignError, ShapeMismatch
 from matstd.twin.frames import Array, apply
 from matstd.twin.sampling import grid_points
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+IMAGE = "image.npy"  # what the renderer leaves
 
-IMAGE = "image.npy"
-"""What the renderer leaves."""
+PIXELS = 900  # height and width of one rendered scene
 
-PIXELS = 900
-"""Height and width of one rendered scene."""
-
-COLOURS = "viridis"
-"""Even in lightness, and readable without red and green."""
+COLOURS = "viridis"  # even in lightness, and readable without red and green
 
 _VIEW = (0.62, -0.74, 0.46)  # towards the eye: right of and in front of the machine, from above
 _WIDEST = 5.0  # inch, of one scene

@@ -19,10 +19,15 @@ _CONSTRUCTIONS = {
     Construction.PARTS: "plate, studs and a block for every face",
 }
 
+_FILES = {Construction.BILLET: "standard.step", Construction.PARTS: "standard-parts.step"}
+
 
 def making_lines(making: Making) -> list[str]:
     """Modulus, and a first mode below what is usual, named as a compromise."""
-    lines = [f"Young's modulus: {modulus_words(making.material)}", *price_lines(making.prices)]
+    lines = [
+        f"Young's modulus: {modulus_words(making.material)}",
+        *price_lines(making.prices, making.make),
+    ]
     stiff = making.stiffness
     if stiff is None or stiff.first_mode >= FIRST_MODE:
         return lines
@@ -40,10 +45,11 @@ def making_lines(making: Making) -> list[str]:
     ]
 
 
-def price_lines(prices: Sequence[Price]) -> list[str]:
-    """Both constructions of a body with their price, hours and lead time, and which is cheaper."""
+def price_lines(prices: Sequence[Price], make: Construction) -> list[str]:
+    """Price, hours and lead time of both constructions, and which of them to make."""
     if not prices:
         return ["price: not estimated, no rates are known of this material"]
+    last = f"make {_FILES[make]}, {_CONSTRUCTIONS[make]}"
     named = [f"{_CONSTRUCTIONS[one.construction]} {_price_words(one)}" for one in prices]
     best, worst = sorted((one.total for one in prices), key=lambda total: total.value)
     apart = worst.value - best.value
@@ -53,7 +59,7 @@ def price_lines(prices: Sequence[Price]) -> list[str]:
         if apart > max(best.u, worst.u)
         else "they differ by less than the uncertainty of one"
     )
-    return [f"price, estimated from assumed rates: {'; '.join(named)}; {verdict}"]
+    return [f"price, estimated from assumed rates: {'; '.join(named)}; {verdict}: {last}"]
 
 
 def _price_words(one: Price) -> str:

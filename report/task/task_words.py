@@ -6,11 +6,9 @@ from matstd.diagnosis.task import LEVEL, TaskUncertainty, Visits, guarded
 from matstd.report.numbers import digits, percent, plural, um
 from matstd.twin.units import UM
 
-FEW_VISITS = 10
-"""Cycles that ISO 15530-3 asks for at least."""
+FEW_VISITS = 10  # cycles that ISO 15530-3 asks for at least
 
-FEW_DOF = 5.0
-"""Degrees of freedom below which a quarter of U or more is due to its own uncertainty."""
+FEW_DOF = 5.0  # degrees of freedom below which a quarter of U or more is due to its own uncertainty
 
 
 def task_lines(

@@ -26,11 +26,9 @@ from matstd.report.words import sizes, structure_words
 from matstd.twin.library import title_of
 from matstd.twin.words import listed
 
-NAMED = 3
-"""Quantities of the geometry that are written out; of more, the first ones."""
+NAMED = 3  # quantities of the geometry that are written out; of more, the first ones
 
-MAX_LOG10 = 12.0
-"""Odds are not written with more zeros: beyond, their number means nothing."""
+MAX_LOG10 = 12.0  # odds are not written with more zeros: beyond, their number means nothing
 
 BROKEN = 1.1
 """Ratio of error to promise from which a prediction is worse than promised; the figures themselves

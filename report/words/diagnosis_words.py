@@ -35,8 +35,7 @@ _WORDS = {
     "reversal_at_most": "reversal at most",
 }
 
-_GROUPS = ("feature", "pose", "setup")
-"""Columns that number rows without an order."""
+_GROUPS = ("feature", "pose", "setup")  # columns that number rows without an order
 
 _PARTS = {
     "bias": "the reading along the normal",
@@ -44,11 +43,9 @@ _PARTS = {
 }
 """Carriers of an error that are no component of an axis."""
 
-MOST_ALIKE = 4
-"""Carriers that are named beside the first."""
+MOST_ALIKE = 4  # carriers that are named beside the first
 
-ALL_NUMBERS = 7
-"""Numbers of an effect that are written out; of more, only those that sum them up."""
+ALL_NUMBERS = 7  # numbers of an effect that are written out; of more, only those that sum them up
 
 
 def named_value(reported: Reported) -> tuple[str, str]:

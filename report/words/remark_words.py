@@ -14,14 +14,12 @@ from matstd.twin.words import listed
 NONE_CERTAIN = ", but none of its effects is significant in all rows"
 """Behind a way of choosing that added nothing."""
 
-STEEL_EXPANSION = 11e-6
-"""Expansion of steel, 1/K."""
+STEEL_EXPANSION = 11e-6  # expansion of steel, 1/K
 
 WARMED, SENSORS = 0.05, 4
 """Change of a temperature that is stated as a range, K; sensors that are named."""
 
-LISTED = 20
-"""Gross errors whose lines are listed."""
+LISTED = 20  # gross errors whose lines are listed
 
 
 def remark_sentence(remark: noticed.Remark) -> str:

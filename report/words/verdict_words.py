@@ -14,20 +14,13 @@ from matstd.report.laws import (
     rival_sentence,
 )
 from matstd.report.numbers import digits, microns
-from matstd.report.words.diagnosis_words import (
-    noise_words,
-    sizes,
-    stated_noise,
-    structure_clause,
-)
+from matstd.report.words.diagnosis_words import noise_words, sizes, stated_noise, structure_clause
 from matstd.twin.units import DEG
 from matstd.twin.words import listed
 
-PERIODS_NAMED = 4
-"""Indistinguishable periods that are named, the longest ones."""
+PERIODS_NAMED = 4  # indistinguishable periods that are named, the longest ones
 
-WITHIN = 0.1
-"""Excess over the stated noise that is not reported: half a per cent of its size."""
+WITHIN = 0.1  # excess over the stated noise that is not reported: half a per cent of its size
 
 HALF = 0.5
 """Share of the mean square beyond the stated noise that a pattern must have to explain it."""

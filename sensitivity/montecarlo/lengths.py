@@ -64,6 +64,7 @@ def count_lengths(
         threads: Number of threads; None for one a core.
     """
     n, draws = len(G), theta.shape[1]
+    # up to 65 535 machines two bytes a bin suffice: the histogram is the largest array here
     counter = np.uint16 if draws <= np.iinfo(np.uint16).max else np.int32
     found = Lengths(
         draws=draws,
@@ -76,6 +77,7 @@ def count_lengths(
     kernels = (compiled() if use_compiled else None) or Kernels(_count, _worst)
     reference = worst[0]
     lot = _DRAWS_A_BLOCK * max(1, _KEPT // n // _DRAWS_A_BLOCK) if reference else draws
+    # our threads fill the cores; those of BLAS on top would only wait for each other
     with one_blas_thread(), ThreadPoolExecutor(threads or cpu_count() or 1) as pool:
         for machines in blocks(draws, max(lot, _FEWEST_KEPT)):
             part = theta[:, machines]

@@ -22,8 +22,7 @@ from matstd.twin.compute import Progress, silent
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
 
-WORST = 0.05
-"""Share of the poses that counts as the worst ones of a machine."""
+WORST = 0.05  # share of the poses that counts as the worst ones of a machine
 
 
 def volumetric(

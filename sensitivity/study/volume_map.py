@@ -16,8 +16,7 @@ from matstd.twin.frames import Array, apply
 from matstd.twin.machine import Symbol, inverse_linear, reach, tip
 from matstd.twin.sampling import grid_points
 
-SECTION_POINTS = (19, 19, 17)
-"""Readings of each axis in a volume."""
+SECTION_POINTS = (19, 19, 17)  # readings of each axis in a volume
 
 
 @dataclass(frozen=True, eq=False)

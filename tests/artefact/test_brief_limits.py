@@ -102,7 +102,16 @@ def test_a_workspace_in_other_units_is_refused(tmp_path, workspace, words):
         read_project(project(tmp_path, f"[workspace]\n{workspace}\n"))
 
 
-@pytest.mark.parametrize("workspace", ["X = [0.0, 0.0]", "B = [-1.5, 0.5]", "X = [-5.0, 5.0]"])
+@pytest.mark.parametrize("poses", ["99", "100001", "500.0"])
+def test_poses_beyond_what_a_study_takes_are_refused(tmp_path, poses):
+    with pytest.raises(BadFile, match=rf"workspace\.poses: found {poses}, expected a whole number"):
+        read_project(project(tmp_path, f"[workspace]\nposes = {poses}\n"))
+
+
+@pytest.mark.parametrize(
+    "workspace",
+    ["X = [0.0, 0.0]", "B = [-1.5, 0.5]", "X = [-5.0, 5.0]", "poses = 100", "poses = 100000"],
+)
 def test_a_narrow_workspace_is_read(tmp_path, workspace):
     read_project(project(tmp_path, f"[workspace]\n{workspace}\n"))
 
@@ -112,6 +121,9 @@ def test_a_narrow_workspace_is_read(tmp_path, workspace):
     [
         ("density_kg_m3 = 7.8", r"density_kg_m3: found 7\.8, expected a number from 500 to 23000"),
         ("expansion_1_K = 11.5", r"expansion_1_K: found 11\.5, .* from 0 to 0\.0003 1/K"),
+        ("density_kg_m3 = 11300.0", r"density_kg_m3: found 11300 beside .*, expected about 7800"),
+        ("expansion_1_K = 0.0", r"expansion_1_K: found 0 beside .*, expected about 1\.05e-05"),
+        ("[standard]\nname = 'Prüf 1'", r"standard\.name: found 'Prüf 1', .* as programs can"),
     ],
 )
 def test_figures_of_a_material_in_other_units_are_refused(tmp_path, material, words):

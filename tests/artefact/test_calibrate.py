@@ -9,7 +9,7 @@ import pytest
 
 from matstd.artefact.body.spline import greville
 from matstd.artefact.body.standard_file import read_standard, write_standard
-from matstd.artefact.certify.calibration_fit import fit_calibration, fitted_ball
+from matstd.artefact.certify.calibration_fit import fit_calibration, fitted_ball, measured_balls
 from matstd.artefact.certify.cmm_points_file import CmmPoints, read_cmm_points
 from matstd.artefact.certify.cmm_stylus import TIP, TO_PIVOT, Angle, reaches
 from matstd.artefact.certify.dmis import APPROACH
@@ -250,6 +250,18 @@ def test_points_that_do_not_do(nominal, tmp_path, spoil, expected) -> None:
     path = written(tmp_path / "cmm.csv", rows, nominal.fingerprint)
     with pytest.raises((BadFile, NotEnoughData), match=expected):
         fit_calibration(nominal, read_cmm_points(path, nominal), NOISE, NOISE)
+
+
+def test_balls_that_the_cmm_has_evaluated_state_their_diameter(nominal, tmp_path) -> None:
+    """A row a ball: its centre in mm, its diameter in inches."""
+    rows = [(s.name, *s.centre, 2.0 * s.radius / 25.4) for s in nominal.spheres]
+    lines = ["feature,x [mm],y [mm],z [mm],diameter [in]", *(",".join(map(str, r)) for r in rows)]
+    (tmp_path / "cmm.csv").write_text("\n".join(lines) + "\n")
+    cmm = read_cmm_points(tmp_path / "cmm.csv", nominal)
+    for name, ball in measured_balls(nominal, cmm, NOISE, []).items():
+        known = nominal.features[name]
+        assert ball.radius == pytest.approx(known.radius)
+        assert ball.centre == pytest.approx(known.centre)
 
 
 def test_units_and_stamps(nominal, tmp_path, capsys) -> None:

@@ -26,7 +26,6 @@ from matstd.report.identifiability.identifiability_file import (
 from matstd.sensitivity.first_order.workspace import Workspace
 from matstd.sensitivity.population.sampling import Population
 from matstd.twin.files.whole import write_json
-from matstd.twin.machine.chain import Axis, make_chain
 from matstd.twin.record.touches import Setup
 from matstd.twin.units import DEG, UM
 
@@ -38,15 +37,7 @@ SECOND_STYLUS, SECOND_SETUP = "a second stylus length", "a second set-up"
 
 
 @pytest.fixture(scope="module")
-def criterion():
-    axes = {
-        "X": Axis((-400.0, 400.0)),
-        "Y": Axis((-300.0, 300.0)),
-        "Z": Axis((-500.0, 0.0)),
-        "B": Axis((-110.0 * DEG, 30.0 * DEG), (0.0, 0.0, -420.0)),
-        "C": Axis((-360.0 * DEG, 360.0 * DEG)),
-    }
-    chain = make_chain("table/table", "[w C' B' X' f Y Z (C1) t]", axes, (0.0, 0.0, -500.0))
+def criterion(chain):
     probe = Probe()
     reach = ProbeReach(chain, Setup("a"), probe.shape, probe.length)
     limits = {"B": (-90.0 * DEG, 20.0 * DEG), "C": (-180.0 * DEG, 180.0 * DEG)}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from matstd.artefact.body import Material
-from matstd.artefact.price import Construction, Estimate, prices_of
+from matstd.artefact.price import Construction, Estimate, construction_to_make, prices_of
 from matstd.artefact.price.rates import MILLING, SET_UP
 
 
@@ -35,6 +35,15 @@ def test_both_constructions_of_a_standard(upright):
     )
     assert billet.stock == pytest.approx(upright.material.density * a * b * (top + 10.0))
     assert parts.stock < 0.6 * billet.stock
+    # of parts: a plate, a block under every face, a bar of every post with 30 mm to hold it by
+    volume = a * b * (upright.base.thickness + 10.0)
+    for patch in upright.patches:
+        high = patch.point(patch.grid(2.0))[:, 2].max() - upright.base.thickness + 10.0
+        volume += np.prod([2.0 * half + 10.0 for half in patch.half_size]) * high
+    for ball in upright.spheres:
+        bar = ball.centre[2] - ball.foot + 30.0
+        volume += np.pi * (ball.foot_radius + 1.0) ** 2 * bar
+    assert parts.stock == pytest.approx(upright.material.density * volume)
     assert billet.hours["milling"].value > 3.0 * SET_UP.value
     for one in (billet, parts):
         assert one.total.value == pytest.approx(
@@ -57,3 +66,13 @@ def test_more_balls_cost_more_and_stone_is_not_milled(upright):
     )
     assert "hardening" in hard.bought
     assert "hardening" not in soft.bought
+
+
+def test_parts_are_made_unless_the_billet_is_clearly_cheaper(upright):
+    billet, parts = prices_of(upright)
+    dearer = replace(parts, labour=parts.labour + billet.total)
+    assert construction_to_make((billet, dearer), True) is Construction.BILLET
+    like_it = replace(billet, construction=Construction.PARTS)
+    assert construction_to_make((billet, like_it), True) is Construction.PARTS
+    assert construction_to_make((billet, like_it), False) is Construction.BILLET
+    assert construction_to_make((), True) is Construction.BILLET

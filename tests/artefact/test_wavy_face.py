@@ -172,3 +172,10 @@ def test_screws_stand_round_the_middle():
     for p, q in ((a, b), (b, c), (c, a)):
         (x, y), (u, v) = p, q - p
         assert abs(x * v - y * u) / np.hypot(u, v) > 55.0
+
+
+def test_waves_that_a_cutter_leaves_flat_are_refused():
+    """A concave radius of 400 mm leaves waves of 60 mm a slope of a degree."""
+    limits = replace(BLANK.limits, min_concave_radius=400.0)
+    with pytest.raises(NotBuildable, match=r"radius of 412 mm rise by \d degrees, expected 15"):
+        wavy_face("FF1", replace(BLANK, limits=limits), WAVE)

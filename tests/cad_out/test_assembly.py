@@ -1,5 +1,6 @@
 """Body, balls and screws: the rules of the details, and the files read by other readers."""
 
+import re
 import zipfile
 from dataclasses import replace
 from itertools import pairwise
@@ -162,9 +163,12 @@ def test_tolerances_datums_and_notes_are_in_the_text(upright, built):
     assert Tolerance("DATUM_C", "perpendicularity", 0.02, "AB") in found
     assert len(found) == 3 + 3 + 2 + 3
     assert read_notes(entities) == list(notes_of(upright, details_of(upright)))
-    assert built[1].not_as_designed == ()
+    assert built[1].misread == ()
     text = (built[0] / "standard.step").read_text()
     assert text.count("DIMENSIONAL_SIZE(") == len(upright.spheres)
+    stated = re.findall(r"LENGTH_MEASURE\(([\d.E+]+)\)[^;]*'nominal value'", text)
+    size = [float(value) for value in stated]
+    assert size == pytest.approx([2.0 * sphere.radius for sphere in upright.spheres])
     assert "RUNOUT" not in text
     # a letter exchanged is a tolerance lost
     other = {k: e.replace(",'C')", ",'D')") if "DATUM(" in e else e for k, e in entities.items()}

@@ -240,7 +240,7 @@ def test_same_standard_gives_the_same_bytes(upright, built, tmp_path, monkeypatc
     [
         ({"solids": 2}, "2 solids in the STEP file, expected 7"),
         ({"displaced": ("SPH1",)}, "not in its place: SPH1"),
-        ({"not_as_designed": ("note 1",)}, "not as designed: note 1"),
+        ({"misread": ("note 1",)}, "not in the STEP file as meant: note 1"),
         ({"sharp": 3.0}, "3.0 mm of inner edges without a radius of 3 mm"),
         ({"is_valid": False}, "not valid"),
         ({"is_closed": False}, "not closed"),

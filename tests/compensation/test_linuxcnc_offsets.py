@@ -2,25 +2,21 @@
 
 import asyncio
 import json
-import os
 import shutil
-import subprocess
 import tempfile
 import threading
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 from bench import LENGTH
-from control import AXES, AXIS, INI, a_user
+from control import AXES, AXIS, INI, a_user, run_linuxcnc
 
 from matstd.compensation.field.machine_errors import MachineErrors
 from matstd.compensation.linuxcnc.control_files import SOCKET, Control, write_control_files
 from matstd.compensation.linuxcnc.link import serve_linuxcnc
 from matstd.compensation.service.output import OutputLimits
 from matstd.compensation.service.service import Service
-from matstd.probe_paths.linuxcnc.session import LOCK
 from matstd.twin.library import parse_effect
 from matstd.twin.units import UM
 
@@ -149,36 +145,7 @@ def run(folder, user, server):
         "again": server.start,
         "least": lambda: (server.cut(), server.start(small)),
     }
-    keep = {k: v for k, v in os.environ.items() if k in ("PATH", "LANG", "LC_ALL")}
-    with (folder / "said.txt").open("w") as said:
-        process = subprocess.Popen(
-            ["linuxcnc", "-r", "machine.ini"],
-            cwd=folder,
-            stdin=subprocess.DEVNULL,
-            stdout=said,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-            env=keep | {"HOME": str(folder)},
-            user=user,
-        )
-        try:
-            end = time.monotonic() + 150.0
-            while process.poll() is None and time.monotonic() < end:
-                for name, do in doings.items():
-                    if (folder / f"{name}.wanted").exists():
-                        (folder / f"{name}.wanted").unlink()
-                        do()
-                        (folder / f"{name}.done").write_text("")
-                time.sleep(0.02)
-            assert process.poll() is not None, (folder / "said.txt").read_text()[-2000:]
-        finally:
-            if process.poll() is None:
-                os.killpg(process.pid, 15)
-                process.wait(30.0)
-            if LOCK.exists():
-                subprocess.run(["halrun", "-U"], cwd=folder, user=user, check=False)
-                LOCK.unlink(missing_ok=True)
-    assert (folder / "outcome.json").exists(), (folder / "said.txt").read_text()[-2000:]
+    run_linuxcnc(folder, user, 150.0, doings)
 
 
 def table(folder):

@@ -1,21 +1,18 @@
 """Lines with rotary axes keep their time: by LinuxCNC's interpreter and by its motion."""
 
 import json
-import os
 import re
 import shutil
-import subprocess
 import tempfile
 from pathlib import Path
 
 import numpy as np
 import pytest
-from control import AXES, AXIS, INI, a_user
+from control import AXES, AXIS, INI, a_user, run_linuxcnc
 from rs274 import interpreted, is_there
 
 from matstd.compensation.part_programs.program import read_part_program
 from matstd.compensation.programs.compensation import compensated
-from matstd.probe_paths.linuxcnc.session import LOCK
 from matstd.twin.errors import BadFile
 from matstd.twin.units import UM
 
@@ -225,31 +222,8 @@ def run_on_linuxcnc(texts):
     for path in (folder, *folder.iterdir()):
         if user:
             shutil.chown(path, user)
-    keep = {k: v for k, v in os.environ.items() if k in ("PATH", "LANG", "LC_ALL")}
     try:
-        with (folder / "said.txt").open("w") as said:
-            process = subprocess.Popen(
-                ["linuxcnc", "-r", "machine.ini"],
-                cwd=folder,
-                stdin=subprocess.DEVNULL,
-                stdout=said,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,
-                env=keep | {"HOME": str(folder)},
-                user=user,
-            )
-            try:
-                process.wait(300.0)
-            finally:
-                if process.poll() is None:
-                    os.killpg(process.pid, 15)
-                    process.wait(30.0)
-                if LOCK.exists():
-                    subprocess.run(["halrun", "-U"], cwd=folder, user=user, check=False)
-                    LOCK.unlink(missing_ok=True)
-        outcome = folder / "outcome.json"
-        assert outcome.exists(), (folder / "said.txt").read_text()[-2000:]
-        assert json.loads(outcome.read_text())["failed"] == ""
+        assert json.loads(run_linuxcnc(folder, user, 300.0))["failed"] == ""
         lines = [s.split() for s in (folder / "samples.txt").read_text().splitlines()]
         table = np.array([s for s in lines if len(s) == 7 and "overrun" not in s], dtype=float)
         assert np.diff(table[:, 0]).max() == 1.0

@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+from dataclasses import replace
 from datetime import datetime
 from itertools import combinations
 
@@ -291,3 +292,14 @@ def test_saved_models_are_charted_and_keep_their_machine(jumped, tmp_path):
         encoding="utf-8",
     )
     assert matstd.read_model(path).source.machine_hash == ""
+
+
+def test_dates_of_names_count_where_heads_state_the_same():
+    """Simulated runs all begin when the clock of the twin does."""
+    from matstd.api.trending import dated
+
+    days = [datetime(2031, 5, day) for day in (1, 2)]
+    twin = [occasion(0.0, 0, name=f"{d:%Y-%m-%d}", date=datetime(2000, 1, 1, 8)) for d in days]
+    assert [one.date for one in dated(twin)] == days
+    logs = [replace(one, date=d.replace(hour=7)) for one, d in zip(twin, days, strict=True)]
+    assert [one.date for one in dated(logs)] == [d.replace(hour=7) for d in days]

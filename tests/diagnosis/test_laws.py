@@ -31,10 +31,11 @@ from matstd.diagnosis.laws import (
 )
 from matstd.diagnosis.laws.learn import _by_rival as weighed
 from matstd.diagnosis.laws.library import LibraryEffect
+from matstd.diagnosis.laws.remainder import _determined
 from matstd.diagnosis.laws.screening import field_of, singles
 from matstd.diagnosis.laws.search import _curves
 from matstd.diagnosis.laws.space import Space
-from matstd.report.laws import no_law_sentence
+from matstd.report.laws import limits_sentences, no_law_sentence
 from matstd.report.run_view import diagnosis_step
 from matstd.report.verdict import part_lines
 from matstd.report.words import verdict_sentence
@@ -81,10 +82,32 @@ def test_nothing_is_learnt_where_nothing_is_hidden() -> None:
     assert found.after is found.before
 
 
-def test_few_touches_leave_no_law() -> None:
+def test_few_touches_leave_no_law_and_that_is_said() -> None:
     text, *_ = law_case(np.random.default_rng(5), "hmc1995", "stylus", (30.0, 31.0), poses=2)
     run = read_back(text, MACHINES["hmc1995"])
-    assert learn_laws(run[:28]).laws == ()
+    few = learn_laws(run[:28])
+    assert (few.laws, few.refusal) == ((), Refusal.FEW)
+    assert no_law_sentence(few).startswith("No law was looked for: 28 touches")
+    warm = {"spindle": np.where(np.arange(len(run)) < 25, 20.0, 21.0)}
+    two = learn_laws(replace(run[:50], touches=replace(run.touches, temperature=warm)[:50]))
+    said = " ".join(limits_sentences(two))
+    assert "From 50 touches only a law far above the noise" in said
+    assert "Of temperature spindle, which has two values, only a step can be learnt." in said
+
+
+def test_a_run_of_one_pose_says_what_it_cannot_show() -> None:
+    text, *_ = law_case(np.random.default_rng(5), "hsm600u", None, poses=1)
+    run = read_back(text, MACHINES["hsm600u"])
+    first = np.flatnonzero(run.touches.setup == 0)
+    assert "All touches are in one pose" in " ".join(limits_sentences(learn_laws(run[first])))
+
+
+def test_laws_are_learnt_in_the_place_of_imitators_alone(slipped) -> None:
+    searched, _ = slipped
+    # nothing remains, and no effect was found that could imitate a law
+    assert learn_remainder(searched.start, searched.start, is_left=False) is None
+    named = _determined(searched.fit, searched.found[0])
+    assert 1.0 < named <= len(searched.found[0].parameters)
 
 
 def test_the_command_writes_an_effect_that_the_other_commands_take(

@@ -16,14 +16,6 @@ def problem() -> tuple[np.ndarray, np.ndarray]:
     return X, X @ rng.standard_normal(7) + rng.standard_normal(60)
 
 
-def test_posterior_is_that_of_the_normal_equations(problem) -> None:
-    X, y = problem
-    fit = solve(X, y)
-    information = X.T @ X + np.eye(7)
-    assert np.allclose(fit.phi, np.linalg.solve(information, X.T @ y), atol=ROUNDING)
-    assert np.allclose(fit.covariance, np.linalg.inv(information), atol=ROUNDING)
-
-
 def test_objective_is_the_marginal_likelihood_and_leverage_its_complement(problem) -> None:
     X, y = problem
     fit = solve(X, y)

@@ -85,11 +85,10 @@ def evenly_timed(run: Run, step: float = 0.1) -> Run:
     return replace(run, touches=replace(run.touches, time=times))
 
 
-@pytest.mark.parametrize("times", [30.0, 100.0])
-def test_a_large_sine_keeps_its_name_beside_a_wave_in_time(times: float) -> None:
+def test_a_large_sine_keeps_its_name_beside_a_wave_in_time() -> None:
     rng = np.random.default_rng(6)
     x = np.linspace(0.0, 400.0, 1500)
-    error = times * UM * np.sin(2.0 * np.pi * x / 10.0 + 1.0)
+    error = 100.0 * UM * np.sin(2.0 * np.pi * x / 10.0 + 1.0)
     found = diagnose(evenly_timed(run_of(x, -error + rng.normal(0.0, UM, len(x)), UM)))
     assert found.verdict is Verdict.MISSING
     (effect,) = found.found
@@ -259,11 +258,10 @@ def test_a_stated_pitch_is_named_though_hundreds_of_periods_explain_few_targets(
     assert len(confusion.alike.periods) > 3
 
 
-@pytest.mark.parametrize("seed", [0, 2])
-def test_the_true_period_is_named_or_listed_where_targets_are_few_and_uneven(seed: int) -> None:
+def test_the_true_period_is_named_or_listed_where_targets_are_few_and_uneven() -> None:
     """Every period is tried: eleven targets know little of a spectrum."""
     targets = np.array([3.7, 41.3, 78.2, 127.9, 161.4, 209.6, 242.1, 291.8, 328.3, 372.7, 397.9])
-    found = diagnose(positioning(targets, 10.0, 2.1 * UM, seed))
+    found = diagnose(positioning(targets, 10.0, 2.1 * UM))
     (step,) = found.steps[1:]
     assert step.effect is not None
     (period,) = step.effect.tuning.values()

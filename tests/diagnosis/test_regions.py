@@ -68,7 +68,7 @@ def test_a_box_of_two_conditions_is_found_with_its_error(case, fit_with) -> None
         assert mean == pytest.approx(size, abs=2.0 * URAD)
 
 
-@pytest.mark.parametrize("index", [0, 4, 12])
+@pytest.mark.parametrize("index", [0, 4])
 def test_a_local_law_of_the_simulator_is_found_by_its_carrier(index) -> None:
     """Its own formula beside all geometric errors of a machine, exactly simulated."""
     rng = np.random.default_rng([1, index])
@@ -86,7 +86,7 @@ def test_a_local_law_of_the_simulator_is_found_by_its_carrier(index) -> None:
     assert (first.rows & where).sum() > 0.5 * (first.rows | where).sum()
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", range(6))
 def test_noise_has_no_region(fit_with, seed) -> None:
     """Said of noise once in a thousand runs."""
     assert regions(fit_with(0.0, seed)) == ()

@@ -218,17 +218,6 @@ def test_left_by_is_the_share_that_others_cannot_imitate() -> None:
     assert left_by(x, np.zeros((3, 0))) == 1.0
 
 
-def test_an_addition_that_is_not_significant_is_commented(folder, tmp_path, capsys) -> None:
-    run = str(folder / "run.csv")
-    narrow = ["--only", "thermal-lag(EXC)", "--add", "backlash(Y)"]
-    assert main(["diagnose", run, *narrow, "--no-report", "-o", str(tmp_path / "d")]) == 0
-    said = flat(capsys.readouterr().out)
-    assert "backlash(Y) was added by name, but its size is not significant: amplitude" in said
-    strong = ["--only", "backlash", "--add", "thermal-lag(EXC)"]
-    assert main(["diagnose", run, *strong, "--no-report", "-o", str(tmp_path / "e")]) == 0
-    assert "not significant" not in flat(capsys.readouterr().out)
-
-
 # --- a choice by prediction ---------------------------------------------------------------------
 
 

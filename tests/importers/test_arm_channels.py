@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from foreign_cases import DH
 from scipy.spatial.transform import Rotation
 
 from matstd.cli import main
@@ -20,14 +21,6 @@ from matstd.twin.machine.kinematics import table_to_tool
 from matstd.twin.units import DEG, UM, URAD
 
 BAD = 2
-DH = """a,alpha,d,theta
-0,90,89.159,0
--425,0,0,0
--392.25,0,0,0
-0,90,109.15,0
-0,-90,94.65,0
-0,0,82.3,0
-"""
 POSES = 40
 TARGET = np.array([15.0, -40.0, 70.0])
 TURNED = Rotation.from_rotvec([0.3, -0.8, 0.5])

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from matstd.information.power.pivoted_cholesky import low_rank
 from matstd.information.power.quadratic import exceedance, quantile
-from matstd.information.power.smooth_field import decorrelated, field_test
+from matstd.information.power.smooth_field import decorrelated, field_test, low_rank
 
 N, DRAWS = 60, 20_000
 

@@ -57,11 +57,11 @@ def small_project(folder: Path, machines: int = 1, touches: int = 120, poses: in
         ("draws = 2000", "draws = 300"),
         ("patches = 6 ", "patches = 3 "),
         ("# balls = 13", "balls = 5"),
-        ("# proof_touches = 110", "proof_touches = 60"),
+        ("# proof_touches = 110", "proof_touches = 40"),
         ("touches = 480", f"touches = {touches}"),
         ("poses = 30 ", f"poses = {poses} "),
         ("machines = 3", f"machines = {machines}"),
-        ("# visits = 10", "visits = 3"),
+        ("# visits = 10", "visits = 2"),
     ):
         assert old in text
         text = text.replace(old, new)
@@ -94,7 +94,8 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         render_alone(patch, "drawing")  # `report/test_*` render the others
         patch.setattr(study_run, "draw_maps", lambda *_: [])
         patch.setattr(design_page, "draw_study_volumes", lambda *_: [])
-        assert main(["design", str(small_project(folder)), "-o", str(out)]) == 0
+        project = small_project(folder, touches=100, poses=8)
+        assert main(["design", str(project), "-o", str(out)]) == 0
     return out
 
 
@@ -253,7 +254,8 @@ def test_the_run_can_be_made_again_from_the_files(made: Path, tmp_path: Path) ->
     first, second = read_run(made / "run.csv"), read_run(again)
     assert len(first) == len(second)
     difference = (first.deviation - second.deviation) * 1e3
-    assert 0.8 < np.std(difference) < 1.25  # the noise of the first run, 1 um
+    # the noise of the first run, 1 um, and that of the datum balls by which it was placed
+    assert 0.8 < np.std(difference) < 1.4
 
 
 def test_what_was_measured_stands_with_its_limits(made: Path) -> None:
@@ -394,7 +396,7 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
     path = small_project(tmp_path)
     text = path.read_text()
     assert read_project(path).options == PlacementOptions(
-        name="FFS-600U", serial="001", patches=3, balls=5, choice=TouchOptions(120, 10, 60)
+        name="FFS-600U", serial="001", patches=3, balls=5, choice=TouchOptions(120, 10, 40)
     )
     plain = re.sub(
         r"(?m)^(criterion|potential|robust_machines|robust_share|poses = 10).*\n", "", text
@@ -408,7 +410,7 @@ def test_what_a_standard_is_chosen_for(tmp_path: Path) -> None:
             wanted = re.sub(rf"(?m)^{key} = [\d.]+", f"{key} = {value}", wanted)
         path.write_text(wanted.replace("poses = 10 ", "poses = 12 "))
         options = read_project(path).options
-        assert options.choice == TouchOptions(120, 12, 60)
+        assert options.choice == TouchOptions(120, 12, 40)
         assert options.criterion == CriterionOptions(criterion, 0.1, 8, 0.5)
     assert read_project(path).remarks == ()
 

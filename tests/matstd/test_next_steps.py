@@ -61,6 +61,7 @@ def test_the_line_stands_at_the_end(tmp_path, capsys) -> None:
     path = tmp_path / "a b.toml"
     assert main(["new", "machine", "-o", str(path)]) == 0
     last = capsys.readouterr().out.splitlines()[-1]
-    assert last == f"next: matstd new project --machine '{path}' -o project.toml"
+    beside = tmp_path / "project.toml"
+    assert last == f"next: matstd new project --machine '{path}' -o {beside}"
     assert main(["new", "machine"]) == 0
     assert "next:" not in capsys.readouterr().out

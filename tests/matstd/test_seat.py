@@ -1,5 +1,6 @@
 """Standards off their table and clamps inside them, against solids joined by manifold3d."""
 
+import re
 from ast import literal_eval
 from dataclasses import replace
 from functools import cache
@@ -11,10 +12,12 @@ import trimesh
 
 from matstd.artefact.brief import Brief, base_of, read_project
 from matstd.artefact.brief.workshop_tables import BodyTable, TableTable
+from matstd.artefact.feasibility import feasibility
 from matstd.artefact.feasibility.standing import check_beside, check_seat
+from matstd.artefact.reach import DatumBall
 from matstd.cad_out.meshes.mesh import read_stl
 from matstd.cli import main
-from matstd.twin.errors import BadFile
+from matstd.twin.errors import BadFile, NotReachable
 from matstd.twin.frames import pose, rotation
 from matstd.twin.record import Setup
 
@@ -303,3 +306,31 @@ def test_the_command_refuses_before_it_designs(tmp_path: Path, capsys, monkeypat
     assert "it stands 300.0 mm beside it" in said
     assert "would do" in said
     assert [p.name for p in tmp_path.iterdir()] == ["p.toml"]
+
+
+def test_weight_does_not_pull_a_standard_off_its_seat():
+    assert "standard.down: found +Z, expected a direction of weight" in refusal(example(down="+Z"))
+    assert refusal(example(down="-Z")) == refusal(example(down="-Y")) == ""
+
+
+def test_two_set_ups_are_two_places():
+    first = Setup("a", np.eye(4))
+    turned = pose(rotation(np.array([0.0, 0.0, np.pi / 2])), np.zeros(3))
+    assert "setup.b.origin_mm" in refusal(example(setups=(first, Setup("b", np.eye(4)))))
+    assert refusal(example(setups=(first, Setup("b", turned)))) == ""
+
+
+def test_the_ball_of_the_workshop_stands_on_the_table():
+    near, far = (DatumBall(x=x, y=0.0, z=80.0, radius=12.5, stem=6.0) for x in (200.0, 1000.0))
+    assert refusal(example(ball=near)) == ""
+    assert "its stem stands 840 mm beside the face" in refusal(example(ball=far))
+
+
+def test_a_body_above_which_z_cannot_rise_is_named_with_a_height_that_was_tried():
+    tall = {"name": "POST", "at_mm": [200.0, 0.0, 0.0], "diameter_mm": 20.0}
+    with pytest.raises(NotReachable) as caught:
+        feasibility(with_bodies(example(), tall | {"height_mm": 1000.0})).check()
+    words = r"POST, 1000 mm high,.* a height of (\d+) mm of POST would do"
+    said = re.search(words, str(caught.value))
+    assert said
+    feasibility(with_bodies(example(), tall | {"height_mm": float(said[1])})).check()

@@ -177,10 +177,20 @@ def law_case(rng, label, family=None, signal_to_noise=(15.0, 60.0), poses=10):
     )
 
 
+def law_of(rng, machine, family):
+    """The law of a family, its places drawn; of the further families, too."""
+    known = families(rng, machine)
+    if family in known:
+        return known[family]
+    from simulator_further_laws import further_families  # which is made of this module's pieces
+
+    return further_families(rng, machine)[family]
+
+
 def drawn(rng, experiment, family, signal_to_noise, ordinary, label):
     """One hidden law of a family that an amplitude which machines have makes visible."""
     for _ in range(MOST_DRAWS):
-        law = families(rng, experiment.machine)[family]
+        law = law_of(rng, experiment.machine, family)
         effect = Hidden(f"?{family}", "unknown", law.act)
         per_unit, _ = visible_size(experiment, effect, ordinary, STATED_NOISE)
         effect.amplitude = rng.uniform(*signal_to_noise) / max(per_unit, 1e-9)

@@ -21,8 +21,7 @@ from matstd.probe_paths.control.steps import ProbeStep
 from matstd.probe_paths.emit.program import make_programs
 from matstd.probe_paths.language.dialect_file import read_dialect
 from matstd.probe_paths.linuxcnc import session as session_module
-from matstd.probe_paths.linuxcnc.latch import latch_error, latch_u
-from matstd.probe_paths.linuxcnc.machine_config import machine_files
+from matstd.probe_paths.linuxcnc.machine_config import latch_error, latch_u, machine_files
 from matstd.probe_paths.linuxcnc.replanned import shortened
 from matstd.probe_paths.linuxcnc.session import _answer, _listen, installed, run_on_linuxcnc
 from matstd.probe_paths.linuxcnc.twin_contact import TwinContact

@@ -232,43 +232,22 @@ def _dead_clock(lines):
     return [lines[times[0]] if i in times else line for i, line in enumerate(lines)]
 
 
-def _a_year_earlier(lines):
-    return [
-        re.sub(r"(\d{4})-", lambda m: f"{int(m[1]) - 1}-", line, count=1)
-        if line.startswith("DATE")
-        else line
-        for line in lines
-    ]
+def _rewritten(begins, number, change, count=0):
+    """Damage of the lines that begin so: numbers of a pattern, each changed."""
 
-
-def _flipped_sides(lines):
-    return [
-        re.sub(r"U[A-C] *-?[0-9.]+", lambda m: f"{m[0][:2]} {-float(m[0][2:]):.1f}", line)
-        if line.startswith("U")
-        else line
-        for line in lines
-    ]
-
-
-def _one_decimal(lines):
-    return [
-        re.sub(r"-?\d+\.\d+", lambda m: f"{float(m[0]):.1f}", line)
-        if line.startswith("X")
-        else line
-        for line in lines
-    ]
-
-
-def _other_number(word):
     def damage(lines):
         return [
-            re.sub(rf"{word} *([0-9.]+)", lambda m: f"{word} {float(m[1]) + 1:.1f}", line)
-            if line.startswith("TOOL")
+            re.sub(number, lambda m: change(m[1]), line, count=count)
+            if line.startswith(begins)
             else line
             for line in lines
         ]
 
     return damage
+
+
+def _other_number(word):
+    return _rewritten("TOOL", rf"{word} *([0-9.]+)", lambda v: f"{word} {float(v) + 1:.1f}")
 
 
 def _another_pose(lines):
@@ -283,11 +262,23 @@ def _another_pose(lines):
     ("damage", "expected"),
     [
         (_dead_clock, "the same time at all"),
-        (_a_year_earlier, "logs of one campaign, within 30 days"),
-        (_flipped_sides, "side of "),
-        (_one_decimal, "in steps of 0.01 mm or more"),
-        (_other_number("TOOL"), "TOOL: found 31, expected 30, as MS_A"),
-        (_other_number("PRESET"), "PRESET: found 2, expected 1, as MS_A"),
+        (
+            _rewritten("DATE", r"(\d{4})(?=-)", lambda y: f"{int(y) - 1}", 1),
+            "logs of one campaign, within 30 days",
+        ),
+        (_rewritten("U", r"(?<=U[A-C])( *-?[0-9.]+)", lambda v: f" {-float(v):.1f}"), "side of "),
+        (
+            _rewritten("X", r"(-?\d+\.\d+)", lambda v: f"{float(v):.1f}"),
+            "in steps of 0.01 mm or more",
+        ),
+        (
+            _other_number("TOOL"),
+            "TOOL: found 31, expected 30, as MS_A",
+        ),
+        (
+            _other_number("PRESET"),
+            "PRESET: found 2, expected 1, as MS_A",
+        ),
         (_another_pose, "pose "),
     ],
 )

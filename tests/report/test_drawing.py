@@ -6,7 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from matstd.artefact.price import Construction
+from matstd.cad_out.details import DOT
 from matstd.cad_out.details.detail_list import details_of
+from matstd.cad_out.making.joints import joints_of
 from matstd.report.drawing.drawing import draw_sheet, write_drawing
 from matstd.report.drawing.marks import Views, draw_datums
 from matstd.report.drawing.sections import draw_screw
@@ -86,6 +89,31 @@ def test_a_frame_points_at_what_it_holds_for(upright):
     tops = [v[np.argmax(v[:, 1])] for v in circles]
     leaders = [v[1] for v in lines if len(v) == 2]
     assert any(np.allclose(end, top, atol=0.1) for end in leaders for top in tops)
+
+
+def test_the_parts_list_states_what_the_workshop_makes(upright):
+    """In one piece, or plate, studs and blocks with their threads; never both."""
+    whole, parts = (
+        words_of(draw_sheet(upright, details_of(upright), replace(ISSUER, make=make)))
+        for make in Construction
+    )
+    assert "body in one piece" in whole
+    assert not [w for w in whole if w.startswith(("stud,", "block ")) or "of parts" in w]
+    assert "plate" in parts
+    assert parts[parts.index("stud, thread as in the table") - 1] == f"{len(upright.spheres)}"
+    joints = joints_of(upright, details_of(upright))
+    assert f"M{joints.studs[0].thread:g}" in parts
+    assert [w for w in parts if "standard-parts.step" in w]
+    assert "body in one piece" not in parts
+
+
+def test_every_engraved_dot_is_drawn(upright, drawn):
+    """From above, to scale: as many small circles as letters that look up have dots."""
+    details = details_of(upright)
+    dots = [line.dots for line in details.lettering if line.T_artefact_text[2, 2] > 0.5]
+    wide = [np.ptp(p.get_path().vertices[:, 0]) for p in drawn.axes.patches]
+    scale = min(s for s in (0.5, 1.0, 2.0) if np.isclose(wide, 2.0 * s * DOT).any())
+    assert np.isclose(wide, 2.0 * scale * DOT).sum() == sum(map(len, dots)) > 20
 
 
 def test_no_words_leave_their_column(drawn):

@@ -1,7 +1,7 @@
 """Laws on the live page: their figures against the fits, their curves against the touches."""
 
 import json
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -10,6 +10,7 @@ from simulator_case import read_back
 from simulator_experiment import MACHINES
 from simulator_laws import law_case
 
+from matstd.api.diagnosing import Diagnosis as SavedDiagnosis
 from matstd.diagnosis.answer.comparison import compare
 from matstd.diagnosis.answer.run_diagnosis import diagnose
 from matstd.diagnosis.fit.identification import fit_run
@@ -83,6 +84,12 @@ def test_a_diagnosis_shows_what_it_found_and_the_law_of_what_remains(learning):
     assert {c["law"] for c in page["curves"]} == laws
     last = next(k for k in page["known"] if set(k["on"]) == names)
     assert last["fitted"] == pytest.approx(found.laws.after.rms / UM)
+    # the model has the law; of the geometry it states what console and page do
+    saved = SavedDiagnosis(**{f.name: getattr(found, f.name) for f in fields(found)}, auto=True)
+    assert saved.learnt is found.laws.after
+    stated = {one.symbol: one.estimate.value for one in saved.model.determined}
+    rows = {row.symbol: row.estimate.value for row in found.geometry.rows if row.is_determined}
+    assert stated == pytest.approx(rows, rel=1e-5)
 
 
 @pytest.mark.browser

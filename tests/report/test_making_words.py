@@ -7,7 +7,7 @@ import pytest
 
 from matstd.artefact.brief.brief import Brief
 from matstd.artefact.layout.blank import Blank
-from matstd.artefact.price import prices_of
+from matstd.artefact.price import Construction, prices_of
 from matstd.cad_out.making.making_file import Making
 from matstd.cad_out.making.stiffness import Stiffness
 from matstd.report.task.making_words import fewer_lines, making_lines, price_lines
@@ -30,15 +30,15 @@ def test_a_low_first_mode_is_a_named_compromise(upright) -> None:
 
 def test_the_cheaper_construction_is_named_where_it_is_clear(upright) -> None:
     billet, parts = prices_of(upright)
-    (line,) = price_lines((billet, parts))
+    (line,) = price_lines((billet, parts), Construction.PARTS)
     assert "all in one from a billet" in line
     assert "kg of stock" in line
     apart = replace(billet, labour=billet.labour * 2.0)
-    (clear,) = price_lines((apart, parts))
+    (clear,) = price_lines((apart, parts), Construction.PARTS)
     assert "; plate, studs and a block for every face is" in clear
-    assert clear.endswith("% cheaper")
-    (same,) = price_lines((parts, parts))
-    assert same.endswith("they differ by less than the uncertainty of one")
+    assert clear.endswith("make standard-parts.step, plate, studs and a block for every face")
+    (same,) = price_lines((parts, parts), Construction.BILLET)
+    assert "they differ by less than the uncertainty of one: make standard.step, all in" in same
 
 
 def test_a_limit_refuses_it() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from made_up import made_up
 
-from matstd.report.effects.naming import (
+from matstd.report.effects import (
     class_words,
     effect_cell,
     effect_words,

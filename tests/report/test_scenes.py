@@ -172,7 +172,7 @@ def test_a_missing_mesh_is_named(small, tmp_path):
 def test_every_visible_name_of_a_standard_has_room_of_its_own(upright, view):
     """Balls one behind the other, as on the post of another: no name covers another one's.
 
-    The renderer leaves out names that meet: half of two missing balls of a picture were lost so.
+    The renderer leaves out names that meet.
     """
     eye_of, pixel = standard_render._eye(standard_render._VIEWS[view]), 0.6
     right, up = standard_render._picture_axes(eye_of)

@@ -2,6 +2,7 @@
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -123,9 +124,7 @@ def test_a_machine_without_a_volume_is_reported_so(tmp_path):
         "[w f X Z t]",
         {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))},
     )
-    small = run_study(
-        Population(lathe), Workspace(lathe, {}, 50.0), 40, 50, np.random.default_rng(1)
-    )
+    small = SimpleNamespace(workspace=Workspace(lathe, {}, 50.0))
     remarks: list[str] = []
     assert draw_study_volumes(small, tmp_path, remarks) == []
     assert remarks == ["No maps in three dimensions: they need three linear axes that can move."]

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from matstd.report.style.sheet import robust_limit, series
+from matstd.report.style import robust_limit, series
 
 
 def test_no_colour_comes_twice() -> None:

@@ -3,26 +3,10 @@
 import csv
 
 import pytest
+from simulator_experiment import MACHINES
 
 from matstd.cli import main
 
-MACHINE = """format = "machine/1"
-name = "HSM 600U"
-chain = "[w C' B' X' f Y Z (C1) t]"
-[axis.X]
-range = [-400.0, 400.0]
-[axis.Y]
-range = [-300.0, 300.0]
-[axis.Z]
-range = [-500.0, 0.0]
-[axis.B]
-range = [-110.0, 30.0]
-point = [0.0, 0.0, -420.0]
-[axis.C]
-range = [-360.0, 360.0]
-[workpiece]
-origin = [0.0, 0.0, -500.0]
-"""
 ERRORS = """format = "errors/1"
 [EBX]
 shape = "constant"
@@ -35,7 +19,7 @@ POSES = "X_mm,Y_mm,Z_mm,B_deg,C_deg,tool_length_mm\n100,50,-200,0,0,160\n100,50,
 
 @pytest.fixture
 def files(tmp_path):
-    for name, text in (("m.toml", MACHINE), ("e.toml", ERRORS), ("p.csv", POSES)):
+    for name, text in (("m.toml", MACHINES["hsm600u"]), ("e.toml", ERRORS), ("p.csv", POSES)):
         (tmp_path / name).write_text(text, encoding="utf-8")
     return tmp_path
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from machines import LENGTH
 
-from matstd.report.maps.rotary_picture import draw_rotary
+from matstd.report.maps.study_maps import draw_rotary
 from matstd.sensitivity.first_order.workspace import Workspace
 from matstd.sensitivity.population.sampling import Population
 from matstd.sensitivity.study.machine_study import run_study

@@ -62,6 +62,7 @@ def test_machine_in_base_units(machine: Path) -> None:
     assert chain.link("B").range == (-110.0 * DEG, 30.0 * DEG)
     assert chain.table_origin.tolist() == [0.0, 0.0, -500.0]
     assert len(chain.symbols) == 71
+    assert {chain.link(end).range for end in "wt"} == {(0.0, 0.0)}  # neither moves
 
 
 @pytest.mark.parametrize(

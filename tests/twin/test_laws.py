@@ -6,7 +6,7 @@ from made_up import made_up
 
 from matstd.twin.errors import UnknownEffect
 from matstd.twin.laws import SHAPES, drivers, grid, play, shapes_of
-from matstd.twin.library import parse_effect
+from matstd.twin.library import owner_of, parse_effect
 from matstd.twin.model import columns
 from matstd.twin.units import UM
 
@@ -83,3 +83,11 @@ def test_names_that_mean_nothing_are_refused() -> None:
     ):
         with pytest.raises(UnknownEffect, match=said):
             parse_effect(text, chain)
+
+
+def test_a_curve_over_time_belongs_to_its_run_and_a_formula_to_the_machine(chain) -> None:
+    owners = [
+        owner_of(parse_effect(name, chain))
+        for name in ("law(EXX,curve time)", "law(EXX,log time)", "law(EXX,curve X)", "drift")
+    ]
+    assert owners == ["run", "machine", "machine", "run"]

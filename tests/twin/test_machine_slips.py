@@ -46,6 +46,8 @@ PIVOT = "[0.0, 0.0, -420.0]"
         (PIVOT, "[0.0, 0.0, -0.42]", r"B\.point: .*is it in metres, \[0, 0, -420\]\?"),
         (PIVOT, "[0.0, 0.0, -42000.0]", r"B\.point: .*mm outside the travels along Z"),
         (PIVOT, "[9500.0, 0.0, -420.0]", r"B\.point: .*mm outside the travels along X"),
+        ("[-300.0, 300.0]", "[-300000.0, 300000.0]", r"Y\.range: .*µm, \[-300, 300\]\?"),
+        (PIVOT, f"{PIVOT}\ndirection = [0.0, 0.0, 1.0]", r"B\.direction: .*along Y.*is it C\?"),
     ],
 )
 def test_a_slip_is_refused_with_what_was_meant(tmp_path, old, new, words):
@@ -57,6 +59,7 @@ def test_a_slip_is_refused_with_what_was_meant(tmp_path, old, new, words):
     ("old", "new"),
     [
         (B, "[-5.0, 5.0]"),
+        (PIVOT, f"{PIVOT}\ndirection = [0.0, 0.5, 0.866]"),
         (B, "[-3.0, 3.0]"),
         (B, "[-0.5, 0.7]"),
         (PIVOT, "[0.012, 0.0, -419.93]"),

@@ -255,7 +255,7 @@ def test_a_clock_that_stands_still_is_reported(tmp_path: Path) -> None:
         ('# format = "run/1"\n'.encode("utf-16"), "found text in UTF-16"),
         (b'# format = "run/1"\n# # Pr\xfcfstand\n', "line 2: found byte 0xfc, which is no UTF-8"),
         (b'# format = "run/1"\n# u_um = 0,6\n', "line 2: found 'u_um = 0,6', .* a point in decim"),
-        (b'# format = "run/1"\n# # \x00\n', "line 2: .*, expected a whole, valid TOML file"),
+        (b'# format = "run/1"\n# # \x00\n', "line 2: .*, expected a whole TOML file"),
     ],
 )
 def test_what_is_no_text_is_named(tmp_path: Path, data: bytes, expected: str) -> None:

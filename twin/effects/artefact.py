@@ -16,8 +16,7 @@ from matstd.twin.units import HOUR, UM, URAD
 
 ON_EACH_SIDE = 2
 """Touches of a set-up needed before and after a slip; a single one may be an outlier."""
-INSTANTS = 256
-"""Largest number of instants scanned for a slip; the search refines between them."""
+INSTANTS = 256  # largest number of instants scanned for a slip; the search refines between them
 
 
 @dataclass(frozen=True)

@@ -6,20 +6,13 @@ from functools import cached_property
 
 import numpy as np
 
-from matstd.twin.fields import (
-    check_count,
-    component_symbol,
-    moving_axes,
-    read_axis,
-    refusal,
-)
+from matstd.twin.fields import check_count, component_symbol, moving_axes, read_axis, refusal
 from matstd.twin.machine import LETTERS, Chain, Family, Symbol
 from matstd.twin.model import Amounts, Declared, Kind, Title, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
-MIN_FELT_SHARE = 1e-6
-"""A component below this share of the largest one is not measured at all."""
+MIN_FELT_SHARE = 1e-6  # a component below this share of the largest one is not measured at all
 
 
 @dataclass(frozen=True)

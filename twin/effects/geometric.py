@@ -13,8 +13,7 @@ from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG
 
-HIGHEST = 12
-"""Highest degree accepted; faster variations are `periodic`."""
+HIGHEST = 12  # highest degree accepted; faster variations are `periodic`
 PROPOSED_DEGREE = 4
 """Two degrees beyond the ordinary model of a linear axis; what changes faster is `periodic`."""
 _DEGREES = re.compile(r"(?:(\d+)-)?(\d+)\Z")
@@ -26,7 +25,7 @@ class ComponentError(Declared):
     """One component error of an axis in one of the distributions of the D-MT paper.
 
     ``E(q) = a f(q)`` with f the constant, linear, parabolic or sinusoidal shape of unit peak
-    amplitude (`matstd.twin.machine.shapes`).
+    amplitude (`matstd.twin.machine.ranges`).
     """
 
     symbol: Symbol

@@ -20,11 +20,9 @@ from matstd.twin.model import Declared, Kind, Parameter, Term, Title, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import URAD
 
-SAME_POINT = 1e-6
-"""Points closer than this (mm) with every axis at zero are equal."""
+SAME_POINT = 1e-6  # points closer than this (mm) with every axis at zero are equal
 
-FLANGE = "flange"
-"""Name of the gauge point among the places of weights."""
+FLANGE = "flange"  # name of the gauge point among the places of weights
 
 DOWN = np.array([0.0, 0.0, -1.0])
 """Direction of weights in the machine frame, whose Z stands upright (ISO 841)."""

@@ -14,10 +14,8 @@ from matstd.twin.model import Amounts, Declared, Kind, scanned
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
-ON_EACH_SIDE = 6
-"""Readings needed before and after a jump; fewer may be outliers."""
-INSTANTS = 600
-"""Largest number of scanned instants; the search refines between them."""
+ON_EACH_SIDE = 6  # readings needed before and after a jump; fewer may be outliers
+INSTANTS = 600  # largest number of scanned instants; the search refines between them
 
 
 def thinned(instants: Array, most: int) -> Array:

@@ -20,18 +20,15 @@ from matstd.twin.model import Amounts, Declared, Effect, Kind, Parameter, Title,
 from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
-ORDER = 20
-"""Half waves over the travel: the resolution of 20 targets; faster ones are `periodic`."""
+ORDER = 20  # half waves over the travel: the resolution of 20 targets; faster ones are `periodic`
 
 CORRELATION_LENGTHS = (0.04, 0.1, 0.3)
 """Tried correlation lengths, as shares of the travel: 0.04 is the distance of 25 targets; smoother
 curves than 0.3 are polynomials of low degree."""
 
-BY_DIRECTION = "directions"
-"""Argument for separate curves of the two directions."""
+BY_DIRECTION = "directions"  # argument for separate curves of the two directions
 
-MIN_TARGETS = 5
-"""Fewest targets of a positioning test of one metre (ISO 230-2)."""
+MIN_TARGETS = 5  # fewest targets of a positioning test of one metre (ISO 230-2)
 
 MIN_REVISITED_SHARE = 0.5
 """From this share of rows at readings approached before, readings are targets."""

@@ -17,8 +17,7 @@ MAX_STEP_SHARE = 0.02
 """Readings were taken in motion if they differ by less than this share of the travel: 120 points a
 circle; targets of a positioning test stand ten times farther apart."""
 
-PAUSE_RATIO = 3.0
-"""A pause of more than this many median time steps separates two motions."""
+PAUSE_RATIO = 3.0  # a pause of more than this many median time steps separates two motions
 
 
 @dataclass(frozen=True)

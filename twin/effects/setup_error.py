@@ -23,8 +23,7 @@ STYLUS_SD = 100.0 * UM
 """Prior standard deviation of place and radius of a further stylus against the first, mm: also
 wide."""
 
-_MAX_STYLI = 10
-"""Largest number of further styli; more lengths belong to a target that is moved."""
+_MAX_STYLI = 10  # largest number of further styli; more lengths belong to a target that is moved
 
 
 def rigid_shift(here: Array, arm: Array) -> list[Term]:
@@ -210,8 +209,7 @@ def _grown(touches: Touches, strain: Array) -> Sequence[Term]:
     return [Term(0, Where("shift", 0, i), strain * arm[:, i]) for i in range(3)]
 
 
-BodyError = BodyTemperature | BodyExpansion | BodyScale
-"""Parameters of the size of a standard."""
+BodyError = BodyTemperature | BodyExpansion | BodyScale  # parameters of the size of a standard
 
 Free = SetupError | StylusError | BodyError
 """Parameters estimated beside the model of the machine."""

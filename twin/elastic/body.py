@@ -16,8 +16,7 @@ from matstd.twin.machine import Chain
 from matstd.twin.model import Declared, Effect, Kind, Parameter, Term, Where
 from matstd.twin.record import Touches
 
-GRAVITY = 9.80665
-"""Standard acceleration, m/s2, N/kg."""
+GRAVITY = 9.80665  # standard acceleration, m/s2, N/kg
 
 SLENDER = 3.0
 """Below this ratio of length to depth the supports of a beam yield as much as the beam; a warning

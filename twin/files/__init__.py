@@ -14,11 +14,7 @@ from matstd.twin.files.run_writer import write_run
 from matstd.twin.files.sensor_file import SensorRecord, read_sensors
 from matstd.twin.files.table import CsvTable
 from matstd.twin.files.toml import check_format, parse_toml, read_any_text, read_text
-from matstd.twin.files.whole import (
-    refuse_to_overwrite,
-    write_whole,
-    written_whole,
-)
+from matstd.twin.files.whole import refuse_to_overwrite, write_whole, written_whole
 
 __all__ = [
     "CsvTable",

@@ -12,8 +12,7 @@ from matstd.twin.errors import DesignError
 from matstd.twin.files.lock import in_turn, is_abandoned, locked
 from matstd.twin.files.whole import NOT_WRITABLE, free_name, written_meanwhile
 
-WORKING: set[Path] = set()
-"""Working folders of this process; they are removed when it is ended."""
+WORKING: set[Path] = set()  # working folders of this process; they are removed when it is ended
 
 
 @contextmanager

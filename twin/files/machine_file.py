@@ -19,6 +19,13 @@ SHORTEST_TRAVEL = 5.0
 """A linear axis travels farther, mm; the smallest machining centres travel 20 mm. A travel in
 metres is at most 5 or so."""
 
+LONGEST_TRAVEL = 1e5
+"""No linear axis travels farther, mm; a travel of 300 mm in micrometres does."""
+
+ROTARY_LETTERS, ALONG_ITS_LETTER = "ABC", 0.1
+"""Rotary axes about X, Y and Z, and the least part of their lines along these (ISO 841); that of
+inclined axes is half or more."""
+
 ROOM = 500.0
 """A pivot lies at most so far beyond the box of all travels and the table, and their width, mm."""
 
@@ -26,8 +33,7 @@ NEAREST_PIVOT, FARTHEST_PIVOT = 0.05, 5.0
 """A coordinate of a pivot between these, mm, may be one in metres: 0.42 for 420 mm. Measured
 centres of rotation differ from zero by hundredths of a millimetre."""
 
-LONGEST_IN_METRES = 5e3
-"""In mm: no pivot lies farther."""
+LONGEST_IN_METRES = 5e3  # in mm: no pivot lies farther
 
 NEARER = 4.0
 """Times that a pivot in metres is nearer to the table, or farther from the spindle, once read so;
@@ -42,6 +48,7 @@ def machine_slips(chain: Chain) -> Iterator[BadValue]:
     if len(chain.linear_axes) == 3:  # an arm states its joints one by one
         for link in chain.links:
             if link.kind == "rotary" and link.programmed:
+                yield from _letter(link)
                 yield from _pivot(chain, link)
 
 
@@ -53,11 +60,24 @@ def _travel(chain: Chain, link: Link) -> Iterator[BadValue]:
     if link.kind == "linear" and not is_bench and 0.0 < high - low < SHORTEST_TRAVEL:
         found = f"{_pair(low, high)}, a travel of {high - low:.4g} mm"
         yield BadValue(key, found, f"mm; is it in metres, {_pair(1e3 * low, 1e3 * high)}?")
+    if link.kind == "linear" and high - low > LONGEST_TRAVEL:
+        found = f"{_pair(low, high)}, a travel of {1e-3 * (high - low):.4g} m"
+        yield BadValue(key, found, f"mm; is it in µm, {_pair(1e-3 * low, 1e-3 * high)}?")
     if link.kind == "rotary":
         meant = meant_in_radians(low / DEG, high / DEG)
         if meant is not None:
             found = f"{_pair(low / DEG, high / DEG)}, a travel of {(high - low) / DEG:.3g} degrees"
             yield BadValue(key, found, f"degrees; is it in radians, {_pair(*meant)}?")
+
+
+def _letter(link: Link) -> Iterator[BadValue]:
+    """Rotary axes whose line is square to that of their letter."""
+    parts = np.abs(link.direction) / np.linalg.norm(link.direction)
+    if link.name not in ROTARY_LETTERS or parts[ROTARY_LETTERS.index(link.name)] > ALONG_ITS_LETTER:
+        return
+    along, turns = "XYZ"[ROTARY_LETTERS.index(link.name)], ROTARY_LETTERS[int(np.argmax(parts))]
+    expected = f"a part along {along}, which {link.name} turns about; is it {turns}?"
+    yield BadValue(f"axis.{link.name}.direction", _list(link.direction), expected)
 
 
 def _pivot(chain: Chain, link: Link) -> Iterator[BadValue]:
@@ -112,8 +132,7 @@ def _list(values: Array) -> str:
     return f"[{', '.join(f'{v:.6g}' for v in values)}]"
 
 
-KILOMETRE = 1e6
-"""In mm: nothing of a machine lies, and no axis travels, farther; degrees neither."""
+KILOMETRE = 1e6  # in mm: nothing of a machine lies, and no axis travels, farther; degrees neither
 
 Coordinate = Annotated[float, Field(ge=-KILOMETRE, le=KILOMETRE)]
 Vector = Annotated[tuple[Coordinate, Coordinate, Coordinate], Strict(False)]  # TOML has lists

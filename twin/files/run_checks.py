@@ -37,8 +37,7 @@ NOISE_LIMIT = 5.0
 """Standard uncertainties, plus 1 µm of rounding, by which stated deviations may differ from those
 of the readings without a remark."""
 
-MAX_LISTED_LINES = 10
-"""Lines of a file that are listed one by one."""
+MAX_LISTED_LINES = 10  # lines of a file that are listed one by one
 
 SAME_READINGS = 0.999
 """From this squared correlation, stated deviations are those of the readings in another unit."""
@@ -59,8 +58,7 @@ LARGEST_ARM = 5.0
 """Distance (mm) of points from the tool, across the measured direction, that is reported: 50 µrad
 on that arm are 0.25 µm."""
 
-LONGEST_PAUSE = 86400.0
-"""A pause (s) shorter than a day is not reported."""
+LONGEST_PAUSE = 86400.0  # a pause (s) shorter than a day is not reported
 
 _OTHER_UNITS = {
     1e-3: "mm in a column of µm",

@@ -18,8 +18,7 @@ from matstd.twin.units import DEG, UM
 BoolArray = NDArray[np.bool_]
 
 SENSOR = re.compile(r"T_(\w+)_degC\Z")
-OWN = re.compile(r"V_(\w+_\w+)\Z")
-"""A column of the user's own: name and unit."""
+OWN = re.compile(r"V_(\w+_\w+)\Z")  # a column of the user's own: name and unit
 POINT = ("px_mm", "py_mm", "pz_mm")
 NORMAL = ("nx", "ny", "nz")
 TARGET = ("tx_mm", "ty_mm", "tz_mm")
@@ -27,18 +26,15 @@ RADIUS = "radius_mm"
 PROGRAM = ("program", "touch", "program_line")
 FORCE = ("Fx_N", "Fy_N", "Fz_N")
 
-MAX_GAP_SHARE = 0.5
-"""A sensor with gaps in a larger share of its rows is left out."""
+MAX_GAP_SHARE = 0.5  # a sensor with gaps in a larger share of its rows is left out
 
 MIN_SHUFFLED_SHARE = 0.25
 """Rows are shuffled if time goes back before at least this share of them (one half if fully
 random)."""
 
-MAX_RESTARTS = 3
-"""Restarts of a clock; rows sorted by features or poses go back more often."""
+MAX_RESTARTS = 3  # restarts of a clock; rows sorted by features or poses go back more often
 
-LATEST = 1e11
-"""Times (s) beyond this, three thousand years, are in another unit."""
+LATEST = 1e11  # times (s) beyond this, three thousand years, are in another unit
 
 MAX_STANDSTILL_SHARE = 0.05
 """Largest share of rows with direction 0 that counts as a momentary standstill, as at a quadrant of
@@ -48,11 +44,9 @@ FINEST, COARSEST = 1e-6, 1e4
 """Standard uncertainties of a touch (µm) lie between: a picometre, and the largest deviation that
 is a measurement."""
 
-MAX_LENGTH_ERROR = 0.01
-"""A normal whose length is off by more is refused."""
+MAX_LENGTH_ERROR = 0.01  # a normal whose length is off by more is refused
 
-ROUNDING_ERROR = 1e-5
-"""A normal whose length is off by less is rounded; this is not reported."""
+ROUNDING_ERROR = 1e-5  # a normal whose length is off by less is rounded; this is not reported
 
 
 def points(table: CsvTable) -> Array:

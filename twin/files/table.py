@@ -16,8 +16,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array
 from matstd.twin.words import did_you_mean
 
-LARGEST_CELL = 1e12
-"""Largest number of any column; larger ones are refused."""
+LARGEST_CELL = 1e12  # largest number of any column; larger ones are refused
 
 COLDEST, HOTTEST, HOTTEST_HEATED = -60.0, 200.0, 500.0
 """Temperatures (degC) of a machine lie between the first two; a logger writes -9999 for none. A
@@ -26,8 +25,7 @@ sensor of what is heated, such as the nozzle of a printer, may go up to the thir
 MIN_HEATED_SHARE = 0.1
 """Share of the readings above `HOTTEST` from which it is hot there, unless the sensor is stuck."""
 
-KELVIN = (240.0, 350.0)
-"""Readings that all lie between are those of a room in kelvin."""
+KELVIN = (240.0, 350.0)  # readings that all lie between are those of a room in kelvin
 
 _BYTES_A_BLOCK = 1 << 15
 """Bytes that are converted at once: more of them leave the cache (2^20: 1.5 times as long)."""

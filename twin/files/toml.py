@@ -17,19 +17,36 @@ _NO_TEXT = {
 }
 """First bytes of files that users take for text, and what they are."""
 
-LARGEST_NUMBER = 1e18
-"""Largest number in our files; the product of two such does not overflow."""
+LARGEST_NUMBER = 1e18  # largest number in our files; the product of two such does not overflow
 
 _MANY_DIGITS = re.compile(r"[\d_]{4300,}")
 _TWICE = re.compile(r"Cannot declare \((.+?),?\) twice")
 
-_DECIMAL_COMMA = re.compile(r"=\s*-?\d+,\d+\s*$")
+_STATEMENT = "one key = value, or one [table], on a line"
+_GRAMMAR = {
+    "Cannot overwrite": "every key once in its table",
+    "Duplicate inline": "every key once in its table",
+    "Cannot mutate": "every key once in its table",
+    "Invalid value": 'a number, a "text", true, false or a [list] behind the =',
+    "Unclosed array": "a ] behind the last value of a list, a comma between two",
+    "Unclosed inline": "a } behind the last key of a table in one line, a comma between two",
+    "Invalid date": "a date such as 2031-05-06",
+    "Unescaped": "two backslashes for one in a text, or a text in single quotes",
+    "Escaped": "two backslashes for one in a text, or a text in single quotes",
+    "Unterminated": "a quotation mark at the end of a text",
+    "Illegal character": "a quotation mark at the end of a text, and no control characters",
+}
+"""What is expected where a text is no TOML, by how the reader's reason begins."""
+
+_DECIMAL_COMMA = re.compile(r"=\s*-?\d+,\d+\s*(?:$|[,}#])")
 
 
 def _bytes(path: str | Path) -> bytes:
     """What a user's file holds; raises BadFile if it cannot be read."""
     try:
         return Path(path).read_bytes()
+    except IsADirectoryError as error:
+        raise BadFile(path, "file", "a folder", "a file") from error
     except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
         found = getattr(error, "strerror", None) or str(error)
         raise BadFile(path, "file", found, "a file that can be read") from error
@@ -92,7 +109,7 @@ def parse_toml(text: str, path: str | Path, twice: str = "it once") -> dict[str,
     except tomllib.TOMLDecodeError as error:
         raise _no_toml(error, text, path, twice) from error
     except RecursionError:
-        raise BadFile(path, "file", "brackets nested without end", "a valid TOML file") from None
+        raise BadFile(path, "file", "brackets nested without end", "a TOML file") from None
     except ValueError as error:  # Python converts no whole number of more than 4300 digits
         long = _MANY_DIGITS.search(text)
         literal = long.group() if long else str(error)
@@ -122,7 +139,8 @@ def _no_toml(error: tomllib.TOMLDecodeError, text: str, path: str | Path, twice:
         name = re.sub(r"', '", ".", repeated.group(1)).strip("'")
         return BadFile(path, place, f"table [{name}] a second time", twice.format(name=name))
     comma = " and a point in decimal numbers" if _DECIMAL_COMMA.search(line) else ""
-    expected = f"a whole, valid TOML file{comma} ({why[:1].lower()}{why[1:]})"
+    written = next((ours for begin, ours in _GRAMMAR.items() if why.startswith(begin)), _STATEMENT)
+    expected = f"a whole TOML file{comma}: {written}"
     found = repr(line[:60]) if line else "an end"
     return BadFile(path, place, found, expected)
 

@@ -28,11 +28,9 @@ NOT_WRITABLE = (
 )
 """Errors that a user can correct: a full disk, no permission to write."""
 
-AT_ONCE = 0.1
-"""Wait for a folder that another run holds for its whole duration, s."""
+AT_ONCE = 0.1  # wait for a folder that another run holds for its whole duration, s
 
-UNFINISHED: set[Path] = set()
-"""Unfinished files of this process; they are removed when it is ended."""
+UNFINISHED: set[Path] = set()  # unfinished files of this process; they are removed when it is ended
 
 _ASKED: dict[Path, bool] = {}
 """Outputs of this process that are not written yet, and whether they may be overwritten."""
@@ -138,7 +136,6 @@ def write_into(
 
     Args:
         texts: By file name.
-        force: Whether files of the same names may be overwritten.
 
     Raises:
         DesignError: A file of the same name exists, or the folder cannot be written to.
@@ -161,7 +158,6 @@ def copy_into(folder: str | Path, data: Mapping[str, bytes], force: bool = False
 
     Args:
         data: By path within the folder.
-        force: Whether files of the same names may be overwritten.
 
     Raises:
         DesignError: A file of the same name exists; nothing is written then.

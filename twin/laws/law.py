@@ -153,6 +153,16 @@ class Law:
         return any(f.shape.word == "curve" for f in self.factors)
 
     @property
+    def belongs_to(self) -> str:
+        """Of what it is to be expected again: a curve over time is a driver that was not recorded.
+
+        Its course is that of one run; where a law of time has a formula, what drives it is taken to
+        begin with the run.
+        """
+        is_course = any(f.shape.word == "curve" and f.driver.name == "time" for f in self.factors)
+        return "run" if is_course else "machine"
+
+    @property
     def is_tensor(self) -> bool:
         """Reported by the rms that it explains where coefficients have no meaning."""
         return self.is_curve_alone

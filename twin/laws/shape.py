@@ -44,8 +44,7 @@ class Shape:
 FIXED = ("zero", "unit", "k", "low", "high", "length", "size")
 """Parameters that follow from the machine or from the data before a formula is fitted."""
 
-WAVES = 32
-"""Waves of a curve without a formula: half waves over its domain, from none on."""
+WAVES = 32  # waves of a curve without a formula: half waves over its domain, from none on
 
 
 def play(x: Array, width: float) -> Array:

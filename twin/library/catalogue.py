@@ -52,8 +52,7 @@ from matstd.twin.words import listed, nearest
 
 ENTRY_POINT_GROUP = "material_standard.effects"
 
-SIZE_ROUNDING = 1e-3 * NM
-"""Deviations below this are those of floating-point numbers, mm."""
+SIZE_ROUNDING = 1e-3 * NM  # deviations below this are those of floating-point numbers, mm
 
 _NAME = re.compile(r"\s*([A-Za-z][\w-]*)\s*(?:\((.*)\))?\s*\Z")
 
@@ -118,9 +117,10 @@ def title_of(effect: Effect) -> Title:
 
 
 def owner_of(effect: Effect) -> str:
-    """What an effect belongs to, one of `Kind.OWNERS`, as its kind states."""
+    """What an effect belongs to, one of `Kind.OWNERS`, as its kind states, or the effect itself."""
     kind = _REGISTER.get(effect.kind)
-    return "machine" if kind is None else kind.belongs_to
+    usual = "machine" if kind is None else kind.belongs_to
+    return str(getattr(effect, "belongs_to", usual))
 
 
 def parse_effect(text: str, chain: Chain) -> Effect:
@@ -226,8 +226,11 @@ def load_user_effects(path: Path) -> tuple[Kind, ...]:
     try:
         spec.loader.exec_module(module)
     except SyntaxError as cause:
-        found = f"{(cause.text or '').strip()!r} ({cause.msg})"
-        raise BadFile(path, f"line {cause.lineno}", found, "Python") from cause
+        line = f"line {cause.lineno}" if cause.lineno else "file"
+        found = f"{(cause.text or '').strip()!r} ({cause.msg})" if cause.text else cause.msg
+        expected = "Python saved as UTF-8" if "codec" in cause.msg else "Python"
+        found = "a byte that is no UTF-8" if "codec" in cause.msg else found
+        raise BadFile(path, line, found, expected) from cause
     except (Exception, SystemExit) as cause:  # whatever is wrong is one line about that file
         expected = "a Python file that runs"
         if isinstance(cause, ModuleNotFoundError) and str(cause.name).startswith("twin"):

@@ -18,8 +18,15 @@ from matstd.twin.machine.kinematics import (
     tip,
 )
 from matstd.twin.machine.link import Link
-from matstd.twin.machine.ranges import DEFAULT_RANGES, Ranges, error_class
-from matstd.twin.machine.shapes import SHAPES, ShapeName, shape, sine_argument
+from matstd.twin.machine.ranges import (
+    DEFAULT_RANGES,
+    SHAPES,
+    Ranges,
+    ShapeName,
+    error_class,
+    shape,
+    sine_argument,
+)
 from matstd.twin.machine.symbols import LETTERS, Family, Symbol, parse_symbol
 
 __all__ = [

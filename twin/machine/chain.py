@@ -18,11 +18,9 @@ from matstd.twin.machine.symbols import ALONG, Family, Symbol, parse_symbol
 from matstd.twin.numbers import significant
 from matstd.twin.units import DEG
 
-_SAME = 1e-6
-"""Machines whose numbers differ by less (mm, rad) are equal."""
+_SAME = 1e-6  # machines whose numbers differ by less (mm, rad) are equal
 
-SHORTEST = 1e-6
-"""Directions shorter than this are refused."""
+SHORTEST = 1e-6  # directions shorter than this are refused
 
 FLATTEST = 0.01
 """Smallest singular value of the directions of linear axes: below, two of three axes stand within

@@ -34,17 +34,13 @@ tools keep within 3 or 4 K of it, and a standard that comes from elsewhere takes
 COLDEST, HOTTEST = 0.0, 50.0
 """Range of temperatures of a standard, degC; others are of another body, or in kelvin."""
 
-KELVIN = 270.0
-"""Higher temperatures are in kelvin."""
+KELVIN = 270.0  # higher temperatures are in kelvin
 
-LARGEST_EXPANSION = 1e-3
-"""Largest expansion, 1/K; rubber has 2e-4, steel 11.5e-6."""
+LARGEST_EXPANSION = 1e-3  # largest expansion, 1/K; rubber has 2e-4, steel 11.5e-6
 
-LARGEST_U = 20.0
-"""Largest standard uncertainty of a temperature, K."""
+LARGEST_U = 20.0  # largest standard uncertainty of a temperature, K
 
-LARGEST_SCALE = 1000.0
-"""Largest relative standard uncertainty of calibrated lengths, ppm."""
+LARGEST_SCALE = 1000.0  # largest relative standard uncertainty of calibrated lengths, ppm
 
 MAX_DISAGREEMENT = 2.0
 """Standard uncertainties by which two statements of one temperature may differ."""
@@ -105,6 +101,7 @@ def with_body(run: Run, stated: StatedBody) -> Run:
         _check_readings(at, common, u)
     else:
         at = np.full(len(touches), T_REF if common is None else common)
+    # an uncertainty that is not stated is a usual one: with zero a scale would look certain
     alpha, u_alpha = stated.expansion_1_K, stated.expansion_u_1_K
     body = Body(
         alpha,

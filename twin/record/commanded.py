@@ -22,15 +22,13 @@ small against every period searched for. Errors are functions of the true readin
 mm shifts the argument of its own wave, which over commanded readings looks like an overtone.
 """
 
-LARGEST_DEVIATION = 0.05
-"""From this median deviation (mm) readings are kept, whatever the range."""
+LARGEST_DEVIATION = 0.05  # from this median deviation (mm) readings are kept, whatever the range
 
 MAX_LEVEL_SHARE = 1 / 8
 """Up to this ratio of levels to touches an axis moved by little more than the measured
 deviation."""
 
-OUTLIER_RATIO = 10.0
-"""Deviations beyond this multiple of the median are not used to place a set-up."""
+OUTLIER_RATIO = 10.0  # deviations beyond this multiple of the median are not used to place a set-up
 
 
 def with_commanded(run: Run) -> Run:

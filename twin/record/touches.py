@@ -26,8 +26,7 @@ IntArray = NDArray[np.int64]
 Labels = NDArray[np.str_]
 
 
-METRE = 1000.0
-"""Arm, mm, at which a deviation in µm equals the angle in µrad."""
+METRE = 1000.0  # arm, mm, at which a deviation in µm equals the angle in µrad
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,19 +19,10 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Symbol
 from matstd.twin.model import Amounts, Declared, Effect, Kind, Title, scanned
 from matstd.twin.record import Touches
-from matstd.twin.thermal.drive_columns import (
-    CYCLE,
-    OWN,
-    PROGRESS,
-    driven,
-    drives,
-    is_own,
-    step_of,
-)
+from matstd.twin.thermal.drive_columns import CYCLE, OWN, PROGRESS, driven, drives, is_own, step_of
 from matstd.twin.units import UM, URAD
 
-USUAL_AMPLITUDE = (6 * UM, 20 * URAD)
-"""Usual size of an error after a kelvin or a step, mm and rad."""
+USUAL_AMPLITUDE = (6 * UM, 20 * URAD)  # usual size of an error after a kelvin or a step, mm and rad
 
 
 @dataclass(frozen=True)

@@ -15,26 +15,20 @@ import socket
 import time
 from typing import Any, Optional
 
-SCALE = 1e-5
-"""One count of an external offset, mm."""
+SCALE = 1e-5  # one count of an external offset, mm
 
-LOOK_PERIOD = 0.002
-"""Between two looks at the pins, s."""
+LOOK_PERIOD = 0.002  # between two looks at the pins, s
 
-STILL = 1e-6
-"""Smallest change of a position that is a motion, mm or degrees."""
+STILL = 1e-6  # smallest change of a position that is a motion, mm or degrees
 
-LONGEST_STEP = 0.005
-"""Longest time that one step may stand for, s: a pause is no licence to jump."""
+LONGEST_STEP = 0.005  # longest time that one step may stand for, s: a pause is no licence to jump
 
 LOST = 25
 """Looks in a row at which the control has another offset than it was given, until that counts."""
 
-AHEAD = 0.01
-"""Time in which an offset that is taken back has really gone, s."""
+AHEAD = 0.01  # time in which an offset that is taken back has really gone, s
 
-AGAIN = 0.5
-"""Between two tries to reach the service, s."""
+AGAIN = 0.5  # between two tries to reach the service, s
 
 
 class Giver:

@@ -7,7 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.commands.compensation.options import add_model, add_program, add_state
+from matstd.console import say
+from matstd.options import add_options
 from matstd.twin.errors import DesignError
+from matstd.twin.units import UM
 
 if TYPE_CHECKING:
     from matstd.api.compensating import Compensation
@@ -16,10 +19,13 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_model(parser)
-    parser.add_argument(
-        "--tables", metavar="DIR", help="write compensation tables of the controls to this folder"
+    add_options(
+        parser,
+        {
+            "--tables DIR": "write compensation tables of the controls to this folder",
+            "--program IN": "part program to compensate (.H, .ngc)",
+        },
     )
-    parser.add_argument("--program", metavar="IN", help="part program to compensate (.H, .ngc)")
     parser.add_argument("-o", "--output", metavar="OUT", help="compensated program")
     parser.add_argument(
         "--tolerance",
@@ -70,9 +76,7 @@ def _program(args: argparse.Namespace, machine: Compensation) -> int:
     from matstd.api.compensating import beside_program
     from matstd.commands.compensation.job import program_options
     from matstd.compensation.programs import TOLERANCE
-    from matstd.console import say
     from matstd.report.compensation import program_lines
-    from matstd.twin.units import UM
 
     output, options = Path(args.output), program_options(args)
     tolerance = TOLERANCE if args.tolerance is None else args.tolerance * UM
@@ -88,7 +92,6 @@ def _program(args: argparse.Namespace, machine: Compensation) -> int:
 
 def _tables(args: argparse.Namespace, machine: Compensation) -> int:
     """Every control in a line, what it cannot hold in another, then the tables not written."""
-    from matstd.console import say
     from matstd.progress import stages
     from matstd.report.compensation import table_lines
 

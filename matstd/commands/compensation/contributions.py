@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 
 from matstd.commands.compensation.options import add_model, add_program, add_state
+from matstd.console import say
+from matstd.options import add_options
 from matstd.twin.errors import DesignError
 
 
@@ -13,8 +15,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     parser.add_argument("--program", metavar="IN", help="part program (.H, .ngc)")
     add_program(parser)
-    parser.add_argument("--loads", metavar="LOADS.csv", help="process forces by program line")
-    parser.add_argument("--poses", metavar="POSES.csv", help="axis readings, one row per pose")
+    add_options(
+        parser,
+        {
+            "--loads LOADS.csv": "process forces by program line",
+            "--poses POSES.csv": "axis readings, one row per pose",
+        },
+    )
     add_state(parser)
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="output folder")
     parser.add_argument("--force", action="store_true", help="replace results of an earlier run")
@@ -23,7 +30,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write the table and the picture; the folder appears whole or not at all."""
     from matstd.commands.compensation.job import program_options, read_job
-    from matstd.console import say
     from matstd.report.compensation import share_lines
 
     if (args.program is None) == (args.poses is None):

@@ -2,7 +2,7 @@
 
 import argparse
 
-from matstd.options import add_effects, add_several
+from matstd.options import add_effects, add_options, add_several
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:
@@ -57,12 +57,11 @@ def add_state(parser: argparse.ArgumentParser) -> None:
 
 def add_driven(parser: argparse.ArgumentParser) -> None:
     """State of the machine, and errors that are added to its model."""
-    parser.add_argument(
-        "--after",
-        metavar="MIN",
-        type=float,
-        default=0.0,
-        help="minutes since the machine was switched on",
+    add_options(
+        parser,
+        {
+            "--after MIN": ("minutes since the machine was switched on", 0.0),
+        },
     )
     add_several(
         parser,

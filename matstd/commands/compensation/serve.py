@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.commands.compensation.options import add_model, add_state
+from matstd.console import say
+from matstd.options import add_options
+from matstd.twin.units import NM, UM
 
 if TYPE_CHECKING:
     from matstd.api.compensating import Compensation
@@ -15,17 +19,17 @@ if TYPE_CHECKING:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     add_model(parser)
-    parser.add_argument(
-        "--endpoint",
-        metavar="URL",
-        default="opc.tcp://localhost:4840",
-        help="address of the OPC UA server (opc.tcp://localhost:4840: reachable from this "
-        "computer only)",
-    )
-    parser.add_argument(
-        "--linuxcnc",
-        metavar="MACHINE.ini",
-        help="correct this LinuxCNC on this computer by external offsets, instead of OPC UA",
+    add_options(
+        parser,
+        {
+            "--endpoint URL": (
+                "address of the OPC UA server (opc.tcp://localhost:4840: reachable from this "
+                "computer only)",
+                "opc.tcp://localhost:4840",
+            ),
+            "--linuxcnc MACHINE.ini": "correct this LinuxCNC on this computer by external "
+            "offsets, instead of OPC UA",
+        },
     )
     for name, unit, default, words in (
         ("--most", "UM", 200.0, "largest correction of an axis, µm"),
@@ -46,8 +50,6 @@ def run(args: argparse.Namespace) -> int:
 
     from matstd.commands.compensation.job import read_job
     from matstd.compensation.service import OutputLimits, serve
-    from matstd.console import say
-    from matstd.twin.units import UM
 
     limits = OutputLimits(args.most * UM, args.rate * UM, args.patience, args.hold)
     machine = read_job(args)
@@ -66,7 +68,6 @@ def run(args: argparse.Namespace) -> int:
 def _on_linuxcnc(ini: str, machine: Compensation, limits: OutputLimits) -> int:
     """Write the files of the control, answer its component until it is stopped."""
     import asyncio
-    from pathlib import Path
 
     from matstd.compensation.linuxcnc import (
         HAL_FILE,
@@ -75,7 +76,6 @@ def _on_linuxcnc(ini: str, machine: Compensation, limits: OutputLimits) -> int:
         serve_linuxcnc,
         write_control_files,
     )
-    from matstd.console import say
 
     control = Control(Path(ini))
     control.check(machine.errors.chain)
@@ -93,7 +93,6 @@ def _on_linuxcnc(ini: str, machine: Compensation, limits: OutputLimits) -> int:
 
 
 def _corrected(service: Service) -> str:
-    from matstd.twin.units import NM
     from matstd.twin.words import listed
 
     correction, sensors = service.correction, service.sensors

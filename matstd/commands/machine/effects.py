@@ -6,6 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from matstd.options import add_effects
+from matstd.twin.errors import UnknownEffect
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -29,7 +30,6 @@ def run(args: argparse.Namespace) -> int:
     """Print the table, the kinds that words may mean, or the whole story of one kind."""
     from matstd import console as words
     from matstd.effect_kinds import register_effects
-    from matstd.twin.errors import UnknownEffect
     from matstd.twin.library import find_kinds, kinds
 
     register_effects(*args.effects)

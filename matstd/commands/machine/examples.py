@@ -8,6 +8,9 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import NamedTuple
 
+from matstd.console import say
+from matstd.twin.errors import BadArgument
+
 
 class Example(NamedTuple):
     """One example."""
@@ -76,8 +79,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Print the list, or copy an example; no file of the user's is replaced unasked."""
-    from matstd.console import say
-    from matstd.twin.errors import BadArgument
     from matstd.twin.files.whole import copy_into
 
     if args.name is None:

@@ -2,6 +2,8 @@
 
 import argparse
 
+from matstd.console import say
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
@@ -26,7 +28,6 @@ def run(args: argparse.Namespace) -> int:
         print(text(args.name, args.errors), end="")
         return 0
     from matstd.api.machines import machine_names
-    from matstd.console import say
 
     for name in machine_names():
         say(name, style="bold")

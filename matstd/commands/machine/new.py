@@ -8,6 +8,9 @@ from os.path import relpath
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from matstd.console import say, say_each
+from matstd.twin.errors import BadArgument
+
 if TYPE_CHECKING:
     from matstd.stages.proposal import Proposal
 
@@ -32,11 +35,9 @@ MACHINES = (
 )
 """Kinds of machines with a template of their own."""
 
-IN_METRES = 10.0
-"""A table smaller than this, mm, is one in metres."""
+IN_METRES = 10.0  # a table smaller than this, mm, is one in metres
 
-NEEDS_MACHINE = ("project", "run")
-"""Kinds that name a machine file."""
+NEEDS_MACHINE = ("project", "run")  # kinds that name a machine file
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -81,7 +82,6 @@ def template(kind: str, like: str | None = None) -> str:
 
 def run(args: argparse.Namespace) -> int:
     """Print the file, or write it whole and say what else was written."""
-    from matstd.twin.errors import BadArgument
     from matstd.twin.files import refuse_to_overwrite
 
     for option, kind in (("like", "machine"), ("machine", "project")):
@@ -102,8 +102,6 @@ def run(args: argparse.Namespace) -> int:
 
 def _check_table(args: argparse.Namespace) -> None:
     """Refuse a size that is none, or without a machine."""
-    from matstd.twin.errors import BadArgument
-
     size = args.table_mm
     shown = " ".join(f"{value:g}" for value in size or ())
     if size is not None and (len(size) > 2 or min(size) <= 0.0):
@@ -116,7 +114,6 @@ def _check_table(args: argparse.Namespace) -> None:
 
 def _written(args: argparse.Namespace, text: str) -> None:
     """Write a template, and the machine file that it names."""
-    from matstd.console import say
     from matstd.twin.files import write_whole
 
     output = Path(args.output)
@@ -130,7 +127,6 @@ def _written(args: argparse.Namespace, text: str) -> None:
 
 def _proposed(args: argparse.Namespace) -> int:
     """Write a project that suits a machine."""
-    from matstd.console import say, say_each
     from matstd.stages.proposal import propose
     from matstd.twin.files import write_whole
 

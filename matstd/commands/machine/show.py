@@ -5,15 +5,21 @@ from __future__ import annotations
 import argparse
 
 from matstd.commands.compensation.options import add_driven, add_program
-from matstd.options import add_effects, add_output
+from matstd.console import say, say_assumed
+from matstd.options import add_effects, add_options, add_output
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Arguments of the command."""
     parser.add_argument("machine", metavar="MACHINE.toml", help="machine file")
     known = parser.add_mutually_exclusive_group()
-    known.add_argument("--errors", metavar="ERRORS.toml", help="errors of the machine")
-    known.add_argument("--model", metavar="MODEL.toml", help="model of a diagnosis of this machine")
+    add_options(
+        known,
+        {
+            "--errors ERRORS.toml": "errors of the machine",
+            "--model MODEL.toml": "model of a diagnosis of this machine",
+        },
+    )
     parser.add_argument(
         "--program",
         metavar="PROGRAM",
@@ -21,17 +27,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="a part program (.H, .ngc), or probing programs in their order",
     )
-    parser.add_argument(
-        "--standard",
-        metavar="STANDARD.toml",
-        help="standard that the probing programs touch; also shows the clearance of the probe",
-    )
-    parser.add_argument(
-        "--tool-length",
-        metavar="MM",
-        type=float,
-        default=150.0,
-        help="length of the tool, from the spindle gauge point to the tip (150)",
+    add_options(
+        parser,
+        {
+            "--standard STANDARD.toml": "standard that the probing programs touch; also shows the "
+            "clearance of the probe",
+            "--tool-length MM": (
+                "length of the tool, from the spindle gauge point to the tip (150)",
+                150.0,
+            ),
+        },
     )
     parser.add_argument(
         "--datum",
@@ -57,7 +62,6 @@ def run(args: argparse.Namespace) -> int:
     """Write the page."""
     from matstd.api.showing import show
     from matstd.commands.compensation.job import machine_state, named_readings, program_options
-    from matstd.console import say, say_assumed
     from matstd.effect_kinds import register_effects
     from matstd.progress import stages
     from matstd.report.machine import shown_lines

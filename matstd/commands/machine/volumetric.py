@@ -2,7 +2,9 @@
 
 import argparse
 
+from matstd.console import say_assumed
 from matstd.options import add_output
+from matstd.twin.units import UM
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -16,10 +18,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Write dx_um, dy_um, dz_um in the table frame, actual minus nominal."""
     from matstd.api.machines import read_machine, volumetric
-    from matstd.console import say_assumed
     from matstd.progress import stages
     from matstd.twin.files import refuse_to_overwrite
-    from matstd.twin.units import UM
 
     refuse_to_overwrite(args.output, args.force)
     chain = read_machine(args.machine)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from matstd.console import say
 from matstd.options import add_measured, asked_printer, pitches, starting_model
 
 if TYPE_CHECKING:
@@ -45,7 +46,6 @@ def run(args: argparse.Namespace) -> int:
 
 def _report(args: argparse.Namespace, found: Comparison, arm: str) -> None:
     """The comparison in words, beside what the model promised, or what it was learnt with."""
-    from matstd.console import say
     from matstd.report.geometry import console_lines
     from matstd.report.verdict import promise_sentence, promise_words, repeatability_words
     from matstd.report.words import (

@@ -3,9 +3,20 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from matstd.options import add_measured, add_several, asked_printer, pitches, starting_model
+from matstd.console import console, say
+from matstd.next_steps import called
+from matstd.options import (
+    add_measured,
+    add_options,
+    add_several,
+    asked_printer,
+    pitches,
+    starting_model,
+)
+from matstd.twin.units import UM
 
 if TYPE_CHECKING:
     from matstd.api.diagnosing import Diagnosis
@@ -38,15 +49,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     for option, word, meaning in LISTS:
         add_several(parser, option, word, meaning)
-    parser.add_argument(
-        "--auto",
-        action="store_true",
-        help="add every effect that the diagnosis finds, step by step",
-    )
-    parser.add_argument(
-        "--no-learn",
-        action="store_true",
-        help="learn no law of what remains (matstd learn does the same by itself)",
+    add_options(
+        parser,
+        {
+            "--auto": "add every effect that the diagnosis finds, step by step",
+            "--no-learn": "learn no law of what remains (matstd learn does the same by itself)",
+        },
     )
     add_measured(parser, "starting model of the diagnosis (default: the ordinary geometric model)")
 
@@ -87,12 +95,9 @@ def run(args: argparse.Namespace) -> int:
 
 def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
     """What follows from the verdict: learn a law, measure, name the effect, or compensate."""
-    from pathlib import Path
-
     import numpy as np
 
     from matstd.diagnosis.answer import Verdict
-    from matstd.next_steps import called
 
     model, again = Path(args.output) / "model.toml", f"{args.output}-2"
     if found.withdrawn:
@@ -112,16 +117,29 @@ def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
         words = called("diagnose", *args.run_files, "again.csv", "-o", again)
         return words, "after the same programs have run again: repeated touches show the noise"
     tool = np.median(found.run.touches.length)
-    words = called("compensate", model, "--tool-length", f"{tool:g}", "--tables", "tables")
-    return words, "tables for the control"
+    tables = Path(args.output).parent / "tables"
+    words = called("compensate", model, "--tool-length", f"{tool:g}", "--tables", tables)
+    return f"{words} --within {' '.join(_probed(found))}", "judged where the touches were"
+
+
+def _probed(found: Diagnosis) -> list[str]:
+    """Readings of the touches by axis, mm and degrees, as `--within` has them: `X=-120:118`."""
+    import numpy as np
+
+    from matstd.twin.units import DEG
+
+    touches = found.run.touches
+    units = np.where([touches.chain.link(a).kind == "rotary" for a in touches.chain.axes], DEG, 1.0)
+    low, high = np.ceil(touches.q.min(axis=0) / units), np.floor(touches.q.max(axis=0) / units)
+    return [
+        f"{name}={low[i]:.0f}:{high[i]:.0f}"
+        for i, name in enumerate(touches.chain.axes)
+        if name in touches.chain.programmed_axes and low[i] < high[i]
+    ]
 
 
 def _unexplained(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
     """A law gets a name; where none was looked for it is learnt, where there is none, measure."""
-    from pathlib import Path
-
-    from matstd.next_steps import called
-
     again = f"{args.output}-2"
     if found.laws is None:
         words = called("learn", *args.run_files, "-o", f"{args.output}-law")
@@ -139,7 +157,6 @@ def _report(args: argparse.Namespace, result: Diagnosis, arm: str) -> None:
     """The verdict, the error falling, what was found to copy, and what else should be known."""
     from rich.table import Column, Table
 
-    from matstd.console import console, say
     from matstd.report.effects import plan_words, rival_words
     from matstd.report.geometry import console_lines
     from matstd.report.laws import law_notes, visit_sentences
@@ -192,7 +209,6 @@ def _row(step: Step, is_withdrawn: bool) -> tuple[str, ...]:
     from matstd.report.effects import effect_cell
     from matstd.report.numbers import digits
     from matstd.report.words import values
-    from matstd.twin.units import UM
 
     first = enumerate(values(step)[:2])
     cell = ["withdrawn:"] if is_withdrawn else []

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from matstd.options import add_output, seen_from
+from matstd.console import say, say_each
+from matstd.options import add_options, add_output, seen_from
+from matstd.twin.errors import DesignError
+from matstd.twin.units import UM
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from matstd.importers import Sheet
     from matstd.twin.machine import Chain
@@ -41,17 +44,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     _add_kinds(parser)
     _add_details(parser)
-    parser.add_argument(
-        "--machine",
-        metavar="MACHINE.toml",
-        help="machine file (default: a file is written from the table)",
-    )
-    parser.add_argument("--u-um", type=float, help="standard uncertainty of one reading, µm")
-    parser.add_argument(
-        "--u-urad",
-        type=float,
-        help="standard uncertainty of one reading of a rotary axis, or of the measured orientation "
-        "of a target on an arm, µrad",
+    add_options(
+        parser,
+        {
+            "--machine MACHINE.toml": "machine file (default: a file is written from the table)",
+            "--u-um": ("standard uncertainty of one reading, µm", float),
+            "--u-urad": (
+                "standard uncertainty of one reading of a rotary axis, or of the measured "
+                "orientation of a target on an arm, µrad",
+                float,
+            ),
+        },
     )
     parser.add_argument(
         "--travel",
@@ -62,27 +65,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="travel of an axis in the machine file that is written, mm or degrees (default: that "
         "of the data; of joints without limits in --dh, whole half turns)",
     )
-    parser.add_argument(
-        "--in-order",
-        metavar="SECONDS",
-        type=float,
-        help="rows are in the order of measurement, SECONDS apart; allows the search for "
-        "drifts and slips",
-    )
-    parser.add_argument(
-        "--unit", help="unit of deviations if the column header names none, such as µm"
-    )
-    parser.add_argument(
-        "--columns", metavar="NAME,...", help="column names of a table without header"
-    )
-    parser.add_argument(
-        "--sheet", metavar="NAME", help="sheet of a workbook (default: the first with data)"
-    )
-    parser.add_argument(
-        "--table",
-        metavar="N",
-        type=int,
-        help="number of the table in a file with several (default: the one with most readings)",
+    add_options(
+        parser,
+        {
+            "--in-order SECONDS": (
+                "rows are in the order of measurement, SECONDS apart; allows the search for "
+                "drifts and slips",
+                float,
+            ),
+            "--unit UNIT": "unit of deviations if the column header names none, such as µm",
+            "--columns NAME,...": "column names of a table without header",
+            "--sheet NAME": "sheet of a workbook (default: the first with data)",
+            "--table N": (
+                "number of the table in a file with several (default: the one with most readings)",
+                int,
+            ),
+        },
     )
     add_output(parser, "RUN.csv", "overwrite existing outputs")
 
@@ -90,65 +88,49 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _add_kinds(parser: argparse.ArgumentParser) -> None:
     """What the files are: one of them."""
     kind = parser.add_mutually_exclusive_group(required=True)
-    kind.add_argument(
-        "--positioning",
-        metavar="AXIS",
-        help="positioning test of this axis (ISO 230-2): targets, cycles",
-    )
-    kind.add_argument(
-        "--component",
-        metavar="NAME",
-        help="straightness (such as EYX of X in Y) or angular error (EBX) of a linear axis: "
-        "positions, readings",
-    )
-    kind.add_argument(
-        "--circle",
-        metavar="PLANE",
-        help="circular test (ISO 230-4, ball bar) in XY, YZ or ZX: angles, radial deviations",
-    )
-    kind.add_argument(
-        "--part", action="store_true", help="nominal/measured list of a part that this machine made"
-    )
-    kind.add_argument(
-        "--standard",
-        action="store_true",
-        help="nominal/measured list of a calibrated plate or standard that this machine measured",
-    )
-    kind.add_argument(
-        "--arm",
-        action="store_true",
-        help="serial arm measured by a laser tracker: columns j1, j2 ... (joints) and x, "
-        "y, z (reflector)",
-    )
-    kind.add_argument(
-        "--map", metavar="MAP.toml", help="any other table, described by a mapping file"
+    add_options(
+        kind,
+        {
+            "--positioning AXIS": "positioning test of this axis (ISO 230-2): targets, cycles",
+            "--component NAME": "straightness (such as EYX of X in Y) or angular error (EBX) of a "
+            "linear axis: positions, readings",
+            "--circle PLANE": "circular test (ISO 230-4, ball bar) in XY, YZ or ZX: angles, "
+            "radial deviations",
+            "--part": "nominal/measured list of a part that this machine made",
+            "--standard": "nominal/measured list of a calibrated plate or standard that this "
+            "machine measured",
+            "--arm": "serial arm measured by a laser tracker: columns j1, j2 ... (joints) and x, "
+            "y, z (reflector)",
+            "--map MAP.toml": "any other table, described by a mapping file",
+        },
     )
 
 
 def _add_details(parser: argparse.ArgumentParser) -> None:
     """What only one kind of file needs."""
     test = parser.add_argument_group("with --positioning")
-    test.add_argument(
-        "--target",
-        metavar="COLUMN",
-        default="",
-        help="column of the target positions, if the header does not name it; with two "
-        "encoders, the one that closes the position loop",
-    )
-    test.add_argument(
-        "--actual",
-        metavar="COLUMN",
-        default="",
-        help="column of the actual positions, by the reference instrument",
+    add_options(
+        test,
+        {
+            "--target COLUMN": (
+                "column of the target positions, if the header does not name it; with two "
+                "encoders, the one that closes the position loop",
+                "",
+            ),
+            "--actual COLUMN": ("column of the actual positions, by the reference instrument", ""),
+        },
     )
     circle = parser.add_argument_group("with --circle")
-    circle.add_argument("--radius", type=float, help="nominal radius, mm")
-    circle.add_argument("--feed", type=float, help="feed, mm/min; times and speeds follow from it")
-    circle.add_argument(
-        "--bar-force",
-        metavar="N",
-        type=float,
-        help="force of a loaded ball bar on the tool, N, outwards (negative: inwards)",
+    add_options(
+        circle,
+        {
+            "--radius": ("nominal radius, mm", float),
+            "--feed": ("feed, mm/min; times and speeds follow from it", float),
+            "--bar-force N": (
+                "force of a loaded ball bar on the tool, N, outwards (negative: inwards)",
+                float,
+            ),
+        },
     )
     place: dict[str, Any] = {"metavar": ("X", "Y", "Z"), "type": float, "nargs": 3}
     circle.add_argument(
@@ -158,16 +140,13 @@ def _add_details(parser: argparse.ArgumentParser) -> None:
         **place,
     )
     arm = parser.add_argument_group("with --arm")
-    arm.add_argument(
-        "--dh",
-        metavar="DH.csv",
-        help="Denavit-Hartenberg parameters a, alpha, d, theta, one row per joint, instead "
-        "of --machine",
-    )
-    arm.add_argument(
-        "--modified",
-        action="store_true",
-        help="the parameters of --dh follow the modified convention (Craig)",
+    add_options(
+        arm,
+        {
+            "--dh DH.csv": "Denavit-Hartenberg parameters a, alpha, d, theta, one row per joint, "
+            "instead of --machine",
+            "--modified": "the parameters of --dh follow the modified convention (Craig)",
+        },
     )
     arm.add_argument(
         "--coupled",
@@ -187,10 +166,6 @@ def _add_details(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write the run file, and a machine file where none was given."""
-    from pathlib import Path
-
-    from matstd.console import say
-    from matstd.twin.errors import DesignError
     from matstd.twin.files import refuse_to_overwrite
 
     output = Path(args.output)
@@ -217,7 +192,6 @@ def run(args: argparse.Namespace) -> int:
 def _chosen(args: argparse.Namespace, path: str, names: Sequence[str]) -> Sheet:
     """The table that `--table` names, or of which most can be read; others are listed."""
     from matstd.commands.measured.kinds import readings_of
-    from matstd.console import say
     from matstd.importers import read_sheet
     from matstd.importers.sheets import listed_tables, most_read, read_tables
 
@@ -237,7 +211,6 @@ def _chosen(args: argparse.Namespace, path: str, names: Sequence[str]) -> Sheet:
 
 def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
     """Any table, by a mapping file."""
-    from matstd.console import say, say_each
     from matstd.importers import import_mapped
     from matstd.twin.files import read_machine, write_whole
 
@@ -253,15 +226,11 @@ def _mapped(args: argparse.Namespace, sheet: Sheet, output: Path) -> None:
 
 def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> None:
     """A test of an axis, a circle, an arm, or lists of points."""
-    from pathlib import Path
-
     from matstd.commands.measured.kinds import arm, circle, points, positioning
-    from matstd.console import say
     from matstd.importers import machine_text, with_travels
     from matstd.importers.sheets import timed_by_rows
     from matstd.twin.files import refuse_to_overwrite, write_run, write_whole
     from matstd.twin.numbers import rms
-    from matstd.twin.units import UM
 
     if args.part or args.standard:
         measured, chain = points(args, sheets)
@@ -292,8 +261,6 @@ def _measured(args: argparse.Namespace, sheets: list[Sheet], output: Path) -> No
 
 def _travels(stated: Sequence[Sequence[str]], chain: Chain) -> dict[str, tuple[float, float]]:
     """Travels of `--travel`, mm and rad."""
-    from matstd.twin.errors import DesignError
-
     out = {}
     for axis, *ends in stated:
         try:

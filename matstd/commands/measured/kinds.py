@@ -5,6 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from matstd.console import say
+from matstd.twin.errors import DesignError
+from matstd.twin.units import DEG, UM, URAD
+
 if TYPE_CHECKING:
     import argparse
     from collections.abc import Callable
@@ -43,8 +47,6 @@ def readings_of(args: argparse.Namespace) -> tuple[Callable[[Sheet], int] | None
 def positioning(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """A test of one axis as a run."""
     from matstd.importers import one_axis_machine, positioning_run, read_positioning
-    from matstd.twin.errors import DesignError
-    from matstd.twin.units import UM, URAD
 
     name = args.component or ""
     axis = name[-1:] if name else args.positioning
@@ -63,9 +65,7 @@ def _say_positioning(test: PositioningTest) -> None:
     """Targets, directions, and the figures of the standard, which no model makes."""
     import numpy as np
 
-    from matstd.console import say
     from matstd.importers.instruments import component_range, positioning_figures
-    from matstd.twin.units import DEG, UM, URAD
 
     turns = test.axis in "ABC"
     low, high = (v / (DEG if turns else 1.0) for v in (test.target.min(), test.target.max()))
@@ -96,10 +96,7 @@ def _say_positioning(test: PositioningTest) -> None:
 
 def circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """A circular test as a run."""
-    from matstd.console import say
     from matstd.importers import circle_machine, circle_run, read_circle
-    from matstd.twin.errors import DesignError
-    from matstd.twin.units import UM
 
     plane = args.circle.upper()
     if plane not in ("XY", "YZ", "ZX", "YX", "ZY", "XZ"):
@@ -125,10 +122,8 @@ def circle(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
 
 def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
     """An arm under a tracker as a run."""
-    from matstd.console import say
     from matstd.importers import import_arm, read_sheet
     from matstd.importers.arms import oriented
-    from matstd.twin.units import UM, URAD
 
     found = import_arm(
         sheet,
@@ -165,9 +160,7 @@ def arm(args: argparse.Namespace, sheet: Sheet) -> tuple[Run, Chain]:
 
 def points(args: argparse.Namespace, sheets: list[Sheet]) -> tuple[Run, Chain]:
     """Lists of points as a run."""
-    from matstd.console import say
     from matstd.importers import import_points
-    from matstd.twin.units import DEG, UM
 
     meaning: Meaning = "part" if args.part else "standard"
     then = "brought back to the nominal one" if args.part else "the standard stands so"
@@ -197,8 +190,6 @@ def _machine(args: argparse.Namespace) -> Chain | None:
 
 def _uncertainty(args: argparse.Namespace, name: str, unit: float) -> float:
     """The stated uncertainty of one reading; raises DesignError where none is stated."""
-    from matstd.twin.errors import DesignError
-
     stated = getattr(args, name)
     option = f"--{name.replace('_', '-')}"
     if stated is None:

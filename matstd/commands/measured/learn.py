@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from matstd.console import say
 from matstd.options import add_measured, add_several, asked_printer, pitches, starting_model
 
 if TYPE_CHECKING:
@@ -54,12 +55,31 @@ def run(args: argparse.Namespace) -> int:
             found.write_page(folder, printed_by)
     with deviations_in(found.after.run.touches.deviation_unit):
         _report(args, found)
+    args.next = _next(args, found)
     return 0
+
+
+def _next(args: argparse.Namespace, found: LearntLaws) -> tuple[str, str]:
+    """A law gets a name, once a visit has distinguished it from its rivals; without one measure."""
+    from pathlib import Path
+
+    from matstd.next_steps import called
+
+    out, again = Path(args.output), f"{args.output}-2"
+    if not found.laws:
+        words = called("learn", *args.run_files, "again.csv", "-o", again)
+        return words, "after another run that records what could be the cause"
+    if found.visit.touches is not None:
+        words = called("learn", *args.run_files, "visit.csv", "-o", again)
+        plan = out / "next_visit.csv"
+        return words, f"after measuring {plan}; matstd replan writes its programs"
+    named = [word for name in found.effect_names for word in ("--add", name)]
+    words = called("diagnose", *args.run_files, "--effects", out / "effect.py", *named, "-o", again)
+    return words, "the law by the name that you give it in effect.py"
 
 
 def _report(args: argparse.Namespace, found: LearntLaws) -> None:
     """The law, its rival, its errors elsewhere, and the files."""
-    from matstd.console import say
     from matstd.report.laws import (
         held_out_sentence,
         law_notes,

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import argparse
 
-from matstd.options import add_output
+from matstd.console import say, say_each
+from matstd.options import add_options, add_output
 from matstd.twin.errors import DesignError
+from matstd.twin.units import HOUR, MINUTE, UM
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -29,38 +31,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="logs that are held out completely",
     )
-    parser.add_argument(
-        "--own-zeros",
-        action="store_true",
-        help="fit a separate zero of the displacements for every log",
-    )
-    parser.add_argument(
-        "--step-min",
-        metavar="MIN",
-        type=float,
-        default=5.0,
-        help="time step of the laws, minutes (5)",
-    )
-    parser.add_argument(
-        "--sensor-noise",
-        metavar="K",
-        type=float,
-        help="also evaluate with this noise on the temperatures, K",
-    )
-    parser.add_argument(
-        "--probe-every",
-        metavar="HOURS",
-        type=float,
-        help="also evaluate with the drift probed at this interval",
-    )
-    parser.add_argument(
-        "--u-um", type=float, default=1.0, help="standard uncertainty of a probed drift, µm (1)"
-    )
-    parser.add_argument(
-        "--law", metavar="thermal.json", help="predict with this law of an earlier run; fit nothing"
-    )
-    parser.add_argument(
-        "--probed", metavar="PROBED.csv", help="with --law: drifts probed on standards"
+    add_options(
+        parser,
+        {
+            "--own-zeros": "fit a separate zero of the displacements for every log",
+            "--step-min MIN": ("time step of the laws, minutes (5)", 5.0),
+            "--sensor-noise K": ("also evaluate with this noise on the temperatures, K", float),
+            "--probe-every HOURS": ("also evaluate with the drift probed at this interval", float),
+            "--u-um": ("standard uncertainty of a probed drift, µm (1)", 1.0),
+            "--law thermal.json": "predict with this law of an earlier run; fit nothing",
+            "--probed PROBED.csv": "with --law: drifts probed on standards",
+        },
     )
     add_output(parser)
 
@@ -77,10 +58,8 @@ def run(args: argparse.Namespace) -> int:
 def _compare(args: argparse.Namespace) -> int:
     """Laws beside one another, the chosen one with its file and page."""
     from matstd.api.drifting import SOMETIMES, learn_drift
-    from matstd.console import say, say_each
     from matstd.progress import stages
     from matstd.twin.files import results_folder
-    from matstd.twin.units import HOUR, MINUTE, UM
 
     with results_folder(args.output, args.force, SOMETIMES) as folder, stages() as show:
         found = learn_drift(
@@ -105,8 +84,6 @@ def _compare(args: argparse.Namespace) -> int:
 def _predict(args: argparse.Namespace) -> int:
     """The drift of a log by an earlier law, with what was probed meanwhile."""
     from matstd.api.drifting import predict_drift
-    from matstd.console import say, say_each
-    from matstd.twin.units import MINUTE, UM
 
     found = predict_drift(args.law, args.logs[0], args.probed, args.u_um * UM)
     found.save(args.output, args.force)

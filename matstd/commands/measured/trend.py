@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from matstd.console import say
+from matstd.next_steps import called
 from matstd.options import add_results, add_several, asked_printer
 
 if TYPE_CHECKING:
@@ -48,8 +50,6 @@ def run(args: argparse.Namespace) -> int:
 
 def _next(args: argparse.Namespace, found: Trend) -> tuple[str, str]:
     """After a step the runs around it are compared; else the last run is diagnosed."""
-    from matstd.next_steps import called
-
     if found.follows:
         words = called("diagnose", *found.follows, "--auto", "-o", f"{args.output}-change")
         return words, "what changed, from both runs together"
@@ -61,7 +61,6 @@ def _next(args: argparse.Namespace, found: Trend) -> tuple[str, str]:
 
 def _report(args: argparse.Namespace, found: Trend) -> None:
     """What changed and when, and where the files are."""
-    from matstd.console import say
     from matstd.report.charts import history_lines, history_sentence
 
     say(history_sentence(found), style="bold")

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matstd.commands.probing.simulate import add_planted, planted_machine
-from matstd.options import add_output
+from matstd.console import say, say_each
+from matstd.options import add_options, add_output
+from matstd.twin.units import MINUTE, UM
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from matstd.probe_paths.emit import ProgramSet
 
 
@@ -20,31 +21,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "design", metavar="OUT", help="output folder of `matstd design`, for any control"
     )
     add_planted(parser)
-    parser.add_argument(
-        "--touches",
-        metavar="N",
-        type=int,
-        help="run only N touches, spread evenly over the programs",
-    )
-    parser.add_argument(
-        "--user", default="", help="user that runs LinuxCNC if you are root (LinuxCNC refuses root)"
+    add_options(
+        parser,
+        {
+            "--touches N": ("run only N touches, spread evenly over the programs", int),
+            "--user USER": ("user that runs LinuxCNC if you are root (LinuxCNC refuses root)", ""),
+        },
     )
     add_output(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     """Run the programs, keep the log whatever happens, evaluate it where all touches were made."""
-    from pathlib import Path
-
     import numpy as np
 
     from matstd.api.probing import save_run
     from matstd.api.replanning import programs_of
     from matstd.artefact.body import read_standard
-    from matstd.console import say, say_each
     from matstd.probe_paths.linuxcnc import installed, rehearse
     from matstd.twin.files.whole import claimed
-    from matstd.twin.units import MINUTE, UM
 
     user = installed(args.user)
     design = Path(args.design)

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import argparse
 
-from matstd.options import add_body, add_output
+from matstd.console import say, say_assumed, say_each
+from matstd.options import add_body, add_options, add_output
+from matstd.twin.errors import BadArgument
+from matstd.twin.units import DEG, UM
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -19,34 +22,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--standard", metavar="STANDARD.toml", required=True, help="standard as calibrated"
     )
     parser.add_argument("--machine", metavar="MACHINE.toml", required=True, help="machine file")
-    parser.add_argument(
-        "--u-um", type=float, default=1.0, help="standard uncertainty of one touch, µm (1.0)"
-    )
-    parser.add_argument(
-        "--z",
-        choices=("gauge", "tip"),
-        default="gauge",
-        help="meaning of Z in the result of cycle 4: spindle gauge point, or pole of the "
-        "probe ball; a calibrated sphere shows which (gauge)",
-    )
-    parser.add_argument(
-        "--probe-limit-um",
-        type=float,
-        default=10.0,
-        help="largest change of the ball's position or of the probe's effective radius "
-        "between two logs of OUT/setup/..._CAL, µm; beyond it the command stops (10)",
-    )
-    parser.add_argument(
-        "--programs",
-        metavar="DIR",
-        help="folder of the programs that the logs are checked against: sides, poses, tool "
-        "and preset (default: `programs` beside STANDARD.toml, if it exists)",
-    )
-    parser.add_argument(
-        "--sensors",
-        metavar="SENSORS.csv",
-        help="temperatures over the clock of the control: columns clock "
-        "(2031-05-06T07:08:09) and T_<sensor>_degC; T_body_degC is the standard's",
+    add_options(
+        parser,
+        {
+            "--u-um": ("standard uncertainty of one touch, µm (1.0)", 1.0),
+            "--z": (
+                "meaning of Z in the result of cycle 4: spindle gauge point, or pole of the "
+                "probe ball; a calibrated sphere shows which (gauge)",
+                ("gauge", "tip"),
+            ),
+            "--probe-limit-um": (
+                "largest change of the ball's position or of the probe's effective radius "
+                "between two logs of OUT/setup/..._CAL, µm; beyond it the command stops (10)",
+                10.0,
+            ),
+            "--programs DIR": "folder of the programs that the logs are checked against: sides, "
+            "poses, tool and preset (default: `programs` beside STANDARD.toml, if it exists)",
+            "--sensors SENSORS.csv": "temperatures over the clock of the control: columns clock "
+            "(2031-05-06T07:08:09) and T_<sensor>_degC; T_body_degC is the standard's",
+        },
     )
     _add_scan(parser)
     add_body(
@@ -58,17 +52,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def _add_scan(parser: argparse.ArgumentParser) -> None:
     """Options of a scan."""
     scan = parser.add_argument_group("of a scan, a table with x, y, z in place of a log")
-    scan.add_argument("--scan", metavar="FACE", help="name of the scanned freeform face")
-    scan.add_argument("--radius-mm", type=float, help="radius of the ball")
-    scan.add_argument(
-        "--length-mm", type=float, help="from the gauge point to the centre of the ball"
-    )
-    scan.add_argument(
-        "--frame",
-        choices=("machine", "standard"),
-        default="machine",
-        help="what x, y, z are: readings of the axes, or the centre of the ball in the frame of "
-        "the standard (machine)",
+    add_options(
+        scan,
+        {
+            "--scan FACE": "name of the scanned freeform face",
+            "--radius-mm": ("radius of the ball", float),
+            "--length-mm": ("from the gauge point to the centre of the ball", float),
+            "--frame": (
+                "what x, y, z are: readings of the axes, or the centre of the ball in the frame of "
+                "the standard (machine)",
+                ("machine", "standard"),
+            ),
+        },
     )
     scan.add_argument(
         "--origin-mm",
@@ -93,11 +88,8 @@ def _scan_run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from matstd.api.evaluating import evaluate_scan_log
-    from matstd.console import say, say_each
-    from matstd.twin.errors import BadArgument
     from matstd.twin.frames import fixed_xyz, pose
     from matstd.twin.record import Setup
-    from matstd.twin.units import DEG, UM
 
     if len(args.logs) != 1 or args.radius_mm is None or args.length_mm is None:
         given = f"{len(args.logs)} files, radius {args.radius_mm}, length {args.length_mm}"
@@ -127,10 +119,8 @@ def run(args: argparse.Namespace) -> int:
     import numpy as np
 
     from matstd.api.evaluating import evaluate
-    from matstd.console import say, say_assumed, say_each
     from matstd.twin.files import refuse_to_overwrite
     from matstd.twin.numbers import rms
-    from matstd.twin.units import UM
 
     refuse_to_overwrite(args.output, args.force)
     if args.scan:

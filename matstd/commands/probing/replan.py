@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import argparse
 
-from matstd.options import SHEET, add_output, add_pdf, asked_printer
+from matstd.console import say, say_each
+from matstd.options import SHEET, add_options, add_output, add_pdf, asked_printer
+from matstd.twin.units import DEG
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -22,22 +24,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         required=True,
         help="output folder of `matstd design` or `matstd replan`",
     )
-    parser.add_argument(
-        "--control",
-        metavar="NAME|FILE.toml",
-        help="control that the programs are written for (default: that of the programs in OUT)",
-    )
-    parser.add_argument(
-        "--within-mm",
-        type=float,
-        help="largest expected offset of the standard from its planned position, mm "
-        "(default: that of the search in OUT/setup)",
-    )
-    parser.add_argument(
-        "--within-deg",
-        type=float,
-        help="largest expected rotation of the standard from its planned orientation, degrees "
-        "(default: as --within-mm)",
+    add_options(
+        parser,
+        {
+            "--control NAME|FILE.toml": "control that the programs are written for (default: that "
+            "of the programs in OUT)",
+            "--within-mm": (
+                "largest expected offset of the standard from its planned position, mm "
+                "(default: that of the search in OUT/setup)",
+                float,
+            ),
+            "--within-deg": (
+                "largest expected rotation of the standard from its planned orientation, degrees "
+                "(default: as --within-mm)",
+                float,
+            ),
+        },
     )
     add_pdf(parser)
     add_output(parser)
@@ -51,9 +53,7 @@ def is_visit(files: list[str]) -> bool:
 def run(args: argparse.Namespace) -> int:
     """Find the place, plan, write programs and set-up sheet; the folder appears whole or not."""
     from matstd.api.replanning import OURS, planned_visit, replan
-    from matstd.console import say, say_each
     from matstd.twin.files import results_folder
-    from matstd.twin.units import DEG
 
     printed_by = asked_printer(args)
     angle = None if args.within_deg is None else args.within_deg * DEG

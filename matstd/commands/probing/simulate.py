@@ -6,7 +6,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from matstd.options import add_body, add_effects, add_output, add_several
+from matstd.console import say, say_assumed, say_each
+from matstd.options import add_body, add_effects, add_options, add_output, add_several
+from matstd.twin.errors import DesignError
+from matstd.twin.units import UM
 
 if TYPE_CHECKING:
     from matstd.artefact.body import Standard
@@ -36,27 +39,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         parser, "temperature of the standard, °C; the run file states it (default: 20, not stated)"
     )
     add_planted(parser)
-    parser.add_argument(
-        "--sensors",
-        metavar="SENSORS.csv",
-        help="temperatures and spindle speed over time, as for `evaluate`: columns clock "
-        "(2031-05-06T07:08:09), T_<sensor>_degC, spindle_rpm; the run begins at the "
-        "first row",
-    )
-    parser.add_argument(
-        "--probe-length", type=float, help="length of the probe, mm; must equal the program's"
-    )
-    parser.add_argument(
-        "--probe-radius", type=float, help="radius of the probe ball, mm; must equal the program's"
-    )
-    parser.add_argument(
-        "--control",
-        metavar="NAME|FILE.toml",
-        default="itnc530",
-        help="control that the programs are written for; needed for your own dialect (itnc530)",
-    )
-    parser.add_argument(
-        "--logs", metavar="FOLDER", help="also write the logs of the control to this folder"
+    add_options(
+        parser,
+        {
+            "--sensors SENSORS.csv": "temperatures and spindle speed over time, as for "
+            "`evaluate`: columns clock (2031-05-06T07:08:09), T_<sensor>_degC, spindle_rpm; the "
+            "run begins at the first row",
+            "--probe-length": ("length of the probe, mm; must equal the program's", float),
+            "--probe-radius": ("radius of the probe ball, mm; must equal the program's", float),
+            "--control NAME|FILE.toml": (
+                "control that the programs are written for; needed for your own dialect (itnc530)",
+                "itnc530",
+            ),
+            "--logs FOLDER": "also write the logs of the control to this folder",
+        },
     )
     add_output(parser, "RUN.csv")
 
@@ -65,11 +61,9 @@ def run(args: argparse.Namespace) -> int:
     """Write the run file; a touch without contact stops the program and writes nothing."""
     from matstd.api.probing import leaves_no_run, simulate
     from matstd.api.standards import read_standard
-    from matstd.console import say, say_assumed, say_each
     from matstd.progress import stages
     from matstd.twin.files import refuse_to_overwrite
     from matstd.twin.numbers import rms
-    from matstd.twin.units import UM
 
     refuse_to_overwrite(args.output, args.force)
     machine = planted_machine(args, args.machine, args.control, args.sensors)
@@ -116,8 +110,6 @@ def _search(
 ) -> int:
     """Write the log of a program that measures nothing and leaves no run file."""
     from matstd.api.probing import save_logs, simulate_log
-    from matstd.console import say
-    from matstd.twin.errors import DesignError
 
     if not args.logs or len(args.programs) > 1:
         raise DesignError(
@@ -134,11 +126,12 @@ def _search(
 def add_planted(parser: argparse.ArgumentParser) -> None:
     """Errors, noise, effects, set-up and probe as they really are."""
     errors = parser.add_mutually_exclusive_group()
-    errors.add_argument("--errors", metavar="ERRORS.toml", help="errors of the machine")
-    errors.add_argument(
-        "--random-errors",
-        action="store_true",
-        help="draw the errors from the default distributions",
+    add_options(
+        errors,
+        {
+            "--errors ERRORS.toml": "errors of the machine",
+            "--random-errors": "draw the errors from the default distributions",
+        },
     )
     parser.add_argument(
         "--noise-um", type=float, default=1.0, help="standard deviation of one touch, µm (1.0)"
@@ -151,18 +144,16 @@ def add_planted(parser: argparse.ArgumentParser) -> None:
         "'thermal-lag(EZZ)=25um,tau=18min', 'backlash(X)=3um', 'drift=X=2um/h'",
     )
     add_effects(parser)
-    parser.add_argument(
-        "--setup-error",
-        metavar="NAME=SIZE",
-        help="offset of the standard from its planned set-up, in its own frame: "
-        "X=0.3mm,Y=-0.1mm,C=0.05deg",
+    add_options(
+        parser,
+        {
+            "--setup-error NAME=SIZE": "offset of the standard from its planned set-up, in its "
+            "own frame: X=0.3mm,Y=-0.1mm,C=0.05deg",
+            "--probe-error NAME=SIZE": "error of the probe, true minus calibrated value: "
+            "radius=1um,length=20um",
+            "--seed": ("seed of noise and random errors (0)", 0),
+        },
     )
-    parser.add_argument(
-        "--probe-error",
-        metavar="NAME=SIZE",
-        help="error of the probe, true minus calibrated value: radius=1um,length=20um",
-    )
-    parser.add_argument("--seed", type=int, default=0, help="seed of noise and random errors (0)")
 
 
 def planted_machine(
@@ -171,7 +162,6 @@ def planted_machine(
     """The machine as it really is, with what the options of `add_planted` plant in it."""
     from matstd.api.probing import virtual_machine
     from matstd.effect_kinds import register_effects
-    from matstd.twin.units import UM
 
     register_effects(*args.effects)
     return virtual_machine(

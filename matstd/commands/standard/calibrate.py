@@ -5,7 +5,10 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from matstd.options import add_output
+from matstd.console import console, say, say_each
+from matstd.options import add_options, add_output
+from matstd.twin.errors import DesignError
+from matstd.twin.units import UM
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -28,74 +31,63 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     what.add_argument(
         "--program", action="store_true", help="write the DMIS program that measures the points"
     )
-    parser.add_argument(
-        "--orientation",
-        metavar="DEG",
-        type=float,
-        default=0.0,
-        help="with --program: orientation of the standard on the CMM about z, degrees (0); four "
-        "of them (0, 90, 180, 270) cancel squareness and differences of scales",
+    add_options(
+        parser,
+        {
+            "--orientation DEG": (
+                "with --program: orientation of the standard on the CMM about z, degrees (0); four "
+                "of them (0, 90, 180, 270) cancel squareness and differences of scales",
+                0.0,
+            ),
+        },
     )
     _add_uncertainties(parser)
-    parser.add_argument(
-        "--accept",
-        action="store_true",
-        help="write the standard even if it does not conform to its drawing; the file states this",
-    )
-    parser.add_argument(
-        "--cad",
-        metavar="FOLDER",
-        help="also write STEP, STL, 3MF and glTF of the standard as measured",
+    add_options(
+        parser,
+        {
+            "--accept": "write the standard even if it does not conform to its drawing; the file "
+            "states this",
+            "--cad FOLDER": "also write STEP, STL, 3MF and glTF of the standard as measured",
+        },
     )
     add_output(parser, "FILE")
 
 
 def _add_uncertainties(parser: argparse.ArgumentParser) -> None:
     """Stated uncertainties of the CMM, and what is assumed of the faces."""
-    parser.add_argument(
-        "--u-um", type=float, default=0.3, help="standard uncertainty of one point, µm (0.3)"
-    )
-    parser.add_argument(
-        "--u-feature-um",
-        type=float,
-        default=0.3,
-        help="standard uncertainty of the position of a feature that its points share "
-        "(squareness and stylus of the CMM), from the certificate, µm (0.3)",
-    )
-    parser.add_argument(
-        "--body-u-K",
-        metavar="U",
-        type=float,
-        default=0.5,
-        help="standard uncertainty of the temperature of the standard during the "
-        "measurement, about 20 °C, K (0.5); it enters the assessment of the scale",
-    )
-    parser.add_argument(
-        "--scale-u-ppm",
-        metavar="U",
-        type=float,
-        default=1.0,
-        help="standard uncertainty of the scales of the CMM, ppm (1): of 1.2 + L/350 µm "
-        "(ISO 10360-2) it is 1.6; all features share it, with that of the temperature",
-    )
-    parser.add_argument(
-        "--waviness-um",
-        metavar="W",
-        type=float,
-        default=0.5,
-        help="root mean square of waves that is assumed along a direction of a face without a "
-        "dense line of points, µm (0.5)",
+    add_options(
+        parser,
+        {
+            "--u-um": ("standard uncertainty of one point, µm (0.3)", 0.3),
+            "--u-feature-um": (
+                "standard uncertainty of the position of a feature that its points share "
+                "(squareness and stylus of the CMM), from the certificate, µm (0.3)",
+                0.3,
+            ),
+            "--body-u-K U": (
+                "standard uncertainty of the temperature of the standard during the "
+                "measurement, about 20 °C, K (0.5); it enters the assessment of the scale",
+                0.5,
+            ),
+            "--scale-u-ppm U": (
+                "standard uncertainty of the scales of the CMM, ppm (1): of 1.2 + L/350 µm "
+                "(ISO 10360-2) it is 1.6; all features share it, with that of the temperature",
+                1.0,
+            ),
+            "--waviness-um W": (
+                "root mean square of waves that is assumed along a direction of a face without a "
+                "dense line of points, µm (0.5)",
+                0.5,
+            ),
+        },
     )
 
 
 def run(args: argparse.Namespace) -> int:
     """Write the calibrated standard, or the program, whole or not at all."""
     from matstd.api.standards import as_designed, calibrate
-    from matstd.console import say, say_each
     from matstd.report.task import calibration_lines, verdict_lines
-    from matstd.twin.errors import DesignError
     from matstd.twin.files import refuse_to_overwrite
-    from matstd.twin.units import UM
 
     refuse_to_overwrite(args.output, args.force)
     nominal = as_designed(args.standard)
@@ -126,7 +118,6 @@ def run(args: argparse.Namespace) -> int:
 def _program(output: str, nominal: Standard, orientation: float) -> int:
     """Write the program for the CMM."""
     from matstd.api.standards import cmm_program
-    from matstd.console import say
     from matstd.twin.files import write_whole
 
     text = cmm_program(nominal, orientation)
@@ -140,7 +131,6 @@ def _show(verdicts: Sequence[Verdict]) -> None:
     """What conforms to the drawing and what does not, one row per characteristic."""
     from rich.table import Column, Table
 
-    from matstd.console import console
     from matstd.report.task import verdict_rows
 
     numbers = [Column(f"{word} µm", justify="right") for word in ("deviation", "allowed", "u")]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from matstd.console import say, say_assumed, say_each
 from matstd.options import SHEET, add_output, add_pdf
 from matstd.progress import Plan
 from matstd.workers import add_scheduler
@@ -64,7 +65,6 @@ def run(args: argparse.Namespace) -> int:
     """Design, with a bar for every stage; the folder appears whole or not at all."""
     from matstd.api.designing import Project
     from matstd.artefact.reach import standing_remarks
-    from matstd.console import say, say_assumed, say_each
     from matstd.progress import stages
     from matstd.report.task import fewer_lines, making_lines, task_lines
     from matstd.report.words import design_lines, proof_line

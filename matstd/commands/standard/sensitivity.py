@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
-from matstd.options import add_pdf
+from matstd.console import say_assumed, say_each
+from matstd.options import add_options, add_pdf
+from matstd.twin.errors import BadFile, DesignError
 from matstd.workers import add_scheduler
 
 _STUDY_ONLY = ("draws", "digits", "tolerance_um", "scheduler", "pdf")
@@ -27,18 +30,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="axis readings, one row per pose (with a machine file)",
     )
     parser.add_argument("-o", "--output", metavar="OUT", required=True, help="output file")
-    parser.add_argument("--draws", type=int, metavar="N", help="largest number of random machines")
-    parser.add_argument(
-        "--digits",
-        type=int,
-        metavar="D",
-        help="draw until D significant digits are stable (JCGM 101, 7.9.4)",
-    )
-    parser.add_argument(
-        "--tolerance-um",
-        type=float,
-        metavar="T",
-        help="also report the share of machines whose deviation exceeds T µm",
+    add_options(
+        parser,
+        {
+            "--draws N": ("largest number of random machines", int),
+            "--digits D": ("draw until D significant digits are stable (JCGM 101, 7.9.4)", int),
+            "--tolerance-um T": (
+                "also report the share of machines whose deviation exceeds T µm",
+                float,
+            ),
+        },
     )
     add_scheduler(parser)
     add_pdf(parser)
@@ -47,9 +48,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write S as a table, or a study as a folder."""
-    from pathlib import Path
-
-    from matstd.twin.errors import BadFile, DesignError
     from matstd.twin.files import parse_toml, read_text
 
     path = Path(args.source)
@@ -66,7 +64,6 @@ def run(args: argparse.Namespace) -> int:
 def _table(args: argparse.Namespace) -> int:
     """One column a parameter: µm/µm, or µm/µrad for an angular one."""
     from matstd.api.machines import read_machine, sensitivities
-    from matstd.console import say_assumed
     from matstd.progress import stages
     from matstd.twin.files import refuse_to_overwrite
 
@@ -83,7 +80,6 @@ def _table(args: argparse.Namespace) -> int:
 def _study(args: argparse.Namespace) -> int:
     """Data, pictures and page of a study; the folder appears whole or not at all."""
     from matstd.api.designing import Project
-    from matstd.console import say_assumed, say_each
     from matstd.progress import stages
     from matstd.report.words import study_words
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from matstd.options import add_effects, add_output
+from matstd.console import say, say_each
+from matstd.options import add_effects, add_options, add_output
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -18,19 +19,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         required=True,
         help="calibrated standard that was measured",
     )
-    parser.add_argument(
-        "--task",
-        metavar="TASK.toml",
-        help="measuring task on the workpieces (default: every feature that was touched on "
-        "the faces)",
-    )
-    parser.add_argument(
-        "--model",
-        metavar="MODEL.toml",
-        help="model of an earlier diagnosis; results are corrected with it",
-    )
-    parser.add_argument(
-        "--page", metavar="PAGE.html", help="also write a report page, with its tables beside it"
+    add_options(
+        parser,
+        {
+            "--task TASK.toml": "measuring task on the workpieces (default: every feature that "
+            "was touched on the faces)",
+            "--model MODEL.toml": "model of an earlier diagnosis; results are corrected with it",
+            "--page PAGE.html": "also write a report page, with its tables beside it",
+        },
     )
     add_effects(parser)
     add_output(parser, "OUT.json")
@@ -39,7 +35,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Evaluate; the result is written whole or not at all."""
     from matstd.api.standards import uncertainty
-    from matstd.console import say, say_each
     from matstd.effect_kinds import register_effects
     from matstd.twin.files import refuse_to_overwrite
 

@@ -18,11 +18,9 @@ from typing import Any, TextIO
 
 import hal
 
-PROBING = 5
-"""Type of motion of a G38 move."""
+PROBING = 5  # type of motion of a G38 move
 
-ENOUGH = 0.05
-"""Way after which the direction of a stroke is known to eleven digits, mm."""
+ENOUGH = 0.05  # way after which the direction of a stroke is known to eleven digits, mm
 
 NEVER = 1e9
 

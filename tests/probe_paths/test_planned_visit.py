@@ -1,0 +1,85 @@
+"""Programs of a planned visit: its order, its sides, its standstill; all touches on the twin."""
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from matstd.api.replanning import planned_visit
+from matstd.artefact.body import write_standard
+from matstd.twin.errors import BadFile
+from matstd.twin.units import DEG
+
+MACHINE = Path(__file__).parents[2] / "examples" / "hsm600u-machine.toml"
+
+HEAD = "# warm_up_s = 1800, pause_s = 3600 after touch 6, slowness = 2\n"
+
+SIDES = ((1, -1), (-1, -1), (1, 1), (-1, 1))
+
+
+@pytest.fixture(scope="module")
+def design(golden, tmp_path_factory):
+    """A folder as a design leaves it, of the small standard; the example's machine is its own."""
+    folder = tmp_path_factory.mktemp("design")
+    write_standard(folder / "standard.toml", golden.standard())
+    shutil.copyfile(MACHINE, folder / "machine.toml")
+    golden.programs().write(folder / "programs")
+    return folder
+
+
+@pytest.fixture
+def visit(plan, chain, tmp_path):
+    """Three touches at four poses, one of them twice, each from stated sides."""
+    axes = chain.rotary_axes
+    head = ["feature", "setup", *(f"p{c}_mm" for c in "xyz"), *(f"{a}_deg" for a in axes)]
+    lines = [HEAD + ",".join([*head, *(f"dir{a}" for a in axes)])]
+    for k, sides in zip((2, 0, 3, 0), SIDES, strict=True):
+        for i in np.flatnonzero((plan.visit == k) & (plan.request >= 0))[:3]:
+            numbers = [*plan.point[i], *(plan.visits[k].rotary / DEG)]
+            place = [f"{v:.6f}" for v in numbers]
+            lines.append(",".join([plan.feature[i], plan.setup.name, *place, *map(str, sides)]))
+    path = tmp_path / "next_visit.csv"
+    path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return path
+
+
+def test_the_programs_of_a_visit_keep_its_order_sides_and_standstill(design, visit, plan) -> None:
+    made = planned_visit(visit, design)
+    (station,) = made.stations
+    found = station.plan
+    assert [tuple(v.side.astype(int)) for v in found.visits] == list(SIDES)
+    wanted = [plan.visits[k].rotary for k in (2, 0, 3, 0)]
+    np.testing.assert_allclose([v.rotary for v in found.visits], wanted, atol=1e-9)
+    for k, rows in enumerate(found.request[found.request >= 0].reshape(4, 3)):
+        assert sorted(rows) == [3 * k, 3 * k + 1, 3 * k + 2]
+    first, second = station.programs.programs
+    assert [first.touches, second.touches] == [8, 8]  # an anchor at every visit
+    assert made.lines[0].startswith("The twin made all 16 touches")
+    assert f"before {second.name}" in " ".join(made.lines)
+    assert "feed override 50 %" in " ".join(made.lines)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("FF1", "FF9", r"line \d, feature"),
+        (",a,", ",elsewhere,", "setup"),
+        ("pz_mm", "pw_mm", "pz_mm"),
+    ],
+)
+def test_a_visit_of_something_else_is_refused(design, visit, old, new, line) -> None:
+    visit.write_text(visit.read_text().replace(old, new), encoding="utf-8")
+    with pytest.raises(BadFile, match=line):
+        planned_visit(visit, design)
+
+
+def test_touches_beside_the_standard_are_refused(design, visit) -> None:
+    lines = visit.read_text().splitlines()
+    cells = lines[2].split(",")
+    cells[2] = f"{float(cells[2]) + 1.0:.6f}"
+    cells[4] = f"{float(cells[4]) + 5.0:.6f}"
+    lines[2] = ",".join(cells)
+    visit.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    with pytest.raises(BadFile, match=r"line 3, px_mm to pz_mm.* of this standard"):
+        planned_visit(visit, design)
