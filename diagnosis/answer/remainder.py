@@ -14,12 +14,9 @@ from matstd.diagnosis.answer.steps import named_probability
 from matstd.diagnosis.answer.verdict import Candidate, Dependence, Offer
 from matstd.diagnosis.evidence import (
     EffectSet,
-    Grid,
     Progress,
     ScaledEffect,
     quiet,
-    score_all,
-    signatures,
 )
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.policy import POLICY
@@ -32,7 +29,6 @@ from matstd.diagnosis.search import (
     most_evident,
     refined_named,
     tables_along,
-    unrecorded,
 )
 from matstd.twin.library import parse_effect
 from matstd.twin.record import IntArray
@@ -130,22 +126,3 @@ def dependences(found: Sequence[Structure]) -> tuple[Dependence, ...]:
             if known is None or structure.p_value < known.p_value:
                 out[variable] = Dependence(variable, structure.p_value, structure)
     return tuple(out.values())
-
-
-def odds_against_drift(state: SearchState) -> dict[str, float]:
-    """Log odds for every effect that follows a driver against one that was not recorded, by name.
-
-    The most likely law of such a driver stands in its place, with any smooth course in time.
-    """
-    complement, members = state.pool.complement, state.chosen.members
-    led = [m for m in members if follows_driver(m.effect)]
-    rivals = unrecorded(complement.touches) if led else []
-    if not rivals:
-        return {}
-    drifts = signatures(complement, [Grid(one, (one,), 1) for one in rivals], 1)
-    out = {}
-    for member in led:
-        others = state.search.evaluate(state.chosen.others(member)).effects
-        best = float(score_all(others, drifts).evidence.max())
-        out[member.effect.name] = state.chosen.effects.evidence - best
-    return out

@@ -8,11 +8,23 @@ used, and is reported beside the set.
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from matstd.diagnosis.answer.alike import periods_alike
 from matstd.diagnosis.answer.ambiguity import ConfusionClass, confusion_class
-from matstd.diagnosis.evidence import ScaledEffect
+from matstd.diagnosis.evidence import Grid, ScaledEffect, score_all, signatures
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.residual import find_structure
-from matstd.diagnosis.search import EffectSubset, SearchState, Verified, refined
+from matstd.diagnosis.search import (
+    EffectSubset,
+    SearchState,
+    Verified,
+    follows_driver,
+    is_own_sensor,
+    refined,
+    unrecorded,
+)
+from matstd.twin.model import Effect, original_of, traits
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,11 +35,28 @@ class ReportedSet:
         state: Of the search, its members the effects as reported, what explains most first.
         classes: What each cannot be distinguished from, none of it in the set; in the same order.
         tests: Of every member with the others in place, by the name of the effect.
+        against_drift: Log odds of those that follow a driver against one that was not recorded.
     """
 
     state: SearchState
     classes: tuple[ConfusionClass, ...]
     tests: Mapping[str, Verified]
+    against_drift: Mapping[str, float]
+
+    @property
+    def open_driver(self) -> str | None:
+        """Name of an effect of which the run shows neither sensor nor that one was recorded.
+
+        Other sensors explain it as well, so that none of them is shown, and a driver that was not
+        recorded is not ruled out as a further one.
+        """
+        for sized, one in zip(self.state.effects, self.classes, strict=True):
+            odds = self.against_drift.get(sized.effect.name, np.inf)
+            drivers = {_driver(sized.effect), *(_driver(r.effect) for r in one.rivals)} - {""}
+            is_open = odds < POLICY.log_odds_open_driver and len(drivers) > 1
+            if is_open and not is_own_sensor(sized.effect) and not self.state.is_weighed:
+                return sized.effect.name
+        return None
 
 
 def reported_set(final: SearchState) -> ReportedSet:
@@ -58,7 +87,12 @@ def reported_set(final: SearchState) -> ReportedSet:
         classes.append(replace(found.headed(state.effects[i]), alike=alike))
     names = state.chosen.names
     tests = {v.member.effect.name: v for v in search.verify(state.chosen)}
-    return ReportedSet(state, tuple(c.beside(names) for c in classes), tests)
+    beside = tuple(c.beside(names) for c in classes)
+    return ReportedSet(state, beside, tests, odds_against_drift(state))
+
+
+def _driver(effect: Effect) -> str:
+    return traits(original_of(effect)).driver
 
 
 def _by_worth(state: SearchState) -> EffectSubset:
@@ -84,3 +118,22 @@ def without(state: SearchState, name: str) -> SearchState:
     chosen = state.search.evaluate(m for m in state.chosen.members if m.effect.name != name)
     left = tuple(find_structure(chosen.effects, smooth=state.smooth))
     return replace(state, chosen=chosen, left=left)
+
+
+def odds_against_drift(state: SearchState) -> dict[str, float]:
+    """Log odds for every effect that follows a driver against one that was not recorded, by name.
+
+    The most likely law of such a driver stands in its place, with any smooth course in time.
+    """
+    complement, members = state.pool.complement, state.chosen.members
+    led = [m for m in members if follows_driver(m.effect)]
+    rivals = unrecorded(complement.touches) if led else []
+    if not rivals:
+        return {}
+    drifts = signatures(complement, [Grid(one, (one,), 1) for one in rivals], 1)
+    out = {}
+    for member in led:
+        others = state.search.evaluate(state.chosen.others(member)).effects
+        best = float(score_all(others, drifts).evidence.max())
+        out[member.effect.name] = state.chosen.effects.evidence - best
+    return out

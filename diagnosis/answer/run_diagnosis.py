@@ -15,7 +15,6 @@ from matstd.diagnosis.answer.parts import VerdictParts, verdict_parts
 from matstd.diagnosis.answer.remainder import (
     dependences,
     nearest,
-    odds_against_drift,
     structures,
     to_repeat,
 )
@@ -176,8 +175,7 @@ def _result(
     geometry = learnt_geometry(
         last, task.prior if task.is_known else None, steps[0].fit if len(steps) > 1 else None
     )
-    odds = odds_against_drift(final)
-    parts = verdict_parts(steps, counted, geometry, faults, repeats, odds)
+    parts = verdict_parts(steps, counted, geometry, faults, repeats, tested.against_drift)
     verdict = _verdict(parts, len(steps) > 1 + len(added), len(repeat) > 0)
     start = structures(final, progress)
     candidates, depends_on = (

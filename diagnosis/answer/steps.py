@@ -88,7 +88,7 @@ def significant_effects(
     while True:
         tested = reported_set(final)
         steps = _steps(task, added, tested, final.base.gross)
-        weak = weakest(steps[1 + len(added) :], final.is_weighed)
+        weak = tested.open_driver or weakest(steps[1 + len(added) :], final.is_weighed)
         if weak is None:
             return tested, steps
         final = without(tested.state, weak)

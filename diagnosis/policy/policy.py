@@ -30,6 +30,9 @@ class Policy:
             all rows in sight of them.
         log_odds_unrecorded: Log odds before any measurement that what a run follows was not
             recorded, against any one recorded driver with any lag; the grid comes on top.
+        log_odds_open_driver: Log odds against a driver that was not recorded below which a law is
+            not named where the run does not show which of several sensors it follows: of runs
+            without the responsible sensor two had 7.5 and 9.4, of those with it one had 11.2.
         log_odds_series: Log odds before any measurement against a series over a turn (harmonics,
             products of them), for a law of weights and warmth that it can imitate: 20 to 1, as for
             any gain of evidence. A series goes on with another payload as if nothing had changed.
@@ -87,6 +90,7 @@ class Policy:
     error_share: float = 0.97
     error_share_beside_memory: float = 0.85
     log_odds_unrecorded: float = 1.5
+    log_odds_open_driver: float = 10.0
     log_odds_series: float = 3.0
     log_odds_alike: float = 4.605170185988092  # log 100
     log_odds_ruled_out: float = 15.0

@@ -1,6 +1,7 @@
 """A law after a driver that was not recorded is not blamed on another sensor."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,7 +9,10 @@ from simulator_case import read_back, simulate_case
 from simulator_effects import growth_of_standard
 from simulator_experiment import MACHINES
 
-from matstd.diagnosis.answer import Verdict, diagnose
+from matstd.diagnosis.answer import ConfusionClass, Verdict, diagnose
+from matstd.diagnosis.answer.ambiguity import Rival
+from matstd.diagnosis.answer.reported_set import ReportedSet
+from matstd.diagnosis.evidence import ScaledEffect
 from matstd.diagnosis.residual import Shape
 from matstd.diagnosis.search import follows_driver, unrecorded
 from matstd.twin.library import parse_effect
@@ -60,3 +64,20 @@ def test_a_law_of_a_missing_driver_is_the_law_with_any_smooth_course(growing: Ru
     assert np.linalg.norm(left) < 0.03 * np.linalg.norm(b)
     first = columns([law], replace(touches, temperature={"artefact": np.full(len(b), 21.0)}))[:, 0]
     assert A[:, 0] == pytest.approx(first, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("law", "other", "odds", "is_open"),
+    [
+        ("thermal-lag(EXX,scaleY)", "thermal-lag(EXX,ambient)", 9.0, True),
+        ("thermal-lag(EXX,scaleY)", "thermal-lag(EXX,ambient)", 12.0, False),  # none unrecorded
+        ("thermal-lag(EXX,scaleY)", "thermal-lag(EXY,scaleY)", 9.0, False),  # one sensor
+        ("thermal-lag(EXX,scaleX)", "thermal-lag(EXX,ambient)", 9.0, False),  # the body's own
+    ],
+)
+def test_a_law_of_which_no_sensor_is_shown_is_not_named(growing, law, other, odds, is_open) -> None:
+    one, rival = (ScaledEffect(parse_effect(name, growing.touches.chain)) for name in (law, other))
+    state = SimpleNamespace(effects=(one,), is_weighed=False)
+    found = ConfusionClass(one, (Rival(rival, 2.0, 1.0),), ())
+    tested = ReportedSet(state, (found,), {}, {law: odds})
+    assert tested.open_driver == (law if is_open else None)
