@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from browser import faults, opened, requests, run
 
-from matstd.report.live import embed, packed, scripted, style
+from matstd.report import live
+from matstd.report.live import packed, scripted, style
 
-PAGES = {f.stem for f in (Path(embed.__file__).parent / "pages").glob("*.js")}
+PAGES = {f.stem for f in (Path(live.__file__).parent / "pages").glob("*.js")}
 
 # two triangles of a square of 20 mm at z = 0, and a square of the same size 10 mm below
 SQUARE = np.array(
@@ -46,12 +47,12 @@ def page(tmp_path_factory):
         "words": ["</script>", "µ", None, 3],
         **{kind: packed(NUMBERS, kind) for kind in KINDS},
     }
-    parts = [name for name in embed._sources() if name not in PAGES]
+    parts = [name for name in live._sources() if name not in PAGES]
     every = "".join(f'import * as {name} from "./{name}.js";\n' for name in parts)
     every += f"window.parts = {{ {', '.join(parts)} }};\n"
     path = tmp_path_factory.mktemp("parts") / "page.html"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setitem(embed._sources(), "every", every)
+        patch.setitem(live._sources(), "every", every)
         body = f"<body>{scripted('every', data)}</body>"
     head = f"<!DOCTYPE html><meta charset='utf-8'><title>t</title>{style()}"
     path.write_text(head + body, encoding="utf-8")
