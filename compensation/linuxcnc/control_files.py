@@ -110,6 +110,6 @@ def hal_text(control: Control, service: Service, limits: OutputLimits) -> str:
 
 def _scale() -> float:
     """One count, mm, as the component has it."""
-    found = re.search(r"(?m)^SCALE = (\S+)$", (BESIDE / "corrector.py").read_text("utf-8"))
+    found = re.search(r"(?m)^SCALE = (\S+)", (BESIDE / "corrector.py").read_text("utf-8"))
     assert found is not None
     return float(found[1])

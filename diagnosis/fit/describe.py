@@ -151,12 +151,13 @@ def _sines(effect: Effect, sines: int, theta: Array, covariance: Array) -> Itera
 
 
 def explained_rms(fit: Fit, effect: Effect, theta: Array, covariance: Array) -> Reported:
-    """Deviation that an effect of many parameters explains, root mean square over the rows used.
+    """Deviation that an effect of many parameters explains, rms over the used rows that it moves.
 
     Of parameters that share what they know, and of the entries of a tensor, neither one nor their
     length means anything.
     """
     C = columns([effect], fit.run.touches)[fit.used]
+    C = C[np.any(C != 0.0, axis=1)]
     explained = C @ theta
     size = rms(explained)
     # d rms / d theta = C^T C theta / (n size)

@@ -126,7 +126,7 @@ def learn(
     Example:
         >>> found = learn("run.csv", add=["thermal-lag(EZZ)"])
         >>> f"{1e3 * found.after.rms:.2f} µm remain, {len(found.laws)} laws"
-        '0.59 µm remain, 0 laws'
+        '0.56 µm remain, 0 laws'
     """
     same = "so that its estimates are made anew: no touch counts twice"
     run, start, _, title = starting_run(runs, model, same, pitch=pitch)

@@ -39,7 +39,7 @@ def read_run(path: str | Path) -> Run:
     Example:
         >>> run = read_run("run.csv")
         >>> len(run), run.touches.chain.name
-        (780, 'Mikron HSM 600U')
+        (390, 'Mikron HSM 600U')
     """
     try:
         return files.read_run(path)
