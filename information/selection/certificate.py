@@ -8,9 +8,8 @@ heaviest touches a good start for exchanges.
 from dataclasses import dataclass
 
 from matstd.information.criteria import DesignCriterion
-from matstd.information.selection.relaxation import relaxed
 from matstd.information.selection.shares import heaviest
-from matstd.information.selection.touch_selection import Mask, Quota, Selection, exchange
+from matstd.information.selection.touch_selection import Quota, Selection, exchange
 from matstd.twin.frames import Array
 
 
@@ -35,32 +34,6 @@ class Certificate:
             f"{self.count} of {self.candidates} candidate touches: at least "
             f"{100 * self.efficiency:.1f} % as good as any choice of as many{same}"
         )
-
-
-def certificate(
-    criterion: DesignCriterion,
-    W: Array,
-    chosen: Mask,
-    tolerance: float = 2e-3,
-    quotas: tuple[Quota, ...] = (),
-) -> Certificate:
-    """Certified efficiency of a choice among candidates; raises DesignError.
-
-    Args:
-        W: Rows of all candidates, (N, R).
-        tolerance: Relative gap to which the relaxed problem is solved.
-        quotas: Shares that the choice keeps and every other would have to keep.
-    """
-    count = int(chosen.sum())
-    best = relaxed(criterion, W, count, chosen, tolerance, quotas)
-    rows = W[chosen]
-    return Certificate(
-        candidates=len(W),
-        count=count,
-        value=criterion.value(rows.T @ rows),
-        bound=best.bound,
-        shares=bool(quotas),
-    )
 
 
 def rounded(
