@@ -40,22 +40,6 @@ class SharedArrays(NamedTuple):
     threads: int | None  # of one batch; None for one a core
 
 
-def shared_arrays(
-    population: Population,
-    q: Array,
-    length: Array | float,
-    width: Array,
-    tolerance: float,
-    worst: tuple[int, int],
-    threads: int | None,
-) -> SharedArrays:
-    """Columns of all poses, and what else the batches share."""
-    G = first_order(population.model, q, length)
-    return SharedArrays(
-        population=population, G=G, width=width, tolerance=tolerance, worst=worst, threads=threads
-    )
-
-
 def bin_width(rms: Array) -> Array:
     """Width of a bin of the histogram for a root mean square of |d|, (N,), mm."""
     return np.maximum(rms, _MIN_SCALE) * (_SPAN / BINS)

@@ -12,7 +12,7 @@ from matstd.sensitivity.population.distributions import CONSTANT, Distributions,
 from matstd.twin.effects import ComponentError, LocationError
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
-from matstd.twin.machine import Chain, Family, Ranges, ShapeName, Symbol
+from matstd.twin.machine import Chain, Family, Ranges, Symbol
 from matstd.twin.machine import shape as shape_function
 from matstd.twin.model import Effect, Model, traits
 
@@ -80,10 +80,6 @@ class Population:
         """Shapes that an error may have."""
         return self._mixes[symbol]
 
-    def shapes_of(self, symbol: Symbol) -> tuple[ShapeName, ...]:
-        """Names of the shapes that an error may have."""
-        return self.mix_of(symbol).shapes
-
     @property
     def model(self) -> Model:
         """Effects whose linear combinations are all machines of the population.
@@ -116,18 +112,13 @@ class Population:
         Args:
             free: Letters of the links whose set-up is kept in any case: "w", "t" or both.
         """
-        return Model(
-            self.chain,
-            tuple(
-                effect
-                for effect in self.model.effects
-                if (symbol := traits(effect).symbol)
-                and (
-                    effect.parameters[0].sd > 0.0
-                    or (symbol.family is Family.SETUP and symbol.link in free)
-                )
-            ),
-        )
+
+        def is_kept(effect: Effect) -> bool:
+            symbol = traits(effect).symbol
+            is_free = symbol is not None and symbol.family is Family.SETUP and symbol.link in free
+            return is_free or effect.parameters[0].sd > 0.0
+
+        return Model(self.chain, tuple(filter(is_kept, self.model.effects)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -243,7 +234,7 @@ def drawn_errors(population: Population, rng: np.random.Generator) -> list[tuple
         if symbol.family is not Family.COMPONENT:
             out.append((LocationError(symbol), amplitude))
             continue
-        shape = population.shapes_of(symbol)[draws.shape[0, p]]
+        shape = population.mix_of(symbol).shapes[draws.shape[0, p]]
         if shape == "sinusoidal":
             n, phase = float(draws.periods[0, p]), float(draws.phase[0, p])
             out.append((ComponentError(symbol, shape, n, phase), amplitude))
