@@ -17,10 +17,8 @@ from typing import Any, ParamSpec, TypeVar
 from matstd.twin.compute import one_blas_thread
 
 CORES = os.cpu_count() or 1  # on a single one every call is made in this process
-
 _SERVE = "from matstd.twin.beside import serve; serve()"
 _WORD = 8  # bytes that state the length of a call
-
 P = ParamSpec("P")
 T = TypeVar("T")
 

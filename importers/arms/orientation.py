@@ -22,19 +22,14 @@ from matstd.twin.numbers import rms
 
 MAX_NORM_ERROR = 0.01
 """Error of the length of a quaternion beyond which its columns hold something else."""
-
 IMPLAUSIBLE_ANGLE = 0.1
 """Angle (rad rms) between measured and nominal orientations that is not that of an arm: zeros of
 joints that were never calibrated are off by 10 mrad."""
-
 MAX_SECOND_SHARE = 0.99
 """Second singular value over the first from which poses do not determine the orientations."""
-
 EXPLAINED_SHARE = 0.2  # inverse orientations explain the angles if at most this share remains
-
 PAIRS = ((0, 1), (1, 2), (2, 0))
 """Direction of the arm and direction of the reading of each pair of points."""
-
 _QUATERNION = re.compile(r"(?:\Aq|quat\w*?)[\s_.]*([wxyz])\Z", re.IGNORECASE)
 _ROTATION = re.compile(r"(?:\Ar|\brotvec|\brv)[\s_.]*([xyz])\Z", re.IGNORECASE)
 

@@ -25,7 +25,6 @@ _COUPLED = re.compile(r"J?(\d{1,2})\s*([+-])\s*J?(\d{1,2})\Z", re.IGNORECASE)
 
 
 MAX_FIXED_MOTION = 2.0  # range (mm) of a fixed target in the frame of a tracker that drifts
-
 MIN_MOTION_RATIO = 20.0  # least motion of the reflectors on the arm, in ranges of a fixed target
 
 

@@ -14,9 +14,7 @@ from matstd.twin.units import UM
 ORDINARY_ERROR = (1.0 * UM, 15e-6)
 """Ordinary translational error of a linear axis: a constant (mm) and a share of the travel. New
 machines of ordinary accuracy have 8.5 µm over 500 mm (ISO 10791-4 tolerates 22 µm there)."""
-
 DATA_TRAVEL = "  # PLACEHOLDER: that of the data; --travel states it"
-
 SIDES = "# PLACEHOLDER: the data do not show which axes carry the workpiece (prime)"
 
 

@@ -11,10 +11,8 @@ from matstd.twin.record import Instrument, Run, Setup, at_poses
 from matstd.twin.thermal import CYCLE, PROGRESS
 
 ARM = 1000.0  # arm (mm) by which an angle is written as a length: 1 µrad is 1 µm
-
 MIN_CYCLES_TO_HOLD_OUT = 4
 """Cycles needed to hold one out; with fewer it would be more than a quarter of the test."""
-
 MIN_SINE = 0.5  # sine below which an axis and the direction it turns about count as parallel
 
 

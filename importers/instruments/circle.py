@@ -22,9 +22,7 @@ from matstd.twin.record import Instrument, IntArray, Labels, Run, Setup, at_pose
 from matstd.twin.units import MINUTE
 
 PAUSE_BETWEEN_RUNS = 10.0  # assumed pause between two runs, s
-
 ANGLE_BEFORE_READING = 1e-6  # angle (rad) before a reading at which its axes were still moving
-
 RADIUS_TOLERANCE = 0.1
 """A column holds radii if its mean differs from the radius by less than this share of it."""
 

@@ -20,16 +20,12 @@ from matstd.twin.record import rigid_motion, turn_of
 SHIFT = 1.0
 """A larger displacement (mm) is another frame; a smaller one is found by the linear fit of the
 set-up."""
-
 TURN = 1e-3
 """A larger rotation (rad) is another frame: half its square times 200 mm is 0.1 µm, the error of
 the linear fit of the set-up."""
-
 OFF_FRAME_RATIO = 5.0
 """Points farther off than this multiple of the median are outliers and left out of the fit."""
-
 MAX_FRAME_ROUNDS = 20  # repetitions of the choice of near points; two are usual
-
 MIRROR_RATIO = 10.0
 """A mirrored frame must fit better by this factor before an axis counts as reversed."""
 

@@ -11,7 +11,6 @@ from matstd.twin.record import IntArray, Labels
 
 MISPLACED_RATIO = 2.0
 """A point this many times nearer to another one's place than to its own is misplaced."""
-
 MIN_LISTED_POINTS = 4  # points needed to determine a common displacement
 
 

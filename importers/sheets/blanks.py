@@ -7,7 +7,6 @@ from matstd.importers.sheets.rows import filled_lines
 
 _WIDE = re.compile(r"\s{2,}|\t")
 _NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?\Z")
-
 MIN_EQUAL_ROWS = 0.8  # share of the rows of numbers that must have the same number of columns
 
 

@@ -18,9 +18,7 @@ from matstd.importers.sheets.rows import filled_lines
 _LINE = re.compile(r"(\S+)\s+(\d{4}-\d{2}-\d{2})[T\s]+(\d{2}:\d{2}:\d{2}(?:\.\d+)?)\s+(\S.*)\Z")
 _CLOCK = re.compile(r"ts|t|time|timestamp|eventtime|zeit", re.IGNORECASE)
 """Keys of the time of an object."""
-
 MIN_LOG_SHARE = 0.8  # share of the lines that must be readings; others are remarks and alarms
-
 MIN_VALUES = 3  # values that distinguish a channel from a setting
 
 

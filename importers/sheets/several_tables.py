@@ -7,7 +7,6 @@ from dataclasses import dataclass
 Row = tuple[int, Sequence[str | float]]  # a line of the file with its cells
 
 MIN_EQUAL_NAMES = 0.5  # from this share of equal names two headers belong to parts of one table
-
 _AXIS = re.compile(r"\b(?:axis|achse|axe|eje)\b\W*([XYZABC])\b", re.IGNORECASE)
 
 

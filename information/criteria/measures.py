@@ -25,7 +25,6 @@ from matstd.twin.frames import Array
 
 MIN_EIGENVALUE_RATIO = 1e-13
 """Share of the largest eigenvalue below which a direction is neither felt nor shown: rounding."""
-
 _MIN_WEIGHT_RATIO = 1e-6  # share of the largest weight below which a form is left out of a tangent
 
 

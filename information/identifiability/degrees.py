@@ -12,7 +12,6 @@ from matstd.twin.model import Model, columns, traits
 from matstd.twin.record import Touches
 
 MAX_DEGREE = 8  # highest degree that is tried
-
 MAX_POSTERIOR_SHARE = 0.5
 """A coefficient is supported when the touches leave less than this part of its expected size."""
 

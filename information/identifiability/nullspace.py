@@ -23,10 +23,8 @@ from matstd.twin.frames import Array
 MIN_SINGULAR_RATIO = 1e-8
 """Singular value over the largest, columns of length one, below which a direction is invisible: far
 above rounding, far below the weakest visible direction of a probed run."""
-
 MIN_LENGTH_RATIO = 1e-9
 """Length of a column over the longest below which its parameter moves nothing."""
-
 _MIN_WEIGHT_RATIO = 1e-6  # part of a direction's largest weight that counts as zero
 
 

@@ -14,7 +14,6 @@ from matstd.twin.record import at_poses
 
 MACHINES_A_BATCH = 20 * DRAWS_A_CHILD
 """10 240: as many as JCGM 101, 7.9.4 b) wants for a coverage of up to 99 %."""
-
 _SPAN = 5.0
 """The histogram of |d| at a pose reaches to this multiple of its root mean square. A sum of many
 independent errors exceeds it in less than one case of a million, and then sits in the last bin."""

@@ -18,7 +18,6 @@ from matstd.twin.model import Effect, Model, traits
 
 DRAWS_A_CHILD = 512
 """Machines drawn from one child of a generator: fixed, so that blocks do not change the draws."""
-
 _QUARTER = 0.5 * np.pi
 
 

@@ -20,7 +20,6 @@ from matstd.twin.sampling import even_points
 from matstd.twin.units import DEG
 
 POSES_OF_REGION = 256  # poses that stand for a region
-
 _TOTAL_POSES = 16  # of a region, for random machines
 _OUTER = 1.0 / 6.0  # of a travel at either end that counts as its end
 _MIDDLE = (1.0 / 3.0, 2.0 / 3.0)  # of a travel that counts as its middle

@@ -30,7 +30,6 @@ from matstd.twin.machine import Chain
 from matstd.twin.units import UM
 
 SECTION = 25  # values of each of the two readings of a section
-
 _TOTAL_POSES = 300  # at which total effects are taken: their mean over a workspace needs no more
 _CHECKED = (20, 60)  # machines and poses on which first order is compared with the exact product
 

@@ -18,11 +18,9 @@ SHIFT_SD = 1000.0 * UM
 TURN_SD = 5e-3
 """Prior standard deviations of a set-up, mm and rad: wide, since no clamping repeats to a
 micrometre and the calibration of a machine must not depend on it."""
-
 STYLUS_SD = 100.0 * UM
 """Prior standard deviation of place and radius of a further stylus against the first, mm: also
 wide."""
-
 _MAX_STYLI = 10  # largest number of further styli; more lengths belong to a target that is moved
 
 

@@ -17,11 +17,9 @@ from matstd.twin.model import Declared, Effect, Kind, Parameter, Term, Where
 from matstd.twin.record import Touches
 
 GRAVITY = 9.80665  # standard acceleration, m/s2, N/kg
-
 SLENDER = 3.0
 """Below this ratio of length to depth the supports of a beam yield as much as the beam; a warning
 is given."""
-
 KEYS = ("at", "sense", "span", "mass", "offset", "material", "down")
 DIRECTIONS = {s + a: i for i, (s, a) in enumerate((s, a) for a in "XYZ" for s in "+-")}
 

@@ -42,7 +42,6 @@ UNITS = {
 """Units by the end of a key; the longer ends stand before those that they contain."""
 
 LONG = 90  # characters of a clause from which on what stands in brackets is left out of a refusal
-
 T = TypeVar("T", bound=BaseModel)
 
 

@@ -18,9 +18,7 @@ from matstd.twin.errors import DesignError
 
 _LOCK = "matstd.lock"
 _MARK = "matstd works here; this folder goes when it is done\n"
-
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)  # a file system that knows no locks
-
 PATIENCE, _PAUSE = 60.0, 0.02
 """Longest wait for a lock, which is held for milliseconds, and pause between tries, s."""
 

@@ -25,27 +25,19 @@ TARGET = ("tx_mm", "ty_mm", "tz_mm")
 RADIUS = "radius_mm"
 PROGRAM = ("program", "touch", "program_line")
 FORCE = ("Fx_N", "Fy_N", "Fz_N")
-
 MAX_GAP_SHARE = 0.5  # a sensor with gaps in a larger share of its rows is left out
-
 MIN_SHUFFLED_SHARE = 0.25
 """Rows are shuffled if time goes back before at least this share of them (one half if fully
 random)."""
-
 MAX_RESTARTS = 3  # restarts of a clock; rows sorted by features or poses go back more often
-
 LATEST = 1e11  # times (s) beyond this, three thousand years, are in another unit
-
 MAX_STANDSTILL_SHARE = 0.05
 """Largest share of rows with direction 0 that counts as a momentary standstill, as at a quadrant of
 a circle; with more, the direction is unknown."""
-
 FINEST, COARSEST = 1e-6, 1e4
 """Standard uncertainties of a touch (µm) lie between: a picometre, and the largest deviation that
 is a measurement."""
-
 MAX_LENGTH_ERROR = 0.01  # a normal whose length is off by more is refused
-
 ROUNDING_ERROR = 1e-5  # a normal whose length is off by less is rounded; this is not reported
 
 

@@ -14,7 +14,6 @@ from matstd.twin.frames import Array
 from matstd.twin.record import Run, Touches
 
 EPOCH = datetime(2000, 1, 1)
-
 MAX_OUTSIDE_RECORD = 300.0
 """Longest time of a touch outside the record, s; the first or last reading then holds."""
 

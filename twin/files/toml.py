@@ -18,10 +18,8 @@ _NO_TEXT = {
 """First bytes of files that users take for text, and what they are."""
 
 LARGEST_NUMBER = 1e18  # largest number in our files; the product of two such does not overflow
-
 _MANY_DIGITS = re.compile(r"[\d_]{4300,}")
 _TWICE = re.compile(r"Cannot declare \((.+?),?\) twice")
-
 _STATEMENT = "one key = value, or one [table], on a line"
 _GRAMMAR = {
     "Cannot overwrite": "every key once in its table",

@@ -29,9 +29,7 @@ NOT_WRITABLE = (
 """Errors that a user can correct: a full disk, no permission to write."""
 
 AT_ONCE = 0.1  # wait for a folder that another run holds for its whole duration, s
-
 UNFINISHED: set[Path] = set()  # unfinished files of this process; they are removed when it is ended
-
 _ASKED: dict[Path, bool] = {}
 """Outputs of this process that are not written yet, and whether they may be overwritten."""
 

@@ -32,7 +32,6 @@ from matstd.twin.units import DEG, HOUR, T_REF, UM, URAD
 FREE_LENGTH, FREE_ANGLE = 1000.0 * UM, 10000.0 * URAD
 """Prior standard deviation of an amplitude: what is learnt is not drawn towards zero. Of a curve
 its own `size` is the prior."""
-
 SHIFT, BIAS, GROWTH, TILT = "shift", "bias", "growth", "tilt"
 PARTS = {SHIFT: 3, BIAS: 1, GROWTH: 1, TILT: 3, "shift-x": 1, "shift-y": 1, "shift-z": 1}
 """Carriers that are no component of a link, with their number of amplitudes."""

@@ -43,7 +43,6 @@ class Shape:
 
 FIXED = ("zero", "unit", "k", "low", "high", "length", "size")
 """Parameters that follow from the machine or from the data before a formula is fitted."""
-
 WAVES = 32  # waves of a curve without a formula: half waves over its domain, from none on
 
 

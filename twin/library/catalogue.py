@@ -51,13 +51,9 @@ from matstd.twin.units import NM
 from matstd.twin.words import listed, nearest
 
 ENTRY_POINT_GROUP = "material_standard.effects"
-
 SIZE_ROUNDING = 1e-3 * NM  # deviations below this are those of floating-point numbers, mm
-
 _NAME = re.compile(r"\s*([A-Za-z][\w-]*)\s*(?:\((.*)\))?\s*\Z")
-
 _REGISTER: dict[str, Kind] = {}
-
 _FILES: dict[str, Path] = {}
 """The users' files that kinds come from, so that a file can be read again when it has changed."""
 

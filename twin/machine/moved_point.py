@@ -13,10 +13,8 @@ from matstd.twin.machine.link import Link
 _POSES_A_BLOCK = 5000
 """Poses moved at once: the vectors of a block stay in the first caches (8192 take 1.3 times as long
 a pose), and a call of numpy is spread over many of them (256: 1.5 times)."""
-
 _SMALL = 1e-4
 """Square of an angle, rad^2, below which three terms of a series are exact to a double."""
-
 _XYZXY = np.array([0, 1, 2, 0, 1])
 
 

@@ -21,17 +21,13 @@ from matstd.twin.record.touches import Touches, computed_deviation
 SHIFT = 0.3
 """Displacement (mm) from which a set-up is moved: lever arms off by so much turn 50 µrad of a
 rotary axis into 0.015 µm, which no touch notices."""
-
 TURN = 1e-3
 """Rotation (rad) from which it is moved: half its square times 200 mm is 0.1 µm, what a linear fit
 of the set-up would get wrong."""
-
 MIN_ALIGNED_TOUCHES = 6
 """Touches of a set-up, one for each degree of freedom; with fewer the set-up stays as stated."""
-
 MISALIGNED_RATIO = 10.0
 """Touches farther off than this multiple of the median are outliers and not used."""
-
 MIN_SPREAD = 1.0
 """Touches that spread less (mm) in a direction do not determine a rotation; it stays as stated."""
 

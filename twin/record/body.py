@@ -16,32 +16,22 @@ from matstd.twin.record.run import Run
 from matstd.twin.record.touches import Body
 from matstd.twin.units import T_REF
 
-BODY = "body"
-"""Name of the sensor that sits on the standard: column `T_body_degC`."""
-
+BODY = "body"  # name of the sensor that sits on the standard: column `T_body_degC`
 U_SHARE = 0.1
 """Relative standard uncertainty of an expansion stated without one. JCGM 100:2008, H.1.3.3: steel
 within 2e-6 of 11.5e-6 1/K, rectangular, u = 1.2e-6."""
-
 U_KNOWN = 0.3
 """Standard uncertainty of a temperature stated without one, K: a resistance thermometer of class B
 is within 0.4 K (IEC 60751), rectangular 0.23, and it sits on the standard, not in it."""
-
 U_UNKNOWN = 2.0
 """Standard uncertainty, about 20 degC, of a temperature that is not stated, K: rooms of machine
 tools keep within 3 or 4 K of it, and a standard that comes from elsewhere takes hours."""
-
 COLDEST, HOTTEST = 0.0, 50.0
 """Range of temperatures of a standard, degC; others are of another body, or in kelvin."""
-
 KELVIN = 270.0  # higher temperatures are in kelvin
-
 LARGEST_EXPANSION = 1e-3  # largest expansion, 1/K; rubber has 2e-4, steel 11.5e-6
-
 LARGEST_U = 20.0  # largest standard uncertainty of a temperature, K
-
 LARGEST_SCALE = 1000.0  # largest relative standard uncertainty of calibrated lengths, ppm
-
 MAX_DISAGREEMENT = 2.0
 """Standard uncertainties by which two statements of one temperature may differ."""
 

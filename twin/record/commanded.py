@@ -21,13 +21,10 @@ MIN_RANGE_RATIO = 2000.0
 small against every period searched for. Errors are functions of the true reading; an error of 0.4
 mm shifts the argument of its own wave, which over commanded readings looks like an overtone.
 """
-
 LARGEST_DEVIATION = 0.05  # from this median deviation (mm) readings are kept, whatever the range
-
 MAX_LEVEL_SHARE = 1 / 8
 """Up to this ratio of levels to touches an axis moved by little more than the measured
 deviation."""
-
 OUTLIER_RATIO = 10.0  # deviations beyond this multiple of the median are not used to place a set-up
 
 

@@ -11,11 +11,9 @@ from matstd.twin.units import NM
 BoolArray = NDArray[np.bool_]
 
 MIN_COPIES = 8  # fewer rows that agree with an earlier one to the last digit may be chance
-
 MIN_COPIED_SHARE = 0.6
 """Share of the repeated touches that must agree exactly: real ones rarely do, unless readings are
 much coarser than the noise."""
-
 SAME_PLACE = 0.05
 """Touches whose readings lie within this (mm, or mrad) at one calibrated point are repeated."""
 
