@@ -32,12 +32,7 @@ def even_points(count: int, dimensions: int, start: int = 0) -> Array:
 
 
 def spread_rows(count: int, most: int) -> NDArray[np.int64]:
-    """Numbers of rows spread evenly over all, the first and the last among them, (rows,).
-
-    Args:
-        count: Rows that there are.
-        most: Rows that are wanted; all where there are fewer.
-    """
+    """Numbers of at most so many of `count` rows, evenly spread, the first and last among them."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.int64))
 
 

@@ -11,7 +11,6 @@ Reference:
 """
 
 import re
-from typing import NamedTuple
 
 import numpy as np
 
@@ -34,46 +33,41 @@ _QUATERNION = re.compile(r"(?:\Aq|quat\w*?)[\s_.]*([wxyz])\Z", re.IGNORECASE)
 _ROTATION = re.compile(r"(?:\Ar|\brotvec|\brv)[\s_.]*([xyz])\Z", re.IGNORECASE)
 
 
-class Oriented(NamedTuple):
-    """Columns of an orientation: of a quaternion w, x, y, z, or of a rotation vector x, y, z."""
-
-    columns: tuple[int, ...]
-
-
-def oriented(sheet: Sheet) -> Oriented | None:
-    """Columns `qw qx qy qz` or `rx ry rz` of a table, None where it has neither."""
+def oriented(sheet: Sheet) -> tuple[int, ...]:
+    """Columns `qw qx qy qz` or `rx ry rz` of a table, none where it has neither."""
     for pattern, letters in ((_QUATERNION, "wxyz"), (_ROTATION, "xyz")):
         found = {
             m[1].lower(): i for i, name in enumerate(sheet.names) if (m := pattern.search(name))
         }
         if set(found) == set(letters):
-            return Oriented(tuple(found[c] for c in letters))
-    return None
+            return tuple(found[c] for c in letters)
+    return ()
 
 
-def rotations(sheet: Sheet, found: Oriented) -> Array:
+def rotations(sheet: Sheet, columns: tuple[int, ...]) -> Array:
     """Rotation of the target's frame in that of the tracker, (N, 3, 3); NaN where it is missing.
+
+    Args:
+        columns: Of a quaternion w, x, y, z, or of a rotation vector x, y, z.
 
     Raises:
         BadFile: A quaternion that is not of unit length, a rotation vector without a unit.
     """
-    if len(found.columns) == 3:
-        return rotation(np.stack([sheet.quantity(i, ANGLES) for i in found.columns], axis=1))
-    q = np.stack([sheet.numbers(i) for i in found.columns], axis=1)
+    if len(columns) == 3:
+        return rotation(np.stack([sheet.quantity(i, ANGLES) for i in columns], axis=1))
+    q = np.stack([sheet.numbers(i) for i in columns], axis=1)
     length = np.linalg.norm(q, axis=1)
     odd = np.flatnonzero(np.abs(length - 1.0) > MAX_NORM_ERROR)
     if len(odd):
-        raise sheet.bad(
-            int(odd[0]), found.columns[0], f"a quaternion of length {length[odd[0]]:.4g}", "1"
-        )
+        found = f"a quaternion of length {length[odd[0]]:.4g}"
+        raise sheet.bad(int(odd[0]), columns[0], found, "1")
     return from_quaternions(q / length[:, None])
 
 
 def from_quaternions(q: Array) -> Array:
     """Rotations of unit quaternions w, x, y, z, (N, 4) to (N, 3, 3)."""
     K = skew(q[:, 1:])
-    out: Array = np.eye(3) + 2.0 * (q[:, 0, None, None] * K + K @ K)
-    return out
+    return np.asarray(np.eye(3) + 2.0 * (q[:, 0, None, None] * K + K @ K))
 
 
 def disagreement(tool: Array, measured: Array) -> float:

@@ -66,9 +66,9 @@ def read_arm(sheet: Sheet, axes: Sequence[str] = (), is_oriented: bool = False) 
     Raises:
         BadFile: No such columns, a joint twice or missing, ambiguous columns of places.
     """
-    turned = oriented(sheet) if is_oriented else None
+    turned = oriented(sheet) if is_oriented else ()
     joints = _joints(sheet, axes)
-    reflectors, fixed = _reflectors(sheet, (*joints, *(turned.columns if turned else ())))
+    reflectors, fixed = _reflectors(sheet, (*joints, *turned))
     q = [sheet.quantity(i, {**ANGLES, **MM}, "deg") for i in joints]
     place = [[sheet.quantity(of[c], MM, "mm") for c in "xyz"] for of in reflectors]
     several = len(reflectors) > 1

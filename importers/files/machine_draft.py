@@ -39,11 +39,7 @@ def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
         link = chain.link(axis)
         low, high = (end / link.unit for end in link.range)
         doubt = "  # PLACEHOLDER: travel of the joint" if is_known else DATA_TRAVEL
-        lines += [
-            "",
-            f"[axis.{axis}]",
-            f"range = [{low:.12g}, {high:.12g}]{doubt}",
-        ]
+        lines += ["", f"[axis.{axis}]", f"range = [{low:.12g}, {high:.12g}]{doubt}"]
         if link.kind == "linear":
             expected = link.expected or usual(high - low)
             lines.append(f"expected = {expected:.2g}  # PLACEHOLDER: mm; reports name larger ones")

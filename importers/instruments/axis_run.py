@@ -50,9 +50,7 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
     cycles = np.unique(test.cycle, return_inverse=True)[1].reshape(-1)
     targets = np.unique(np.round(test.target, 9), return_inverse=True)[1].reshape(-1)
     # a log rarely repeats a reading exactly
-    held_out = (
-        cycles if test.is_log or cycles.max(initial=0) + 1 >= MIN_CYCLES_TO_HOLD_OUT else targets
-    )
+    by_cycles = test.is_log or cycles.max(initial=0) + 1 >= MIN_CYCLES_TO_HOLD_OUT
     touches = replace(
         at_poses(chain, q, -at[:, 2]),
         offset=at[:, :2],
@@ -63,7 +61,7 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
         approach=approach,
         temperature=test.temperature,
         feature=np.array([f"cycle{c}" for c in test.cycle]),
-        pose=held_out.astype(np.int64),
+        pose=(cycles if by_cycles else targets).astype(np.int64),
         value=_progress(test) if not test.is_log and cycles.max() > 1 else {},
         instrument=Instrument.AUTOCOLLIMATOR
         if test.is_angle

@@ -64,13 +64,8 @@ def joined_points(lists: Sequence[PointList], names: Sequence[str] = ()) -> Poin
         return lists[0]
     if len(set(names)) < len(names):
         names = [f"{name}-{i + 1}" for i, name in enumerate(names)]
-    return stacked(
-        [
-            replace(
-                p,
-                setup=np.array([f"{name}_{s}" for s in p.setup]),
-                run=np.full(len(p.line), name),
-            )
-            for p, name in zip(lists, names, strict=True)
-        ]
-    )
+    parts = []
+    for p, name in zip(lists, names, strict=True):
+        setup = np.array([f"{name}_{s}" for s in p.setup])
+        parts.append(replace(p, setup=setup, run=np.full(len(p.line), name)))
+    return stacked(parts)

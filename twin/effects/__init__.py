@@ -17,6 +17,7 @@ from matstd.twin.effects.setup_error import (
     further_styli,
     placing_errors,
     setup_errors,
+    turned_shift,
 )
 
 __all__ = [
@@ -38,5 +39,6 @@ __all__ = [
     "placing_errors",
     "repeat",
     "setup_errors",
+    "turned_shift",
     "usual_distance",
 ]

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -173,10 +173,7 @@ def _unit(direction: str) -> Array:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Body:
     """From axis, support, section and `key:value` words."""
-
-    def refuse(expected: str) -> UnknownEffect:
-        return refusal(KIND.usage, arguments, expected)
-
+    refuse = partial(refusal, KIND.usage, arguments)
     if len(arguments) < 4:
         raise refuse("an axis, a support, a section and where the frame stands")
     axis = read_linear_axis(arguments[0], chain, refuse)
