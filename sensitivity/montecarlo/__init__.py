@@ -14,15 +14,6 @@ from matstd.sensitivity.montecarlo.tally import Volumetric
 from matstd.sensitivity.montecarlo.workers import Workers
 
 __all__ = [
-    "BINS",
-    "MACHINES_A_BATCH",
-    "ExactCheck",
-    "Stability",
-    "Volumetric",
-    "Workers",
-    "cluster",
-    "count_lengths",
-    "exact_check",
-    "seed_words",
-    "volumetric",
-]
+    "BINS", "MACHINES_A_BATCH", "ExactCheck", "Stability", "Volumetric", "Workers", "cluster",
+    "count_lengths", "exact_check", "seed_words", "volumetric",
+]  # fmt: skip
