@@ -73,12 +73,9 @@ def from_quaternions(q: Array) -> Array:
 def disagreement(tool: Array, measured: Array) -> float:
     """Angle between measured orientations and those of the arm, rad rms; NaN where undetermined.
 
-    With M_i measured and B_i of the tool, ``M_i = Y B_i X`` for the orientations Y of the tracker
-    and X of the target that maximise ``sum trace(M_i' Y B_i X)``: a pair of singular vectors.
-
-    Args:
-        tool: Rotation of the tool in the table frame, (N, 3, 3).
-        measured: Orientation of the target in the frame of the tracker, (N, 3, 3).
+    With M_i measured in the frame of the tracker and B_i of the tool in the table frame, (N, 3, 3)
+    each, ``M_i = Y B_i X`` for the orientations Y of the tracker and X of the target that maximise
+    ``sum trace(M_i' Y B_i X)``: a pair of singular vectors.
     """
     K = np.einsum("nkl,npq->kpql", measured, tool).reshape(9, 9)
     U, s, _ = np.linalg.svd(K)
@@ -108,11 +105,7 @@ def check_orientations(sheet: Sheet, tool: Array, measured: Array) -> None:
 
 
 def target_rotation(tool: Array, measured: Array, tracker: Array) -> Array:
-    """Rotation of the target in the tool frame, (3, 3), in closed form.
-
-    Args:
-        tracker: Rotation that takes table to tracker coordinates, (3, 3).
-    """
+    """Rotation of the target in the tool frame, (3, 3), in closed form, for that of the tracker."""
     return nearest_rotation(np.einsum("nji,kj,nkl->il", tool, tracker, measured))
 
 

@@ -178,13 +178,10 @@ def _words(name: str) -> str:
 
 
 def coupled(q: Array, how: str) -> Array:
-    """Readings of joints where one counts from the link of another, (N, J); raises DesignError.
+    """Readings of joints where one counts from the link of another, `J3+J2`; raises DesignError.
 
     On arms with a parallel linkage, and in the readings of some controls without one, joint 3
     counts from the horizontal: its angle against link 2 is J3 + J2 (or J3 - J2).
-
-    Args:
-        how: `J3+J2`.
     """
     match = _COUPLED.match(how.strip())
     joint, other = (int(match[1]) - 1, int(match[3]) - 1) if match else (-1, -1)

@@ -21,12 +21,8 @@ SIDES = "# PLACEHOLDER: the data do not show which axes carry the workpiece (pri
 def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
     """Text of a machine file whose travels are those of some data.
 
-    Args:
-        source: What it was made from, for the first line.
-        is_known: Whether order, lines and sides of the axes are stated by the source.
-
-    Returns:
-        TOML; every line that the data do not determine is marked PLACEHOLDER.
+    Every line that the data do not determine is marked PLACEHOLDER; if the source states order,
+    lines and sides of the axes (`is_known`), those are not.
     """
     lines = [
         f"# Made from {source}. The data do not determine lines marked PLACEHOLDER: check them.",

@@ -63,14 +63,11 @@ class MappedRun(NamedTuple):
 def import_mapped(
     sheet: Sheet, path: str | Path, folder: Path, chain: Chain | None = None
 ) -> MappedRun:
-    """A run by a mapping file, checked by reading it as the run file that it becomes.
+    """A run by a mapping file, checked by reading it as the run file that it makes; raises BadFile.
 
     Args:
         folder: Folder of the run file; its head names the machine relative to it.
         chain: The machine, in place of the one that the head names.
-
-    Raises:
-        BadFile: A key of the mapping file, or a fault of the run that it makes.
     """
     text, left_out = mapped_run(sheet, path)
     if chain is None:

@@ -31,11 +31,9 @@ class PointList:
 def misplaced(points: PointList) -> list[tuple[str, str]]:
     """Points found nearer to the nominal place of another one: (its name, the other's).
 
-    The median of each coordinate is subtracted first. Mixed-up names, or a list in another order,
-    cause this. A point without a name is named by its line.
-
-    Args:
-        points: Brought to the nominal frame.
+    In a list that was brought to the nominal frame the median of each coordinate is subtracted
+    first. Mixed-up names, or a list in another order, cause this. A point without a name is named
+    by its line.
     """
     from scipy.spatial import KDTree  # a fifth of a second, for lists of points alone
 

@@ -70,9 +70,7 @@ class DesignCriterion:
     def raw(self, information: Array, smooth: bool = False) -> float:
         """Mean over the machines of what the tangents add up to: for D minus the log determinant.
 
-        Args:
-            information: W^T W of some rows, (R, R).
-            smooth: Whether a power mean stands for the largest.
+        For the information W^T W of some rows, (R, R); smooth with a power mean for the largest.
         """
         values = np.array([self.measure.value(M, smooth) for M in self.prior + information])
         return float(_worst_weights(values, self.tail) @ values)
@@ -169,10 +167,6 @@ def with_potential(criterion: DesignCriterion, count: int, worth: float) -> Desi
     Rows have `count` columns more, standardised and times their small prior standard deviation;
     for D they join the determinant, else the mean of their posterior over prior variances counts,
     `worth` mm^2 when nothing is known of them.
-
-    Args:
-        criterion: Any over the primary terms.
-        count: Number of potential terms, Q.
     """
     priors, R = criterion.priors, criterion.size
     if priors is not None:

@@ -48,11 +48,9 @@ def correlation(covariance: Array) -> Array:
 
 
 def ties(covariance: Array, names: Sequence[str], strong: float = STRONG_CORRELATION) -> Ties:
-    """Parameters that are tied after a fit; raises ShapeMismatch.
+    """Parameters that are tied after a fit with a covariance (P, P); raises ShapeMismatch.
 
-    Args:
-        covariance: Of the parameters after the touches, (P, P).
-        strong: Absolute correlation from which a pair counts, between 0 and 1.
+    A pair counts from the absolute correlation `strong` on, between 0 and 1.
     """
     if covariance.shape != (len(names), len(names)):
         raise ShapeMismatch(f"covariance of shape {covariance.shape} for {len(names)} names")

@@ -44,14 +44,9 @@ def rounded(
     most: int = 300,
     quotas: tuple[Quota, ...] = (),
 ) -> Selection:
-    """A choice of whole touches from fractions: the heaviest, then exchanged until none helps.
+    """A choice of whole touches from fractions (N,) of candidates (N, R); raises DesignError.
 
-    Args:
-        W: Rows of all candidates, (N, R).
-        weight: Fractions, (N,).
-
-    Raises:
-        DesignError: No whole choice near the fractions keeps the shares.
+    The heaviest, then exchanged until none helps.
     """
     selection = Selection(criterion, W, heaviest(weight, count, quotas))
     exchange(selection, quotas, most=most)

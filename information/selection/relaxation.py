@@ -255,11 +255,8 @@ def _best_flow(tangents: Sequence[Tangent], h: Array, k: Array, most: float) -> 
 
     Along the flow t the determinant of a machine's information grows by ``1 + b t - d t^2``, and
     its share of the criterion falls by ``(a t - c t^2) / (1 + b t - d t^2)``, which is concave; the
-    root of the slope of the sum is found.
-
-    Args:
-        h: ``w M^-1 w`` of the pair, (S, 2, 2).
-        k: ``w M^-1 K M^-1 w`` of the pair, (S, 2, 2).
+    root of the slope of the sum is found. Of the pair h is ``w M^-1 w``, k ``w M^-1 K M^-1 w``,
+    (S, 2, 2).
     """
     b = (h[:, 0, 0] - h[:, 1, 1]).tolist()
     d = (h[:, 0, 0] * h[:, 1, 1] - h[:, 0, 1] ** 2).tolist()

@@ -180,10 +180,7 @@ def exchange(selection: Selection, quotas: tuple[Quota, ...] = (), most: int = 2
     """Exchange chosen rows for better ones: the least useful out, the most useful in.
 
     A criterion that is curved is followed along its tangent for some exchanges; they are taken back
-    and fewer are tried where it grew.
-
-    Args:
-        quotas: Hold after every exchange.
+    and fewer are tried where it grew. Quotas hold after every exchange.
 
     Returns:
         Number of exchanges made; fewer than `most` means that no exchange that was tried helps.

@@ -75,13 +75,9 @@ def _splines() -> list[Any]:
 
 
 def integrated(sd: Array) -> Array:
-    """Mean and quantiles of |d| over its root mean square, by quadrature over the sphere.
+    """Mean and quantiles of |d| over its root mean square, by quadrature on the sphere, (1 + Q, M).
 
-    Args:
-        sd: Standard deviations along the principal directions, largest first, (M, 3).
-
-    Returns:
-        Shape (1 + Q, M).
+    For standard deviations along the principal directions, largest first, (M, 3).
     """
     from scipy.special import erf
 

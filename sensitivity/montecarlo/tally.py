@@ -116,11 +116,9 @@ def moments(count: int, total: Array, squares: Array) -> tuple[Array, Array]:
 def quantiles(
     histogram: NDArray[np.integer], width: Array, levels: Array | tuple[float, ...]
 ) -> Array:
-    """Quantiles of every row of a histogram, linear within their bin, (Q, N), mm.
+    """Quantiles (Q, N), mm, of counts from zero up, (N, BINS), in bins of a width (N,), mm.
 
-    Args:
-        histogram: Counts from zero up, (N, BINS).
-        width: Width of a bin in each row, (N,), mm.
+    They are linear within their bin.
     """
     out = np.empty((len(levels), len(histogram)))
     for rows in blocks(len(histogram), _ROWS):

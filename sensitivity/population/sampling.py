@@ -106,11 +106,7 @@ class Population:
         return Model(self.chain, tuple(effects))
 
     def expected(self, free: str = "") -> Model:
-        """The same without errors that are stated to be zero.
-
-        Args:
-            free: Letters of the links whose set-up is kept in any case: "w", "t" or both.
-        """
+        """The same without errors stated to be zero, except the set-up of the links "w" or "t" in `free`."""
 
         def is_kept(effect: Effect) -> bool:
             symbol = traits(effect).symbol
@@ -202,9 +198,6 @@ def shape_columns(population: Population, q: Array) -> list[Array]:
     """Shape functions of each error at every pose, (N, K_p) each.
 
     The value of error p at a pose is its row here times its part of `coefficients`.
-
-    Args:
-        q: Readings, shape (N, A).
     """
     chain, out = population.chain, []
     for symbol in chain.symbols:
@@ -249,14 +242,11 @@ SMALLEST_SCALE = 1e-3
 def drawn_scales(
     population: Population, count: int, rng: np.random.Generator, model: Model | None = None
 ) -> Array:
-    """Size of every parameter of drawn machines over its expected size, (S, P).
+    """Size of every parameter, of `Population.model` or another, of drawn machines, (S, P).
 
-    All distributions of one error of one machine share its drawn amplitude, so a machine whose EXX
-    is large has it large as prior, whichever shape it will turn out to have. The mean of the
-    squares over many machines is one.
-
-    Args:
-        model: Whose parameters the columns are; None for those of `Population.model`.
+    Over its expected size. All distributions of one error of one machine share its drawn amplitude,
+    so a machine whose EXX is large has it large as prior, whichever shape it will turn out to have.
+    The mean of the squares over many machines is one.
     """
     chain = population.chain
     place = {symbol: p for p, symbol in enumerate(chain.symbols)}

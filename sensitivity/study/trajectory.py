@@ -136,8 +136,7 @@ class AlongPath:
 def along_path(trajectory: Trajectory, errors: Sequence[tuple[Effect, Array]]) -> AlongPath:
     """Deviation of the tool point along a trajectory, all errors together and each alone.
 
-    Args:
-        errors: Effects with their amplitudes, as an error file holds them.
+    Errors are effects with their amplitudes, as an error file holds them.
     """
     chain = trajectory.chain
     poses = at_poses(chain, trajectory.q, trajectory.length)

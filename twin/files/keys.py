@@ -208,9 +208,7 @@ def _bounds(limits: Sequence[Any], unit: str = "") -> str:
 def checked(model: type[T], data: object, path: str | Path, within: str = "") -> T:
     """A table checked against its model; raises BadFile with all of its faults.
 
-    Args:
-        model: Pydantic model with the units in its field names.
-        within: Key under which the data stood.
+    The data stood under the key `within` of the file, or were all of it.
     """
     try:
         return model.model_validate(data)

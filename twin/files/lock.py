@@ -47,13 +47,8 @@ def is_abandoned(folder: Path) -> bool:
 def in_turn(path: Path, patience: float = PATIENCE) -> Iterator[None]:
     """Keep every other process from this block for the same name, which need not exist.
 
-    Where the file system knows no locks, the block runs without.
-
-    Args:
-        patience: Longest wait for another process, s.
-
-    Raises:
-        DesignError: Another process has held the lock for longer.
+    Where the file system knows no locks, the block runs without. Raises DesignError if another
+    process has held the lock for longer than `patience`, s.
     """
     # of the name, which may itself be as long as names can be; a shared lock does no harm
     lock = path.with_name(f".matstd-{zlib.crc32(path.name.casefold().encode()):08x}.lock")
@@ -84,11 +79,7 @@ def in_turn(path: Path, patience: float = PATIENCE) -> Iterator[None]:
 
 
 def _is_free(file: IO[str], without: bool = False) -> bool:
-    """Take the lock; it is given back when the file is closed.
-
-    Args:
-        without: The answer where the file system knows no locks.
-    """
+    """Take the lock until the file is closed; `without` is the answer where there are no locks."""
     try:
         if sys.platform == "win32":
             import msvcrt

@@ -191,11 +191,7 @@ class MachineTables(Table):
     """the table `[workpiece]`"""
 
     def made(self, path: str | Path, within: str = "") -> Chain:
-        """The machine in base units; raises BadFile.
-
-        Args:
-            within: Key of the table that the machine stands in.
-        """
+        """The machine in base units; raises BadFile, with the key `within` of these tables."""
         axes = {name: table.axis(name) for name, table in self.axis.items()}
         try:
             return make_chain(self.name, self.chain, axes, self.workpiece.origin)

@@ -47,10 +47,9 @@ def points(table: CsvTable) -> Array:
 
 
 def targets(table: CsvTable, common: Sequence[float]) -> Array:
-    """Ball centre or reflector of every row in the tool frame, (N, 3), mm: its own or that of all.
+    """Ball centre or reflector of every row in the tool frame, (N, 3), mm.
 
-    Args:
-        common: Place in the head of the file, which a column or cell that is not there means.
+    A column or cell that is not there means the place `common` in the head of the file.
     """
     cells = [
         table.numbers(c, empty=v, largest=FARTHEST) if c in table else np.full(len(table), v)
@@ -127,11 +126,7 @@ def _is_one_clock(at: Array, back: IntArray, order: IntArray) -> bool:
 
 
 def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Array]:
-    """Temperature of every sensor, (N,) each; missing and impossible values are filled.
-
-    Args:
-        at: Time of every row, (N,), s.
-    """
+    """Temperature of every sensor at times (N,), (N,) each; missing and impossible ones are filled."""
     out = {}
     for column in table.columns:
         match = SENSOR.match(column)

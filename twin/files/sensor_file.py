@@ -30,11 +30,7 @@ class SensorRecord:
     remarks: tuple[str, ...]  # on sensors that were left out, or are constant
 
     def joined(self, run: Run, begin: datetime) -> Run:
-        """A run with the temperatures and the spindle speed at its touches; raises BadFile.
-
-        Args:
-            begin: What the clock said at the run's time zero.
-        """
+        """A run with temperatures and spindle speed at its touches, as of `at_touches`."""
         touches = self.at_touches(run.touches, begin)
         return replace(run, touches=touches, remarks=(*run.remarks, *self.remarks))
 
@@ -49,13 +45,9 @@ class SensorRecord:
         return times
 
     def at_touches(self, touches: Touches, begin: datetime) -> Touches:
-        """Touches with what the sensors read at their times; raises BadFile.
+        """Touches with what the sensors read at their times since `begin`; raises BadFile.
 
         Temperatures are linear in time between readings, the speed stays until the next one.
-
-        Args:
-            touches: Their times count from `begin`.
-            begin: What the clock said at time zero.
         """
         at = _seconds(begin) + touches.time
         first, last = self.clock[0], self.clock[-1]

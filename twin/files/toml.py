@@ -99,8 +99,7 @@ def _one_line_end(text: str) -> str:
 def parse_toml(text: str, path: str | Path, twice: str = "it once") -> dict[str, Any]:
     """Tables of a TOML text; raises BadFile.
 
-    Args:
-        twice: What is expected of a table that stands in two places; `{name}` is its name.
+    `twice` is expected of a table that stands in two places; `{name}` in it is its name.
     """
     try:
         return tomllib.loads(text, parse_float=_moderate)

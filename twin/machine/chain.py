@@ -241,8 +241,7 @@ def make_chain(
     """Machine from its notation and what is known of each axis.
 
     Args:
-        axes: Range, point and direction by axis name, mm and rad; a bracketed spindle may be left
-            out.
+        axes: By name, mm and rad; a bracketed spindle may be left out.
         table_origin: Origin of the table frame, machine frame with every axis at zero, mm.
 
     Raises:

@@ -63,11 +63,7 @@ class Effect(Protocol):
 def contribution(
     effects: Mapping[Effect, Array] | Sequence[tuple[Effect, Array]], touches: Touches
 ) -> Contribution:
-    """Sum of what effects with known parameters add at every touch.
-
-    Args:
-        effects: Pairs of an effect and its parameters (P,), base units.
-    """
+    """Sum of what effects with known parameters (P,), base units, add at every touch."""
     total = Contribution.zeros(len(touches), len(touches.chain.links))
     pairs = effects.items() if isinstance(effects, Mapping) else effects
     for effect, theta in pairs:

@@ -44,10 +44,8 @@ class Moved:
 def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
     """A run with its set-ups moved to where the touches show them, and the list of moved ones.
 
-    Deviations are recomputed from the readings; call it only for runs that compute them so.
-
-    Args:
-        run: Measurements of a touching ball, or of any instrument that states points.
+    Deviations are recomputed from the readings; call it only for runs that compute them so: of a
+    touching ball, or of any instrument that states points.
     """
     t = run.touches
     centre = t.point + t.radius[:, None] * t.normal

@@ -67,13 +67,10 @@ class StatedBody:
 
 
 def with_body(run: Run, stated: StatedBody) -> Run:
-    """A run with deviations from its standard at the temperature of that standard.
+    """A run with deviations from its standard, calibrated at 20 degC, at the temperature of it.
 
-    Only here the growth of a standard is subtracted; `raw_deviation` adds it back.
-
-    Args:
-        run: Run on points calibrated at 20 degC, sensors included.
-        stated: Body of its standard; readings of the sensor `body` replace the one temperature.
+    Only here the growth of a standard is subtracted; `raw_deviation` adds it back. Readings of the
+    sensor `body` replace the one temperature that is stated.
 
     Raises:
         BadValue: An instrument without a standard, or temperatures that cannot be.

@@ -18,13 +18,10 @@ its own time (`Touches.since_start`)."""
 
 
 def joined(runs: Mapping[str, Run]) -> Run:
-    """One run of several, in their order; set-ups bear the name of their run.
+    """One run of several by their names, in their order; set-ups bear the name of their run.
 
     Every run keeps its set-ups, its time and its poses. Of sensors and of columns of the user's own
     those are kept that all runs have, and a remark says which are not.
-
-    Args:
-        runs: By name, such as that of the file.
 
     Raises:
         DesignError: No run, another machine, another instrument, or the same measurements twice.
@@ -106,8 +103,7 @@ def _starts(every: Sequence[Touches]) -> list[float]:
 def stacked(every: Sequence[Touches], setups: tuple[Setup, ...]) -> Touches:
     """Touches of one machine, one record after the other; a column is kept that all have.
 
-    Args:
-        setups: Set-ups of all of them; `Touches.setup` of every record already counts in these.
+    `Touches.setup` of every record already counts in the set-ups of all of them.
     """
     columns = {name: _all_of([getattr(t, name) for t in every]) for name in PER_TOUCH}
     for kind in MAPS:

@@ -252,12 +252,7 @@ PER_TOUCH = [f.name for f in fields(Touches) if f.name not in _COMMON]
 
 
 def at_poses(chain: Chain, q: Array, length: Array | float) -> Touches:
-    """Poses without a standard, for maps over the workspace: normals are zero.
-
-    Args:
-        q: Readings, shape (N, A), mm and rad.
-        length: Tool length, scalar or (N,), mm.
-    """
+    """Poses without a standard, for maps over the workspace: normals are zero."""
     q = checked_readings(chain, q)
     n = len(q)
     return Touches(
@@ -275,14 +270,9 @@ def at_poses(chain: Chain, q: Array, length: Array | float) -> Touches:
 
 
 def linear_approach(chain: Chain, q: Array, normal_table: Array) -> Array:
-    """Signs of the last motion of the linear axes of a touch, which runs against the normal.
+    """Signs of the last motion of the linear axes of a touch against the normal, (N, A).
 
-    Args:
-        q: Readings, shape (N, A).
-        normal_table: Outward normals in the table frame, (N, 3).
-
-    Returns:
-        Shape (N, A): -1, 0 or 1 in the columns of the linear axes, 0 elsewhere.
+    With the outward normals in the table frame, (N, 3); 0 in the columns of other axes.
     """
     out = np.zeros(q.shape)
     columns = chain.linear_columns
@@ -307,11 +297,7 @@ def motion(q: Array, time: Array) -> Array:
     """Signs of the last motion of every axis in a log that was read on the way, (N, A).
 
     An axis that stands keeps its sign. In the last row before a reversal the axis may have turned
-    already, so the sign is 0.
-
-    Args:
-        q: Readings, (N, A).
-        time: Time of every row, (N,), s; rows of one time are in order.
+    already, so the sign is 0. Rows of one time, s, are in order.
 
     Example:
         >>> motion(np.array([0.0, 1.0, 2.0, 2.0, 1.5])[:, None], np.arange(5.0))[:, 0]
