@@ -54,7 +54,7 @@ def strokes(at: Array) -> tuple[IntArray, IntArray]:
 
 
 def approaches(at: Array) -> tuple[IntArray, IntArray]:
-    """Directions of approach and cycles of a positioning test by the order of its targets, (N,) each.
+    """Directions of approach and cycles of a positioning test by the order of its targets, (N,).
 
     A target was reached from the one before it; of one that stands twice where the motion turns,
     the second belongs to the way back. A step over more than half the travel begins a new cycle,

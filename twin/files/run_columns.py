@@ -126,7 +126,7 @@ def _is_one_clock(at: Array, back: IntArray, order: IntArray) -> bool:
 
 
 def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Array]:
-    """Temperature of every sensor at times (N,), (N,) each; missing and impossible ones are filled."""
+    """Temperature of every sensor at times (N,); missing and impossible values are filled."""
     out = {}
     for column in table.columns:
         match = SENSOR.match(column)

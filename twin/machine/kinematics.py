@@ -191,7 +191,7 @@ def exact_tip(chain: Chain, q: Array, length: Array | float, contribution: Contr
 
 
 def linear_directions(chain: Chain, q: Array) -> Array:
-    """Motion of the tip in the table frame per unit of each linear axis in chain order, (N, 3, M)."""
+    """Motion of the tip in the table frame per unit of each linear axis of the chain, (N, 3, M)."""
     T_machine_carrier, T_machine_table, _ = carriers(chain, q)
     columns = []
     for name in chain.linear_axes:
