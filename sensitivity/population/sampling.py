@@ -106,7 +106,7 @@ class Population:
         return Model(self.chain, tuple(effects))
 
     def expected(self, free: str = "") -> Model:
-        """The same without errors stated to be zero, but for the set-up of links named in `free`."""
+        """The same without errors stated to be zero, but for the set-up of links in `free`."""
 
         def is_kept(effect: Effect) -> bool:
             symbol = traits(effect).symbol

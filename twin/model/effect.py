@@ -1,6 +1,6 @@
 """Effects: where in the machine they act, and how much per unit of their parameters."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import Literal, NamedTuple, Protocol, TypeGuard
 
@@ -58,6 +58,15 @@ class Effect(Protocol):
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Where and how much it acts, per unit of each parameter, at every touch."""
         ...
+
+
+def numbered_terms(effects: Iterable[Effect], touches: Touches) -> Iterator[tuple[int, Term]]:
+    """Terms of effects with the place of their parameter in the vector of all parameters."""
+    start = 0
+    for effect in effects:
+        for term in effect.terms(touches):
+            yield start + term.parameter, term
+        start += len(effect.parameters)
 
 
 def contribution(

@@ -51,19 +51,22 @@ class StatedBody:
     scale_u_ppm: float | None = None
 
     def __post_init__(self) -> None:
-        for key in ("expansion_1_K", "expansion_u_1_K"):
+        expansion = f"0 to {LARGEST_EXPANSION:g} 1/K: of steel 11.5e-6"
+        for key, largest, expected in (
+            ("expansion_1_K", LARGEST_EXPANSION, expansion),
+            ("expansion_u_1_K", LARGEST_EXPANSION, expansion),
+            ("body_u_K", LARGEST_U, f"a standard uncertainty from 0 to {LARGEST_U:g} K"),
+            (
+                "scale_u_ppm",
+                LARGEST_SCALE,
+                f"the standard uncertainty of calibrated lengths, 0 to {LARGEST_SCALE:g} ppm",
+            ),
+        ):
             value = getattr(self, key)
-            if value is not None and not 0.0 <= value < LARGEST_EXPANSION:
-                expected = f"0 to {LARGEST_EXPANSION:g} 1/K: of steel 11.5e-6"
+            if value is not None and not 0.0 <= value <= largest:
                 raise BadValue(key, f"{value:g}", expected)
         if self.body_degC is not None:
             _check_temperature("body_degC", self.body_degC)
-        if self.body_u_K is not None and not 0.0 <= self.body_u_K <= LARGEST_U:
-            expected = f"a standard uncertainty from 0 to {LARGEST_U:g} K"
-            raise BadValue("body_u_K", f"{self.body_u_K:g}", expected)
-        if self.scale_u_ppm is not None and not 0.0 <= self.scale_u_ppm <= LARGEST_SCALE:
-            expected = f"the standard uncertainty of calibrated lengths, 0 to {LARGEST_SCALE:g} ppm"
-            raise BadValue("scale_u_ppm", f"{self.scale_u_ppm:g}", expected)
 
 
 def with_body(run: Run, stated: StatedBody) -> Run:

@@ -1,8 +1,9 @@
 """`Touches`: all that is known about N contacts; the record that every room takes."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +53,19 @@ class Setup:
     body: Body | None = None  # the standard as it expands; None where the run does not state it
     # point at which the standard is held, artefact frame, mm; None where the run does not state it
     fixing: tuple[float, float, float] | None = None
+
+
+def check_rows(
+    record: object, n: int, unstated: Mapping[str, NDArray[Any]], names: Iterable[str], like: str
+) -> None:
+    """Fill the empty fields of a record; refuse columns of other than n rows."""
+    for name, default in unstated.items():
+        if len(getattr(record, name)) == 0:
+            object.__setattr__(record, name, default)
+    for name in names:
+        value = getattr(record, name)
+        if value is not None and len(value) != n:
+            raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n} as {like}")
 
 
 class Signature:
@@ -121,19 +135,12 @@ class Touches:
             "pose": np.zeros(n, dtype=np.int64),
             "body_temperature": np.full(n, T_REF),
         }
-        for name, default in unstated.items():
-            if len(getattr(self, name)) == 0:
-                object.__setattr__(self, name, default)
-        for name in PER_TOUCH:
-            value = getattr(self, name)
-            if value is not None and len(value) != n:
-                raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n} as in q")
-        for sensor, value in self.temperature.items():
+        check_rows(self, n, unstated, PER_TOUCH, "in q")
+        own = {f"temperature {name}": v for name, v in self.temperature.items()}
+        own |= {f"column {name}": v for name, v in self.value.items()}
+        for name, value in own.items():
             if len(value) != n:
-                raise ShapeMismatch(f"temperature {sensor} has {len(value)} rows, expected {n}")
-        for name, value in self.value.items():
-            if len(value) != n:
-                raise ShapeMismatch(f"column {name} has {len(value)} rows, expected {n}")
+                raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n}")
 
     def __len__(self) -> int:
         return len(self.q)
