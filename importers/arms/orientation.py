@@ -18,6 +18,7 @@ from matstd.importers.sheets import ANGLES, Sheet
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array, rotation, skew
 from matstd.twin.numbers import rms
+from matstd.twin.record import turn_of
 
 MAX_NORM_ERROR = 0.01
 """Error of the length of a quaternion beyond which its columns hold something else."""
@@ -85,8 +86,7 @@ def disagreement(tool: Array, measured: Array) -> float:
     Y = nearest_rotation(sign * U[:, 0].reshape(3, 3))
     X = target_rotation(tool, measured, Y)
     off = np.einsum("nji,jk,nkl,lm->nim", measured, Y, tool, X)
-    angle = np.arccos(np.clip(0.5 * (np.trace(off, axis1=1, axis2=2) - 1.0), -1.0, 1.0))
-    return rms(angle)
+    return rms(turn_of(off))
 
 
 def check_orientations(sheet: Sheet, tool: Array, measured: Array) -> None:

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 
 from matstd.twin.errors import DesignError
-from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import Run
+from matstd.twin.text import toml_value
 from matstd.twin.units import UM
 
 ORDINARY_ERROR = (1.0 * UM, 15e-6)
@@ -41,11 +41,11 @@ def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
             lines.append(f"expected = {expected:.2g}  # PLACEHOLDER: mm; reports name larger ones")
         if link.kind == "rotary":
             doubt = "" if is_known else "  # PLACEHOLDER: a point of its line, mm"
-            lines.append(f"point = {_listed(link.point)}{doubt}")
+            lines.append(f"point = {toml_value(link.point.tolist())}{doubt}")
         if not link.points_along_letter:
-            lines.append(f"direction = {_listed(link.direction)}")
+            lines.append(f"direction = {toml_value(link.direction.tolist())}")
     if np.any(chain.table_origin):
-        lines += ["", "[workpiece]", f"origin = {_listed(chain.table_origin)}"]
+        lines += ["", "[workpiece]", f"origin = {toml_value(chain.table_origin.tolist())}"]
     return "\n".join(lines) + "\n"
 
 
@@ -75,7 +75,3 @@ def with_travels(run: Run, travels: Mapping[str, tuple[float, float]]) -> Run:
 def usual(travel: float) -> float:
     """Ordinary translational error of a linear axis, mm."""
     return ORDINARY_ERROR[0] + ORDINARY_ERROR[1] * travel
-
-
-def _listed(values: Array) -> str:
-    return f"[{', '.join(repr(float(v)) for v in values)}]"

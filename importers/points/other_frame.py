@@ -65,7 +65,7 @@ def measured_frames(points: PointList) -> list[OtherFrame]:
         T[np.ix_(letters, letters)] = _motion(setup, a, a + off[whole][:, measured])
         middle = points.nominal[rows][whole].mean(axis=0)
         shift = float(np.linalg.norm(apply(T, middle) - middle))
-        out.append(OtherFrame(setup, T, shift, turn_of(T[:3, :3])))
+        out.append(OtherFrame(setup, T, shift, float(turn_of(T[:3, :3]))))
     return out
 
 

@@ -136,7 +136,9 @@ def relaxed(
                 break
             criterion, stalled = criterion.sharper(2.0), 0
         few = _candidates_to_search(gain, there, count, cell)
-        after, made = _exchanged(criterion, W[few], x[few], tuple(_of(q, few) for q in quotas))
+        # the same quotas over some rows, among which all weight is
+        own = tuple(Quota(q.kind[few], q.most, q.least) for q in quotas)
+        after, made = _exchanged(criterion, W[few], x[few], own)
         steps += made
         new = x.copy()
         new[few] = after
@@ -144,11 +146,6 @@ def relaxed(
             new = _stepped(criterion, W, x, new if made else top.x)
         x = new
     return Relaxed(best, lowest, bound, steps)
-
-
-def _of(quota: Quota, rows: IntArray) -> Quota:
-    """The same quota over some rows, among which all weight is."""
-    return Quota(quota.kind[rows], quota.most, quota.least)
 
 
 def _candidates_to_search(gain: Array, there: IntArray, count: int, cell: IntArray) -> IntArray:

@@ -1,6 +1,7 @@
 """Statistics of the volumetric error over random machines, from counted lengths."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,8 +37,9 @@ class Volumetric:
 
     def __getitem__(self, rows: slice) -> "Volumetric":
         """The statistics of some poses."""
-        arrays = {n: v[..., rows] for n, v in vars(self).items() if isinstance(v, np.ndarray)}
-        return replace(self, **arrays)
+        arrays = ((n, v) for n, v in vars(self).items() if isinstance(v, np.ndarray))
+        cut: dict[str, Any] = {name: values[..., rows] for name, values in arrays}
+        return replace(self, **cut)
 
     @property
     def p95(self) -> Array:

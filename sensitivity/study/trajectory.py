@@ -87,15 +87,12 @@ def paper_trajectory(
         low, high = workspace.limit(swinging)
         wave = np.sin(4.0 * np.pi * s)
         q[:, chain.axis_index(swinging)] = 0.5 * (low + high) + 0.5 * (high - low) * wave
-    made = Trajectory(chain, q, workspace.length, _name(linear, swinging))
+    words = [f"{' and '.join(linear)} linear"] if linear else []
+    words += [f"{swinging} sinusoidal"] if swinging else []
+    made = Trajectory(chain, q, workspace.length, ", ".join(words))
     if not made.moving:
         raise DesignError("the path: no axis has room to move within its limits")
     return made
-
-
-def _name(linear: Sequence[str], swinging: str | None) -> str:
-    words = [f"{' and '.join(linear)} linear"] if linear else []
-    return ", ".join(words + ([f"{swinging} sinusoidal"] if swinging else []))
 
 
 def _roles(workspace: Workspace) -> tuple[tuple[str, ...], str | None]:

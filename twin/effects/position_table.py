@@ -38,10 +38,6 @@ def _directions(text: str, chain: Chain, refuse: Refuse) -> bool:
     return True
 
 
-def _no_or_each(by_direction: bool) -> str:
-    return BY_DIRECTION if by_direction else ""
-
-
 @dataclass(frozen=True)
 class PositionTable(Declared):
     """A component error as a smooth curve over the reading, or one for each direction.
@@ -58,7 +54,9 @@ class PositionTable(Declared):
 
     symbol: ComponentSymbol
     # whether each direction has its own curve; a reversal that is alike everywhere is `backlash`
-    by_direction: Annotated[bool, Argument("directions", _directions, _no_or_each)] = False
+    by_direction: Annotated[
+        bool, Argument("directions", _directions, lambda by: BY_DIRECTION if by else "")
+    ] = False
     is_round: bool = False  # whether the travel of a rotary axis closes in itself
     # l, as a share of the travel
     length: float = scanned("1", CORRELATION_LENGTHS, continuous=False)

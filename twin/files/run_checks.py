@@ -9,6 +9,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.files.pose_file import beyond_travel
 from matstd.twin.files.table import CsvTable
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
 from matstd.twin.record import Instrument, IntArray, Run, computed_deviation, without_copies
 from matstd.twin.units import UM
 
@@ -257,13 +258,18 @@ def _check_offset(run: Run, table: CsvTable) -> None:
     """
     touches = run.touches
     sides = [touches.normal * (touches.setup == i)[:, None] for i in range(len(touches.setups))]
-    A = np.column_stack([np.ones(len(run)), *sides])
+    shifts, one = np.column_stack(sides), np.ones(len(run))
+
+    def beside_shifts(values: Array) -> Array:
+        """What shifts of the set-ups leave of some deviations."""
+        return np.asarray(values - shifts @ np.linalg.lstsq(shifts, values, rcond=None)[0])
+
+    A = np.column_stack([one, shifts])
     offset = float(np.linalg.lstsq(A, run.deviation, rcond=None)[0][0])
-    if abs(offset) < LARGEST_OFFSET or not _is_offset_determined(A):
+    # an offset differs from shifts of the set-ups only where normals point to several sides
+    if abs(offset) < LARGEST_OFFSET or rms(beside_shifts(one)) <= 0.1:
         return
-    rest = run.deviation - offset
-    rest = rest - A[:, 1:] @ np.linalg.lstsq(A[:, 1:], rest, rcond=None)[0]
-    if np.sqrt(np.mean(rest**2)) > 0.2 * abs(offset):
+    if rms(beside_shifts(run.deviation - offset)) > 0.2 * abs(offset):
         return
     radius = float(np.median(touches.radius))
     inwards = abs(offset / (2.0 * radius) + 1.0) < 0.1 if radius else False
@@ -276,9 +282,3 @@ def _check_offset(run: Run, table: CsvTable) -> None:
         if inwards
         else "the radius of the ball, or deviations of some µm",
     )
-
-
-def _is_offset_determined(A: Array) -> bool:
-    """Whether an offset differs from shifts of the set-ups: normals point to several sides."""
-    rest = A[:, 0] - A[:, 1:] @ np.linalg.lstsq(A[:, 1:], A[:, 0], rcond=None)[0]
-    return bool(np.sqrt(np.mean(rest**2)) > 0.1)

@@ -200,7 +200,7 @@ def _filled(values: Array, gaps: BoolArray, at: Array) -> Array:
 def _record_fault(table: CsvTable, column: str, values: Array, gaps: BoolArray) -> str:
     """Description of the fault of a record at its gaps."""
     first = int(np.argmax(gaps))
-    rows = _rows(int(gaps.sum()))
+    rows = f"{gaps.sum()} row{'s' if gaps.sum() > 1 else ''}"
     if not np.isfinite(values[gaps]).any():
         return f"line {table.lines[first]}: {column} has no number in {rows}"
     first = int(np.argmax(gaps & np.isfinite(values)))
@@ -210,10 +210,6 @@ def _record_fault(table: CsvTable, column: str, values: Array, gaps: BoolArray) 
         f"line {table.lines[first]}: {column} reads {values[first]:g} degC, as no machine does"
         f"{why} ({rows})"
     )
-
-
-def _rows(count: int) -> str:
-    return f"{count} row{'s' if count > 1 else ''}"
 
 
 def force(table: CsvTable) -> Array | None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.twin.errors import BadFile
-from matstd.twin.files.run_columns import temperatures
+from matstd.twin.files.run_columns import SENSOR, temperatures
 from matstd.twin.files.table import CsvTable
 from matstd.twin.files.toml import read_text
 from matstd.twin.frames import Array
@@ -90,7 +90,8 @@ def read_sensors(path: str | Path) -> SensorRecord:
             raise table.bad(i, "clock", cell, "a later reading in every row")
     remarks: list[str] = []
     found = temperatures(table, clock, remarks)
-    others = [c for c in table.columns if c not in ("clock", "spindle_rpm") and not _is_sensor(c)]
+    used = ("clock", "spindle_rpm")
+    others = [c for c in table.columns if c not in used and not SENSOR.match(c)]
     if others:
         remarks.append(
             f"column {', '.join(map(repr, others))} is not used: no T_<sensor>_degC and no "
@@ -107,10 +108,6 @@ def read_sensors(path: str | Path) -> SensorRecord:
         spindle_rpm=speed,
         remarks=tuple(f"{path}: {r}" for r in remarks),
     )
-
-
-def _is_sensor(column: str) -> bool:
-    return column.startswith("T_") and column.endswith("_degC")
 
 
 def _seconds(moment: datetime) -> float:

@@ -146,10 +146,6 @@ def check_format(data: dict[str, Any], wanted: str, path: str | Path) -> None:
     """Raise BadFile unless `format` says what the reader understands."""
     if data.get("format") != wanted:
         found = repr(data["format"]) if "format" in data else "nothing"
-        older = "; files of other versions are not read" if _is_version(data, wanted) else ""
+        is_version = str(data.get("format", "")).partition("/")[0] == wanted.partition("/")[0]
+        older = "; files of other versions are not read" if is_version else ""
         raise BadFile(path, "format", found, f'"{wanted}"{older}')
-
-
-def _is_version(data: dict[str, Any], wanted: str) -> bool:
-    """Whether a file is of the wanted kind in another version."""
-    return str(data.get("format", "")).partition("/")[0] == wanted.partition("/")[0]

@@ -133,7 +133,9 @@ class Law:
     def title(self) -> Title:
         """What it looks like, and what carries it."""
         text = " times ".join(f"{f.shape.word} over {f.driver.name}" for f in self.factors)
-        return Title(f"{self.carrier.name}: {text}", _bearer(self.carrier))
+        body = "probe" if self.carrier.name == BIAS else "standard"
+        bearer = body if self.carrier.symbol is None else self.carrier.symbol.link
+        return Title(f"{self.carrier.name}: {text}", bearer)
 
     @property
     def symbol(self) -> Symbol | None:
@@ -275,13 +277,6 @@ def _spacing(name: str, value: float, span: float) -> float:
     if name == "period":
         return min(0.1 * abs(value), 0.1 * value**2 / max(span, 1e-300))
     return 0.2 * abs(value) or 0.03 * span or 1.0
-
-
-def _bearer(carrier: Carrier) -> str:
-    """Axis or body that carries it."""
-    if carrier.symbol is not None:
-        return carrier.symbol.link
-    return "probe" if carrier.name == BIAS else "standard"
 
 
 _USUAL = {"time": (0.0, 3.0 * HOUR), "level": (T_REF, T_REF + 10.0), "sign": (-1.0, 1.0),

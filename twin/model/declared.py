@@ -16,7 +16,7 @@ Any attribute may be a property instead, and any method written out, where physi
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, replace
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any, ClassVar, NamedTuple, Self, get_type_hints
 
 import numpy as np
@@ -188,13 +188,17 @@ class Layout(NamedTuple):
     scanned: Mapping[str, tuple[Inner, Grid]]
 
 
-@cache
+_LAYOUTS: dict[type, Layout] = {}
+
+
 def layout_of(cls: type[Declared]) -> Layout:
     """The layout of a class, worked out once: names are asked for in every turn of a search."""
-    types = get_type_hints(cls, include_extras=True)
-    notes = {f.name: getattr(types[f.name], "__metadata__", ()) for f in fields(cls)}
-    arguments = {n: a for n, every in notes.items() for a in every if isinstance(a, Argument)}
-    named = [f for f in fields(cls) if f.name in arguments]
-    usual = {f.name: f.default for f in named if f.default is not MISSING}
-    scanned = {f.name: f.metadata[_SCANNED] for f in fields(cls) if _SCANNED in f.metadata}
-    return Layout(arguments, usual, scanned)
+    if cls not in _LAYOUTS:
+        types = get_type_hints(cls, include_extras=True)
+        notes = {f.name: getattr(types[f.name], "__metadata__", ()) for f in fields(cls)}
+        arguments = {n: a for n, every in notes.items() for a in every if isinstance(a, Argument)}
+        named = [f for f in fields(cls) if f.name in arguments]
+        usual = {f.name: f.default for f in named if f.default is not MISSING}
+        scanned = {f.name: f.metadata[_SCANNED] for f in fields(cls) if _SCANNED in f.metadata}
+        _LAYOUTS[cls] = Layout(arguments, usual, scanned)
+    return _LAYOUTS[cls]

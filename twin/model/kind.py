@@ -62,11 +62,10 @@ class Kind:
                 that its fields are offered, and the usual values of those that may be left out.
             when: Whether it is proposed for some touches at all; None for always.
         """
-        is_class = isinstance(effect, type)
-        layout = layout_of(effect) if is_class and issubclass(effect, Declared) else None
-        word = effect().kind if layout is None else effect.kind
-        arguments = {} if layout is None else layout.arguments
-        least = len(arguments) - (0 if layout is None else len(layout.usual))
+        declared = effect if isinstance(effect, type) and issubclass(effect, Declared) else None
+        word = effect().kind if declared is None else declared.kind
+        arguments, usual, _ = ({}, {}, {}) if declared is None else layout_of(declared)
+        least = len(arguments) - len(usual)
         words = [a.word for a in arguments.values()]
 
         def make(chain: Chain, found: Sequence[str]) -> Effect:
@@ -95,7 +94,7 @@ class Kind:
             propose=lambda touches: (
                 (propose or every)(touches) if when is None or when(touches) else ()
             ),
-            classes=(effect,) if is_class else (),
+            classes=(effect,) if isinstance(effect, type) else (),
             title=title,
             synonyms=synonyms,
             belongs_to=belongs_to,

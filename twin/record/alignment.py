@@ -64,7 +64,7 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
         change = apply(T, middle) - apply(setup.T_table_artefact, middle)
         R = T[:3, :3] @ setup.T_table_artefact[:3, :3].T
         shift = float(np.linalg.norm(change))
-        turn = turn_of(R)
+        turn = float(turn_of(R))
         if shift > SHIFT or turn > TURN:
             setups[i] = replace(setup, T_table_artefact=T)
             moved.append(Moved(setup.name, shift, turn))
@@ -104,6 +104,7 @@ def rigid_motion(
     return T
 
 
-def turn_of(R: Array) -> float:
-    """Angle of a rotation, rad."""
-    return float(np.arccos(np.clip(0.5 * (np.trace(R) - 1.0), -1.0, 1.0)))
+def turn_of(R: Array) -> Array:
+    """Angles of rotations (..., 3, 3), rad."""
+    trace = np.trace(R, axis1=-2, axis2=-1)
+    return np.asarray(np.arccos(np.clip(0.5 * (trace - 1.0), -1.0, 1.0)))

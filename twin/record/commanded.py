@@ -55,14 +55,10 @@ def with_commanded(run: Run) -> Run:
         usual = float(np.median(np.abs(by)))
         at = touches.q[:, column] - by
         is_near = usual < LARGEST_DEVIATION and np.ptp(at) < MIN_RANGE_RATIO * usual
-        if is_near or _levels(at, 2.0 * usual) < MAX_LEVEL_SHARE * len(at):
+        places = len(np.unique(np.round(at / (2.0 * usual)))) if usual > 0.0 else len(at)
+        if is_near or places < MAX_LEVEL_SHARE * len(at):
             commanded[:, column] = at
     return replace(run, touches=replace(touches, commanded=commanded))
-
-
-def _levels(values: Array, apart: float) -> int:
-    """Number of places that values apart by so much stand at."""
-    return len(np.unique(np.round(values / apart))) if apart > 0.0 else len(values)
 
 
 def _less_setups(touches: Touches, deviation: Array) -> Array:
