@@ -11,18 +11,6 @@ from matstd.twin.laws.law import KIND, Carrier, Factor, Law, carrier_of
 from matstd.twin.laws.shape import SHAPES, Shape, curve_columns, play
 
 __all__ = [
-    "KIND",
-    "SHAPES",
-    "Carrier",
-    "Driver",
-    "Factor",
-    "Law",
-    "Shape",
-    "carrier_of",
-    "curve_columns",
-    "driver_of",
-    "drivers",
-    "grid",
-    "play",
-    "shapes_of",
-]
+    "KIND", "SHAPES", "Carrier", "Driver", "Factor", "Law", "Shape", "carrier_of", "curve_columns",
+    "driver_of", "drivers", "grid", "play", "shapes_of",
+]  # fmt: skip

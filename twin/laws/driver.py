@@ -26,7 +26,6 @@ Nature = Literal["linear", "rotary", "time", "level", "sign"]
 SENSOR, OWN, LAST, TREND = "T-", "V-", "last-", "trend-"
 TIMES = ("time", "since-setup", "since-pose", "since-switch")
 OTHERS = ("rpm", "load", "azimuth", "latitude")
-
 TREND_TOUCHES = 9
 """Touches over which a temperature rises or falls: its last digit is a millikelvin."""
 

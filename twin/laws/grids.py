@@ -14,23 +14,16 @@ from matstd.twin.laws.driver import Driver
 from matstd.twin.laws.shape import SHAPES, Shape
 
 BUMP_PLACES = 24  # places over the range of a variable at which a bump, a kink or a step is tried
-
 EDGES = 18  # edges of a window or a ramp: 153 pairs of them
-
 EVERY_GAP = 40
 """Up to so many gaps between the values of a variable every one is an edge of a window."""
-
 PHASES = 10  # phases of waves with corners; refined afterwards
-
 OVERSAMPLING = 2.0
 """Points per resolvable frequency, 1/range: a sine between two of them keeps 90 % of its size."""
-
 MOST_PERIODS = {"time": 30.0, "linear": 15.0}
 """Waves within the range of a variable up to which they are tried, by its nature; quicker sines of
 readings and of time have a scan of their own."""
-
 FEW_PERIODS = 6.0  # the same of a variable of another nature
-
 MIN_VALUES = 5
 """Of a variable with fewer different values nothing but a level, a line or a step is learnt."""
 

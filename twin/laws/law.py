@@ -19,6 +19,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
+from matstd.twin.effects import turned_shift
 from matstd.twin.fields import check_count, component_symbol, refusal
 from matstd.twin.frames import Array
 from matstd.twin.laws.driver import Driver, driver_of
@@ -32,7 +33,6 @@ from matstd.twin.units import DEG, HOUR, T_REF, UM, URAD
 FREE_LENGTH, FREE_ANGLE = 1000.0 * UM, 10000.0 * URAD
 """Prior standard deviation of an amplitude: what is learnt is not drawn towards zero. Of a curve
 its own `size` is the prior."""
-
 SHIFT, BIAS, GROWTH, TILT = "shift", "bias", "growth", "tilt"
 PARTS = {SHIFT: 3, BIAS: 1, GROWTH: 1, TILT: 3, "shift-x": 1, "shift-y": 1, "shift-z": 1}
 """Carriers that are no component of a link, with their number of amplitudes."""
@@ -65,32 +65,26 @@ class Carrier:
         """Letters of its amplitudes; one empty word for a single amplitude."""
         return {SHIFT: ("X", "Y", "Z"), TILT: ("A", "B", "C")}.get(self.name, ("",))
 
-    def entries(self, touches: Touches) -> list[tuple[int, Where, Array | float]]:
-        """Amplitude, entry and factor of all that it moves."""
+    def entries(self, touches: Touches) -> list[Term]:
+        """All that it moves, per unit of every amplitude."""
+        one, p = np.ones(len(touches)), touches.point_table
         if self.symbol is not None:
-            return [(0, touches.chain.twist_of(self.symbol), 1.0)]
+            return [Term(0, touches.chain.twist_of(self.symbol), one)]
         if self.name == BIAS:
-            return [(0, Where("bias"), 1.0)]
+            return [Term(0, Where("bias"), one)]
         if self.name == SHIFT:
-            return [(i, Where("shift", 0, i), 1.0) for i in range(3)]
+            return [Term(i, Where("shift", 0, i), one) for i in range(3)]
         if self.name.startswith("shift-"):
-            return [(0, Where("shift", 0, "xyz".index(self.name[-1])), 1.0)]
-        p = touches.point_table
+            return [Term(0, Where("shift", 0, "xyz".index(self.name[-1])), one)]
         if self.name == GROWTH:
-            return [(0, Where("shift", 0, i), p[:, i]) for i in range(3)]
-        arm = p - _centre(touches)
-        turned: list[tuple[int, Where, Array | float]] = []
-        for turn in range(3):
-            a, b = (turn + 1) % 3, (turn + 2) % 3
-            turned += [(turn, Where("shift", 0, b), arm[:, a])]
-            turned += [(turn, Where("shift", 0, a), -arm[:, b])]
-        return turned
+            return [Term(0, Where("shift", 0, i), p[:, i]) for i in range(3)]
+        return turned_shift(p - _centre(touches))
 
     def columns(self, touches: Touches) -> Array:
         """Deviation along the normal per unit of every amplitude, (N, count)."""
         out = np.zeros((len(touches), self.count))
-        for k, where, factor in self.entries(touches):
-            out[:, k] += factor * touches.signature.of(where)
+        for term in self.entries(touches):
+            out[:, term.parameter] += term.amount * touches.signature.of(term.where)
         return out
 
 
@@ -126,8 +120,7 @@ class Law:
     carrier: Carrier
     factors: tuple[Factor, ...]  # shapes with their variables, one or two
     places: tuple[float, ...]  # values of their parameters, one after the other, base units
-    # whether they are still to be found: by a scan over all that makes sense
-    is_sought: bool = False
+    is_sought: bool = False  # whether they are still to be found, by a scan over all
 
     kind = "law"
 
@@ -140,7 +133,9 @@ class Law:
     def title(self) -> Title:
         """What it looks like, and what carries it."""
         text = " times ".join(f"{f.shape.word} over {f.driver.name}" for f in self.factors)
-        return Title(f"{self.carrier.name}: {text}", _bearer(self.carrier))
+        body = "probe" if self.carrier.name == BIAS else "standard"
+        bearer = body if self.carrier.symbol is None else self.carrier.symbol.link
+        return Title(f"{self.carrier.name}: {text}", bearer)
 
     @property
     def symbol(self) -> Symbol | None:
@@ -152,6 +147,8 @@ class Law:
         """Whether it has no formula."""
         return any(f.shape.word == "curve" for f in self.factors)
 
+    is_tensor = is_curve_alone  # reported by the rms that it explains: coefficients mean nothing
+
     @property
     def belongs_to(self) -> str:
         """Of what it is to be expected again: a curve over time is a driver that was not recorded.
@@ -161,11 +158,6 @@ class Law:
         """
         is_course = any(f.shape.word == "curve" and f.driver.name == "time" for f in self.factors)
         return "run" if is_course else "machine"
-
-    @property
-    def is_tensor(self) -> bool:
-        """Reported by the rms that it explains where coefficients have no meaning."""
-        return self.is_curve_alone
 
     @property
     def needs_history(self) -> bool:
@@ -232,23 +224,25 @@ class Law:
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """The parameters of the shapes: about where they are, or the scan that looks for them."""
-        out, i = [], 0
+        out: list[Inner] = []
         for factor in self.factors:
-            x = factor.driver.values(touches)
-            span = float(np.ptp(x))
+            x, jumps = factor.driver.values(touches), factor.shape.jumps
             scan = grid(factor.shape, factor.driver, x) if self.is_sought else None
             for k, name in enumerate(factor.shape.places):
-                if scan is None:
-                    value = self.places[i]
-                    values = value + _spacing(name, value, span) * np.array([-1.0, 0.0, 1.0])
-                else:
-                    values = np.unique(scan[:, k])
-                is_free = k in factor.shape.free and not factor.shape.jumps
+                i = len(out)
+                step = _spacing(name, self.places[i], float(np.ptp(x)))
+                near = self.places[i] + step * np.array([-1.0, 0.0, 1.0])
                 unit = self.units[i] if self.units[i] in ("mm", "rad", "s") else "1"
-                is_instant = factor.driver.nature == "time" and factor.shape.jumps
-                made = Inner(self.place_names[i], unit, values, is_free)
-                out.append(made._replace(acts="at an instant") if is_instant else made)
-                i += 1
+                made = Inner(
+                    name=self.place_names[i],
+                    unit=unit,
+                    grid=near if scan is None else np.unique(scan[:, k]),
+                    continuous=k in factor.shape.free and not jumps,
+                    acts="at an instant"
+                    if jumps and factor.driver.nature == "time"
+                    else "smoothly",
+                )
+                out.append(made)
         return tuple(out)
 
     def tuned(self, *values: float) -> Self:
@@ -283,13 +277,6 @@ def _spacing(name: str, value: float, span: float) -> float:
     if name == "period":
         return min(0.1 * abs(value), 0.1 * value**2 / max(span, 1e-300))
     return 0.2 * abs(value) or 0.03 * span or 1.0
-
-
-def _bearer(carrier: Carrier) -> str:
-    """Axis or body that carries it."""
-    if carrier.symbol is not None:
-        return carrier.symbol.link
-    return "probe" if carrier.name == BIAS else "standard"
 
 
 _USUAL = {"time": (0.0, 3.0 * HOUR), "level": (T_REF, T_REF + 10.0), "sign": (-1.0, 1.0),
