@@ -193,9 +193,10 @@ class Service:
         Raises:
             DesignError: A moment that is not later, other sensors, a number that is none.
         """
-        for name, value in temperature.items():
+        driving = {f"temperature {name}": value for name, value in temperature.items()}
+        for name, value in (driving | {"spindle speed": spindle_rpm or 0.0}).items():
             if not np.isfinite(value):
-                raise DesignError(f"temperature {name}: {value:g}, expected a number")
+                raise DesignError(f"{name}: {value:g}, expected a number")
         state = replace(
             self._history.now,
             time=time,

@@ -135,6 +135,24 @@ def test_a_warming_machine_is_followed_as_its_lag_says(bench_chain, datum):
     assert z == pytest.approx(-2.0 * UM * warmth, rel=0.01)
 
 
+def test_what_drives_the_machine_is_a_number(bench_chain, datum):
+    """A gateway that has lost a value hands NaN over: the tables stay as they were."""
+    growth = parse_effect("thermal-lag(EZZ,spindle_rpm)", bench_chain)
+    begin = State(temperature={"frame": 20.0}, spindle_rpm=1000.0)
+    theta = np.full(len(growth.parameters), 10.0 * UM)
+    errors = MachineErrors.of_errors(bench_chain, [(growth, theta)], begin)
+    service = Service(errors, LENGTH, datum, OutputLimits(most=1.0))
+    before = service.correction.at(datum.q.tolist())
+    for warm, speed, said in (
+        (np.nan, 1000.0, "temperature frame: nan, expected a number"),
+        (20.0, np.nan, "spindle speed: nan, expected a number"),
+        (20.0, np.inf, "spindle speed: inf, expected a number"),
+    ):
+        with pytest.raises(DesignError, match=said):
+            service.drive(1.0, {"frame": warm}, speed)
+    assert service.correction.at(datum.q.tolist()) == before
+
+
 def test_a_history_goes_forward_with_its_sensors():
     history = History((State(temperature={"a": 20.0}),))
     with pytest.raises(DesignError, match="expected later than 0 s"):
