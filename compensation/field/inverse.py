@@ -36,10 +36,7 @@ class Datum:
 
 
 def correction(
-    disturbance: Disturbance,
-    touches: Touches,
-    aim: Array | None = None,
-    start: Array | None = None,
+    disturbance: Disturbance, touches: Touches, aim: Array | None = None, start: Array | None = None
 ) -> Array:
     """Readings to be added to the linear axes so that the tool point is right.
 

@@ -13,11 +13,7 @@ MAX_SMOOTH_SINE = 1e-6  # largest sine of the angle of a smooth transition, whic
 
 
 def without_corners(items: Sequence[Item | Corner], reading: Reading) -> list[Item]:
-    """Motions with the arcs and lines that their corners become.
-
-    Raises:
-        BadFile: A corner without a motion before and behind it in X and Y, or too short for it.
-    """
+    """Motions with the arcs and lines that their corners become; raises BadFile."""
     out: list[Item] = []
     corner: Corner | None = None
     for item in items:

@@ -70,11 +70,7 @@ class _Block(NamedTuple):
 
 
 def read(text: str, reading: Reading) -> None:
-    """Read a whole program into the items of `reading`.
-
-    Raises:
-        BadFile: A line that is not understood, with its number.
-    """
+    """Read a whole program into the items of `reading`; raises BadFile."""
     reader = _Reader(reading, calls_by_t=_CHANGE.search(text) is None)
     is_begun = False
     for line, raw, code, remarks in gcode_lines(text.splitlines()):

@@ -39,11 +39,7 @@ def is_hole(block: str) -> bool:
 
 
 def defined(line: int, block: str, reading: Reading) -> Hole:
-    """A cycle by its definition.
-
-    Raises:
-        BadFile: Another cycle, numbers that are missing.
-    """
+    """A cycle by its definition; raises BadFile."""
     if not is_hole(block):
         known = ", ".join(HOLES)
         expected = f"cycles 7, 9, 13, 32, 247 and holes ({known}); others are resolved before"

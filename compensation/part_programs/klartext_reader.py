@@ -40,11 +40,7 @@ _EXPECTED = (
 
 
 def read(text: str, reading: Reading) -> None:
-    """Read a whole program into the items of `reading`.
-
-    Raises:
-        BadFile: A block that is not understood, with its line.
-    """
+    """Read a whole program into the items of `reading`; raises BadFile."""
     reader = _Reader(reading)
     for block in run_order(list(klartext_blocks(text.splitlines())), reading.path):
         reader.take(block)

@@ -120,11 +120,7 @@ class Reading:
         return self.side * radius
 
     def needed_feed(self, line: int, is_turn: bool) -> float:
-        """Feed of a motion, mm/min, or degrees/min of axes that turn alone.
-
-        Raises:
-            BadFile: None is in force.
-        """
+        """Feed of a motion, mm/min, or degrees/min of axes that turn alone; raises BadFile."""
         if self.feed <= 0.0:
             raise self.refusal(line, "a motion without feed", "F above zero in it or before it")
         return self.feed * (1.0 if is_turn else self.feed_unit)
@@ -186,15 +182,12 @@ class Reading:
         named: Sequence[str] = (),
         minutes: float = 0.0,
     ) -> None:
-        """The three motions of a cycle.
+        """The three motions of a cycle; raises BadFile.
 
         Args:
             place: Where the axes stand above it, (A,).
             heights: Z above the hole, at its bottom and after it, mm.
             minutes: Time to the bottom where the feed in force is not that of the cycle.
-
-        Raises:
-            BadFile: A place that is not known, a contour or a turning table.
         """
         if self.side or self.tcpm:
             where = "beside a contour" if self.side else "with tool-point control"
@@ -251,11 +244,7 @@ def checked_arc(
     positive: bool,
     turns: int = 1,
 ) -> Arc:
-    """Arc from where the axes stand about a centre.
-
-    Raises:
-        BadFile: An end that lies off the circle.
-    """
+    """Arc from where the axes stand about a centre; raises BadFile."""
     start, stop = reading.at[plane], end[plane]
     off = float(abs(np.hypot(*(stop - centre)) - np.hypot(*(start - centre))))
     if off > MAX_ARC_MISFIT:

@@ -45,16 +45,13 @@ class Timed(NamedTuple):
 def in_time(
     path: ProgramPath, which: IntArray, share: Array, written: Array, tolerance: float
 ) -> Timed:
-    """Keep the time of every line that turns an axis.
+    """Keep the time of every line that turns an axis; raises BadFile.
 
     Args:
         which: Motion of every line, (N,).
         share: Share of its motion that is done at its end, (N,).
         written: Where it ends, program coordinates, rounded, (N, A).
         tolerance: By which corrections may lag where LinuxCNC cannot go slowly enough, mm.
-
-    Raises:
-        BadFile: A line whose time cannot be stated in the program's language.
     """
     linear = path.frame.linear
     begin = path.begins_at(which, written)

@@ -30,11 +30,7 @@ class History:
         return self.states[-1]
 
     def then(self, state: State) -> "History":
-        """The history with one more moment.
-
-        Raises:
-            DesignError: A moment that is not later, or other sensors.
-        """
+        """The history with one more moment; raises DesignError."""
         if self.states:
             last = self.now
             if not state.time > last.time:

@@ -123,11 +123,7 @@ class Service:
     """Corrects one machine."""
 
     def __init__(
-        self,
-        errors: MachineErrors,
-        length: float,
-        datum: Datum,
-        limits: OutputLimits | None = None,
+        self, errors: MachineErrors, length: float, datum: Datum, limits: OutputLimits | None = None
     ) -> None:
         """Tabulate the errors.
 
@@ -198,10 +194,7 @@ class Service:
             if not np.isfinite(value):
                 raise DesignError(f"{name}: {value:g}, expected a number")
         state = replace(
-            self._history.now,
-            time=time,
-            temperature=dict(temperature),
-            spindle_rpm=spindle_rpm,
+            self._history.now, time=time, temperature=dict(temperature), spindle_rpm=spindle_rpm
         )
         self._history = self._history.then(state)
         self.drifts.follow(self._history)
@@ -230,12 +223,7 @@ class Service:
         sent = self._output.step(now)
         self._quality = sent.quality
         return Answer(
-            sequence=self._sequence,
-            sent=sent,
-            k0=k0,
-            k1=k1,
-            p0=p0,
-            refused=self._refused,
+            sequence=self._sequence, sent=sent, k0=k0, k1=k1, p0=p0, refused=self._refused
         )
 
     def uncertainty(self, readings: Sequence[float]) -> Point:

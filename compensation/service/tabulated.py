@@ -61,11 +61,7 @@ class ErrorTable:
         return np.where(width > 0.0, width, 1.0) / (np.array(self.counts) - 1)
 
     def refined(self, close: float) -> "ErrorTable":
-        """Twice as fine until the middles between the points are close.
-
-        Raises:
-            DesignError: It would need more points than a table may have.
-        """
+        """Twice as fine until the middles between the points are close; raises DesignError."""
         counts, table = np.full(len(self.axes), _FEWEST_PLACES), self
         while True:
             table = replace(table, counts=tuple(map(int, counts))).following(None)

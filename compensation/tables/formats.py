@@ -151,12 +151,7 @@ def _com(errors: MachineErrors, datum: Datum, _: Array) -> Tables:
 FORMATS: Mapping[str, Format] = {
     f.name: f
     for f in (
-        Format(
-            "iso230",
-            _named(iso_csv.MOST_POINTS),
-            iso_csv.write,
-            iso_csv.read,
-        ),
+        Format("iso230", _named(iso_csv.MOST_POINTS), iso_csv.write, iso_csv.read),
         Format("sinumerik", _cec, sinumerik_cec.write, sinumerik_cec.read),
         Format("linuxcnc", _comp, linuxcnc_comp.write, linuxcnc_comp.read),
         Format("heidenhain", _com, heidenhain_com.write, heidenhain_com.read),

@@ -21,8 +21,7 @@ Disturbance = Callable[[Touches], Contribution]
 
 
 def effects_over_record(
-    effects: Sequence[tuple[Effect, Array]],
-    record: SensorRecord | None = None,
+    effects: Sequence[tuple[Effect, Array]], record: SensorRecord | None = None
 ) -> Disturbance:
     """Disturbance by effects of known size.
 

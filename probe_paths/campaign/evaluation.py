@@ -129,11 +129,7 @@ def _uncertainty(standard: Standard, t: Touches, u: float) -> Array:
 
 
 def _touches_and_gaps(
-    parts: Sequence[LogPart],
-    standard: Standard,
-    chain: Chain,
-    dialect: Dialect,
-    is_fitted: bool,
+    parts: Sequence[LogPart], standard: Standard, chain: Chain, dialect: Dialect, is_fitted: bool
 ) -> tuple[Touches, Array]:
     """Touches on the standard at its believed or fitted place, and their gaps (N,), mm."""
     count = [len(part.number) for part in parts]

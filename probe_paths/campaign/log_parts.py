@@ -23,12 +23,9 @@ _PER_TOUCH = ("line", "number", "pose", "feature", "xyz", "time")
 
 
 def distinct_parts(parts: Sequence[LogPart]) -> list[LogPart]:
-    """Parts in the order of time, every touch of a run of a program once.
+    """Parts in the order of time, every touch of a run of a program once; raises BadFile.
 
     The same log may be given twice, whole and cut off: its parts have the same program and begin.
-
-    Raises:
-        BadFile: Two such parts with different numbers of the same touch.
     """
     found: list[LogPart] = []
     for part in sorted(_dated(parts), key=lambda part: (part.begin, -len(part.number))):

@@ -89,8 +89,7 @@ def _sd_beside(C: Array, W: Array) -> Array:
     """Standard deviations of C's parameters with W's unknown too, all with unit priors, (Q,)."""
     known = np.eye(W.shape[1]) + W.T @ W
     left = np.eye(C.shape[1]) + C.T @ C - C.T @ W @ np.linalg.solve(known, W.T @ C)
-    sd: Array = np.sqrt(np.diag(np.linalg.solve(left, np.eye(len(left)))))
-    return sd
+    return np.sqrt(np.diag(np.linalg.solve(left, np.eye(len(left)))))
 
 
 def _timed(plan: TouchPlan) -> tuple[Touches, float]:
@@ -176,7 +175,5 @@ def _each_pose_once(plan: TouchPlan, visits: tuple[Visit, ...] = ()) -> TouchPla
     sizes = [len(mine) for mine in rows]
     moved = _rows(plan, np.concatenate(rows))
     return replace(
-        moved,
-        visits=tuple(first.values()),
-        visit=np.repeat(np.arange(len(first)), sizes),
+        moved, visits=tuple(first.values()), visit=np.repeat(np.arange(len(first)), sizes)
     )

@@ -83,11 +83,7 @@ def run_programs(
     machine: VirtualMachine,
     rng: np.random.Generator,
 ) -> list[VirtualRun]:
-    """Run programs one after the other; a stopped one ends the campaign.
-
-    Raises:
-        DesignError: A program made for another standard.
-    """
+    """Run programs one after the other; a stopped one ends the campaign; raises DesignError."""
     solvers = [_solver(program, standard, machine, rng) for program in programs]
     # a disturbance may depend on the touches of other programs
     planned = [] if machine.disturbance is None else _planned_touches(solvers)

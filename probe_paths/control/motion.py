@@ -21,13 +21,7 @@ _FUNCTIONS = {"M91", "M126"}
 
 
 def straight_line(state: State, block: Block) -> Move:
-    """Execute an L block and return its move.
-
-    Raises:
-        BadFile: An axis that the machine lacks or a travel that it exceeds, a rotary move that is
-            not at the retracted height, a rapid move below the clearance height, sideways motion
-            near the standard, no feed, no R0, a mode that forbids the block.
-    """
+    """Execute an L block and return its move; raises BadFile."""
     state.check_status_was_tested(block)
     functions = set(block.word("functions").split())
     if not functions <= _FUNCTIONS:

@@ -43,12 +43,7 @@ class Promise(NamedTuple):
 
 
 def program_name(blocks: Sequence[Block], path: Path) -> str:
-    """Name of the program, after its frame has been checked.
-
-    Raises:
-        BadFile: First or last block missing, a frame inside the program, names that differ from
-            each other or from the file's, inches.
-    """
+    """Name of the program, after its frame has been checked; raises BadFile."""
     first, last = blocks[0], blocks[-1]
     if first.kind is not Kind.BEGIN:
         raise BadFile(path, f"line {first.line}", repr(first.text), "BEGIN PGM <name> MM")
@@ -71,11 +66,7 @@ def program_name(blocks: Sequence[Block], path: Path) -> str:
 
 
 def labels(blocks: Sequence[Block], path: Path) -> dict[str, int]:
-    """Block index of every label.
-
-    Raises:
-        BadFile: A label that stands twice or is not defined, a subprogram before M30, no M30.
-    """
+    """Block index of every label; raises BadFile."""
     kinds = [block.kind for block in blocks]
     if Kind.PROGRAM_STOP not in kinds:
         raise BadFile(path, f"line {blocks[-1].line}", "no M30", "M30 at the end of the program")
@@ -139,11 +130,7 @@ def check_axes(blocks: Sequence[Block], letters: Sequence[str], head: Heading, p
 
 
 def heading(blocks: Sequence[Block], path: Path) -> tuple[Heading, Mapping[int, str]]:
-    """Head of a program, and the feature that every number stands for.
-
-    Raises:
-        BadFile: The head is missing or spelt otherwise, a number stands for two features.
-    """
+    """Head of a program, and the feature that every number stands for; raises BadFile."""
     remarks = _remarks(blocks)
     starts = [i for i, (_, text) in enumerate(remarks) if text.startswith("STANDARD ")]
     if not starts:
@@ -168,11 +155,7 @@ def _remarks(blocks: Sequence[Block]) -> list[tuple[int, str]]:
 
 
 def promise(blocks: Sequence[Block], head: Heading, path: Path) -> Promise:
-    """Touches, tool and preset as the head states them.
-
-    Raises:
-        BadFile: One of the three remarks is missing, or states another probe than the heading.
-    """
+    """Touches, tool and preset as the head states them; raises BadFile."""
     remarks = _remarks(blocks)
     # a dry run makes no touches
     if any(_DRY.fullmatch(text) for _, text in remarks):

@@ -100,10 +100,7 @@ def make_programs(
 
 
 def make_dry_run(
-    plan: TouchPlan,
-    raised: float,
-    dialect: Dialect | None = None,
-    feeds: Feeds | None = None,
+    plan: TouchPlan, raised: float, dialect: Dialect | None = None, feeds: Feeds | None = None
 ) -> ProgramSet:
     """One program that goes where a plan's programs go, higher, and touches nothing.
 
@@ -135,9 +132,7 @@ def make_search(
 
 
 def make_ball(
-    plan: TouchPlan,
-    dialect: Dialect | None = None,
-    feeds: Feeds | None = None,
+    plan: TouchPlan, dialect: Dialect | None = None, feeds: Feeds | None = None
 ) -> ProgramSet:
     """One program that measures a ball of the standard, before the others and after them."""
     purpose = Purpose(BALL, (f"PROBE ON BALL {plan.feature[0]}, BEFORE AND AFTER THE OTHERS",))
@@ -145,9 +140,7 @@ def make_ball(
 
 
 def make_first(
-    plan: TouchPlan,
-    dialect: Dialect | None = None,
-    feeds: Feeds | None = None,
+    plan: TouchPlan, dialect: Dialect | None = None, feeds: Feeds | None = None
 ) -> ProgramSet:
     """The program that a control is tried with: one touch in the air and one on a ball.
 

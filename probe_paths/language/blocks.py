@@ -125,17 +125,13 @@ class Block:
 
 
 def read_klartext(data: bytes, path: str | Path, dialect: Dialect) -> list[Block]:
-    """Blocks of a program file.
+    """Blocks of a program file; raises BadFile.
 
     Block numbers either stand everywhere and count from 0, or nowhere. A line that ends in a
     tilde continues on the next one.
 
     Args:
         dialect: Whose spelling of cycle 4 is known besides the usual ones.
-
-    Raises:
-        BadFile: A byte outside ASCII, mixed line ends, a last line cut off, a number out of
-            sequence, a block that is not in the closed list.
     """
     blocks: list[Block] = []
     is_numbered: bool | None = None

@@ -48,14 +48,11 @@ def run_on_linuxcnc(
     socket_path: Path,
     user: str = "",
 ) -> Session:
-    """Run programs one after the other.
+    """Run programs one after the other; raises DesignError.
 
     Args:
         socket_path: Where the component of the probe asks; its folder is the machine's.
         user: Who runs LinuxCNC; needed where we are root, as LinuxCNC refuses that.
-
-    Raises:
-        DesignError: LinuxCNC is not installed, runs already, or there is no user for it.
     """
     folder = socket_path.parent
     _write(folder, files, programs)

@@ -69,15 +69,13 @@ class Relief:
 
     def index(self, xy: Array) -> Array:
         """Fractional rows and columns (2, N) of places (N, 2)."""
-        at: Array = ((xy - self.x0) / PITCH).T
-        return at
+        return ((xy - self.x0) / PITCH).T
 
     def ball_at(self, xy: Array) -> Array:
         """Height of the ball's centre at places (N, 2), (N,), mm."""
-        height: Array = ndimage.map_coordinates(
+        return ndimage.map_coordinates(
             self.ball, self.index(xy), order=1, mode="nearest", prefilter=False
         )
-        return height
 
 
 def _face_and_walls(patch: FreeformPatch) -> Array:

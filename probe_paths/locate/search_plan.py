@@ -146,8 +146,7 @@ def _refuse_undetermined_place(relief: Relief, place: Array, spread: Spread) -> 
 def _most(values: Array, half: float) -> Array:
     """Largest value within a square of the given half side, mm."""
     size = 2 * int(np.ceil(half / PITCH)) + 1
-    largest: Array = ndimage.maximum_filter(values, size=size, mode="nearest")
-    return largest
+    return ndimage.maximum_filter(values, size=size, mode="nearest")
 
 
 def _far_apart(place: Array, count: int) -> list[int]:
@@ -184,14 +183,7 @@ def _plan(
         setup=setup,
         options=options,
         visits=(
-            Visit(
-                pose=0,
-                rotary=home,
-                side=side,
-                before=before,
-                rows=np.arange(n),
-                height=height,
-            ),
+            Visit(pose=0, rotary=home, side=side, before=before, rows=np.arange(n), height=height),
         ),
         visit=np.zeros(n, dtype=np.int64),
         request=np.arange(n),

@@ -115,8 +115,7 @@ def waypoints(start: Array, end: Array) -> Array:
     """Rotary readings (W, R) after `start` up to `end`, no step longer than `LONGEST_TURN`."""
     pieces = max(int(np.ceil(np.abs(end - start).max(initial=0.0) / LONGEST_TURN)), 1)
     share = np.arange(1, pieces + 1)[:, None] / pieces
-    between: Array = start + share * (end - start)
-    return between
+    return start + share * (end - start)
 
 
 def rotary_path(start: Array, stops: list[Visit], end: Array) -> Array:

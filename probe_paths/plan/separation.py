@@ -50,8 +50,7 @@ class Hulls:
         reach = np.einsum("bki,bi->bk", self.corner, direction) + self.disc * size[:, None]
         row, best = np.arange(len(self)), np.argmax(reach, axis=1)
         share = self.disc[row, best] * _inverted(size)
-        point: Array = self.corner[row, best] + share[:, None] * across
-        return point
+        return self.corner[row, best] + share[:, None] * across
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,13 +84,12 @@ class Sweeps:
         share = self.radius * _inverted(np.linalg.norm(across, axis=1))
         height = np.where(along > 0.0, self.high, self.low)
         is_end = np.einsum("mi,mi->m", direction, self.way) > 0.0
-        point: Array = (
+        return (
             self.centre
             + height[:, None] * self.axis
             + share[:, None] * across
             + is_end[:, None] * self.way
         )
-        return point
 
 
 def balls_apart(sweeps: Sweeps, hulls: Hulls) -> Array:
@@ -226,5 +224,4 @@ def _solved(gram: Array, right: Array) -> Array:
             return np.column_stack([x, y]) / determinant[:, None]
         adjoint = np.stack([np.cross(gram[:, (i + 1) % 3], gram[:, (i + 2) % 3]) for i in range(3)])
         determinant = np.einsum("mi,mi->m", gram[:, 0], adjoint[0])
-        solution: Array = np.einsum("imk,mi->mk", adjoint, right) / determinant[:, None]
-        return solution
+        return np.einsum("imk,mi->mk", adjoint, right) / determinant[:, None]

@@ -60,9 +60,4 @@ def stroke_gaps(
     ball = clearance.swept_gap(start, contact, with_tool=False, spared=own & ~core, enough=enough)
     beyond = clearance.swept_gap(start, end, spared=own | core, enough=enough)
     up = clearance.swept_gap(end, above, spared=own | core, enough=enough)
-    return {
-        Stage.TOUCH: tool,
-        Stage.WAY_IN: ball,
-        Stage.OVER_TRAVEL: beyond,
-        Stage.RETRACT: up,
-    }
+    return {Stage.TOUCH: tool, Stage.WAY_IN: ball, Stage.OVER_TRAVEL: beyond, Stage.RETRACT: up}

@@ -63,11 +63,7 @@ class Giver:
         return self.age(now) <= self.patience
 
     def step(
-        self,
-        now: float,
-        is_on: bool,
-        requested: "list[float]",
-        room: "list[tuple[float, float]]",
+        self, now: float, is_on: bool, requested: "list[float]", room: "list[tuple[float, float]]"
     ) -> "list[int]":
         """Counts at this moment.
 
