@@ -45,7 +45,6 @@ def correction(
     fewer than three linear axes only what they can move is corrected.
 
     Args:
-        disturbance: The errors, or tables of them.
         aim: Deviation that is wanted, (3,) or (N, 3), mm: that of the datum.
 
         start: What is added already, (N, A), such as corrections of rotary axes.

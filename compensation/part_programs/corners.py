@@ -48,7 +48,8 @@ def _cut(corner: Corner, before: Motion, after: Motion, reading: Reading) -> tup
     a, b = (Element(m, m.start[plane], m.end[plane], 0.0) for m in (before, after))
     if any(e.arc is None and np.linalg.norm(e.end - e.start) < MAX_OVERSHOOT for e in (a, b)):
         raise _refused(reading, corner, "motions that are too short for it")
-    turn = _turn(a, b)
+    u, v = a.direction(a.end), b.direction(b.start)
+    turn = float(u[0] * v[1] - u[1] * v[0])
     if abs(turn) < MAX_SMOOTH_SINE:
         raise _refused(reading, corner, "motions that go straight on")
     first, second, arc = (
@@ -75,11 +76,6 @@ def _refused(reading: Reading, corner: Corner, found: str) -> Exception:
     word = "RND" if corner.is_round else "CHF"
     expected = "lines or arcs in X and Y before and behind it, longer than it"
     return reading.refusal(corner.line, f"{word} between {found}", expected)
-
-
-def _turn(a: Element, b: Element) -> float:
-    u, v = a.direction(a.end), b.direction(b.start)
-    return float(u[0] * v[1] - u[1] * v[0])
 
 
 def _along(corner: Corner, element: Element, is_first: bool, reading: Reading) -> Array:

@@ -62,8 +62,6 @@ def way(start: Array, end: Array, z: int, height: float) -> list[Array]:
     """Places on the way to a call at a place of its own: up first where the tool stands low.
 
     Args:
-        start: Where the axes stand, (A,).
-        end: The place of the call, (A,).
         height: Above the surface that the cycle begins at, mm.
     """
     up, over = start.copy(), end.copy()

@@ -22,6 +22,8 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.units import DEG
 
+LENGTHS = "XYZUVW"  # letters of words that are lengths
+
 
 @dataclass
 class Reading:
@@ -79,13 +81,9 @@ class Reading:
             raise self.refusal(line, f"axis {letter}", f"an axis of the machine: {available}")
         return self._columns[letter]
 
-    def is_linear(self, letter: str) -> bool:
-        """Whether a word is a length."""
-        return letter in "XYZUVW"
-
     def scale(self, letter: str) -> float:
         """One unit of an axis's word in base units."""
-        return self.unit if self.is_linear(letter) else DEG
+        return self.unit if letter in LENGTHS else DEG
 
     def keep(self, line: int, text: str, moves: bool = False) -> None:
         """A block that stays."""
@@ -162,7 +160,7 @@ class Reading:
             offset=self.offset,
             unit=self.unit,
             words=words,
-            turned=tuple(a for a in named if not self.is_linear(a)),
+            turned=tuple(a for a in named if a not in LENGTHS),
             arc=arc,
             beside=beside,
             minutes=minutes,

@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.compensation.field import Datum, MachineErrors, relative_columns
-from matstd.compensation.service.history import History
 from matstd.compensation.service.output import Output, OutputLimits, Quality, Sent
 from matstd.compensation.service.point_correction import Point, PointCorrection
+from matstd.compensation.service.tabulated import History
 from matstd.diagnosis.drift import DriftLaw, LiveDrift
 from matstd.twin.errors import DesignError, OutsideTravel
 from matstd.twin.frames import Array
@@ -128,7 +128,6 @@ class Service:
         """Tabulate the errors.
 
         Args:
-            length: Length of the tool, mm.
             datum: Pose at which the preset was taken: nothing is corrected there.
 
         Raises:
@@ -161,8 +160,6 @@ class Service:
         says why.
 
         Args:
-            readings: As the control shows them.
-            now: s.
             directions: Sign of the last motion of every axis, -1, 0 or 1.
         """
         self._sequence = sequence

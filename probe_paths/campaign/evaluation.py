@@ -148,25 +148,12 @@ def _touches_and_gaps(
         setups[i] = _fitted_setup(
             believed, standard, feature[rows], ball_table[rows], radius[rows], moved[rows]
         )
-    point, normal, gap = _gaps(standard, setups, setup, feature, ball_table, radius, moved)
+    stands = np.stack([s.T_table_artefact for s in setups])[setup]
+    ball = apply(inverse(stands), ball_table)
+    point, normal = foot_points(standard, feature, ball, moved)
+    gap = np.einsum("ni,ni->n", normal, ball - point) - radius
     made = _touches(parts, chain, q, setups, setup, feature, point, normal)
     return replace(made, length=length, radius=radius), gap
-
-
-def _gaps(
-    standard: Standard,
-    setups: Sequence[Setup],
-    setup: IntArray,
-    feature: Labels,
-    ball_table: Array,
-    radius: Array,
-    moved: Array,
-) -> tuple[Array, Array, Array]:
-    """Foot points and normals in the artefact frame, and gaps between balls and surfaces, mm."""
-    T_artefact_table = inverse(np.stack([s.T_table_artefact for s in setups])[setup])
-    ball = apply(T_artefact_table, ball_table)
-    point, normal = foot_points(standard, feature, ball, moved)
-    return point, normal, np.einsum("ni,ni->n", normal, ball - point) - radius
 
 
 def _check_calibrations(parts: Sequence[LogPart]) -> None:
@@ -177,11 +164,11 @@ def _check_calibrations(parts: Sequence[LogPart]) -> None:
         known = first.setdefault((_probe_prefix(part), planned.radius, planned.length), part)
         radius, length = known.radius, known.tool_length
         if abs(part.radius - radius) > NM or abs(part.tool_length - length) > NM:
-            raise BadFile(
-                part.path, f"program {part.program}",
-                f"a probe of radius {part.radius:g} and length {part.tool_length:g} mm",
-                f"{radius:g} and {length:g} mm as in {known.program}: one calibration a probe",
-            )  # fmt: skip
+            found = f"a probe of radius {part.radius:g} and length {part.tool_length:g} mm"
+            expected = (
+                f"{radius:g} and {length:g} mm as in {known.program}: one calibration a probe"
+            )
+            raise BadFile(part.path, f"program {part.program}", found, expected)
 
 
 def _probe_prefix(part: LogPart) -> str:
@@ -221,10 +208,8 @@ def _setups(parts: Sequence[LogPart]) -> tuple[list[Setup], IntArray]:
         believed = part.heading.setup
         known = setups.setdefault(believed.name, believed)
         if not np.allclose(known.T_table_artefact, believed.T_table_artefact, rtol=0.0, atol=NM):
-            raise BadFile(
-                part.path, "ORIGIN, TURNED", f"another place for set-up {believed.name}",
-                "one place for each set-up name",
-            )  # fmt: skip
+            found = f"another place for set-up {believed.name}"
+            raise BadFile(part.path, "ORIGIN, TURNED", found, "one place for each set-up name")
         index += [list(setups).index(believed.name)] * len(part.number)
     return list(setups.values()), np.array(index, dtype=np.int64)
 
@@ -275,12 +260,8 @@ def _split_by_gap(
         found = f"{gap[row]:.3f} mm" if np.isfinite(gap[row]) else "no way"
         what = f"touch {part.number[i]} with {found} between ball and surface"
         if np.mean(~good) > LARGEST_OUTLIER_SHARE:
-            raise BadFile(
-                part.path,
-                f"line {part.line[i]}",
-                what,
-                f"less than {limit:g} mm: another feature, set-up, probe or meaning of Z",
-            )
+            expected = f"less than {limit:g} mm: another feature, set-up, probe or meaning of Z"
+            raise BadFile(part.path, f"line {part.line[i]}", what, expected)
         remarks.append(f"{part.path}: line {part.line[i]}: {what}; it is left out")
     return good, remarks
 

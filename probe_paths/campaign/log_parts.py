@@ -103,10 +103,11 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
         check_log_stamp(part.path, part.heading, standard)
         good = (part.feature >= 1) & (part.feature <= count)
         if len(good) and not np.any(good):
-            raise BadFile(
-                part.path, f"line {part.line[0]}", f"feature {part.feature[0]}",
+            found, expected = (
+                f"feature {part.feature[0]}",
                 f"1 to {count}, a feature of {standard.name}",
-            )  # fmt: skip
+            )
+            raise BadFile(part.path, f"line {part.line[0]}", found, expected)
         remarks += [
             f"{part.path}: line {part.line[i]}: feature {part.feature[i]} is none of 1 to {count}; "
             f"touch {part.number[i]} is left out"

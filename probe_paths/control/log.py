@@ -41,8 +41,7 @@ BALL, FIRST = "CAL", "COM"
 """Last letters of the names of programs that measure nothing: touches on one ball before and after
 the others, and one touch that a control is tried with."""
 
-Line = tuple[int, str]
-"""Number in the file and text."""
+Line = tuple[int, str]  # number in the file and text
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,9 +92,6 @@ class LogPart:
 
 def read_log(path: str | Path, rotary: Sequence[str], text: str | None = None) -> list[LogPart]:
     """Parts of a log file; a program that was run again appends a further part.
-
-    Args:
-        text: Its text, if already read.
 
     Raises:
         BadFile: No part of the log has a head that can be read, or it is a log of another kind.
@@ -225,7 +221,9 @@ class _PartReader:
         """Day of the head; None, and a remark, where it cannot be read."""
         match = _DATE.match(self._peek("DATE <y>-<m>-<d>"))
         try:
-            day = _day(match) if match else None
+            # as 2031-05-06, or as one number
+            parts = match and (match[1], match[2] or match[4], match[3] or match[5])
+            day = datetime(*map(int, parts)) if parts else None
         except ValueError:
             day = None
         if day is None:
@@ -352,11 +350,6 @@ def _numbers(text: str, names: Sequence[str]) -> list[float] | None:
 def _are_counters(values: Sequence[float]) -> bool:
     """Whether the numbers of touch, pose and feature are whole and positive."""
     return all(0.0 < v < 1e6 and v == int(v) for v in values)
-
-
-def _day(match: re.Match[str]) -> datetime:
-    """Day of a head, as `2031-05-06` or as one number; raises ValueError for none."""
-    return datetime(int(match[1]), int(match[2] or match[4]), int(match[3] or match[5]))
 
 
 def _time_of_day(text: str) -> int | None:

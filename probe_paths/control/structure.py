@@ -20,12 +20,6 @@ _PRESET = re.compile(r"PRESET (\d+):.*")
 _TOOL = re.compile(r"TOOL (\d+) IS THE PROBE: L([+-][\d.]+) R([+-][\d.]+),.*")
 _FEATURE = re.compile(r"FEATURE (\d+) IS (\S+)")
 _CYCLE = (Kind.PROBE_NAME, Kind.PROBE_RESULT, Kind.PROBE_VECTOR, Kind.PROBE_PATH)
-_NAMES = {
-    Kind.PROBE_NAME: "4.0",
-    Kind.PROBE_RESULT: "4.1",
-    Kind.PROBE_VECTOR: "4.2",
-    Kind.PROBE_PATH: "4.3",
-}
 
 _DIGITS = 1e-4
 """Largest difference of a stated coordinate from the planned one, mm: the last decimal."""
@@ -48,9 +42,8 @@ def program_name(blocks: Sequence[Block], path: Path) -> str:
     if first.kind is not Kind.BEGIN:
         raise BadFile(path, f"line {first.line}", repr(first.text), "BEGIN PGM <name> MM")
     if last.kind is not Kind.END:
-        raise BadFile(
-            path, f"line {last.line}", f"{last.text!r} as the last block", "END PGM: cut off?"
-        )
+        found = f"{last.text!r} as the last block"
+        raise BadFile(path, f"line {last.line}", found, "END PGM: cut off?")
     for block in blocks[1:-1]:
         if block.kind in (Kind.BEGIN, Kind.END):
             raise BadFile(path, f"line {block.line}", repr(block.text), "one frame per file")
@@ -100,12 +93,8 @@ def check_cycles(blocks: Sequence[Block], path: Path) -> None:
     for block in blocks:
         place = _CYCLE.index(block.kind) if block.kind in _CYCLE else None
         if (place is None and expected) or (place is not None and place != expected):
-            raise BadFile(
-                path,
-                f"line {block.line}",
-                repr(block.text),
-                f"TCH PROBE {_NAMES[_CYCLE[expected]]} in its place",
-            )
+            wanted = f"TCH PROBE 4.{expected} in its place"
+            raise BadFile(path, f"line {block.line}", repr(block.text), wanted)
         expected = 0 if place is None else (place + 1) % len(_CYCLE)
 
 
@@ -164,24 +153,18 @@ def promise(blocks: Sequence[Block], head: Heading, path: Path) -> Promise:
         touches, _ = _remark(_TOUCHES, ";TOUCHES <first> TO <last>, ...", remarks, path)
         made = range(int(touches[0]), int(touches[1]) + 1)
     preset, _ = _remark(_PRESET, ";PRESET <row>: ...", remarks, path)
-    tool, line = _remark(
-        _TOOL, ";TOOL <number> IS THE PROBE: L<signed> R<signed>, ...", remarks, path
-    )
-    for name, stated, planned in (
-        ("L", tool[1], head.probe.tool_length),
-        ("R", tool[2], head.probe.radius),
-    ):
+    form = ";TOOL <number> IS THE PROBE: L<signed> R<signed>, ..."
+    tool, line = _remark(_TOOL, form, remarks, path)
+    planned_words = (("L", head.probe.tool_length), ("R", head.probe.radius))
+    for (name, planned), stated in zip(planned_words, tool[1:], strict=True):
         if abs(float(stated) - planned) > _DIGITS:
             raise BadFile(path, f"line {line}", f"{name}{stated}", f"{planned:+.4f} as PROBE says")
-    is_search, is_first = (
-        any(form.fullmatch(text) for _, text in remarks) for form in (_SEARCH, _FIRST)
-    )
     return Promise(
         touches=made,
         tool=int(tool[0]),
         preset=int(preset[0]),
-        is_search=is_search,
-        is_first=is_first,
+        is_search=any(_SEARCH.fullmatch(text) for _, text in remarks),
+        is_first=any(_FIRST.fullmatch(text) for _, text in remarks),
     )
 
 

@@ -38,11 +38,6 @@ def latch_u(feed: float, period: float = SERVO_PERIOD, latency: float = 0.0) -> 
     ``b = feed (period + latency)``: ``sqrt((a^2 + a b + b^2) / 3)``. Nothing is corrected: the
     common part acts as a larger ball, which the calibration of the probe absorbs.
 
-    Args:
-        feed: Feed of the touch that measures, mm/s.
-        period: Period of the servo thread, s.
-        latency: Latency of the probe's signal, s.
-
     Reference:
         JCGM 100, 4.3.7 (rectangular distribution).
     """
@@ -68,9 +63,6 @@ def machine_files(chain: Chain, probe: Probe, dialect: Dialect, socket: str) -> 
     """Text of every file of the machine, by name.
 
     The preset stands where `ProgramFrame` wants it, the probe in the tool table.
-
-    Args:
-        dialect: Numbers of tool and preset.
     """
     frame = ProgramFrame(chain, probe)
     letters = sorted(frame.letters, key="XYZABC".index)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, Standard
-from matstd.artefact.reach import ProbeReach, Requests, joined
+from matstd.artefact.reach import Requests, joined
 from matstd.probe_paths.emit import (
     Feeds,
     ProgramSet,
@@ -81,17 +81,7 @@ def _without_deep_collisions(
     balls: Sequence[DatumSphere],
 ) -> Iterator[tuple[DatumSphere, Requests]]:
     """Rings that may be touched, pose by pose: exact gaps take half a second a ring."""
-    reach = ProbeReach(
-        chain=plan.chain,
-        setup=plan.setup,
-        shape=plan.probe.shape,
-        length=plan.probe.length,
-        steepest=options.steepest,
-        room=_CERTAIN_COLLISION,
-        standoff=options.standoff,
-        search=options.search,
-        workshop=options.workshop,
-    )
+    reach = options.reach(plan.chain, plan.setup, plan.probe, _CERTAIN_COLLISION)
     for tilt, rotary in product(_TILTS, poses if balls else []):
         # one static check for the rings of all balls
         rings = [_ring(plan, ball, rotary, tilt) for ball in balls]
@@ -155,7 +145,6 @@ def companions(
     """Dry run, search, ball and commissioning program of a plan.
 
     Args:
-        raised: By how much the dry run is raised, mm.
         spread: Within which the search finds the standard; None for the widest of `SPREADS` for
             which there is a search.
         is_further: Whether another probe has already searched and tried the control.

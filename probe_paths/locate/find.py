@@ -36,7 +36,6 @@ _TRIED, _FEWEST_TRIED = 40_000, 2_000
 """Places in the first round for a spread of 20 mm and 5 degrees, and for a small one."""
 
 _KEPT = 60  # number improved on the relief
-
 _EXACT = 3  # number improved on the exact surfaces
 
 _ROUNDS, _EXACT_ROUNDS, _LAST_ROUNDS = 25, 15, 15
@@ -83,8 +82,6 @@ def find_standard(
     Args:
         ball_table: Centres of the balls at their contacts, table frame, (N, 3), mm; they came along
             -z of the believed standard.
-        radius: Radius of the ball, mm.
-        rng: For the places of the first round.
 
     Raises:
         NotEnoughData: Fewer than nine touches, no place that fits, or two that fit alike.

@@ -13,7 +13,6 @@ from matstd.twin.frames import Array
 from matstd.twin.sampling import grid_points
 
 PITCH = 1.0  # spacing of the places, mm; what is found on them is refined on the exact surfaces
-
 _FINE = 0.4  # mm between points of a face: no place between them stays empty
 _ROUND = 60.0  # mm round the base that belongs to the picture
 NOWHERE = -1e3  # height where there is nothing, mm

@@ -38,7 +38,6 @@ the more informative edges. For 15 mm and 4 degrees 18 of the example's 20 touch
 base, and determine 0.5; for 10 mm and 3 degrees, 1.0."""
 
 _NOISE = 0.03  # standard uncertainty of a touch of a search, the errors of the machine included, mm
-
 _FREE_BESIDE = 3.0  # kept free beside the ball's way and under the body besides everything else, mm
 
 _UPRIGHT = np.cos(1.0 * DEG)
@@ -55,9 +54,6 @@ def plan_search(
     retract: float = PlanOptions.retract,
 ) -> TouchPlan:
     """Touches from above, at the readings at which programs begin and end.
-
-    Args:
-        retract: Below the upper end of Z's travel, mm.
 
     Raises:
         NotReachable: The table is not level there, the stylus is too short for the steps of the

@@ -18,9 +18,7 @@ from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
 CORNERS = 8  # most corners of a body
-
 EXACT = 0.01  # accuracy of a gap that matters, mm
-
 _ROUNDS = 60  # of the search; cylinders beside cylinders took up to 35
 _INSIDE = 1e-7  # mm: nearer than this the bodies are in each other
 _NOISE = 1e-9  # of a direction across an axis, in mm as all directions here: rounding is 1e-14
@@ -118,7 +116,6 @@ def least_gaps(
         bound: Gaps that are never too large, (M,), mm.
         group: Of every row, (M,), from 0.
         enough: As of `gaps`, (M,), alike within a group.
-        search: Gaps of some rows, for their `enough`.
     """
     gap, limit = bound.copy(), enough.copy()
     order = np.lexsort((gap, group))

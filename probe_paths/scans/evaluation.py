@@ -112,7 +112,6 @@ def evaluate_scan(
     """Rows of a run from a scan of one freeform face; the set-up is fitted to it.
 
     Args:
-        face: Name of the face.
         radius: Of the ball, mm.
         length: From the gauge point to its centre, mm.
         setup: Where the standard is believed to stand.

@@ -36,7 +36,6 @@ def make_stations(
 
     Args:
         plans: As of `plan_campaign`, with the number of the probe.
-        words: Words of the control, for every probe.
     """
     return tuple(
         Station(plan, words[probe], make_programs(plan, words[probe], feeds))

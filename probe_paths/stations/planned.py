@@ -43,7 +43,6 @@ def plan_campaign(
         probes: The one that the standard was designed for, then those for the remaining touches.
         clampings: The one that it was designed for, then others.
         requests: Wanted touches, at table poses of the first clamping.
-        options: How carefully; its workshop is that of each clamping.
 
     Raises:
         NotReachable: More requests of the first clamping refused by all probes than tolerated; a

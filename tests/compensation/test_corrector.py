@@ -15,12 +15,7 @@ import pytest
 from bench import LENGTH
 
 from matstd.compensation.linuxcnc import control_files
-from matstd.compensation.linuxcnc.control_files import (
-    SCALE,
-    Control,
-    hal_text,
-    write_control_files,
-)
+from matstd.compensation.linuxcnc.control_files import SCALE, Control, hal_text, write_control_files
 from matstd.compensation.linuxcnc.link import serve_linuxcnc
 from matstd.compensation.service.output import OutputLimits
 from matstd.compensation.service.service import Service

@@ -13,11 +13,10 @@ from bench import LENGTH
 from matstd.compensation.field.inverse import correction
 from matstd.compensation.field.machine_errors import MachineErrors
 from matstd.compensation.field.state import State
-from matstd.compensation.service.history import MAX_MOMENTS, History
-from matstd.compensation.service.latency import prompt
-from matstd.compensation.service.opcua_server import NAMESPACE, serve
+from matstd.compensation.service.opcua_server import NAMESPACE, prompt, serve
 from matstd.compensation.service.output import Output, OutputLimits, Quality
 from matstd.compensation.service.service import Service
+from matstd.compensation.service.tabulated import MAX_MOMENTS, History
 from matstd.twin.errors import BadValue, DesignError
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.thermal.thermal_lag import ThermalLag

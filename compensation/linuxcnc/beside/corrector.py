@@ -17,16 +17,13 @@ import time
 from typing import Any, Optional
 
 LOOK_PERIOD = 0.002  # between two looks at the pins, s
-
 STILL = 1e-6  # smallest change of a position that is a motion, mm or degrees
-
 LONGEST_STEP = 0.005  # longest time that one step may stand for, s: a pause is no licence to jump
 
 LOST = 25
 """Looks in a row at which the control has another offset than it was given, until that counts."""
 
 AHEAD = 0.01  # time in which an offset that is taken back has really gone, s
-
 AGAIN = 0.5  # between two tries to reach the service, s
 
 
