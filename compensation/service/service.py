@@ -190,9 +190,8 @@ class Service:
         for name, value in (driving | {"spindle speed": spindle_rpm or 0.0}).items():
             if not np.isfinite(value):
                 raise DesignError(f"{name}: {value:g}, expected a number")
-        state = replace(
-            self._history.now, time=time, temperature=dict(temperature), spindle_rpm=spindle_rpm
-        )
+        warm, now = dict(temperature), self._history.now
+        state = replace(now, time=time, temperature=warm, spindle_rpm=spindle_rpm)
         self._history = self._history.then(state)
         self.drifts.follow(self._history)
         self.correction = self.correction.following(self._history, self.drifts.learnt)
@@ -219,9 +218,7 @@ class Service:
         k0, k1, p0 = self._linear
         sent = self._output.step(now)
         self._quality = sent.quality
-        return Answer(
-            sequence=self._sequence, sent=sent, k0=k0, k1=k1, p0=p0, refused=self._refused
-        )
+        return Answer(self._sequence, sent, k0, k1, p0=p0, refused=self._refused)
 
     def uncertainty(self, readings: Sequence[float]) -> Point:
         """Standard uncertainty of the tool point that the model leaves there, x, y, z, mm.

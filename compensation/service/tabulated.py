@@ -28,7 +28,7 @@ MAX_MOMENTS = 4000
 class History:
     """States of a machine in their order, the present one last."""
 
-    states: tuple[State, ...] = field(default_factory=tuple)
+    states: tuple[State, ...]
 
     def __len__(self) -> int:
         return len(self.states)
@@ -40,15 +40,12 @@ class History:
 
     def then(self, state: State) -> "History":
         """The history with one more moment; raises DesignError."""
-        if self.states:
-            last = self.now
-            if not state.time > last.time:
-                raise DesignError(f"time {state.time:g} s, expected later than {last.time:g} s")
-            if set(state.temperature) != set(last.temperature):
-                raise DesignError(
-                    f"sensors {', '.join(sorted(state.temperature)) or 'none'}, expected "
-                    f"{', '.join(sorted(last.temperature)) or 'none'}"
-                )
+        last = self.now
+        if not state.time > last.time:
+            raise DesignError(f"time {state.time:g} s, expected later than {last.time:g} s")
+        own, before = (", ".join(sorted(s.temperature)) or "none" for s in (state, last))
+        if own != before:
+            raise DesignError(f"sensors {own}, expected {before}")
         states = (*self.states, state)
         return History(states if len(states) <= MAX_MOMENTS else (*states[:-1:2], state))
 

@@ -30,7 +30,7 @@ from matstd.twin.frames import Array
 from matstd.twin.library import parse_effect
 from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Model, columns
-from matstd.twin.record import IntArray, Setup, Touches
+from matstd.twin.record import IntArray, Setup, Touches, at_poses
 
 _PRIOR_FACTOR = 1e3
 """Prior of the sought effects in units of their typical size: almost uninformative."""
@@ -111,16 +111,12 @@ def _timed(plan: TouchPlan) -> tuple[Touches, float]:
 
 
 def _record(plan: TouchPlan, time: Array, approach: Array) -> Touches:
-    n = len(plan)
-    return Touches(
-        chain=plan.chain,
-        q=plan.contact,
-        length=np.full(n, plan.probe.length),
-        radius=np.full(n, plan.probe.radius),
+    return replace(
+        at_poses(plan.chain, plan.contact, plan.probe.length),
+        radius=np.full(len(plan), plan.probe.radius),
         point=plan.point,
         normal=plan.normal,
         setups=(plan.setup,),
-        setup=np.zeros(n, dtype=np.int64),
         time=time,
         approach=approach,
         feature=plan.feature,

@@ -208,9 +208,8 @@ class _PartReader:
     def _peek(self, expected: str) -> str:
         """The next line; refuses the end of the part."""
         if self.place >= len(self.lines):
-            raise BadFile(
-                self.path, f"line {self.lines[-1][0]}", "the end of the part after it", expected
-            )
+            last = f"line {self.lines[-1][0]}"
+            raise BadFile(self.path, last, "the end of the part after it", expected)
         return self.lines[self.place][1]
 
     def _refusal(self, expected: str) -> BadFile:
@@ -290,28 +289,24 @@ class _PartReader:
         row: list[float] = []
         first = self.place
         for names in [*self.names, None]:
-            expected = (
-                "T <h>:<m>:<s>" if names is None else " ".join(f"{n} <number>" for n in names)
-            )
             is_end = self.place >= len(self.lines)
-            text = "the end of the part" if is_end else self.lines[self.place][1]
+            line, text = self.lines[-1 if is_end else self.place]
+            text = "the end of the part" if is_end else text
             if names is None:
-                now = _time_of_day(text)
+                expected, now = "T <h>:<m>:<s>", _time_of_day(text)
                 values = None if now is None else [float(now)]
             else:
+                expected = " ".join(f"{n} <number>" for n in names)
                 values = _numbers(text, names)
+            found = f"line {line}: found {text!r}, expected {expected}"
             if values is None and names in self.sensed:  # a touch without it is a touch
-                line = self.lines[min(self.place, len(self.lines) - 1)][0]
-                self.remarks.append(f"line {line}: found {text!r}, expected {expected}")
+                self.remarks.append(found)
                 row += [np.nan] * len(names)
                 self.place += text.startswith(names[0])
                 continue
             if values is None or (names == ["P", "S", "F"] and not _are_counters(values)):
-                line = self.lines[min(self.place, len(self.lines) - 1)][0]
-                self.remarks.append(
-                    f"line {line}: found {text!r}, expected {expected}; the touch that begins in "
-                    f"line {self.lines[first][0]} is left out"
-                )
+                begun = f"the touch that begins in line {self.lines[first][0]} is left out"
+                self.remarks.append(f"{found}; {begun}")
                 self.place = max(self.place, first + 1)
                 self._to_next()
                 return None

@@ -90,10 +90,8 @@ def installed(user: str) -> str:
     """
     missing = [name for name in NEEDED if shutil.which(name) is None]
     if missing:
-        raise DesignError(
-            f"LinuxCNC is not installed here ({', '.join(missing)} not found); docs/controls.md "
-            "says how to install it"
-        )
+        found = f"LinuxCNC is not installed here ({', '.join(missing)} not found)"
+        raise DesignError(f"{found}; docs/controls.md says how to install it")
     if LOCK.exists():
         raise DesignError(f"LinuxCNC is already running on this computer ({LOCK}); stop it first")
     if os.geteuid() == 0 and not user:

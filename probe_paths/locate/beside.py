@@ -149,9 +149,8 @@ def companions(
             which there is a search.
         is_further: Whether another probe has already searched and tried the control.
     """
-    made = Companions(
-        dry_run=make_dry_run(plan, raised, dialect, feeds), raised=raised, spread=SPREADS[-1]
-    )
+    dry_run = make_dry_run(plan, raised, dialect, feeds)
+    made = Companions(dry_run=dry_run, raised=raised, spread=SPREADS[-1])
     is_beside = plan.options.workshop.ball is not None
     try:
         own = plan_ball(plan)
@@ -165,16 +164,9 @@ def companions(
         return replace(made, no_search="the first probe of this set-up has found it")
     # the widest spread comes first, a narrower one where it allows no search
     for chosen in SPREADS if spread is None else (spread,):
+        place = plan.standard, plan.chain, plan.probe, plan.setup
         try:
-            search = plan_search(
-                plan.standard,
-                plan.chain,
-                plan.probe,
-                plan.setup,
-                chosen,
-                plan.options.workshop,
-                plan.options.retract,
-            )
+            search = plan_search(*place, chosen, plan.options.workshop, plan.options.retract)
         except NotReachable as error:
             made = replace(made, spread=chosen, no_search=str(error))
             continue

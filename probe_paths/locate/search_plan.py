@@ -205,15 +205,10 @@ def _refuse_out_of_travel_or_collision(plan: TouchPlan, path: float) -> None:
             f"a search from above would go from Z {plan.start[:, z].max():.0f} to "
             f"{end[:, z].min():.0f} mm and is out of travel: state a smaller spread"
         )
-    room = ToolClearance(
-        chain=chain,
-        standard=plan.standard,
-        setup=plan.setup,
-        probe=plan.probe,
-        workshop=plan.options.workshop,
-    )
+    workshop = plan.options.workshop
+    room = ToolClearance(chain, plan.standard, plan.setup, plan.probe, workshop=workshop)
     # the standard is spared, as the touches are to meet it
-    ours = np.isin(room.bodies.name, [solid.name for solid in plan.options.workshop.solids[1:]])
+    ours = np.isin(room.bodies.name, [solid.name for solid in workshop.solids[1:]])
     spared = np.broadcast_to(~ours, (len(end), len(ours)))
     gap, nearest = room.swept_gap(plan.start, end, spared=spared)
     worst = int(np.argmin(gap))

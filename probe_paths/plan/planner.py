@@ -55,13 +55,8 @@ class _Task:
     @cached_property
     def clearance(self) -> ToolClearance:
         """Room for the tool."""
-        return ToolClearance(
-            chain=self.chain,
-            standard=self.standard,
-            setup=self.setup,
-            probe=self.probe,
-            workshop=self.options.workshop,
-        )
+        workshop = self.options.workshop
+        return ToolClearance(self.chain, self.standard, self.setup, self.probe, workshop=workshop)
 
     @cached_property
     def frame(self) -> ProgramFrame:
@@ -230,11 +225,7 @@ def _cleared(task: _Task, wanted: Requests, height: Array) -> _Touches:
     rows = rows[room >= task.options.smallest_gap]
     linear = task.linear
     ways = Approaches(
-        chain=task.chain,
-        standard=task.standard,
-        setup=task.setup,
-        length=task.probe.length,
-        radius=task.probe.radius,
+        clearance=task.clearance,
         contact=touches.contact[rows],
         normal=touches.normal[rows],
         feature=touches.feature[rows],
