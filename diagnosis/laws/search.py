@@ -13,6 +13,7 @@ from matstd.diagnosis.laws.formulas import (
     columns_of,
     product_formulas,
     refined,
+    scan,
     single_formulas,
     spread,
     with_curve,
@@ -22,10 +23,11 @@ from matstd.diagnosis.laws.screening import (
     Field,
     Found,
     curve_evidence,
-    fast_sines,
     field_of,
+    modulations,
     normal_equations,
     pairs,
+    rough_shapes,
     singles,
     waves_of,
 )
@@ -58,6 +60,9 @@ QUICK = 8.0
 PER_DRIVER = 3
 """Most carriers of one variable among them: others would crowd out a second variable."""
 
+ROUGH, MODULATED = 12, 2
+"""Shapes of either kind that no curve shows, and those of which a second variable is looked for."""
+
 REFINED = 24
 """Candidates whose parameters are refined."""
 
@@ -87,7 +92,7 @@ def search_law(space: Space, policy: LawPolicy) -> Searched:
     found: list[Candidate] = []
     for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SINGLES):
         found += single_formulas(grids, f.bearer, f.drivers[0], 4)
-    found += _fast(space, field)
+    found += _rough(grids)
     if not found or max(c.score for c in found) < one[0].evidence + CLEAR:
         for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SQUARES):
             found += product_formulas(grids, f.bearer, (f.drivers[0], f.drivers[0]), 2)
@@ -137,12 +142,26 @@ def _gaining(two: Sequence[Found], one: Sequence[Found]) -> list[Found]:
     ]
 
 
-def _fast(space: Space, field: Field) -> list[Candidate]:
-    """Sines that are too quick for a curve, refined like the others."""
-    return [
-        candidate(space, field, bearer, [Part(Factor(SHAPES["sine"], driver), (period,))])
-        for bearer, driver, period, _ in fast_sines(space, field, 4)
-    ]
+def _rough(grids: Grids) -> list[Candidate]:
+    """Shapes that no curve shows, alone and with a size that depends on a second variable."""
+    space, field = grids.space, grids.field
+    out: list[Candidate] = []
+    for r in rough_shapes(space, field, ROUGH):
+        part = Part(Factor(SHAPES[r.word], r.driver), r.places)
+        out.append(candidate(space, field, r.bearer, [part]))
+    for one in sorted(out, key=lambda c: -c.score)[:MODULATED]:
+        part = _part(one.law, 0)
+        C = spread(one.bearer.C, columns_of(field, space, [part]))
+        driver, gain = modulations(space, field, C)[0]
+        if gain > MIN_GAIN_PAIR:
+            ranked = sorted(
+                scan(grids, C, driver),
+                key=lambda s: space.charge(s[2]) - float(space.gained(np.array(s[1]))),
+            )
+            out += [
+                candidate(space, field, one.bearer, [part, other]) for other, _, _ in ranked[:4]
+            ]
+    return out
 
 
 def _distinct(found: Sequence[Candidate]) -> list[Candidate]:

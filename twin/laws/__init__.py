@@ -6,13 +6,14 @@ where their parameters are scanned.
 """
 
 from matstd.twin.laws.driver import Driver, driver_of, drivers
-from matstd.twin.laws.grids import grid, shapes_of
+from matstd.twin.laws.grids import WORDS, grid, shapes_of
 from matstd.twin.laws.law import KIND, Carrier, Factor, Law, carrier_of
 from matstd.twin.laws.shape import SHAPES, Shape, curve_columns, play
 
 __all__ = [
     "KIND",
     "SHAPES",
+    "WORDS",
     "Carrier",
     "Driver",
     "Factor",
