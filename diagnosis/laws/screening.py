@@ -15,7 +15,7 @@ import numpy as np
 from matstd.diagnosis.laws.space import MIN_OWN, Space
 from matstd.diagnosis.residual import Bearer, bearers
 from matstd.twin.frames import Array
-from matstd.twin.laws import SHAPES, WORDS, Driver, curve_columns, drivers, grid
+from matstd.twin.laws import ON_BALL, SHAPES, WORDS, Driver, curve_columns, drivers, grid
 
 LENGTHS = (0.03, 0.1, 0.3)
 """Correlation lengths of curves, as shares of the range."""
@@ -239,7 +239,7 @@ def rough_shapes(space: Space, field: Field, each: int) -> list[Rough]:
                 Rough(owner[i], driver, "sine", (float(1.0 / f[j]),), power[i, j])
                 for i, j in _of_carriers(power)
             ]
-        if "hysteresis" in WORDS[driver.nature]:
+        if "hysteresis" in WORDS[driver.nature] and driver.name not in ON_BALL:
             points = grid(SHAPES["hysteresis"], driver, x)
             whole = field.x[driver.name]
             H = np.stack([SHAPES["hysteresis"].values(whole, *p)[0][space.used] for p in points], 1)

@@ -183,6 +183,8 @@ def _charged(one: Candidate, field: Field, policy: LawPolicy) -> Candidate:
             charge += policy.switch_of_level
         if factor.shape.word in UNUSUAL:
             charge += policy.unusual
+        if factor.shape.word == "hysteresis" and factor.driver.nature != "level":
+            charge += policy.quick
         if factor.shape.word == "sine":
             period = one.law.tuning["period"]
             charge += policy.quick * (np.ptp(field.x[factor.driver.name]) > QUICK * period)
@@ -226,9 +228,8 @@ def _curves(
 
 def _part(law: Law, which: int) -> Part:
     """One factor of a law with its places."""
-    start = 0 if which == 0 else len(law.factors[0].shape.places)
-    count = len(law.factors[which].shape.places)
-    return Part(law.factors[which], law.places[start : start + count])
+    factor, own = law.parts[which]
+    return Part(factor, law.places[own])
 
 
 def _curve_times(

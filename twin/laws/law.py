@@ -86,6 +86,15 @@ class Carrier:
             turned += [(turn, Where("shift", 0, a), -arm[:, b])]
         return turned
 
+    def terms(self, touches: Touches, amounts: Sequence[Array]) -> Sequence[Term]:
+        """Every amount, (N,), at all that it moves: amplitudes of one entry after another."""
+        m = len(amounts)
+        return tuple(
+            Term(way * m + k, where, factor * amount)
+            for way, where, factor in self.entries(touches)
+            for k, amount in enumerate(amounts)
+        )
+
     def columns(self, touches: Touches) -> Array:
         """Deviation along the normal per unit of every amplitude, (N, count)."""
         out = np.zeros((len(touches), self.count))
@@ -143,6 +152,26 @@ class Law:
         return Title(f"{self.carrier.name}: {text}", _bearer(self.carrier))
 
     @property
+    def drivers(self) -> tuple[Driver, ...]:
+        """Its variables: one where both shapes are of the same."""
+        return tuple(dict.fromkeys(f.driver for f in self.factors))
+
+    @cached_property
+    def parts(self) -> tuple[tuple[Factor, slice], ...]:
+        """Every factor with the range of its parameters in `places`."""
+        out, start = [], 0
+        for factor in self.factors:
+            end = start + len(factor.shape.places)
+            out.append((factor, slice(start, end)))
+            start = end
+        return tuple(out)
+
+    @property
+    def explanation(self) -> tuple[str, ...]:
+        """Carrier and variables: other shapes of the same are no other explanation."""
+        return (self.carrier.name, *sorted(driver.name for driver in self.drivers))
+
+    @property
     def symbol(self) -> Symbol | None:
         """Component error that it acts on."""
         return self.carrier.symbol
@@ -193,24 +222,15 @@ class Law:
 
     def amounts(self, touches: Touches) -> list[Array]:
         """What the carrier does per unit of every coefficient, (N,) each."""
-        out, start = [np.ones(len(touches))], 0
-        for factor in self.factors:
-            count = len(factor.shape.places)
-            x = factor.driver.values(touches)
-            found = factor.shape.values(x, *self.places[start : start + count])
+        out = [np.ones(len(touches))]
+        for factor, own in self.parts:
+            found = factor.shape.values(factor.driver.values(touches), *self.places[own])
             out = [a * b for a in out for b in found]
-            start += count
         return out
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Amounts at the entries of the carrier."""
-        amounts = self.amounts(touches)
-        m = len(amounts)
-        return tuple(
-            Term(way * m + k, where, factor * amount)
-            for way, where, factor in self.carrier.entries(touches)
-            for k, amount in enumerate(amounts)
-        )
+        return self.carrier.terms(touches, self.amounts(touches))
 
     @cached_property
     def place_names(self) -> tuple[str, ...]:
@@ -263,11 +283,7 @@ class Law:
     @property
     def free(self) -> tuple[int, ...]:
         """Which of the parameters of the shapes a run determines."""
-        out, start = [], 0
-        for factor in self.factors:
-            out += [start + k for k in factor.shape.free]
-            start += len(factor.shape.places)
-        return tuple(out)
+        return tuple(own.start + k for factor, own in self.parts for k in factor.shape.free)
 
 
 def _is_number(name: str, driver: Driver) -> bool:

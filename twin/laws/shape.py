@@ -210,7 +210,7 @@ SHAPES: dict[str, Shape] = {
                lambda x, zero, w: np.exp(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w"),
         _shape("settling", "1 - exp(-(x - zero)/w)", "1.0 - np.exp(-(x - {zero}) / {w})",
                lambda x, zero, w: -np.expm1(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w"),
-        _several("two-exp", "a exp(-(x - zero)/w1) + b exp(-(x - zero)/w2)",
+        _several("two-exp", "a exp(-(x - zero)/wa) + b exp(-(x - zero)/wb)",
               ("np.exp(-(x - {zero}) / {wa})", "np.exp(-(x - {zero}) / {wb})"),
               lambda x, zero, wa, wb: (np.exp(-(x - zero) / wa), np.exp(-(x - zero) / wb)),
               ("zero", "wa", "wb"), ("fast", "slow")),
