@@ -157,6 +157,22 @@ class Learning:
                 out += share * (columns([law], run.touches) @ theta)
         return out
 
+    @cached_property
+    def saved(self) -> Fit:
+        """With what is not known of every formula beyond the values that its variables had.
+
+        No touch shows that: the estimates are those of `after`, with wider predictions elsewhere.
+        """
+        used = self.after.run.touches[self.after.used]
+        beyond: dict[str, Effect] = {}
+        for one in (one.law for one in self.laws if not one.law.is_curve_alone):
+            theta = self.after.theta[self.after.of_effect(one.name)]
+            beyond |= {law.name: law for law in one.beyond(theta, used)}
+        laws = [one.law for one in self.laws]
+        if not beyond:
+            return self.after
+        return self.beginning.fitted([*laws, *beyond.values()], gross=self.after.gross)
+
     @property
     def u(self) -> Array:
         """Standard uncertainty of the amplitudes and parameters; see `tangent`."""

@@ -63,8 +63,9 @@ PER_DRIVER = 3
 ROUGH, MODULATED = 12, 2
 """Shapes of either kind that no curve shows, and those of which a second variable is looked for."""
 
-REFINED = 24
-"""Candidates whose parameters are refined."""
+REFINED, FAR = 24, 20.0
+"""Candidates whose parameters are refined, and the log evidence by which one may be behind the
+best (or half of it): points of a grid lose less than that."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,8 +99,10 @@ def search_law(space: Space, policy: LawPolicy) -> Searched:
             found += product_formulas(grids, f.bearer, (f.drivers[0], f.drivers[0]), 2)
     for f in _worth(_gaining(two, one), one, MIN_SHARE_PAIR, TOP_PAIRS):
         found += product_formulas(grids, f.bearer, f.drivers, 4)
-    promising = sorted(_distinct(found), key=lambda c: -_charged(c, field, policy).score)
-    polished = [_charged(refined(space, field, c), field, policy) for c in promising[:REFINED]]
+    promising = sorted(_distinct(found), key=lambda c: -_charged(c, field, policy).score)[:REFINED]
+    top = _charged(promising[0], field, policy).score if promising else 0.0
+    near = [c for c in promising if _charged(c, field, policy).score > min(0.5 * top, top - FAR)]
+    polished = [_charged(refined(space, field, c), field, policy) for c in near]
     drifts = [f for f in one if f.drivers[0].name == DRIFT][:1]
     beside = [f for f in drifts if all(f is not other for other in one[:3])]
     curves = _curves(space, field, [*one[:3], *beside], polished, policy)

@@ -67,6 +67,7 @@ _SHAPES = {
     "half-wave": "a half-wave",
     "hysteresis": "a hysteresis loop",
     "play": "a play that follows",
+    "beyond": "what is not known beyond the probed range",
     "curve": "a smooth curve without a formula",
 }
 _COURSE = (

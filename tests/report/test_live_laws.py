@@ -86,7 +86,7 @@ def test_a_diagnosis_shows_what_it_found_and_the_law_of_what_remains(learning):
     assert last["fitted"] == pytest.approx(found.laws.after.rms / UM)
     # the model has the law; of the geometry it states what console and page do
     saved = SavedDiagnosis(**{f.name: getattr(found, f.name) for f in fields(found)}, auto=True)
-    assert saved.learnt is found.laws.after
+    assert saved.learnt is found.laws.saved
     stated = {one.symbol: one.estimate.value for one in saved.model.determined}
     rows = {row.symbol: row.estimate.value for row in found.geometry.rows if row.is_determined}
     assert stated == pytest.approx(rows, rel=1e-5)

@@ -7,6 +7,7 @@ amplitude times one or two shapes, each a function of one variable:
     law(EXY,lin T-scaleX,quad Y)    EXY = a u_T u_Y^2
     law(shift,exp since-setup)      the standard moves by (a, b, c) exp(-t/tau)
     law(EBY,curve Y)           a smooth curve without a formula
+    law(EZX,beyond Y)          what a law may do beyond the Y that were probed: zero ± its size
 
 The library has effects with a cause; a law has none. It is learnt from what a model leaves, and
 predicts as any effect does.
@@ -32,6 +33,9 @@ from matstd.twin.units import DEG, HOUR, T_REF, UM, URAD
 FREE_LENGTH, FREE_ANGLE = 1000.0 * UM, 10000.0 * URAD
 """Prior standard deviation of an amplitude: what is learnt is not drawn towards zero. Of a curve
 its own `size` is the prior."""
+
+BEYOND_LENGTH = 0.3
+"""Share of its domain within which a law has lost its force beyond it."""
 
 SHIFT, BIAS, GROWTH, TILT = "shift", "bias", "growth", "tilt"
 PARTS = {SHIFT: 3, BIAS: 1, GROWTH: 1, TILT: 3, "shift-x": 1, "shift-y": 1, "shift-z": 1}
@@ -196,6 +200,25 @@ class Law:
         """Reported by the rms that it explains where coefficients have no meaning."""
         return self.is_curve_alone
 
+    def beyond(self, theta: Array, touches: Touches) -> tuple["Law", ...]:
+        """What it may do beyond the values that its variables had: of its own size, either way.
+
+        Args:
+            theta: Its amplitudes, base units.
+            touches: From which it was learnt.
+        """
+        ways = theta.reshape(self.carrier.count, -1)
+        size = float(np.abs(np.stack(self.amounts(touches), axis=1) @ ways.T).max())
+        out = []
+        for driver in self.drivers:
+            x = driver.values(touches)
+            low, high = float(x.min()), float(x.max())
+            is_whole = driver.nature == "sign" or (driver.unit == "rad" and high - low > np.pi)
+            if not is_whole:
+                places = (low, high, BEYOND_LENGTH, size)
+                out.append(Law(self.carrier, (Factor(SHAPES["beyond"], driver),), places))
+        return tuple(out)
+
     @property
     def needs_history(self) -> bool:
         """Whether the order of touches matters."""
@@ -204,9 +227,10 @@ class Law:
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Amplitudes: of every direction of the carrier, for every coefficient of the shapes."""
-        unit = "1" if self.is_curve_alone else self.carrier.unit
+        is_sized = self.is_curve_alone or self.factors[0].shape.word == "beyond"
+        unit = "1" if is_sized else self.carrier.unit
         free = FREE_ANGLE if unit == "rad" else FREE_LENGTH
-        sd = 1.0 if self.is_curve_alone else free
+        sd = 1.0 if is_sized else free
         return tuple(
             Parameter(" ".join(w for w in (way, word) if w) or "amplitude", unit, sd)
             for way in self.carrier.words
