@@ -265,12 +265,7 @@ def refined(space: Space, field: Field, start: Candidate) -> Candidate:
     def parts_at(at: Array) -> list[Part]:
         moved = values.copy()
         moved[free] = values[free] + at * steps
-        out, first = [], 0
-        for factor in law.factors:
-            count = len(factor.shape.places)
-            out.append(Part(factor, tuple(float(v) for v in moved[first : first + count])))
-            first += count
-        return out
+        return [Part(factor, tuple(moved[own].tolist())) for factor, own in law.parts]
 
     def left(at: Array) -> float:
         parts = parts_at(at)
