@@ -198,6 +198,7 @@ class Imports:
     def __init__(self) -> None:
         folders = {name.removeprefix("matstd."): place for name, place in ROOMS.items()}
         self.modules: dict[str, Path] = {}
+        self.faces: dict[Path, list[ast.ImportFrom]] = {}
         for name, place in {**folders, "": "matstd"}.items():
             for file in (ROOT / place).rglob("*.py"):
                 parts = ("matstd", name, *file.relative_to(ROOT / place).with_suffix("").parts)
@@ -225,10 +226,12 @@ class Imports:
         file = self.modules.get(module)
         if file is None or file.name != "__init__.py":
             return module
-        for node in ast.parse(file.read_text(encoding="utf-8")).body:
-            is_offered = isinstance(node, ast.ImportFrom) and node.module not in (None, module)
-            if is_offered and any(alias.name == name for alias in node.names):
-                return self.defining(node.module, name)
+        if file not in self.faces:
+            body = ast.parse(file.read_text(encoding="utf-8")).body
+            self.faces[file] = [n for n in body if isinstance(n, ast.ImportFrom)]
+        for node in self.faces[file]:
+            if node.module not in (None, module) and name in [a.name for a in node.names]:
+                return self.defining(str(node.module), name)
         return module
 
     def chosen(self, number: int, mutant: Mutant) -> list[str]:

@@ -92,13 +92,24 @@ def _as_in_a_test():
 
     A slow machine prints its progress every ten seconds: nothing a test can count on. The workers
     share the cores: nothing is done in a further process, where what a test has patched would not
-    be. Pictures have a third of the dots, which is a quarter of their time.
+    be. Pictures have a third of the dots, which is a quarter of their time. The Monte Carlo counts
+    in numpy: its loops take numba half a minute to compile, and `compiled_loops` brings them back
+    for the tests that compare the two.
     """
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("matstd.progress.PERIOD", 1e6)
         patch.setattr("matstd.twin.beside.CORES", 1)
         patch.setattr("matstd.report.style.DPI", 80)
+        patch.setattr("matstd.sensitivity.montecarlo.lengths.compiled", lambda: None)
         yield
+
+
+@pytest.fixture
+def compiled_loops(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The loops of the Monte Carlo as numba compiles them."""
+    from matstd.sensitivity.montecarlo import kernels
+
+    monkeypatch.setattr("matstd.sensitivity.montecarlo.lengths.compiled", kernels.compiled)
 
 
 @pytest.fixture(scope="session")

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from matstd.sensitivity.first_order.workspace import latin_hypercube
+from matstd.sensitivity.first_order import latin_hypercube
+from matstd.sensitivity.montecarlo import BINS, count_lengths, volumetric
 from matstd.sensitivity.montecarlo.kernels import compiled
-from matstd.sensitivity.montecarlo.lengths import BINS, count_lengths
-from matstd.sensitivity.montecarlo.random_machines import volumetric
-from matstd.sensitivity.population.sampling import Population
+from matstd.sensitivity.population import Population
 from matstd.twin.units import UM
 
 LENGTH = 160.0
@@ -23,6 +22,7 @@ def task():
     return G, theta, np.full(70, 0.01), size
 
 
+@pytest.mark.usefixtures("compiled_loops")
 @pytest.mark.parametrize("use_compiled", [False, True])
 @pytest.mark.parametrize("threads", [1, 3])
 def test_counts_are_those_of_plain_numpy(task, use_compiled, threads):
@@ -43,6 +43,7 @@ def test_counts_are_those_of_plain_numpy(task, use_compiled, threads):
     np.testing.assert_array_equal(found.worst, (size >= limit).sum(axis=1))
 
 
+@pytest.mark.usefixtures("compiled_loops")
 @pytest.mark.parametrize("use_compiled", [False, True])
 def test_poses_that_are_equally_bad_all_count(use_compiled):
     # machines along one direction: poses are equal, or differ by whole factors
