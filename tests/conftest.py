@@ -79,8 +79,10 @@ def pytest_report_header() -> str:
     return "pages are driven in Chromium" if is_here() else MISSING
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The longest files first, the others in their order."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """For several workers the longest files first, the others in their order."""
+    if not hasattr(config, "workerinput"):
+        return
     rank = {Path(__file__).parent / name: k for k, name in enumerate(LONGEST)}
     assert all(path.exists() for path in rank), "LONGEST names a file that is gone"
     items.sort(key=lambda item: rank.get(item.path, len(rank)))
