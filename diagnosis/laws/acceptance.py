@@ -137,7 +137,7 @@ def held_out(before: Fit, after: Fit, laws: Sequence[Law]) -> list[HeldOut]:
     """Errors of touches left out: by poses, by times, and by blocks of every variable of a law."""
     blocks = {"poses": pose_groups(before), "times": time_groups(before)}
     touches = before.run.touches
-    for driver in dict.fromkeys(f.driver for law in laws for f in law.factors):
+    for driver in dict.fromkeys(driver for law in laws for driver in law.drivers):
         rows = np.flatnonzero(before.used)
         x = driver.values(touches)[rows]
         if len(np.unique(x)) > PLACE_BLOCKS:

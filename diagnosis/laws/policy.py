@@ -12,8 +12,8 @@ class LawPolicy:
         tried_products: The same for a product of two shapes: some hundred times as many are tried.
         switch_of_level: Charged for a jump over a temperature: what jumps happens at an instant as
             a rule, and over a temperature that only rises both are the same.
-        quick: Charged for a sine of more than eight periods in the range: some thousand
-            frequencies are tried.
+        quick: Charged for a sine of more than eight periods in the range, of which some thousand
+            frequencies are tried, and for a loop over readings, which go to and fro as quickly.
         unusual: Charged for a shape that is met seldom where another has as few parameters: a power
             or a saturation over time looks like an exponential.
         min_score: Log evidence that a law must gain beyond all charges: odds of 150 : 1.

@@ -43,18 +43,19 @@ class LawCurve:
     put_back: Array  # residual with the law put back over the lever, in `unit`, (N,)
 
 
-def law_curve(learning: Learning, law: Law, k: int) -> LawCurve:
-    """The curve of a law over the variable of its k-th factor."""
-    fit, driver = learning.after, law.factors[k].driver
+def law_curve(learning: Learning, law: Law, driver: Driver) -> LawCurve:
+    """The curve of a law over one of its variables."""
+    fit = learning.after
     x = driver.values(fit.run.touches)
     used = x[fit.used]
     label, per = axis_label(driver, used)
-    beyond = BEYOND * float(np.ptp(used)) if law.factors[k].shape.word == "curve" else 0.0
+    is_curve = any(f.shape.word == "curve" and f.driver == driver for f in law.factors)
+    beyond = BEYOND * float(np.ptp(used)) if is_curve else 0.0
     grid = np.linspace(float(used.min()) - beyond, float(used.max()) + beyond, CURVE_POINTS)
     if driver.nature == "sign":
         grid = np.array([-1.0, 1.0])
-    value, u = curve_of(learning, law, k, grid)
-    at_touches, _ = curve_of(learning, law, k, x)
+    value, u = curve_of(learning, law, driver, grid)
+    at_touches, _ = curve_of(learning, law, driver, x)
     lever = _levers(learning, law, at_touches)
     both, _ = partial_residual(learning, law)
     scale = URAD if law.carrier.is_angular else UM
