@@ -65,7 +65,7 @@ def truth(name: str) -> dict:
 def warm_up(tmp_path_factory):
     """Words and result of the command, and the model with what it found."""
     out = tmp_path_factory.mktemp("warm_up") / "out"
-    words = matstd("diagnose", "warm_up.csv", "--auto", "--no-report", "-o", out)
+    words = matstd("diagnose", "warm_up.csv", "--auto", "--no-report", "--no-learn", "-o", out)
     return words, result(out), out / "model.toml"
 
 
@@ -118,7 +118,7 @@ def test_the_hose_is_unexplained_and_seen_where_it_is(tmp_path):
 
 def test_the_users_own_effect_explains_the_hose(tmp_path):
     own = ["--effects", EXAMPLES / "my_effects.py"]
-    matstd("diagnose", "hose.csv", *own, "--auto", "--no-report", "-o", tmp_path / "out")
+    matstd("diagnose", "hose.csv", *own, "--auto", "--no-report", "--no-learn", "-o", tmp_path / "out")
     found = result(tmp_path / "out")
     (hidden,) = truth("hose")["hidden"]
     assert found["verdict"] == "missing effect"

@@ -141,7 +141,8 @@ def test_an_axis_the_other_way_is_refused_with_the_line_to_write(tmp_path, capsy
 def test_the_machine_of_1995_gives_its_errors_back(tmp_path):
     planted = module(OLD / "make_run.py")
     out = tmp_path / "out"
-    assert main(["diagnose", str(OLD / "run.csv"), "--auto", "--no-report", "-o", str(out)]) == 0
+    words = ["diagnose", str(OLD / "run.csv"), "--auto", "--no-report", "--no-learn"]
+    assert main([*words, "-o", str(out)]) == 0
     found = result(out)
     drift, screw = (s for s in found["steps"] if s["effect"])
     assert "thermal-lag(EZZ)" in [drift["effect"], *drift["cannot_be_told_from"]]

@@ -22,8 +22,6 @@ async def serve_linuxcnc(
 
     Args:
         path: Path of the socket; one without a listener is removed.
-        ready: Called when the component can connect.
-        until: Ends it.
 
     Raises:
         DesignError: Another service answers there, or the socket cannot be made.

@@ -39,11 +39,7 @@ def is_hole(block: str) -> bool:
 
 
 def defined(line: int, block: str, reading: Reading) -> Hole:
-    """A cycle by its definition.
-
-    Raises:
-        BadFile: Another cycle, numbers that are missing.
-    """
+    """A cycle by its definition; raises BadFile."""
     if not is_hole(block):
         known = ", ".join(HOLES)
         expected = f"cycles 7, 9, 13, 32, 247 and holes ({known}); others are resolved before"
@@ -66,8 +62,6 @@ def way(start: Array, end: Array, z: int, height: float) -> list[Array]:
     """Places on the way to a call at a place of its own: up first where the tool stands low.
 
     Args:
-        start: Where the axes stand, (A,).
-        end: The place of the call, (A,).
         height: Above the surface that the cycle begins at, mm.
     """
     up, over = start.copy(), end.copy()

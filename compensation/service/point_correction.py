@@ -16,8 +16,12 @@ from typing import NamedTuple
 import numpy as np
 
 from matstd.compensation.field import Datum, MachineErrors
-from matstd.compensation.service.history import History
-from matstd.compensation.service.tabulated import MAX_INTERPOLATION, ErrorTable, error_tables
+from matstd.compensation.service.tabulated import (
+    MAX_INTERPOLATION,
+    ErrorTable,
+    History,
+    error_tables,
+)
 from matstd.twin.errors import DesignError, OutsideTravel
 from matstd.twin.frames import Array, rotation
 from matstd.twin.machine import Chain, Link
@@ -81,7 +85,6 @@ class PointCorrection:
         """Tabulate the errors.
 
         Args:
-            length: Length of the tool, mm.
             datum: Pose at which nothing is corrected; None to correct the whole deviation.
             close: What straight lines between the points of one table may leave, mm at the tip.
 

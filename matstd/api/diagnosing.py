@@ -215,7 +215,7 @@ def diagnose(
         estimates, is_left = before.estimates if before else None, found.parts.remains.is_real
         named = found.steps[len(added)].fit
         laws = learn_remainder(named, found.fit, estimates, is_left=is_left)
-        found = found if laws is None else found.with_laws(laws)
+        found = found if laws is None else found.with_laws(laws, estimates)
     known = {f.name: getattr(found, f.name) for f in fields(found)}
     made: dict[str, Any] = {
         "before": before,

@@ -43,11 +43,8 @@ _TWO: dict[str, tuple[str, Callable[[float, float], float]]] = {
 def function_value(number: str, text: str, value: str, read: Read) -> float | None:
     """Value of FN 0 to FN 8 and FN 13; None for another function or other words.
 
-    Args:
-        value: Pattern of a number or parameter.
-
-    Raises:
-        ValueError, ZeroDivisionError: No such value exists.
+    `value` is the pattern of a number or parameter. Raises ValueError or ZeroDivisionError where no
+    such value exists.
     """
     if number in _ONE and (match := re.fullmatch(f"{_ONE[number][0]}({value})", text)):
         return _ONE[number][1](read(match[1]))

@@ -42,7 +42,6 @@ def read_dialect(control: str, folder: str | Path = ".") -> Dialect:
 
     Args:
         control: A name, or a path that ends in `.toml`.
-        folder: From which the path is seen.
 
     Raises:
         DesignError: No control of that name.

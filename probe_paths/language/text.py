@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from matstd.twin.errors import DesignError
 
 MAX_NAME = 16  # longest program name that the oldest software displays whole
-
 MAX_VALUE = 99999.9999  # largest coordinate that the control takes, mm or degrees
 
 MAX_LINE = 72

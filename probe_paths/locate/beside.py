@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, Standard
-from matstd.artefact.reach import ProbeReach, Requests, joined
+from matstd.artefact.reach import Requests, joined
 from matstd.probe_paths.emit import (
     Feeds,
     ProgramSet,
@@ -81,17 +81,7 @@ def _without_deep_collisions(
     balls: Sequence[DatumSphere],
 ) -> Iterator[tuple[DatumSphere, Requests]]:
     """Rings that may be touched, pose by pose: exact gaps take half a second a ring."""
-    reach = ProbeReach(
-        chain=plan.chain,
-        setup=plan.setup,
-        shape=plan.probe.shape,
-        length=plan.probe.length,
-        steepest=options.steepest,
-        room=_CERTAIN_COLLISION,
-        standoff=options.standoff,
-        search=options.search,
-        workshop=options.workshop,
-    )
+    reach = options.reach(plan.chain, plan.setup, plan.probe, _CERTAIN_COLLISION)
     for tilt, rotary in product(_TILTS, poses if balls else []):
         # one static check for the rings of all balls
         rings = [_ring(plan, ball, rotary, tilt) for ball in balls]
@@ -155,14 +145,12 @@ def companions(
     """Dry run, search, ball and commissioning program of a plan.
 
     Args:
-        raised: By how much the dry run is raised, mm.
         spread: Within which the search finds the standard; None for the widest of `SPREADS` for
             which there is a search.
         is_further: Whether another probe has already searched and tried the control.
     """
-    made = Companions(
-        dry_run=make_dry_run(plan, raised, dialect, feeds), raised=raised, spread=SPREADS[-1]
-    )
+    dry_run = make_dry_run(plan, raised, dialect, feeds)
+    made = Companions(dry_run=dry_run, raised=raised, spread=SPREADS[-1])
     is_beside = plan.options.workshop.ball is not None
     try:
         own = plan_ball(plan)
@@ -176,16 +164,9 @@ def companions(
         return replace(made, no_search="the first probe of this set-up has found it")
     # the widest spread comes first, a narrower one where it allows no search
     for chosen in SPREADS if spread is None else (spread,):
+        place = plan.standard, plan.chain, plan.probe, plan.setup
         try:
-            search = plan_search(
-                plan.standard,
-                plan.chain,
-                plan.probe,
-                plan.setup,
-                chosen,
-                plan.options.workshop,
-                plan.options.retract,
-            )
+            search = plan_search(*place, chosen, plan.options.workshop, plan.options.retract)
         except NotReachable as error:
             made = replace(made, spread=chosen, no_search=str(error))
             continue

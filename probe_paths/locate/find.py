@@ -36,7 +36,6 @@ _TRIED, _FEWEST_TRIED = 40_000, 2_000
 """Places in the first round for a spread of 20 mm and 5 degrees, and for a small one."""
 
 _KEPT = 60  # number improved on the relief
-
 _EXACT = 3  # number improved on the exact surfaces
 
 _ROUNDS, _EXACT_ROUNDS, _LAST_ROUNDS = 25, 15, 15
@@ -83,8 +82,6 @@ def find_standard(
     Args:
         ball_table: Centres of the balls at their contacts, table frame, (N, 3), mm; they came along
             -z of the believed standard.
-        radius: Radius of the ball, mm.
-        rng: For the places of the first round.
 
     Raises:
         NotEnoughData: Fewer than nine touches, no place that fits, or two that fit alike.
@@ -188,8 +185,7 @@ def _cost(lifted: Array) -> Array:
     """Huber's cost: quadratic up to `_ROBUST`, linear beyond."""
     size = np.abs(lifted)
     cost = np.where(size < _ROBUST, 0.5 * size**2, _ROBUST * (size - 0.5 * _ROBUST))
-    total: Array = cost.sum(axis=1)
-    return total
+    return cost.sum(axis=1)
 
 
 def _best(tried: Array, lift: Lift, count: int) -> Array:
@@ -248,8 +244,7 @@ def _gauss_newton_step(theta: Array, lift: Lift, step: Array) -> Array:
         candidates.append(theta + way * np.minimum(1.0, 5.0 / np.maximum(size, 1e-12)))
     every = np.stack(candidates, axis=1)
     costs = _cost(lift(every.reshape(-1, 6))).reshape(every.shape[:2])
-    chosen: Array = every[np.arange(len(theta)), np.argmin(costs, axis=1)]
-    return chosen
+    return every[np.arange(len(theta)), np.argmin(costs, axis=1)]
 
 
 def _distinct(theta: Array, lift: Lift, ball: Array) -> Array:
@@ -270,5 +265,4 @@ def _uncertainty(theta: Array, lift: Lift) -> Array:
     J = (both[:6] - both[6:]).T / (2.0 * _FINE)
     r = lift(theta[None])[0]
     s = np.sqrt(r @ r / (len(r) - 6))
-    u: Array = s * np.sqrt(np.diag(np.linalg.pinv(J.T @ J)))
-    return u
+    return s * np.sqrt(np.diag(np.linalg.pinv(J.T @ J)))

@@ -14,7 +14,7 @@ from matstd.artefact.tool import (
     swing_height,
     top_height,
 )
-from matstd.probe_paths.plan.clearance import SMALLEST_GAP, ToolClearance
+from matstd.probe_paths.plan.clearance import SMALLEST_GAP, ToolClearance, stroke_gaps
 from matstd.probe_paths.plan.frame import LINEAR, ProgramFrame
 from matstd.probe_paths.plan.heading import (
     Heading,
@@ -23,15 +23,8 @@ from matstd.probe_paths.plan.heading import (
     parse_heading,
     stated_serial,
 )
-from matstd.probe_paths.plan.order import (
-    StatedVisits,
-    Visit,
-    nearest_neighbours,
-    short_order,
-    waypoints,
-)
+from matstd.probe_paths.plan.order import StatedVisits, Visit, short_order, waypoints
 from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.strokes import stroke_gaps
 from matstd.probe_paths.plan.touch_plan import PlanOptions, Refusal, TouchPlan, requests_at
 
 __all__ = [
@@ -49,7 +42,6 @@ __all__ = [
     "Visit",
     "calibration_hash",
     "home_readings",
-    "nearest_neighbours",
     "parse_heading",
     "plan_touches",
     "readings_at",

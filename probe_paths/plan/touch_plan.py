@@ -55,6 +55,20 @@ class PlanOptions:
     # whether moves are swept with the whole tool; a plan that is timed and never run need not be
     is_swept: bool = True
 
+    def reach(self, chain: Chain, setup: Setup, probe: Probe, room: float) -> ProbeReach:
+        """What can be touched with these margins and some room, mm."""
+        return ProbeReach(
+            chain=chain,
+            setup=setup,
+            shape=probe.shape,
+            length=probe.length,
+            steepest=self.steepest,
+            room=room,
+            standoff=self.standoff,
+            search=self.search,
+            workshop=self.workshop,
+        )
+
 
 def requests_at(standard: Standard, feature: str, uv: Array, rotary: Array) -> Requests:
     """Touches at parameters (N, 2) of one feature at rotary readings (N, R) or (R,), rad."""

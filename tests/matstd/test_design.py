@@ -358,7 +358,7 @@ def test_what_the_example_only_mentions_is_accepted(
     assert (project.study.digits, project.study.tolerance) == (1, pytest.approx(0.1))
     assert project.population.dependence is not None
     chain = project.chain
-    assert project.population.shapes_of(chain.symbol("EXX")) == ("linear", "sinusoidal")
+    assert project.population.mix_of(chain.symbol("EXX")).shapes == ("linear", "sinusoidal")
     assert project.population.ranges.of(chain, chain.symbol("EXC")) == (5.0 * UM, 10.0 * UM)
 
 

@@ -332,7 +332,7 @@ def test_a_planted_effect_is_found_and_named(folder, golden, small):
     more = ("--add", planted, "--noise-um", "0.5", "--seed", "3")
     assert command(folder, *more, programs=names) == 0
     run, out = str(folder / "out" / "run.csv"), str(folder / "found")
-    assert main(["diagnose", run, "--no-report", "-o", out]) == 0
+    assert main(["diagnose", run, "--no-report", "--no-learn", "-o", out]) == 0
     found = json.loads((folder / "found" / "diagnosis.json").read_text(encoding="utf-8"))
     assert found["verdict"] == "missing effect"
     step = found["steps"][1]

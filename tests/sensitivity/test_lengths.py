@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from matstd.sensitivity.first_order.workspace import latin_hypercube
-from matstd.sensitivity.montecarlo.kernels import compiled
-from matstd.sensitivity.montecarlo.lengths import BINS, count_lengths
+from matstd.sensitivity.montecarlo.lengths import BINS, compiled_count, count_lengths
 from matstd.sensitivity.montecarlo.random_machines import volumetric
 from matstd.sensitivity.population.sampling import Population
 from matstd.twin.units import UM
@@ -26,7 +25,7 @@ def task():
 @pytest.mark.parametrize("use_compiled", [False, True])
 @pytest.mark.parametrize("threads", [1, 3])
 def test_counts_are_those_of_plain_numpy(task, use_compiled, threads):
-    assert compiled() is not None  # numba belongs to the test extra
+    assert compiled_count() is not None  # numba belongs to the test extra
     G, theta, width, size = task
     found = count_lengths(
         G, theta, width, 4.0, worst=(50, 3), use_compiled=use_compiled, threads=threads
@@ -43,8 +42,7 @@ def test_counts_are_those_of_plain_numpy(task, use_compiled, threads):
     np.testing.assert_array_equal(found.worst, (size >= limit).sum(axis=1))
 
 
-@pytest.mark.parametrize("use_compiled", [False, True])
-def test_poses_that_are_equally_bad_all_count(use_compiled):
+def test_poses_that_are_equally_bad_all_count():
     # machines along one direction: poses are equal, or differ by whole factors
     rng = np.random.default_rng(2)
     G = np.zeros((400, 3, 1))
@@ -52,7 +50,7 @@ def test_poses_that_are_equally_bad_all_count(use_compiled):
     theta[0, 7] = 0.0
     for factor in (np.ones(400), np.round(3.0 * rng.normal(size=400))):
         G[:, 1, 0] = factor
-        found = count_lengths(G, theta, width, worst=(300, 15), use_compiled=use_compiled)
+        found = count_lengths(G, theta, width, worst=(300, 15))
         limit = np.sort(np.abs(factor[:300]))[-15]
         expected = np.where(np.abs(factor) >= limit, 130, 1)  # machine 7 has no error anywhere
         np.testing.assert_array_equal(found.worst, expected)

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -17,11 +17,9 @@ from matstd.twin.model import Declared, Effect, Kind, Parameter, Term, Where
 from matstd.twin.record import Touches
 
 GRAVITY = 9.80665  # standard acceleration, m/s2, N/kg
-
 SLENDER = 3.0
 """Below this ratio of length to depth the supports of a beam yield as much as the beam; a warning
 is given."""
-
 KEYS = ("at", "sense", "span", "mass", "offset", "material", "down")
 DIRECTIONS = {s + a: i for i, (s, a) in enumerate((s, a) for a in "XYZ" for s in "+-")}
 
@@ -175,10 +173,7 @@ def _unit(direction: str) -> Array:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Body:
     """From axis, support, section and `key:value` words."""
-
-    def refuse(expected: str) -> UnknownEffect:
-        return refusal(KIND.usage, arguments, expected)
-
+    refuse = partial(refusal, KIND.usage, arguments)
     if len(arguments) < 4:
         raise refuse("an axis, a support, a section and where the frame stands")
     axis = read_linear_axis(arguments[0], chain, refuse)

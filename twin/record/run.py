@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from matstd.twin.display import Displayed
-from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array
-from matstd.twin.record.touches import IntArray, Labels, Touches
+from matstd.twin.record.touches import IntArray, Labels, Touches, check_rows
 
 PER_ROW = ("deviation", "u", "split", "repeat", "line", "program", "touch", "program_line")
 """Fields of `Run` with a value for each touch."""
@@ -58,13 +57,7 @@ class Run(Displayed):
             "touch": np.zeros(n, dtype=np.int64),
             "program_line": np.zeros(n, dtype=np.int64),
         }
-        for name, default in unstated.items():
-            if len(getattr(self, name)) == 0:
-                object.__setattr__(self, name, default)
-        for name in PER_ROW:
-            value = getattr(self, name)
-            if value is not None and len(value) != n:
-                raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n} as the touches")
+        check_rows(self, n, unstated, PER_ROW, "the touches")
 
     def __len__(self) -> int:
         return len(self.touches)

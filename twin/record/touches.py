@@ -1,8 +1,9 @@
 """`Touches`: all that is known about N contacts; the record that every room takes."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +53,19 @@ class Setup:
     body: Body | None = None  # the standard as it expands; None where the run does not state it
     # point at which the standard is held, artefact frame, mm; None where the run does not state it
     fixing: tuple[float, float, float] | None = None
+
+
+def check_rows(
+    record: object, n: int, unstated: Mapping[str, NDArray[Any]], names: Iterable[str], like: str
+) -> None:
+    """Fill the empty fields of a record; refuse columns of other than n rows."""
+    for name, default in unstated.items():
+        if len(getattr(record, name)) == 0:
+            object.__setattr__(record, name, default)
+    for name in names:
+        value = getattr(record, name)
+        if value is not None and len(value) != n:
+            raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n} as {like}")
 
 
 class Signature:
@@ -121,19 +135,12 @@ class Touches:
             "pose": np.zeros(n, dtype=np.int64),
             "body_temperature": np.full(n, T_REF),
         }
-        for name, default in unstated.items():
-            if len(getattr(self, name)) == 0:
-                object.__setattr__(self, name, default)
-        for name in PER_TOUCH:
-            value = getattr(self, name)
-            if value is not None and len(value) != n:
-                raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n} as in q")
-        for sensor, value in self.temperature.items():
+        check_rows(self, n, unstated, PER_TOUCH, "in q")
+        own = {f"temperature {name}": v for name, v in self.temperature.items()}
+        own |= {f"column {name}": v for name, v in self.value.items()}
+        for name, value in own.items():
             if len(value) != n:
-                raise ShapeMismatch(f"temperature {sensor} has {len(value)} rows, expected {n}")
-        for name, value in self.value.items():
-            if len(value) != n:
-                raise ShapeMismatch(f"column {name} has {len(value)} rows, expected {n}")
+                raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n}")
 
     def __len__(self) -> int:
         return len(self.q)
@@ -252,12 +259,7 @@ PER_TOUCH = [f.name for f in fields(Touches) if f.name not in _COMMON]
 
 
 def at_poses(chain: Chain, q: Array, length: Array | float) -> Touches:
-    """Poses without a standard, for maps over the workspace: normals are zero.
-
-    Args:
-        q: Readings, shape (N, A), mm and rad.
-        length: Tool length, scalar or (N,), mm.
-    """
+    """Poses without a standard, for maps over the workspace: normals are zero."""
     q = checked_readings(chain, q)
     n = len(q)
     return Touches(
@@ -275,14 +277,9 @@ def at_poses(chain: Chain, q: Array, length: Array | float) -> Touches:
 
 
 def linear_approach(chain: Chain, q: Array, normal_table: Array) -> Array:
-    """Signs of the last motion of the linear axes of a touch, which runs against the normal.
+    """Signs of the last motion of the linear axes of a touch against the normal, (N, A).
 
-    Args:
-        q: Readings, shape (N, A).
-        normal_table: Outward normals in the table frame, (N, 3).
-
-    Returns:
-        Shape (N, A): -1, 0 or 1 in the columns of the linear axes, 0 elsewhere.
+    With the outward normals in the table frame, (N, 3); 0 in the columns of other axes.
     """
     out = np.zeros(q.shape)
     columns = chain.linear_columns
@@ -307,11 +304,7 @@ def motion(q: Array, time: Array) -> Array:
     """Signs of the last motion of every axis in a log that was read on the way, (N, A).
 
     An axis that stands keeps its sign. In the last row before a reversal the axis may have turned
-    already, so the sign is 0.
-
-    Args:
-        q: Readings, (N, A).
-        time: Time of every row, (N,), s; rows of one time are in order.
+    already, so the sign is 0. Rows of one time, s, are in order.
 
     Example:
         >>> motion(np.array([0.0, 1.0, 2.0, 2.0, 1.5])[:, None], np.arange(5.0))[:, 0]
