@@ -118,7 +118,9 @@ def test_the_hose_is_unexplained_and_seen_where_it_is(tmp_path):
 
 def test_the_users_own_effect_explains_the_hose(tmp_path):
     own = ["--effects", EXAMPLES / "my_effects.py"]
-    matstd("diagnose", "hose.csv", *own, "--auto", "--no-report", "--no-learn", "-o", tmp_path / "out")
+    matstd(
+        "diagnose", "hose.csv", *own, "--auto", "--no-report", "--no-learn", "-o", tmp_path / "out"
+    )
     found = result(tmp_path / "out")
     (hidden,) = truth("hose")["hidden"]
     assert found["verdict"] == "missing effect"
