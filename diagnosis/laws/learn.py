@@ -292,7 +292,7 @@ def _refusal(
     """
     if best.score < policy.min_score:
         return Refusal.CHANCE
-    if not predicts_better(*white, policy):
+    if not predicts_better(*white):
         return Refusal.PREDICTION
     if not stands_beside_memory(start, laws, best.law, best.score, white, policy):
         return Refusal.MEMORY

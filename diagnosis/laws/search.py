@@ -108,7 +108,7 @@ def search_law(space: Space, policy: LawPolicy) -> Searched:
     curves = _curves(space, field, [*one[:3], *beside], polished, policy)
     ranked = sorted(polished, key=lambda c: -c.score)
     best_curve = max((c.score for c in curves), default=-np.inf)
-    if not ranked or best_curve > ranked[0].score + policy.curve_margin:
+    if not ranked or best_curve > ranked[0].score:
         ranked = sorted([*curves, *ranked], key=lambda c: -c.score)
     ranked = _shorter_first(ranked, policy)
     return Searched(

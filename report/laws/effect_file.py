@@ -201,9 +201,16 @@ def _shapes(
     out = []
     for k, (factor, own) in enumerate(law.parts):
         values, x = dict(zip(factor.shape.places, written[own], strict=True)), names[factor.driver]
-        code = [_with(c, x).format(**values) for c in factor.shape.code]
+        code = [_with(c, x).format(**values) for c in _from_zero(factor.shape.code, values)]
         out.append(code or [_table(learning, law, k, x)])
     return out
+
+
+def _from_zero(code: Sequence[str], values: dict[str, str]) -> Sequence[str]:
+    """Expressions without a zero that is 0."""
+    if values.get("zero") != "0":
+        return code
+    return [c.replace("(x - {zero})", "x").replace("x - {zero}", "x") for c in code]
 
 
 def _with(code: str, x: str) -> str:

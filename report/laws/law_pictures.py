@@ -25,8 +25,7 @@ from matstd.twin.units import UM
 def draw_law(learning: Learning, law: Law) -> Figure:
     """The law over each of its variables, with ± 2 u, and the touches with the law put back.
 
-    A touch feels the carrier by a lever: its residual with the law put back is divided by it. Of a
-    product of two shapes touches are drawn by what the other shape is at them.
+    A touch feels the carrier by a lever: its residual with the law put back is divided by it.
     """
     drawn = figure(3.4)
     every = np.atleast_1d(drawn.subplots(1, len(law.drivers)))

@@ -186,6 +186,11 @@ class Law:
         return any(f.shape.word == "curve" for f in self.factors)
 
     @property
+    def is_margin(self) -> bool:
+        """Whether it is what another law may do beyond its domain."""
+        return self.factors[0].shape.word == "beyond"
+
+    @property
     def belongs_to(self) -> str:
         """Of what it is to be expected again: a curve over time is a driver that was not recorded.
 
@@ -227,7 +232,7 @@ class Law:
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Amplitudes: of every direction of the carrier, for every coefficient of the shapes."""
-        is_sized = self.is_curve_alone or self.factors[0].shape.word == "beyond"
+        is_sized = self.is_curve_alone or self.is_margin
         unit = "1" if is_sized else self.carrier.unit
         free = FREE_ANGLE if unit == "rad" else FREE_LENGTH
         sd = 1.0 if is_sized else free
