@@ -107,6 +107,18 @@ class VerdictParts:
         return self.remains.is_real and (not self.headline or self.remains.size > self.explained)
 
 
+def geometry_part(
+    geometry: LearntGeometry, faults: Sequence[DescriptionFault], left: float
+) -> GeometryPart:
+    """What a learnt geometry has that changed or is too large, and what that hints at."""
+    return GeometryPart(
+        changed=tuple(r for r in geometry.rows if r.has_changed),
+        beyond=tuple(r for r in geometry.rows if r.is_beyond_expected or r.is_far),
+        hints=tuple(faults),
+        left=left,
+    )
+
+
 def verdict_parts(
     steps: Sequence[Step],
     left: Sequence[Structure],
@@ -151,12 +163,7 @@ def verdict_parts(
         )
         before = min(before, own)
     return VerdictParts(
-        geometry=GeometryPart(
-            changed=tuple(r for r in geometry.rows if r.has_changed),
-            beyond=tuple(r for r in geometry.rows if r.is_beyond_expected or r.is_far),
-            hints=tuple(faults),
-            left=scatters[0],
-        ),
+        geometry=geometry_part(geometry, faults, scatters[0]),
         named=tuple(named),
         remains=Remainder(
             scatter=scatter,

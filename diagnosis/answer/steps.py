@@ -61,20 +61,23 @@ class Step:
 
     @property
     def size(self) -> Reported | None:
-        """The number that says how large the effect is."""
-        return next((n for n in self.reported if n.role is Role.SIZE), None)
+        """The clearest of the numbers that say how large the effect is: a screw has two ends."""
+        return max((n for n in self.reported if n.role is Role.SIZE), key=_clarity, default=None)
 
     @property
     def worth(self) -> float:
         """Size over its standard uncertainty; infinite where there is no such number."""
-        size = self.size
-        return np.inf if size is None or not size.u else abs(size.value) / size.u
+        return np.inf if self.size is None else _clarity(self.size)
 
     @property
     def is_certain(self) -> bool:
         """Whether chance is so improbable that the uncertainty of the size says nothing."""
         is_sized = self.effect is None or len(self.effect.parameters) <= MAX_SIZED_PARAMETERS
         return self.p_value < (POLICY.certain_p if is_sized else POLICY.close_p)
+
+
+def _clarity(number: Reported) -> float:
+    return abs(number.value) / number.u if number.u else np.inf
 
 
 def significant_effects(

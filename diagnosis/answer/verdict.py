@@ -9,13 +9,13 @@ import numpy as np
 from matstd.diagnosis.accuracy import Promise, promise
 from matstd.diagnosis.answer.detectable import Detectable
 from matstd.diagnosis.answer.next_measurement import Plan
-from matstd.diagnosis.answer.parts import VerdictParts
+from matstd.diagnosis.answer.parts import VerdictParts, geometry_part
 from matstd.diagnosis.answer.steps import Step
 from matstd.diagnosis.answer.trend import Trend
 from matstd.diagnosis.choice import Choice
 from matstd.diagnosis.faults import DescriptionFault
-from matstd.diagnosis.fit import Fit
-from matstd.diagnosis.geometry import LearntGeometry
+from matstd.diagnosis.fit import Fit, Prior
+from matstd.diagnosis.geometry import LearntGeometry, learnt_geometry
 from matstd.diagnosis.laws import Learning
 from matstd.diagnosis.remarks import Remark
 from matstd.diagnosis.residual import Region, Structure
@@ -164,22 +164,34 @@ class Diagnosis(Tabular):
         """Whether anything stands beside the starting model."""
         return self.standing is not self.start
 
-    def with_laws(self, laws: Learning) -> Self:
+    def with_laws(self, laws: Learning, before: Prior | None = None) -> Self:
         """The same with laws of what remains.
 
-        Where the laws stand in the model, the errors to expect are theirs: in an unexplained run,
-        and in the place of names. Names that they explain better are withdrawn: none of them stands
-        in a headline, and no plan distinguishes a name withdrawn from its rivals.
+        Where the laws stand in the model, the errors to expect and the geometry are those with
+        them: in an unexplained run, and in the place of names. What a law explains, the geometry
+        imitates without it: straightness of an axis along which the run drifted. Names that they
+        explain better are withdrawn: none of them stands in a headline, and no plan distinguishes
+        a name withdrawn from its rivals.
+
+        Args:
+            before: Estimates of the starting model from an earlier run.
         """
         found = replace(self, laws=laws)
         if found.standing is not self.fit:
-            found = replace(found, promise=promise(found.standing))
+            geometry = learnt_geometry(found.standing, before, self.start)
+            part = geometry_part(geometry, self.faults, self.parts.geometry.left)
+            found = replace(
+                found,
+                promise=promise(found.standing),
+                geometry=geometry,
+                parts=replace(self.parts, geometry=part),
+            )
         if not laws.instead_of:
             return found
         gone = {effect.name for effect in laws.instead_of}
         named = tuple(
             replace(one, is_headline=one.is_headline and one.effect.name not in gone)
-            for one in self.parts.named
+            for one in found.parts.named
         )
-        parts = replace(self.parts, named=named)
+        parts = replace(found.parts, named=named)
         return replace(found, parts=parts, plans=())

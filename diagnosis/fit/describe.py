@@ -198,17 +198,22 @@ def curve_sizes(fit: Fit, effect: Effect) -> Sequence[Reported]:
     return [whole, *_reversals(fit, effect)]
 
 
-def _changes(fit: Fit, effect: Effect, wider: float) -> Iterator[Reported]:
-    """What an effect changed within the run, with what its inner parameters contribute."""
+def _changes(fit: Fit, effect: Effect, wider: float) -> Sequence[Reported]:
+    """What an effect changed within the run, with what its inner parameters contribute.
+
+    The largest first: a screw does not grow at its fixed bearing.
+    """
     of = traits(effect).changes
     tangents = [t for t in fit.tangents if t.effect.name == effect.name]
     every = [effect, *tangents]
     place = np.concatenate([np.r_[fit.of_effect(e.name)] for e in every])
     theta, covariance = fit.theta[place], fit.covariance[np.ix_(place, place)] * wider**2
+    out = []
     for name, pair in () if of is None else of(fit.run.touches[fit.used]):
         curve, unit = _curve(every, pair)
         w = curve[1] - curve[0]
-        yield _reported_size(name, unit, float(w @ theta), w, covariance)
+        out.append(_reported_size(name, unit, float(w @ theta), w, covariance))
+    return sorted(out, key=lambda one: -abs(one.value))
 
 
 def _of_same_curve(fit: Fit, effect: Effect) -> list[Effect]:

@@ -20,7 +20,12 @@ import numpy as np
 
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry.arm_links import arm_functionals
-from matstd.diagnosis.geometry.quantities import Functional, Quantity, geometric_effects
+from matstd.diagnosis.geometry.quantities import (
+    Functional,
+    Quantity,
+    effects_of_readings,
+    geometric_effects,
+)
 from matstd.twin.frames import Array
 from matstd.twin.machine import LETTERS, Chain, Family, Link, tip
 from matstd.twin.model import Model, traits
@@ -100,7 +105,7 @@ def _curves(fit: Fit, poses: Touches, link: Link) -> dict[int, Array]:
     index = poses.chain.link_index(link.name)
     size = (len(poses), len(fit.model.parameters))
     out: dict[int, Array] = {}
-    for start, effect in geometric_effects(fit):
+    for start, effect in effects_of_readings(fit):
         for term in effect.terms(poses):
             if term.where.part == "twist" and term.where.link == index:
                 curve = out.setdefault(term.where.component, np.zeros(size))
@@ -111,7 +116,7 @@ def _curves(fit: Fit, poses: Touches, link: Link) -> dict[int, Array]:
 def _displacements(fit: Fit, poses: Touches) -> Array:
     """Displacement of the tool relative to the table per unit of every parameter, (N, 3, P)."""
     out = np.zeros((len(poses), 3, len(fit.model.parameters)))
-    for start, effect in geometric_effects(fit):
+    for start, effect in effects_of_readings(fit):
         part = slice(start, start + len(effect.parameters))
         out[:, :, part] = Model(poses.chain, (effect,)).relative_columns(poses)
     return out

@@ -1,12 +1,13 @@
 """Reported quantities of a machine's geometry, each linear in the parameters of a model."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 
 from matstd.diagnosis.fit import Fit
 from matstd.twin.frames import Array
-from matstd.twin.model import Effect
+from matstd.twin.laws import Law
+from matstd.twin.model import Effect, traits
 
 
 class Quantity(Enum):
@@ -42,10 +43,31 @@ def is_geometry(effect: Effect) -> bool:
     return effect.kind in ("geometric", "location")
 
 
+def is_of_readings(effect: Effect) -> bool:
+    """Whether an effect is a part of such an error: geometry, a table, a law of its own axis.
+
+    A kink that a parabola straightens elsewhere is no error by itself, and neither is the parabola.
+    """
+    own = traits(effect)
+    if isinstance(effect, Law):
+        symbol = effect.carrier.symbol
+        return symbol is not None and {f.driver.name for f in effect.factors} == {symbol.link}
+    return is_geometry(effect) or (own.is_table and own.reversal is None)
+
+
 def geometric_effects(fit: Fit) -> Iterator[tuple[int, Effect]]:
     """Geometric effects with the place of their first parameter."""
+    return _placed(fit, is_geometry)
+
+
+def effects_of_readings(fit: Fit) -> Iterator[tuple[int, Effect]]:
+    """The same with tables and laws that are parts of the errors which they are."""
+    return _placed(fit, is_of_readings)
+
+
+def _placed(fit: Fit, is_counted: Callable[[Effect], bool]) -> Iterator[tuple[int, Effect]]:
     start = 0
     for effect in fit.model.effects:
-        if is_geometry(effect):
+        if is_counted(effect):
             yield start, effect
         start += len(effect.parameters)

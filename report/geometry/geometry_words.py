@@ -139,10 +139,10 @@ def _line(row: GeometryRow) -> GeometryLine:
         notes.append(f"changed by {_value(row.change.value, row.change.u, factor, unit)}")
     is_noted = bool(notes)
     at_ends = _value(row.at_ends.value, row.at_ends.u, UM, "µm")
-    # an instrument of angles has an arm of one metre: both figures are the same
-    is_same = row.unit == "mm" or at_ends.removesuffix("µm") == value_words(row).removesuffix(
-        "µrad"
-    )
+    # an instrument of angles has an arm of one metre: both figures are the same; a single axis has
+    # no arm at all
+    in_um = at_ends.removesuffix("µm")
+    is_same = row.unit == "mm" or not row.lever or in_um == value_words(row).removesuffix("µrad")
     if row.change is not None and not row.has_changed:
         difference = _value(row.change.value, row.change.u, factor, unit)
         notes.append(f"no change beyond chance ({difference})")

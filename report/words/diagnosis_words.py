@@ -25,7 +25,7 @@ from matstd.twin.units import UM, URAD
 from matstd.twin.words import listed
 
 _WORDS = {
-    "rms": "explained rms",
+    "rms": "rms over the touches that it moves",
     "peak_to_valley": "peak to valley",
     "length": "correlation length",
     "tau": "time constant",

@@ -127,7 +127,15 @@ def _covered(diagnosis: Diagnosis) -> str:
 
 
 def verdict_sentence(diagnosis: Diagnosis) -> str:
-    """The verdict with numbers and standard uncertainties."""
+    """The verdict with numbers and standard uncertainties; a wrong description is in it."""
+    far = [row for row in diagnosis.parts.geometry.beyond if row.is_far]
+    if not far:
+        return _verdict_alone(diagnosis)
+    sizes = listed([f"{r.symbol} is {digits(r.times_usual, 2)} times its usual size" for r in far])
+    return f"{_verdict_alone(diagnosis)} The machine file or the set-up is wrong: {sizes}."
+
+
+def _verdict_alone(diagnosis: Diagnosis) -> str:
     most = _NUMBERS.get(len(diagnosis.steps) - 1, 0)
     steps = diagnosis.steps[1:]
     named = [_added(diagnosis, s, most) for s in steps if s.is_named]

@@ -167,6 +167,29 @@ def test_what_cannot_keep_its_time_is_refused_with_its_line(corrected, name, tex
         corrected(f"{start[name]}{text}\n", name)
 
 
+@pytest.mark.parametrize(
+    ("mode", "turned", "said"),
+    [
+        ("M126", 200, "line 4: found C turning by 200 degrees with M126, expected at most 180"),
+        ("M126", 170, ""),
+        ("M127", 200, ""),
+        ("M126\nL X+31 FMAX M127", 200, ""),
+    ],
+)
+def test_a_turn_the_shorter_way_is_not_divided_into_the_longer(corrected, mode, turned, said):
+    """Manual: M126, modal, takes rotary axes the shorter way; +200 degrees is then -160.
+
+    Divided for its correction the block would have pieces that go +200 degrees.
+    """
+    text = f"BEGIN PGM A MM\nL X+30 Y+20 Z-20 FMAX\n{mode}\nL X+130 C+{turned} F900\n"
+    if said:
+        with pytest.raises(BadFile, match=said):
+            corrected(text, "a.H")
+    else:
+        corrected(text, "a.H")
+    corrected(text.replace("F900", "FMAX"), "a.H")  # is not divided
+
+
 def test_what_is_rapid_or_long_stays_in_feed_per_minute(corrected):
     klartext = "BEGIN PGM A MM\nL X+0 Y+0 Z-20 FMAX\nL C+90 FMAX\nL X+60 B-20 F900\nM128\n"
     klartext += "L X+10 Y+20 C+120 F900\nL Z-9\n"

@@ -19,8 +19,8 @@ from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.control.steps import Move
 from matstd.probe_paths.emit.program import make_ball, make_programs
 from matstd.probe_paths.linuxcnc.replanned import shortened
-from matstd.probe_paths.locate.again import planned_again
 from matstd.probe_paths.locate.beside import plan_ball
+from matstd.probe_paths.locate.planned_visit import planned_again
 from matstd.report.words.probe_words import ball_lines
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import pose, rotation

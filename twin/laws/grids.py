@@ -14,16 +14,23 @@ from matstd.twin.laws.driver import Driver
 from matstd.twin.laws.shape import SHAPES, Shape
 
 BUMP_PLACES = 24  # places over the range of a variable at which a bump, a kink or a step is tried
+
 EDGES = 18  # edges of a window or a ramp: 153 pairs of them
+
 EVERY_GAP = 40
 """Up to so many gaps between the values of a variable every one is an edge of a window."""
+
 PHASES = 10  # phases of waves with corners; refined afterwards
+
 OVERSAMPLING = 2.0
 """Points per resolvable frequency, 1/range: a sine between two of them keeps 90 % of its size."""
+
 MOST_PERIODS = {"time": 30.0, "linear": 15.0}
 """Waves within the range of a variable up to which they are tried, by its nature; quicker sines of
 readings and of time have a scan of their own."""
+
 FEW_PERIODS = 6.0  # the same of a variable of another nature
+
 MIN_VALUES = 5
 """Of a variable with fewer different values nothing but a level, a line or a step is learnt."""
 
@@ -114,6 +121,7 @@ def grid(shape: Shape, driver: Driver, x: Array) -> Array:
         "half-wave": [(p,) for p in 2.0 * _phases()],
         "hysteresis": [(w, scale) for w in span * np.geomspace(0.01, 0.4, 10)],
         "curve": [(low - 0.1 * span, high + 0.1 * span, 0.1, 10e-3)],
+        "beyond": [(low, high, 0.3, 10e-3)],
         "play": [(driver.zero, w, scale) for w in span * np.geomspace(0.01, 0.4, 10)],
     }  # fmt: skip
     points = list(made[shape.word])

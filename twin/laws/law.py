@@ -7,6 +7,7 @@ amplitude times one or two shapes, each a function of one variable:
     law(EXY,lin T-scaleX,quad Y)    EXY = a u_T u_Y^2
     law(shift,exp since-setup)      the standard moves by (a, b, c) exp(-t/tau)
     law(EBY,curve Y)           a smooth curve without a formula
+    law(EZX,beyond Y)          what a law may do beyond the Y that were probed: zero ± its size
 
 The library has effects with a cause; a law has none. It is learnt from what a model leaves, and
 predicts as any effect does.
@@ -19,7 +20,6 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from matstd.twin.effects import turned_shift
 from matstd.twin.fields import check_count, component_symbol, refusal
 from matstd.twin.frames import Array
 from matstd.twin.laws.driver import Driver, driver_of
@@ -33,6 +33,10 @@ from matstd.twin.units import DEG, HOUR, T_REF, UM, URAD
 FREE_LENGTH, FREE_ANGLE = 1000.0 * UM, 10000.0 * URAD
 """Prior standard deviation of an amplitude: what is learnt is not drawn towards zero. Of a curve
 its own `size` is the prior."""
+
+BEYOND_LENGTH = 0.3
+"""Share of its domain within which a law has lost its force beyond it."""
+
 SHIFT, BIAS, GROWTH, TILT = "shift", "bias", "growth", "tilt"
 PARTS = {SHIFT: 3, BIAS: 1, GROWTH: 1, TILT: 3, "shift-x": 1, "shift-y": 1, "shift-z": 1}
 """Carriers that are no component of a link, with their number of amplitudes."""
@@ -65,26 +69,41 @@ class Carrier:
         """Letters of its amplitudes; one empty word for a single amplitude."""
         return {SHIFT: ("X", "Y", "Z"), TILT: ("A", "B", "C")}.get(self.name, ("",))
 
-    def entries(self, touches: Touches) -> list[Term]:
-        """All that it moves, per unit of every amplitude."""
-        one, p = np.ones(len(touches)), touches.point_table
+    def entries(self, touches: Touches) -> list[tuple[int, Where, Array | float]]:
+        """Amplitude, entry and factor of all that it moves."""
         if self.symbol is not None:
-            return [Term(0, touches.chain.twist_of(self.symbol), one)]
+            return [(0, touches.chain.twist_of(self.symbol), 1.0)]
         if self.name == BIAS:
-            return [Term(0, Where("bias"), one)]
+            return [(0, Where("bias"), 1.0)]
         if self.name == SHIFT:
-            return [Term(i, Where("shift", 0, i), one) for i in range(3)]
+            return [(i, Where("shift", 0, i), 1.0) for i in range(3)]
         if self.name.startswith("shift-"):
-            return [Term(0, Where("shift", 0, "xyz".index(self.name[-1])), one)]
+            return [(0, Where("shift", 0, "xyz".index(self.name[-1])), 1.0)]
+        p = touches.point_table
         if self.name == GROWTH:
-            return [Term(0, Where("shift", 0, i), p[:, i]) for i in range(3)]
-        return turned_shift(p - _centre(touches))
+            return [(0, Where("shift", 0, i), p[:, i]) for i in range(3)]
+        arm = p - _centre(touches)
+        turned: list[tuple[int, Where, Array | float]] = []
+        for turn in range(3):
+            a, b = (turn + 1) % 3, (turn + 2) % 3
+            turned += [(turn, Where("shift", 0, b), arm[:, a])]
+            turned += [(turn, Where("shift", 0, a), -arm[:, b])]
+        return turned
+
+    def terms(self, touches: Touches, amounts: Sequence[Array]) -> Sequence[Term]:
+        """Every amount, (N,), at all that it moves: amplitudes of one entry after another."""
+        m = len(amounts)
+        return tuple(
+            Term(way * m + k, where, factor * amount)
+            for way, where, factor in self.entries(touches)
+            for k, amount in enumerate(amounts)
+        )
 
     def columns(self, touches: Touches) -> Array:
         """Deviation along the normal per unit of every amplitude, (N, count)."""
         out = np.zeros((len(touches), self.count))
-        for term in self.entries(touches):
-            out[:, term.parameter] += term.amount * touches.signature.of(term.where)
+        for k, where, factor in self.entries(touches):
+            out[:, k] += factor * touches.signature.of(where)
         return out
 
 
@@ -120,7 +139,8 @@ class Law:
     carrier: Carrier
     factors: tuple[Factor, ...]  # shapes with their variables, one or two
     places: tuple[float, ...]  # values of their parameters, one after the other, base units
-    is_sought: bool = False  # whether they are still to be found, by a scan over all
+    # whether they are still to be found: by a scan over all that makes sense
+    is_sought: bool = False
 
     kind = "law"
 
@@ -133,9 +153,27 @@ class Law:
     def title(self) -> Title:
         """What it looks like, and what carries it."""
         text = " times ".join(f"{f.shape.word} over {f.driver.name}" for f in self.factors)
-        body = "probe" if self.carrier.name == BIAS else "standard"
-        bearer = body if self.carrier.symbol is None else self.carrier.symbol.link
-        return Title(f"{self.carrier.name}: {text}", bearer)
+        return Title(f"{self.carrier.name}: {text}", _bearer(self.carrier))
+
+    @property
+    def drivers(self) -> tuple[Driver, ...]:
+        """Its variables: one where both shapes are of the same."""
+        return tuple(dict.fromkeys(f.driver for f in self.factors))
+
+    @cached_property
+    def parts(self) -> tuple[tuple[Factor, slice], ...]:
+        """Every factor with the range of its parameters in `places`."""
+        out, start = [], 0
+        for factor in self.factors:
+            end = start + len(factor.shape.places)
+            out.append((factor, slice(start, end)))
+            start = end
+        return tuple(out)
+
+    @property
+    def explanation(self) -> tuple[str, ...]:
+        """Carrier and variables: other shapes of the same are no other explanation."""
+        return (self.carrier.name, *sorted(driver.name for driver in self.drivers))
 
     @property
     def symbol(self) -> Symbol | None:
@@ -147,7 +185,10 @@ class Law:
         """Whether it has no formula."""
         return any(f.shape.word == "curve" for f in self.factors)
 
-    is_tensor = is_curve_alone  # reported by the rms that it explains: coefficients mean nothing
+    @property
+    def is_margin(self) -> bool:
+        """Whether it is what another law may do beyond its domain."""
+        return self.factors[0].shape.word == "beyond"
 
     @property
     def belongs_to(self) -> str:
@@ -160,6 +201,30 @@ class Law:
         return "run" if is_course else "machine"
 
     @property
+    def is_tensor(self) -> bool:
+        """Reported by the rms that it explains where coefficients have no meaning."""
+        return self.is_curve_alone
+
+    def beyond(self, theta: Array, touches: Touches) -> tuple["Law", ...]:
+        """What it may do beyond the values that its variables had: of its own size, either way.
+
+        Args:
+            theta: Its amplitudes, base units.
+            touches: From which it was learnt.
+        """
+        ways = theta.reshape(self.carrier.count, -1)
+        size = float(np.abs(np.stack(self.amounts(touches), axis=1) @ ways.T).max())
+        out = []
+        for driver in self.drivers:
+            x = driver.values(touches)
+            low, high = float(x.min()), float(x.max())
+            is_whole = driver.nature == "sign" or (driver.unit == "rad" and high - low > np.pi)
+            if not is_whole:
+                places = (low, high, BEYOND_LENGTH, size)
+                out.append(Law(self.carrier, (Factor(SHAPES["beyond"], driver),), places))
+        return tuple(out)
+
+    @property
     def needs_history(self) -> bool:
         """Whether the order of touches matters."""
         return any(f.shape.remembers for f in self.factors)
@@ -167,9 +232,10 @@ class Law:
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Amplitudes: of every direction of the carrier, for every coefficient of the shapes."""
-        unit = "1" if self.is_curve_alone else self.carrier.unit
+        is_sized = self.is_curve_alone or self.is_margin
+        unit = "1" if is_sized else self.carrier.unit
         free = FREE_ANGLE if unit == "rad" else FREE_LENGTH
-        sd = 1.0 if self.is_curve_alone else free
+        sd = 1.0 if is_sized else free
         return tuple(
             Parameter(" ".join(w for w in (way, word) if w) or "amplitude", unit, sd)
             for way in self.carrier.words
@@ -185,24 +251,15 @@ class Law:
 
     def amounts(self, touches: Touches) -> list[Array]:
         """What the carrier does per unit of every coefficient, (N,) each."""
-        out, start = [np.ones(len(touches))], 0
-        for factor in self.factors:
-            count = len(factor.shape.places)
-            x = factor.driver.values(touches)
-            found = factor.shape.values(x, *self.places[start : start + count])
+        out = [np.ones(len(touches))]
+        for factor, own in self.parts:
+            found = factor.shape.values(factor.driver.values(touches), *self.places[own])
             out = [a * b for a in out for b in found]
-            start += count
         return out
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Amounts at the entries of the carrier."""
-        amounts = self.amounts(touches)
-        m = len(amounts)
-        return tuple(
-            Term(way * m + k, where, factor * amount)
-            for way, where, factor in self.carrier.entries(touches)
-            for k, amount in enumerate(amounts)
-        )
+        return self.carrier.terms(touches, self.amounts(touches))
 
     @cached_property
     def place_names(self) -> tuple[str, ...]:
@@ -224,25 +281,23 @@ class Law:
 
     def inner(self, touches: Touches) -> Sequence[Inner]:
         """The parameters of the shapes: about where they are, or the scan that looks for them."""
-        out: list[Inner] = []
+        out, i = [], 0
         for factor in self.factors:
-            x, jumps = factor.driver.values(touches), factor.shape.jumps
+            x = factor.driver.values(touches)
+            span = float(np.ptp(x))
             scan = grid(factor.shape, factor.driver, x) if self.is_sought else None
             for k, name in enumerate(factor.shape.places):
-                i = len(out)
-                step = _spacing(name, self.places[i], float(np.ptp(x)))
-                near = self.places[i] + step * np.array([-1.0, 0.0, 1.0])
+                if scan is None:
+                    value = self.places[i]
+                    values = value + _spacing(name, value, span) * np.array([-1.0, 0.0, 1.0])
+                else:
+                    values = np.unique(scan[:, k])
+                is_free = k in factor.shape.free and not factor.shape.jumps
                 unit = self.units[i] if self.units[i] in ("mm", "rad", "s") else "1"
-                made = Inner(
-                    name=self.place_names[i],
-                    unit=unit,
-                    grid=near if scan is None else np.unique(scan[:, k]),
-                    continuous=k in factor.shape.free and not jumps,
-                    acts="at an instant"
-                    if jumps and factor.driver.nature == "time"
-                    else "smoothly",
-                )
-                out.append(made)
+                is_instant = factor.driver.nature == "time" and factor.shape.jumps
+                made = Inner(self.place_names[i], unit, values, is_free)
+                out.append(made._replace(acts="at an instant") if is_instant else made)
+                i += 1
         return tuple(out)
 
     def tuned(self, *values: float) -> Self:
@@ -257,11 +312,7 @@ class Law:
     @property
     def free(self) -> tuple[int, ...]:
         """Which of the parameters of the shapes a run determines."""
-        out, start = [], 0
-        for factor in self.factors:
-            out += [start + k for k in factor.shape.free]
-            start += len(factor.shape.places)
-        return tuple(out)
+        return tuple(own.start + k for factor, own in self.parts for k in factor.shape.free)
 
 
 def _is_number(name: str, driver: Driver) -> bool:
@@ -277,6 +328,13 @@ def _spacing(name: str, value: float, span: float) -> float:
     if name == "period":
         return min(0.1 * abs(value), 0.1 * value**2 / max(span, 1e-300))
     return 0.2 * abs(value) or 0.03 * span or 1.0
+
+
+def _bearer(carrier: Carrier) -> str:
+    """Axis or body that carries it."""
+    if carrier.symbol is not None:
+        return carrier.symbol.link
+    return "probe" if carrier.name == BIAS else "standard"
 
 
 _USUAL = {"time": (0.0, 3.0 * HOUR), "level": (T_REF, T_REF + 10.0), "sign": (-1.0, 1.0),

@@ -13,6 +13,9 @@ import numpy as np
 
 from matstd.twin.frames import Array
 
+Values = Callable[..., Sequence[Array]]
+"""Columns at values x (N,) of the variable for the parameters of the shape, (N,) each."""
+
 
 @dataclass(frozen=True)
 class Shape:
@@ -22,8 +25,7 @@ class Shape:
     formula: str  # with x the variable
     # the same as Python expressions on arrays, one per coefficient: x is the variable
     code: tuple[str, ...]
-    # columns at values x (N,) of the variable for the parameters of the shape, or the only one
-    function: Callable[..., Array | Sequence[Array]]
+    values: Values
     # names of its parameters: ending in `0` to `9` or named `phase` they are places, `zero` and
     # `unit` are fixed with the machine, others are widths
     places: tuple[str, ...] = ()
@@ -33,11 +35,6 @@ class Shape:
     jumps: bool = False
     remembers: bool = False  # whether the order of touches matters
 
-    def values(self, x: Array, *places: float) -> Sequence[Array]:
-        """Columns at values x (N,) of the variable for the parameters of the shape, (N,) each."""
-        found = self.function(x, *places)
-        return [found] if isinstance(found, np.ndarray) else found
-
     @property
     def free(self) -> tuple[int, ...]:
         """Which of the parameters a run determines; the others follow from the machine."""
@@ -46,6 +43,7 @@ class Shape:
 
 FIXED = ("zero", "unit", "k", "low", "high", "length", "size")
 """Parameters that follow from the machine or from the data before a formula is fitted."""
+
 WAVES = 32  # waves of a curve without a formula: half waves over its domain, from none on
 
 
@@ -90,11 +88,20 @@ def _curve(x: Array, low: float, high: float, length: float, size: float) -> Seq
     of its value there (the correlation of the same process), and two coefficients of their own,
     which no touch within the domain determines, add the variance that is lost: ``1 - k^2``.
     """
-    z = np.sqrt(3.0) * np.maximum(np.maximum(low - x, x - high), 0.0) / ((high - low) * length)
-    kept = (1.0 + z) * np.exp(-z)
-    new = size * np.sqrt(np.maximum(1.0 - kept**2, 0.0))
+    kept = _kept(x, low, high, length)
     waves = size * kept[:, None] * curve_columns(x, low, high, length)
-    return [*waves.T, new * (x < low), new * (x > high)]
+    return [*waves.T, *_beyond(x, low, high, length, size)]
+
+
+def _kept(x: Array, low: float, high: float, length: float) -> Array:
+    z = np.sqrt(3.0) * np.maximum(np.maximum(low - x, x - high), 0.0) / ((high - low) * length)
+    return np.asarray((1.0 + z) * np.exp(-z))
+
+
+def _beyond(x: Array, low: float, high: float, length: float, size: float) -> Sequence[Array]:
+    """Two coefficients of order one that act beyond the domain alone, on either side."""
+    new = size * np.sqrt(np.maximum(1.0 - _kept(x, low, high, length) ** 2, 0.0))
+    return new * (x < low), new * (x > high)
 
 
 def _gauss(x: Array, x0: float, width: float) -> Array:
@@ -105,25 +112,55 @@ def _turn(x: Array, period: float) -> Array:
     return np.asarray(2.0 * np.pi * x / period)
 
 
+def _sine(x: Array, period: float) -> Sequence[Array]:
+    return np.sin(_turn(x, period)), np.cos(_turn(x, period))
+
+
+def _one(function: Callable[..., Array]) -> Values:
+    """A shape of a single coefficient."""
+
+    def values(x: Array, *places: float) -> Sequence[Array]:
+        return (function(x, *places),)
+
+    return values
+
+
 def _shape(
     word: str,
     formula: str,
-    code: str | tuple[str, ...],
-    function: Callable[..., Array | Sequence[Array]],
+    code: str,
+    function: Callable[..., Array],
     *places: str,
-    coefficients: tuple[str, ...] = ("",),
     jumps: bool = False,
     remembers: bool = False,
 ) -> Shape:
     return Shape(
         word=word,
         formula=formula,
-        code=(code,) if isinstance(code, str) else code,
-        function=function,
+        code=(code,),
+        values=_one(function),
         places=places,
-        coefficients=coefficients,
         jumps=jumps,
         remembers=remembers,
+    )
+
+
+def _several(
+    word: str,
+    formula: str,
+    code: tuple[str, ...],
+    values: Values,
+    places: tuple[str, ...],
+    coefficients: tuple[str, ...],
+) -> Shape:
+    """A shape of several coefficients."""
+    return Shape(
+        word=word,
+        formula=formula,
+        code=code,
+        values=values,
+        places=places,
+        coefficients=coefficients,
     )
 
 
@@ -133,9 +170,9 @@ SHAPES: dict[str, Shape] = {
         _shape("sign", "sgn(x)", "x", lambda x: x),
         _shape("lin", "u, u = (x - zero)/unit", "(x - {zero}) / {unit}",
                lambda x, zero, unit: (x - zero) / unit, "zero", "unit"),
-        _shape("lin-from", "a u + b, u = (x - zero)/unit", ("(x - {zero}) / {unit}", "x * 0 + 1"),
-               lambda x, zero, unit: ((x - zero) / unit, np.ones(len(x))), "zero", "unit",
-               coefficients=("slope", "constant")),
+        _several("lin-from", "a u + b, u = (x - zero)/unit", ("(x - {zero}) / {unit}", "x * 0 + 1"),
+              lambda x, zero, unit: ((x - zero) / unit, np.ones(len(x))), ("zero", "unit"),
+              ("slope", "constant")),
         _shape("quad", "u^2, u = (x - zero)/unit", "((x - {zero}) / {unit}) ** 2",
                lambda x, zero, unit: ((x - zero) / unit) ** 2, "zero", "unit"),
         _shape("quad-about", "((x - x0)/unit)^2", "((x - {x0}) / {unit}) ** 2",
@@ -182,18 +219,17 @@ SHAPES: dict[str, Shape] = {
                lambda x, zero, w: np.exp(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w"),
         _shape("settling", "1 - exp(-(x - zero)/w)", "1.0 - np.exp(-(x - {zero}) / {w})",
                lambda x, zero, w: -np.expm1(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w"),
-        _shape("two-exp", "a exp(-(x - zero)/w1) + b exp(-(x - zero)/w2)",
-               ("np.exp(-(x - {zero}) / {wa})", "np.exp(-(x - {zero}) / {wb})"),
-               lambda x, zero, wa, wb: (np.exp(-(x - zero) / wa), np.exp(-(x - zero) / wb)),
-               "zero", "wa", "wb", coefficients=("fast", "slow")),
+        _several("two-exp", "a exp(-(x - zero)/wa) + b exp(-(x - zero)/wb)",
+              ("np.exp(-(x - {zero}) / {wa})", "np.exp(-(x - {zero}) / {wb})"),
+              lambda x, zero, wa, wb: (np.exp(-(x - zero) / wa), np.exp(-(x - zero) / wb)),
+              ("zero", "wa", "wb"), ("fast", "slow")),
         _shape("log", "log(1 + (x - zero)/w)", "np.log1p(np.maximum(x - {zero}, 0.0) / {w})",
                lambda x, zero, w: np.log1p(np.maximum(x - zero, 0.0) / w), "zero", "w"),
-        _shape("sine", "a sin(2 pi x/period) + b cos(2 pi x/period)",
-               ("np.sin(2 * np.pi * x / {period})", "np.cos(2 * np.pi * x / {period})"),
-               lambda x, period: (np.sin(_turn(x, period)), np.cos(_turn(x, period))),
-               "period", coefficients=("sin", "cos")),
-        _shape("harmonic", "a sin(k x) + b cos(k x)", ("np.sin({k} * x)", "np.cos({k} * x)"),
-               lambda x, k: (np.sin(k * x), np.cos(k * x)), "k", coefficients=("sin", "cos")),
+        _several("sine", "a sin(2 pi x/period) + b cos(2 pi x/period)",
+              ("np.sin(2 * np.pi * x / {period})", "np.cos(2 * np.pi * x / {period})"),
+              _sine, ("period",), ("sin", "cos")),
+        _several("harmonic", "a sin(k x) + b cos(k x)", ("np.sin({k} * x)", "np.cos({k} * x)"),
+              lambda x, k: (np.sin(k * x), np.cos(k * x)), ("k",), ("sin", "cos")),
         _shape("square", "sgn sin(2 pi x/period + phase)",
                "np.sign(np.sin(2 * np.pi * x / {period} + {phase}))",
                lambda x, period, phase: np.sign(np.sin(_turn(x, period) + phase)),
@@ -211,9 +247,11 @@ SHAPES: dict[str, Shape] = {
                "(play(x, {w}) - {zero}) / {unit}",
                lambda x, zero, w, unit: (play(x, w) - zero) / unit, "zero", "w", "unit",
                remembers=True),
-        _shape("curve", "smooth curve without a formula, dying away beyond its domain", (),
-               _curve, "low", "high", "length", "size",
-               coefficients=(*(f"c{k}" for k in range(WAVES)), "below", "above")),
+        _several("curve", "smooth curve without a formula, dying away beyond its domain", (),
+              _curve, ("low", "high", "length", "size"),
+              (*(f"c{k}" for k in range(WAVES)), "below", "above")),
+        _several("beyond", "what is not known beyond the domain of a law", (), _beyond,
+              ("low", "high", "length", "size"), ("below", "above")),
     )
 }  # fmt: skip
 """Every shape by its word; a new one is a line here and its grid in `matstd.twin.laws.grids`."""

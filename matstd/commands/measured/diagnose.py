@@ -94,12 +94,15 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _next(args: argparse.Namespace, found: Diagnosis) -> tuple[str, str]:
-    """What follows from the verdict: learn a law, measure, name the effect, or compensate."""
+    """What follows: mend the description, learn a law, measure, name the effect, or compensate."""
     import numpy as np
 
     from matstd.diagnosis.answer import Verdict
 
     model, again = Path(args.output) / "model.toml", f"{args.output}-2"
+    if any(row.is_far for row in found.parts.geometry.beyond):
+        why = "after the machine file or the run is mended: no table corrects a wrong description"
+        return called("diagnose", *args.run_files, "-o", again), why
     if found.withdrawn:
         return _unexplained(args, found)
     if found.verdict is Verdict.MISSING and not args.auto:
