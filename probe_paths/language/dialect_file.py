@@ -38,14 +38,10 @@ def known_controls() -> list[str]:
 
 
 def read_dialect(control: str, folder: str | Path = ".") -> Dialect:
-    """Dialect by the name of a control, or from a file of the user's own.
+    """Dialect by the name of a control, or from a file of the user's own; raises DesignError.
 
     Args:
         control: A name, or a path that ends in `.toml`.
-
-    Raises:
-        DesignError: No control of that name.
-        BadFile: File, key, what stood there, what was expected.
     """
     is_own = control.endswith(".toml")
     path = Path(folder) / control if is_own else _SHIPPED / f"{control}.toml"
