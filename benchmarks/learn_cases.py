@@ -130,7 +130,7 @@ def make(families: list[str | None], seed: int, into: Path) -> list[Path]:
     out = []
     for i, family in enumerate(families):
         label = list(MACHINES)[(seed + i) % len(MACHINES)]
-        if {"harmonic_by_direction", "half_wave"} & set((family or "").split("+")):
+        if {"harmonic_by_direction", "half_wave", "overshoot"} & set((family or "").split("+")):
             label = "hsm600u"
         try:
             texts = law_case(np.random.default_rng([seed, i]), label, family)

@@ -1,8 +1,8 @@
 """Would the tests notice?   python benchmarks/mutants.py     (make mutants)
 
 Makes 200 random lines of the production code wrong, one at a time, and runs the test files that
-execute the line until one test fails. Prints the share of wrong lines that a test noticed and every
-line that none did. A first run of all tests records which file executes which lines; it must pass.
+import the module of the line most directly, those of its room and short ones first, until one test
+fails. Prints the share of wrong lines that a test noticed and every line that none did.
 
 A wrong line has one change: a comparison or condition turned round, + for -, * for /, a sign, `and`
 for `or`, a number (n + 1, or twice a fraction), True for False, a call left out. Each is drawn from
@@ -11,7 +11,6 @@ all such places with equal chance; the seed fixes the draw.
 
 import argparse
 import ast
-import json
 import os
 import random
 import re
@@ -34,15 +33,13 @@ from check_types import link_folder  # noqa: E402
 
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 ROOMS: dict[str, str] = PROJECT["tool"]["setuptools"]["package-dir"]
-TIMEOUT = 1800.0
-"""Seconds after which a wrong line that keeps the tests from ending counts as noticed.
-
-Long enough for busy cores: a run that is merely slow must not count.
-"""
-MOST_FILES = 15
-"""Test files that one wrong line is shown to: the first of them where all execute it."""
-LONG = 10.0
-"""Seconds of a test file that is run after the short ones."""
+MOST_FILES = 8
+"""The same where tests are chosen by what they import."""
+TIMEOUT = 600.0
+"""Seconds after which a wrong line counts as missed: busy cores may keep the tests from ending."""
+MOST_TESTS, MOST_SECONDS = 150, 60.0
+"""Tests that one wrong line is shown to, and their time: the share that is printed is a lower bound
+where more execute it."""
 OPPOSITE = {
     ast.Lt: ">=", ast.LtE: ">", ast.Gt: "<=", ast.GtE: "<", ast.Eq: "!=", ast.NotEq: "==",
     ast.In: "not in", ast.NotIn: "in", ast.Is: "is not", ast.IsNot: "is",
@@ -160,61 +157,68 @@ def drawn(count: int, seed: int, rooms: list[str]) -> list[Mutant]:
     return [rng.choice(by_line[line]) for line in lines]
 
 
-class Trace(NamedTuple):
-    """What a run of all tests recorded.
+class Imports:
+    """Tests for a wrong line by what they import: no traced run of all tests is needed."""
 
-    Attributes:
-        files: Test files that execute a line, by (file, line).
-        seconds: How long each test file takes.
-    """
-
-    files: dict[tuple[str, int], set[str]]
-    seconds: dict[str, float]
-
-    def tests(self, mutant: Mutant) -> list[list[str]]:
-        """Test files for a wrong line, short ones, long ones; of its room where none is recorded.
-
-        A constant of a module is executed by no test but when it is imported.
-        """
-        room = f"tests/{mutant.file.split('/')[0]}/"
-        chosen = self.files.get((mutant.file, mutant.line)) or {
-            name for name in self.seconds if name.startswith(room)
+    def __init__(self) -> None:
+        folders = {name.removeprefix("matstd."): place for name, place in ROOMS.items()}
+        self.modules: dict[str, Path] = {}
+        self.faces: dict[Path, list[ast.ImportFrom]] = {}
+        for name, place in {**folders, "": "matstd"}.items():
+            for file in (ROOT / place).rglob("*.py"):
+                parts = ("matstd", name, *file.relative_to(ROOT / place).with_suffix("").parts)
+                self.modules[".".join(p for p in parts if p and p != "__init__")] = file
+        self.edges = {name: self.imported(file) for name, file in self.modules.items()}
+        self.tests = {
+            file.relative_to(ROOT).as_posix(): self.imported(file)
+            for file in sorted((ROOT / "tests").rglob("test_*.py"))
         }
-        order = sorted(chosen, key=lambda name: (not name.startswith(room), self.seconds[name]))
-        first = order[:MOST_FILES]
-        return [
-            [n for n in first if (self.seconds[n] > LONG) == is_long] for is_long in (False, True)
-        ]
 
+    def imported(self, file: Path) -> set[str]:
+        """Modules of the project that a file imports, with the module that defines each name."""
+        tree, out = ast.parse(file.read_text(encoding="utf-8")), set()
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and node.module:
+                out |= {self.defining(node.module, alias.name) for alias in node.names}
+            elif isinstance(node, ast.Import):
+                out |= {alias.name for alias in node.names}
+        return out & set(self.modules)
 
-def traced(folder: Path) -> Trace:
-    """Runs all tests once, or reads what an earlier run left in the folder."""
-    import coverage
+    def defining(self, module: str, name: str) -> str:
+        """The module that defines what another offers as its face."""
+        if f"{module}.{name}" in self.modules:
+            return f"{module}.{name}"
+        file = self.modules.get(module)
+        if file is None or file.name != "__init__.py":
+            return module
+        if file not in self.faces:
+            body = ast.parse(file.read_text(encoding="utf-8")).body
+            self.faces[file] = [n for n in body if isinstance(n, ast.ImportFrom)]
+        for node in self.faces[file]:
+            if node.module not in (None, module) and name in [a.name for a in node.names]:
+                return self.defining(str(node.module), name)
+        return module
 
-    if not list(folder.glob("seconds-*.json")):
-        folder.mkdir(parents=True, exist_ok=True)
-        path = os.pathsep.join([str(ROOT / "benchmarks"), os.environ.get("PYTHONPATH", "")])
-        done = subprocess.run(
-            [sys.executable, "-m", "pytest", "-q", "-p", "traced_tests"],
-            cwd=ROOT,
-            env=os.environ | {"TRACED": str(folder), "PYTHONPATH": path},
-            check=False,
+    def chosen(self, mutant: Mutant) -> list[str]:
+        """Test files for a wrong line: those that import its module most directly, short first."""
+        (module,) = [n for n, file in self.modules.items() if file == ROOT / mutant.file]
+        far, users = {module: 0}, {module}
+        while users:
+            near = {n for n, found in self.edges.items() if found & users} - set(far)
+            far |= dict.fromkeys(near, max(far.values()) + 1)
+            users = near
+        room, file = f"tests/{mutant.file.split('/')[0]}/", ROOT / mutant.file
+        # a command and an example are run by their names
+        name = re.compile(rf"\b({file.stem}|{file.parent.name})\b")
+        steps: dict[str, int] = {}
+        for test, found in self.tests.items():
+            steps_to = [far[n] for n in found if n in far]
+            if steps_to or name.search((ROOT / test).read_text(encoding="utf-8")):
+                steps[test] = min(steps_to, default=9)
+        order = sorted(
+            steps, key=lambda t: (steps[t], not t.startswith(room), (ROOT / t).stat().st_size)
         )
-        if done.returncode:
-            shutil.rmtree(folder)
-            sys.exit("the tests fail as they are: nothing can be learnt from wrong lines")
-    seconds: Counter[str] = Counter()
-    for file in folder.glob("seconds-*.json"):
-        seconds.update(json.loads(file.read_text()))
-    files: dict[tuple[str, int], set[str]] = defaultdict(set)
-    for part in folder.glob("lines.*"):
-        data = coverage.CoverageData(str(part))
-        data.read()
-        for name in data.measured_files():
-            inner = Path(name).relative_to(ROOT).as_posix()
-            for line, contexts in data.contexts_by_lineno(name).items():
-                files[inner, line] |= {c for c in contexts if c}
-    return Trace(files, dict(seconds))
+        return order[:MOST_FILES]
 
 
 class Copy:
@@ -243,27 +247,26 @@ class Copy:
         (self.root / name).write_text(text, encoding="utf-8")
         os.utime(self.root / name, (self.writes, self.writes))
 
-    def notices(self, mutant: Mutant, tests: list[list[str]]) -> bool:
+    def notices(self, mutant: Mutant, tests: list[str]) -> bool:
         """Whether a test fails with a wrong line and passes without it."""
         right = (self.root / mutant.file).read_text(encoding="utf-8")
-        for files in filter(None, tests):
-            self.write(mutant.file, mutant.apply(right))
-            try:
-                failed = self.first_failure(files)
-            except subprocess.TimeoutExpired:
-                return True
-            finally:
-                self.write(mutant.file, right)
-            if failed and failed not in self.passed:
-                if self.first_failure([failed]):
-                    sys.exit(f"{failed} fails with every line right: it cannot notice a wrong one")
-                self.passed.add(failed)
-            if failed:
-                return True
-        return False
+        self.write(mutant.file, mutant.apply(right))
+        try:
+            failed = self.first_failure(tests)
+        except subprocess.TimeoutExpired:
+            return False
+        finally:
+            self.write(mutant.file, right)
+        if failed and failed not in self.passed:
+            if self.first_failure([failed]):
+                sys.exit(f"{failed} fails with every line right: it cannot notice a wrong one")
+            self.passed.add(failed)
+        return bool(failed)
 
     def first_failure(self, tests: list[str]) -> str:
-        """The first test that fails, or the first file where none could begin; empty for none."""
+        """The first test that fails, or the first of all where none could begin; empty for none."""
+        if not tests:
+            return ""
         done = subprocess.run(
             [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", *tests],
             cwd=self.root,
@@ -279,6 +282,13 @@ class Copy:
         return named[0] if named else tests[0]
 
 
+def interval(killed: int, count: int) -> tuple[float, float]:
+    """The share's interval of 95 % by Wilson's score."""
+    z, p = 1.96, killed / count
+    middle, half = p + z**2 / (2 * count), z * (p * (1 - p) / count + z**2 / (4 * count**2)) ** 0.5
+    return (middle - half) / (1 + z**2 / count), (middle + half) / (1 + z**2 / count)
+
+
 def main() -> None:
     """Draw, run and report."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
@@ -286,10 +296,11 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--rooms", nargs="+", help="draw from these alone; all without it")
-    parser.add_argument("--trace", type=Path, default=ROOT / "build" / "traced")
+    parser.add_argument("--most", type=int, help="try the first of the lines alone")
     options = parser.parse_args()
     rooms = options.rooms or [*ROOMS.values(), "matstd"]
-    trace, mutants = traced(options.trace), drawn(options.n, options.seed, rooms)
+    mutants = drawn(options.n, options.seed, rooms)
+    imports = Imports()
     noticed: dict[Mutant, bool] = {}
     copies: Queue[Copy] = Queue()
     with tempfile.TemporaryDirectory() as place:
@@ -298,7 +309,7 @@ def main() -> None:
 
         def tried(mutant: Mutant) -> None:
             copy = copies.get()
-            noticed[mutant] = copy.notices(mutant, trace.tests(mutant))
+            noticed[mutant] = copy.notices(mutant, imports.chosen(mutant))
             copies.put(copy)
             word = "noticed" if noticed[mutant] else "MISSED"
             print(f"{len(noticed):4} {word:8} {mutant.file}:{mutant.line}", flush=True)
@@ -308,13 +319,14 @@ def main() -> None:
                     print(f"     {sign} {text.splitlines()[mutant.line - 1].strip()}", flush=True)
 
         with ThreadPoolExecutor(options.jobs) as pool:
-            list(pool.map(tried, mutants))
+            list(pool.map(tried, mutants[: options.most]))
     killed = sum(noticed.values())
+    low, high = interval(killed, len(noticed))
     print(f"\nseed {options.seed}: {killed} of {len(noticed)} wrong lines are noticed, "
-          f"{killed / max(len(noticed), 1):.0%}")  # fmt: skip
-    by_room = Counter(m.file.split("/")[0] for m in mutants)
+          f"{killed / len(noticed):.0%} ({low:.0%} to {high:.0%} with 95 %)")  # fmt: skip
+    by_room = Counter(m.file.split("/")[0] for m in noticed)
     for room, count in sorted(by_room.items()):
-        found = sum(noticed[m] for m in mutants if m.file.startswith(f"{room}/"))
+        found = sum(noticed[m] for m in noticed if m.file.startswith(f"{room}/"))
         print(f"  {room:14} {found:3} of {count}")
 
 

@@ -27,19 +27,7 @@ PARTS = ("sheets", "instruments", "points", "arms", "files")
 """From bottom to top: each imports only from those before it."""
 
 __all__ = [
-    "ScanLog",
-    "Sheet",
-    "circle_machine",
-    "circle_run",
-    "import_arm",
-    "import_mapped",
-    "import_points",
-    "machine_text",
-    "one_axis_machine",
-    "positioning_run",
-    "read_circle",
-    "read_positioning",
-    "read_scan_log",
-    "read_sheet",
-    "with_travels",
-]
+    "ScanLog", "Sheet", "circle_machine", "circle_run", "import_arm", "import_mapped",
+    "import_points", "machine_text", "one_axis_machine", "positioning_run", "read_circle",
+    "read_positioning", "read_scan_log", "read_sheet", "with_travels",
+]  # fmt: skip

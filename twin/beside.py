@@ -17,10 +17,8 @@ from typing import Any, ParamSpec, TypeVar
 from matstd.twin.compute import one_blas_thread
 
 CORES = os.cpu_count() or 1  # on a single one every call is made in this process
-
 _SERVE = "from matstd.twin.beside import serve; serve()"
 _WORD = 8  # bytes that state the length of a call
-
 P = ParamSpec("P")
 T = TypeVar("T")
 
@@ -29,13 +27,10 @@ T = TypeVar("T")
 def beside(
     function: Callable[P, T], *args: P.args, **kwargs: P.kwargs
 ) -> Iterator[Callable[[], T]]:
-    """Begin a call in another process; what is yielded waits for its result.
+    """Begin a call of a module's function in another process; what is yielded waits for its result.
 
     The call is made here, when its result is asked for, on a single core, and where it cannot be
     sent: effects of a user's file exist in this process alone. What it raises is raised here.
-
-    Args:
-        function: Of a module.
 
     Example:
         >>> with beside(divmod, 7, 2) as result:

@@ -20,7 +20,6 @@ from matstd.twin.errors import MissingLibrary
 from matstd.twin.text import csv_text
 
 MAX_VALUE_CHARACTERS = 40  # longest value of a field that is shown in full, in characters
-
 _BEFORE: list[Callable[[], object]] = []
 
 

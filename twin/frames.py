@@ -7,11 +7,7 @@ Array = NDArray[np.float64]
 
 
 def skew(v: Array) -> Array:
-    """Matrix of the cross product, ``skew(v) @ x == cross(v, x)``, (..., 3, 3), skew-symmetric.
-
-    Args:
-        v: Vectors, shape (..., 3).
-    """
+    """Matrices (..., 3, 3) of the cross product with v (..., 3), ``skew(v) @ x == cross(v, x)``."""
     S = np.zeros((*np.shape(v), 3))
     S[..., 0, 1], S[..., 0, 2] = -v[..., 2], v[..., 1]
     S[..., 1, 0], S[..., 1, 2] = v[..., 2], -v[..., 0]
@@ -20,12 +16,10 @@ def skew(v: Array) -> Array:
 
 
 def rotation(vector: Array) -> Array:
-    """Rotation matrix of a rotation vector (Rodrigues), exact for any angle, (..., 3, 3).
+    """Rotation matrices (..., 3, 3) of rotation vectors (..., 3), axis times angle, rad.
 
-    ``R = 1 + sin(a)/a S + (1 - cos(a))/a^2 S^2`` with ``S = skew(vector)`` and ``a = |vector|``.
-
-    Args:
-        vector: Axis times angle, shape (..., 3), rad.
+    ``R = 1 + sin(a)/a S + (1 - cos(a))/a^2 S^2`` with ``S = skew(vector)`` and ``a = |vector|``
+    (Rodrigues), exact for any angle.
     """
     S = skew(np.asarray(vector, dtype=float))
     angle = np.linalg.norm(vector, axis=-1)[..., None, None]
@@ -37,27 +31,15 @@ def rotation(vector: Array) -> Array:
 
 def pose(R: Array | None = None, t: Array | None = None) -> Array:
     """Pose from rotation matrices (..., 3, 3) and translations (..., 3), mm."""
-    shape = np.broadcast_shapes(
-        () if R is None else R.shape[:-2],
-        () if t is None else t.shape[:-1],
-    )
-    T = np.zeros((*shape, 4, 4))
-    T[..., :3, :3] = np.eye(3) if R is None else R
-    if t is not None:
-        T[..., :3, 3] = t
-    T[..., 3, 3] = 1.0
+    R, t = np.eye(3) if R is None else R, np.zeros(3) if t is None else t
+    T = np.zeros((*np.broadcast_shapes(R.shape[:-2], t.shape[:-1]), 4, 4))
+    T[..., :3, :3], T[..., :3, 3], T[..., 3, 3] = R, t, 1.0
     return T
 
 
 def turned_about(point: Array, R: Array) -> Array:
-    """Pose of a rotation about a point, ``x -> point + R (x - point)``, (..., 4, 4).
-
-    Args:
-        point: Fixed point of the rotation, shape (..., 3), mm.
-        R: Rotations, shape (..., 3, 3).
-    """
-    fixed = np.broadcast_to(point, (*R.shape[:-2], 3))
-    return pose(R, point - np.einsum("...ij,...j->...i", R, fixed))
+    """Pose of a rotation about a point, ``x -> point + R (x - point)``, (..., 4, 4)."""
+    return pose(R, point - np.einsum("...ij,...j->...i", R, point))
 
 
 def inverse(T: Array) -> Array:
@@ -78,19 +60,12 @@ def turn(T: Array, vectors: Array) -> Array:
 
 def unit(vectors: Array) -> Array:
     """Vectors (..., 3) scaled to length one."""
-    scaled: Array = vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return scaled
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
 
 
 def fixed_xyz(angles: Array) -> Array:
-    """Rotations about the fixed x, then y, then z axis: ``R = Rz Ry Rx``, (..., 3, 3).
-
-    Args:
-        angles: Shape (..., 3), rad.
-    """
-    a = np.asarray(angles, dtype=float)
-    axes = np.eye(3)
-    Rx, Ry, Rz = (rotation(a[..., i : i + 1] * axes[i]) for i in range(3))
+    """Rotations by angles (..., 3) about the fixed x, then y, then z: ``Rz Ry Rx``, (..., 3, 3)."""
+    Rx, Ry, Rz = (rotation(angles[..., i : i + 1] * np.eye(3)[i]) for i in range(3))
     return Rz @ Ry @ Rx
 
 

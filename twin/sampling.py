@@ -13,16 +13,11 @@ from matstd.twin.frames import Array
 
 
 def even_points(count: int, dimensions: int, start: int = 0) -> Array:
-    """Points of low discrepancy in the unit cube, without chance, (count, dimensions).
+    """Points of low discrepancy in the unit cube behind the first `start`, (count, dimensions).
 
     Point i is the fractional part of ``0.5 + i alpha``, alpha the powers of 1/g, with g the root of
-    ``g^(d+1) = g + 1`` in d dimensions.
-
-    Args:
-        start: Points of the sequence that are left out.
-
-    Reference:
-        M. Roberts, The unreasonable effectiveness of quasirandom sequences, 2018.
+    ``g^(d+1) = g + 1`` in d dimensions (M. Roberts, The unreasonable effectiveness of quasirandom
+    sequences, 2018).
     """
     g = 1.5
     for _ in range(60):  # the fixed-point form contracts by 1 / (d + 1) and more
@@ -32,12 +27,7 @@ def even_points(count: int, dimensions: int, start: int = 0) -> Array:
 
 
 def spread_rows(count: int, most: int) -> NDArray[np.int64]:
-    """Numbers of rows spread evenly over all, the first and the last among them, (rows,).
-
-    Args:
-        count: Rows that there are.
-        most: Rows that are wanted; all where there are fewer.
-    """
+    """Numbers of at most so many of `count` rows, evenly spread, the first and last among them."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).astype(np.int64))
 
 

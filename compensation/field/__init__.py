@@ -15,13 +15,14 @@ from matstd.compensation.field.machine_errors import (
 )
 from matstd.compensation.field.over_workspace import (
     Result,
+    Share,
     UncorrectedError,
     aligned,
+    contributions,
     relative_columns,
     result_of,
     sample_workspace,
 )
-from matstd.compensation.field.shares import Share, contributions
 from matstd.compensation.field.state import State
 
 __all__ = [

@@ -36,10 +36,7 @@ class Datum:
 
 
 def correction(
-    disturbance: Disturbance,
-    touches: Touches,
-    aim: Array | None = None,
-    start: Array | None = None,
+    disturbance: Disturbance, touches: Touches, aim: Array | None = None, start: Array | None = None
 ) -> Array:
     """Readings to be added to the linear axes so that the tool point is right.
 
@@ -48,7 +45,6 @@ def correction(
     fewer than three linear axes only what they can move is corrected.
 
     Args:
-        disturbance: The errors, or tables of them.
         aim: Deviation that is wanted, (3,) or (N, 3), mm: that of the datum.
 
         start: What is added already, (N, A), such as corrections of rotary axes.

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,7 +12,7 @@ from matstd.twin.frames import Array, skew
 from matstd.twin.machine import Chain
 from matstd.twin.numbers import rms, rms_length
 from matstd.twin.record import Touches
-from matstd.twin.sampling import even_points
+from matstd.twin.sampling import even_points, spread_rows
 
 RESULT_POSES = 256  # poses of the figures: their rms is then known to some 4 %
 
@@ -24,7 +25,6 @@ def sample_workspace(
     Args:
         limits: Ranges that are narrower than the travels, by axis; a rotary axis that turns more
             than once is taken for one turn.
-        n: How many.
 
     Returns:
         Shape (n, A); spindles that no program turns stand at zero.
@@ -144,8 +144,7 @@ def _uncorrected(
             slope = np.einsum("ni,nik->k", field, spread) / (size * len(field))
             u = float(np.linalg.norm(slope))
         before = rms_length(columns[:, :, rows] @ theta[rows])
-        left = UncorrectedError(name=name, before=before, rms=size, u=u)
-        out.append(_as_determined(left, errors, rows))
+        out.append(_as_determined(UncorrectedError(name, before, size, u), errors, rows))
     return tuple(sorted(out, key=lambda item: -item.rms))
 
 
@@ -162,4 +161,32 @@ def _as_determined(left: UncorrectedError, errors: MachineErrors, rows: Array) -
     theta = float(np.concatenate(errors.theta)[rows[0]])
     share, per = left.rms / left.before, left.before / abs(theta)
     size = per * abs(known.value)
-    return UncorrectedError(name=left.name, before=size, rms=share * size, u=share * per * known.u)
+    return UncorrectedError(left.name, size, share * size, share * per * known.u)
+
+
+MAX_U_POSES = 100  # poses at which the uncertainty of a share is taken: it varies slowly over them
+
+
+class Share(NamedTuple):
+    """What one error adds, all others off."""
+
+    name: str  # symbol of ISO 230-1, or effect
+    field: Array  # deviation of the tool point relative to the datum, table frame, (N, 3), mm
+    u: float  # standard uncertainty of its rms size from that of the model, mm
+
+
+def contributions(errors: MachineErrors, touches: Touches, datum: Datum) -> tuple[Share, ...]:
+    """What every error adds along some poses, the largest first.
+
+    Each is exact; their sum is the deviation of all together to first order.
+    """
+    out = []
+    for name in errors.groups:
+        alone = errors.only(name)
+        field = deviation(alone, touches) - datum.deviation(alone)
+        there = alone.touches(datum.q[None, :], datum.length)
+        some = spread_rows(len(touches), MAX_U_POSES)
+        spread = (alone.columns(touches[some]) - alone.columns(there)) @ alone.root
+        u = float(np.sqrt(np.einsum("nik,nik->", spread, spread) / len(some)))
+        out.append(Share(name, field, u))
+    return tuple(sorted(out, key=lambda share: -rms_length(share.field)))

@@ -13,10 +13,4 @@ from matstd.compensation.linuxcnc.control_files import (
 )
 from matstd.compensation.linuxcnc.link import serve_linuxcnc
 
-__all__ = [
-    "HAL_FILE",
-    "SOCKET",
-    "Control",
-    "serve_linuxcnc",
-    "write_control_files",
-]
+__all__ = ["HAL_FILE", "SOCKET", "Control", "serve_linuxcnc", "write_control_files"]

@@ -1,6 +1,5 @@
 """What LinuxCNC needs to take corrections: a HAL file and the component, beside its INI file."""
 
-import re
 from pathlib import Path
 from shutil import copyfile
 
@@ -14,6 +13,8 @@ HAL_FILE, COMPONENT, SOCKET = "corrector.hal", "corrector.py", "corrector.sock"
 
 HEAD = "# matstd serve --linuxcnc wrote this"
 """First line of the HAL file, by which it is known as ours."""
+
+SCALE = 1e-5  # one count of an external offset, mm: both the component and the control take it
 
 LARGEST_RATIO = 0.9
 """Share of an axis's speed and acceleration that LinuxCNC lets external offsets have."""
@@ -76,7 +77,8 @@ def hal_text(control: Control, service: Service, limits: OutputLimits) -> str:
     linear = service.correction.linear_axes
     words = [str(folder / COMPONENT), "--socket", str(folder / SOCKET)]
     words += ["--axes", "".join(a for a in control.letters if a in chain.axes)]
-    words += ["--linear", "".join(linear), "--sensors", ",".join(service.sensors)]
+    words += ["--linear", "".join(linear), "--scale", f"{SCALE:g}"]
+    words += ["--sensors", ",".join(service.sensors)]
     words += ["--ends", ",".join("{}:{:g}:{:g}".format(a, *control.ends(a)) for a in linear)]
     for name in ("most", "rate", "patience", "hold"):
         words += [f"--{name}", f"{getattr(limits, name):g}"]
@@ -92,24 +94,14 @@ def hal_text(control: Control, service: Service, limits: OutputLimits) -> str:
     for low in (a.lower() for a in control.letters if a in chain.axes):
         connect(f"corrector-at-{low}", f"axis.{low}.pos-cmd", f"corrector.position-{low}")
     for low in map(str.lower, linear):
-        lines.append(f"setp axis.{low}.eoffset-scale {_scale():g}")
+        lines.append(f"setp axis.{low}.eoffset-scale {SCALE:g}")
         connect(f"corrector-counts-{low}", f"corrector.counts-{low}", f"axis.{low}.eoffset-counts")
         connect(f"corrector-has-{low}", f"axis.{low}.eoffset-request", f"corrector.requested-{low}")
-    connect(
-        "corrector-enable",
-        "corrector.enable",
-        *(f"axis.{a.lower()}.eoffset-enable" for a in linear),
-    )
+    enabled = (f"axis.{a.lower()}.eoffset-enable" for a in linear)
+    connect("corrector-enable", "corrector.enable", *enabled)
     connect("corrector-on", "motion.motion-enabled", "corrector.machine-on")
     connect("corrector-homed", "motion.is-all-homed", "corrector.homed")
     lines += [f"setp corrector.temperature-{n} {v:g}" for n, v in state.temperature.items()]
     if state.spindle_rpm is not None:
         lines.append(f"setp corrector.spindle-rpm {state.spindle_rpm:g}")
     return "\n".join(lines) + "\n"
-
-
-def _scale() -> float:
-    """One count, mm, as the component has it."""
-    found = re.search(r"(?m)^SCALE = (\S+)", (BESIDE / "corrector.py").read_text("utf-8"))
-    assert found is not None
-    return float(found[1])

@@ -6,9 +6,8 @@ a reader and a module that writes (`lines`, `comment`, `begin`, `listed`), and b
 """
 
 from matstd.compensation.part_programs.frame import Frame
-from matstd.compensation.part_programs.loads import forces, read_loads
 from matstd.compensation.part_programs.motion import Keep, Motion, Paths
-from matstd.compensation.part_programs.program import Program, read_part_program
+from matstd.compensation.part_programs.program import Program, forces, read_loads, read_part_program
 
 __all__ = [
     "Frame",

@@ -13,11 +13,7 @@ MAX_SMOOTH_SINE = 1e-6  # largest sine of the angle of a smooth transition, whic
 
 
 def without_corners(items: Sequence[Item | Corner], reading: Reading) -> list[Item]:
-    """Motions with the arcs and lines that their corners become.
-
-    Raises:
-        BadFile: A corner without a motion before and behind it in X and Y, or too short for it.
-    """
+    """Motions with the arcs and lines that their corners become; raises BadFile."""
     out: list[Item] = []
     corner: Corner | None = None
     for item in items:
@@ -52,7 +48,8 @@ def _cut(corner: Corner, before: Motion, after: Motion, reading: Reading) -> tup
     a, b = (Element(m, m.start[plane], m.end[plane], 0.0) for m in (before, after))
     if any(e.arc is None and np.linalg.norm(e.end - e.start) < MAX_OVERSHOOT for e in (a, b)):
         raise _refused(reading, corner, "motions that are too short for it")
-    turn = _turn(a, b)
+    u, v = a.direction(a.end), b.direction(b.start)
+    turn = float(u[0] * v[1] - u[1] * v[0])
     if abs(turn) < MAX_SMOOTH_SINE:
         raise _refused(reading, corner, "motions that go straight on")
     first, second, arc = (
@@ -79,11 +76,6 @@ def _refused(reading: Reading, corner: Corner, found: str) -> Exception:
     word = "RND" if corner.is_round else "CHF"
     expected = "lines or arcs in X and Y before and behind it, longer than it"
     return reading.refusal(corner.line, f"{word} between {found}", expected)
-
-
-def _turn(a: Element, b: Element) -> float:
-    u, v = a.direction(a.end), b.direction(b.start)
-    return float(u[0] * v[1] - u[1] * v[0])
 
 
 def _along(corner: Corner, element: Element, is_first: bool, reading: Reading) -> Array:

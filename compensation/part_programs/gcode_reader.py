@@ -70,11 +70,7 @@ class _Block(NamedTuple):
 
 
 def read(text: str, reading: Reading) -> None:
-    """Read a whole program into the items of `reading`.
-
-    Raises:
-        BadFile: A line that is not understood, with its number.
-    """
+    """Read a whole program into the items of `reading`; raises BadFile."""
     reader = _Reader(reading, calls_by_t=_CHANGE.search(text) is None)
     is_begun = False
     for line, raw, code, remarks in gcode_lines(text.splitlines()):
@@ -121,8 +117,10 @@ class _Reader:
         for m in (int(value) for letter, value in words if letter == "M"):
             self._function(line, m)
             said.kept.append(f"M{m}")
-        if "F" in other:
-            self._feed(other["F"])
+        if "F" in other and self.modal.is_inverse_time:
+            self.minutes = 1.0 / other["F"] if other["F"] > 0.0 else 0.0
+        elif "F" in other:
+            self.reading.feed, self.reading.feed_unit = other["F"], self.reading.unit
         is_home = not _HOMES.isdisjoint(g)
         is_arc = self.modal.is_arc and not set("IJK").isdisjoint(other)
         if (axes or is_arc) and not is_home:
@@ -190,13 +188,6 @@ class _Reader:
             raise reading.refusal(line, f"M{m}", expected)
         if m == 6 and self.next_tool is not None:
             self._change(line, self.next_tool)
-
-    def _feed(self, value: float) -> None:
-        """An F word: a feed, or how often in a minute the motion could be made."""
-        if self.modal.is_inverse_time:
-            self.minutes = 1.0 / value if value > 0.0 else 0.0
-        else:
-            self.reading.feed, self.reading.feed_unit = value, self.reading.unit
 
     # --- motions ----------------------------------------------------------------------------------
 

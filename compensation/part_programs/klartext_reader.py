@@ -4,12 +4,12 @@ import re
 
 import numpy as np
 
-from matstd.compensation.part_programs.klartext_cycles import Hole, defined, way
-from matstd.compensation.part_programs.klartext_words import AXIS, Modes, Words
+from matstd.compensation.part_programs.klartext_words import AXIS, Hole, Modes, Words, defined, way
 from matstd.compensation.part_programs.language import Reading, centre_by_radius, checked_arc
 from matstd.compensation.part_programs.motion import Arc, Corner, Cycle
 from matstd.nc.grammar import NUMBER, Block, klartext_blocks, run_order
 from matstd.twin.errors import BadFile
+from matstd.twin.units import DEG
 
 _KEPT = re.compile(
     r"(?:BEGIN|END) PGM \S+ (?:MM|INCH)|BLK FORM .*|TOOL DEF .*|STOP.*|\* - .*|"
@@ -24,8 +24,8 @@ _INCH = re.compile(r"BEGIN PGM \S+ INCH")
 _ONE_WORD = re.compile(r"\b(F) (MAX|AUTO)\b|\b(LA|MB|DL|DR|S|F|R) (?=[+-]?\d)|\b(MB) (MAX)\b")
 """Words that may be written in two."""
 
-_KEPT_M = {*range(10), 13, 14, 30, 90, 107, 108, 109, 110, 111, 116, 117, 120, 126, 127, 141}
-_OWN_M = {89, 91, 99, 128, 129, 140}
+_KEPT_M = {*range(10), 13, 14, 30, 90, 107, 108, 109, 110, 111, 116, 117, 120, 141}
+_OWN_M = {89, 91, 99, 140}
 _EXPECTED = (
     (r"(?!TCH)(?:FN|.*\bQ|.*=)", "numbers, and parameters Q that the program sets itself"),
     (r"TCH", "no touches: a compensated program holds for one datum"),
@@ -39,11 +39,7 @@ _EXPECTED = (
 
 
 def read(text: str, reading: Reading) -> None:
-    """Read a whole program into the items of `reading`.
-
-    Raises:
-        BadFile: A block that is not understood, with its line.
-    """
+    """Read a whole program into the items of `reading`; raises BadFile."""
     reader = _Reader(reading)
     for block in run_order(list(klartext_blocks(text.splitlines())), reading.path):
         reader.take(block)
@@ -54,13 +50,14 @@ class _Reader:
 
     Attributes:
         is_calling: Whether every motion calls it (M89).
+        is_shorter_way: Whether rotary axes take the shorter way, whatever their words (M126).
     """
 
     def __init__(self, reading: Reading) -> None:
         self.reading, self.modes = reading, Modes(reading)
         self.preset: str | None = None
         self.hole: Hole | None = None
-        self.is_calling = False
+        self.is_calling = self.is_shorter_way = False
         self.line, self.bare = 0, ""
 
     def _refusal(self, expected: str, found: str = "") -> BadFile:
@@ -138,6 +135,8 @@ class _Reader:
         for word in words:
             if int(word) in (128, 129):
                 self.reading.switch(word == "128", self.reading.length)
+            elif int(word) in (126, 127):
+                self.is_shorter_way = word == "126"
             elif int(word) not in {*_OWN_M, *_KEPT_M, *self.reading.passed}:
                 expected = "M0 to M9, M13, M14, M30, M89 to M91, M99, M107 to M111, M116, M117, "
                 expected += "M120, M126 to M129, M140, M141; "
@@ -207,9 +206,19 @@ class _Reader:
             else:
                 reading.keep(self.line, self.bare, moves=True)
             return
+        self._check_way(said)
         arc = self._arc(said) if is_arc else None
         words = " ".join(said.kept)
         reading.move(self.line, said.end, said.is_rapid, words, said.named, arc)
+
+    def _check_way(self, said: Words) -> None:
+        """Refuse a fed turn that M126 makes the other way: its pieces would go the longer way."""
+        chain, turn = self.reading.chain, np.abs(said.end - self.reading.at)
+        for axis in chain.rotary_axes if self.is_shorter_way and not said.is_rapid else ():
+            angle = float(turn[chain.axis_index(axis)])
+            if angle > np.pi + 1e-9:
+                found = f"{axis} turning by {angle / DEG:g} degrees with M126"
+                raise self._refusal("at most 180 degrees, or M127 before it", found)
 
     def _arc(self, said: Words) -> Arc:
         """Circle about the pole (C, CP), or of a radius (CR), in the plane of the pole, else XY."""

@@ -22,6 +22,8 @@ from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.units import DEG
 
+LENGTHS = "XYZUVW"  # letters of words that are lengths
+
 
 @dataclass
 class Reading:
@@ -79,13 +81,9 @@ class Reading:
             raise self.refusal(line, f"axis {letter}", f"an axis of the machine: {available}")
         return self._columns[letter]
 
-    def is_linear(self, letter: str) -> bool:
-        """Whether a word is a length."""
-        return letter in "XYZUVW"
-
     def scale(self, letter: str) -> float:
         """One unit of an axis's word in base units."""
-        return self.unit if self.is_linear(letter) else DEG
+        return self.unit if letter in LENGTHS else DEG
 
     def keep(self, line: int, text: str, moves: bool = False) -> None:
         """A block that stays."""
@@ -120,11 +118,7 @@ class Reading:
         return self.side * radius
 
     def needed_feed(self, line: int, is_turn: bool) -> float:
-        """Feed of a motion, mm/min, or degrees/min of axes that turn alone.
-
-        Raises:
-            BadFile: None is in force.
-        """
+        """Feed of a motion, mm/min, or degrees/min of axes that turn alone; raises BadFile."""
         if self.feed <= 0.0:
             raise self.refusal(line, "a motion without feed", "F above zero in it or before it")
         return self.feed * (1.0 if is_turn else self.feed_unit)
@@ -166,7 +160,7 @@ class Reading:
             offset=self.offset,
             unit=self.unit,
             words=words,
-            turned=tuple(a for a in named if not self.is_linear(a)),
+            turned=tuple(a for a in named if a not in LENGTHS),
             arc=arc,
             beside=beside,
             minutes=minutes,
@@ -186,15 +180,12 @@ class Reading:
         named: Sequence[str] = (),
         minutes: float = 0.0,
     ) -> None:
-        """The three motions of a cycle.
+        """The three motions of a cycle; raises BadFile.
 
         Args:
             place: Where the axes stand above it, (A,).
             heights: Z above the hole, at its bottom and after it, mm.
             minutes: Time to the bottom where the feed in force is not that of the cycle.
-
-        Raises:
-            BadFile: A place that is not known, a contour or a turning table.
         """
         if self.side or self.tcpm:
             where = "beside a contour" if self.side else "with tool-point control"
@@ -232,11 +223,8 @@ def centre_by_radius(
     length = float(np.hypot(*chord))
     height = radius * radius - 0.25 * length * length
     if length == 0.0 or height < -1e-6 * radius * radius:
-        raise reading.refusal(
-            line,
-            f"R{radius:g} for ends {length:.4f} mm apart",
-            "half of that at least, and two ends",
-        )
+        found = f"R{radius:g} for ends {length:.4f} mm apart"
+        raise reading.refusal(line, found, "half of that at least, and two ends")
     side = 1.0 if (radius > 0.0) == positive else -1.0
     across = np.array([-chord[1], chord[0]]) / length
     return 0.5 * (start + stop) + side * np.sqrt(max(height, 0.0)) * across
@@ -251,16 +239,11 @@ def checked_arc(
     positive: bool,
     turns: int = 1,
 ) -> Arc:
-    """Arc from where the axes stand about a centre.
-
-    Raises:
-        BadFile: An end that lies off the circle.
-    """
+    """Arc from where the axes stand about a centre; raises BadFile."""
     start, stop = reading.at[plane], end[plane]
     off = float(abs(np.hypot(*(stop - centre)) - np.hypot(*(start - centre))))
     if off > MAX_ARC_MISFIT:
-        raise reading.refusal(
-            line, f"an end {off:.4f} mm off the circle", f"{MAX_ARC_MISFIT} mm at most"
-        )
+        found = f"an end {off:.4f} mm off the circle"
+        raise reading.refusal(line, found, f"{MAX_ARC_MISFIT} mm at most")
     angle = angle_between(start, stop, centre, positive, turns)
     return Arc((plane[0], plane[1]), centre, angle)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -78,6 +79,39 @@ class Motion(NamedTuple):
 
 
 Item = Keep | Motion
+
+
+class Digits(NamedTuple):
+    """Decimals of coordinates in a language, mm and degrees, and of lengths in inches."""
+
+    usual: int
+    inch: int
+
+    def of(self, unit: float) -> int:
+        """Decimals of lengths in a unit, mm."""
+        return self.usual if unit == 1.0 else self.inch
+
+
+@cache
+def _form(axes: tuple[str, ...], lengths: int, angles: int, sign: str) -> str:
+    return "".join(f" {a}%{sign}.{lengths if a in 'XYZ' else angles}f" for a in axes)
+
+
+def axis_words(
+    axes: tuple[str, ...], rows: list[list[float]], unit: float, digits: Digits, sign: str = ""
+) -> list[str]:
+    """Coordinates of some axes as the words of blocks, one row a block.
+
+    Args:
+        unit: One unit of the program's lengths, mm.
+        sign: `+` where every number has its sign.
+    """
+    form = _form(axes, digits.of(unit), digits.usual, sign)
+    if unit != 1.0:
+        rows = [
+            [v / unit if a in "XYZ" else v for a, v in zip(axes, row, strict=True)] for row in rows
+        ]
+    return [form % tuple(row) for row in rows]
 
 
 def angle_between(start: Array, end: Array, centre: Array, positive: bool, turns: int = 1) -> float:

@@ -143,9 +143,6 @@ def compensated(
     Every motion is divided until a straight line between two compensated points leaves less than
     the tolerance of what its middle would need: chords of arcs and of the error field alike.
 
-    Args:
-        tolerance: mm.
-
     Raises:
         OutsideTravel: A compensated point beyond the travel of an axis.
     """
@@ -300,7 +297,7 @@ def _text(path: ProgramPath, head: Header, done: Timed) -> str:
                 blocks += language.lines(*given)
             number += 1
     start = next(k for k, block in enumerate(blocks) if not language.OPENS.match(block))
-    blocks[start:start] = [*map(language.comment, head.lines()), *language.begin()]
+    blocks[start:start] = [*map(language.comment, head.lines()), *language.BEGIN]
     return str(language.listed(blocks, path.program.path))
 
 

@@ -91,8 +91,8 @@ class ProgramPath:
         for axis in chain.programmed_axes:
             k = chain.axis_index(axis)
             is_length = chain.link(axis).kind == "linear"
-            one = unit if is_length else DEG
-            places = self.program.language.decimals(is_length, unit)
+            one, digits = unit if is_length else DEG, self.program.language.DIGITS
+            places = np.where(is_length & (unit != 1.0), digits.inch, digits.usual)
             step = one * 10.0**-places
             out[:, k] = np.round((at[:, k] - offset[:, k]) / step) * step + offset[:, k]
         return out

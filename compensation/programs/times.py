@@ -45,16 +45,10 @@ class Timed(NamedTuple):
 def in_time(
     path: ProgramPath, which: IntArray, share: Array, written: Array, tolerance: float
 ) -> Timed:
-    """Keep the time of every line that turns an axis.
+    """Keep the time of every line that turns an axis; raises BadFile. Lines as of `Timed`.
 
     Args:
-        which: Motion of every line, (N,).
-        share: Share of its motion that is done at its end, (N,).
-        written: Where it ends, program coordinates, rounded, (N, A).
         tolerance: By which corrections may lag where LinuxCNC cannot go slowly enough, mm.
-
-    Raises:
-        BadFile: A line whose time cannot be stated in the program's language.
     """
     linear = path.frame.linear
     begin = path.begins_at(which, written)
@@ -64,8 +58,12 @@ def in_time(
     turns = np.abs(np.delete(moved, linear, axis=1)).max(axis=1, initial=0.0) > 1e-6 * DEG
     turns &= ~path.is_whole[which] & (path.paths.turned[which] > 0.0)
     # without a known start the length of a line, and so its time, is unknown
-    for k in np.unique(which[turns & ~path.is_from_known[which]]):
-        _need_known(path, int(k))
+    for k in np.unique(which[turns & ~path.is_from_known[which]]).tolist():
+        if path.motions[k].minutes == 0.0:
+            found = "rotary axes that turn with a feed from where X, Y or Z is not known"
+            raise _refused(
+                path, k, found, "a motion to X, Y and Z before: how long it takes is not known"
+            )
     changes = turns & (np.abs(far - wanted) > MIN_CHANGED_SHARE * np.minimum(far, wanted))
     stated = np.array([m.minutes > 0.0 for m in path.motions])
     timed = frozenset(np.unique(which[changes & ~stated[which]]).tolist())
@@ -74,8 +72,12 @@ def in_time(
     slow = timed | set(np.unique(which[turns & stated[which]]).tolist())
     if not slow:
         return Timed(which, share, written, timed)
+    # the same place is rounded otherwise behind another unit, and LinuxCNC takes a nanometre for a
+    # way in X, Y, Z
     for k in slow:
-        _need_unit(path, k)
+        if k and path.motions[k].unit != path.motions[k - 1].unit:
+            found = "rotary axes that turn right behind G20 or G21"
+            raise _refused(path, k, found, "a motion of X, Y and Z between")
     rows = np.searchsorted(which, np.arange(len(path.motions) + 1)).tolist()
     parts: list[tuple[IntArray, Array, Array]] = []
     lag = np.zeros(written.shape[1])
@@ -127,52 +129,28 @@ def _slowed(
         at, done = target, share
 
 
-def _need_known(path: ProgramPath, k: int) -> None:
-    motion = path.motions[k]
-    if motion.minutes == 0.0:
-        found = "rotary axes that turn with a feed from where X, Y or Z is not known"
-        expected = "a motion to X, Y and Z before: how long it takes is not known"
-        raise BadFile(path.program.path, f"line {motion.line}", found, expected)
-
-
-def _need_unit(path: ProgramPath, k: int) -> None:
-    """Refuse a turn right behind another unit; raises BadFile.
-
-    The same place is rounded otherwise there, and LinuxCNC takes a nanometre for a way in X, Y, Z.
-    """
-    motion = path.motions[k]
-    if k and motion.unit != path.motions[k - 1].unit:
-        found = "rotary axes that turn right behind G20 or G21"
-        expected = "a motion of X, Y and Z between"
-        raise BadFile(path.program.path, f"line {motion.line}", found, expected)
+def _refused(path: ProgramPath, k: int, found: str, expected: str) -> BadFile:
+    return BadFile(path.program.path, f"line {path.motions[k].line}", found, expected)
 
 
 def _check(path: ProgramPath, k: int) -> None:
     """Whether the time of a motion can be kept; raises BadFile."""
     motion = path.motions[k]
     far, turned = float(path.paths.far[k]), float(path.paths.turned[k])
-    file, line = path.program.path, f"line {motion.line}"
     said = f"{' and '.join(motion.turned)} turning by {turned:.4g} degrees at F{motion.word:g}"
+    slowest = FEED_MARGIN * MIN_INVERSE_FEED
     if not path.program.language.HAS_INVERSE_TIME or motion.tcpm:
         where = "with tool-point control" if motion.tcpm else "in Klartext"
-        raise BadFile(
-            file,
-            line,
-            f"{said}, which its correction in X, Y, Z would make mm/min",
-            f"FMAX or G0: no documented way to state the time of a block {where} is known",
-        )
+        said += ", which its correction in X, Y, Z would make mm/min"
+        expected = f"FMAX or G0: no documented way to state the time of a block {where} is known"
     # controls disagree on F of such a line, so its time is known only if the turn adds little
-    if far > 0.0 and np.hypot(far, turned) > (1.0 + MAX_TIME_DIFFERENCE) * far:
-        raise BadFile(
-            file,
-            line,
-            f"{said} while X, Y, Z go {far:.4g} mm, which its correction changes",
-            "it in inverse time (G93): LinuxCNC takes F for the mm alone, Fanuc for degrees too",
+    elif far > 0.0 and np.hypot(far, turned) > (1.0 + MAX_TIME_DIFFERENCE) * far:
+        said += f" while X, Y, Z go {far:.4g} mm, which its correction changes"
+        expected = (
+            "it in inverse time (G93): LinuxCNC takes F for the mm alone, Fanuc for degrees too"
         )
-    if turned / path.seconds[k] * MINUTE < FEED_MARGIN * MIN_INVERSE_FEED:
-        raise BadFile(
-            file,
-            line,
-            said,
-            f"{FEED_MARGIN * MIN_INVERSE_FEED:g} degrees/min or more: LinuxCNC's slowest in G93",
-        )
+    elif turned / path.seconds[k] * MINUTE < slowest:
+        expected = f"{slowest:g} degrees/min or more: LinuxCNC's slowest in G93"
+    else:
+        return
+    raise _refused(path, k, said, expected)

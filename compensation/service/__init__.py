@@ -5,8 +5,7 @@
 server.
 """
 
-from matstd.compensation.service.latency import prompt
-from matstd.compensation.service.opcua_server import NAMESPACE, serve
+from matstd.compensation.service.opcua_server import NAMESPACE, prompt, serve
 from matstd.compensation.service.output import OutputLimits
 from matstd.compensation.service.point_correction import PointCorrection
 from matstd.compensation.service.service import DRIVEN_EVERY, Service

@@ -41,9 +41,8 @@ class OutputLimits:
             if not 0.0 < value < float("inf"):
                 raise BadValue(name, f"{value:g}", "a number above zero")
         if self.hold < self.patience:
-            raise BadValue(
-                "hold", f"{self.hold:g} s", f"the patience, {self.patience:g} s, or more"
-            )
+            expected = f"the patience, {self.patience:g} s, or more"
+            raise BadValue("hold", f"{self.hold:g} s", expected)
 
 
 @dataclass(frozen=True)
@@ -72,11 +71,7 @@ class Output:
         self._wanted, self._asked = wanted, now
 
     def step(self, now: float) -> Sent:
-        """What is given to the control at this moment.
-
-        Args:
-            now: s, of a clock that only goes forward.
-        """
+        """What is given to the control at this moment."""
         passed = 0.0 if self._now is None else min(max(now - self._now, 0.0), _LONGEST)
         self._now = now
         age = float("inf") if self._asked is None else now - self._asked

@@ -9,9 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from matstd.compensation.field import Datum, MachineErrors, relative_columns
-from matstd.compensation.service.history import History
 from matstd.compensation.service.output import Output, OutputLimits, Quality, Sent
 from matstd.compensation.service.point_correction import Point, PointCorrection
+from matstd.compensation.service.tabulated import History
 from matstd.diagnosis.drift import DriftLaw, LiveDrift
 from matstd.twin.errors import DesignError, OutsideTravel
 from matstd.twin.frames import Array
@@ -123,16 +123,11 @@ class Service:
     """Corrects one machine."""
 
     def __init__(
-        self,
-        errors: MachineErrors,
-        length: float,
-        datum: Datum,
-        limits: OutputLimits | None = None,
+        self, errors: MachineErrors, length: float, datum: Datum, limits: OutputLimits | None = None
     ) -> None:
         """Tabulate the errors.
 
         Args:
-            length: Length of the tool, mm.
             datum: Pose at which the preset was taken: nothing is corrected there.
 
         Raises:
@@ -165,8 +160,6 @@ class Service:
         says why.
 
         Args:
-            readings: As the control shows them.
-            now: s.
             directions: Sign of the last motion of every axis, -1, 0 or 1.
         """
         self._sequence = sequence
@@ -193,15 +186,12 @@ class Service:
         Raises:
             DesignError: A moment that is not later, other sensors, a number that is none.
         """
-        for name, value in temperature.items():
+        driving = {f"temperature {name}": value for name, value in temperature.items()}
+        for name, value in (driving | {"spindle speed": spindle_rpm or 0.0}).items():
             if not np.isfinite(value):
-                raise DesignError(f"temperature {name}: {value:g}, expected a number")
-        state = replace(
-            self._history.now,
-            time=time,
-            temperature=dict(temperature),
-            spindle_rpm=spindle_rpm,
-        )
+                raise DesignError(f"{name}: {value:g}, expected a number")
+        warm, now = dict(temperature), self._history.now
+        state = replace(now, time=time, temperature=warm, spindle_rpm=spindle_rpm)
         self._history = self._history.then(state)
         self.drifts.follow(self._history)
         self.correction = self.correction.following(self._history, self.drifts.learnt)
@@ -228,14 +218,7 @@ class Service:
         k0, k1, p0 = self._linear
         sent = self._output.step(now)
         self._quality = sent.quality
-        return Answer(
-            sequence=self._sequence,
-            sent=sent,
-            k0=k0,
-            k1=k1,
-            p0=p0,
-            refused=self._refused,
-        )
+        return Answer(self._sequence, sent, k0, k1, p0=p0, refused=self._refused)
 
     def uncertainty(self, readings: Sequence[float]) -> Point:
         """Standard uncertainty of the tool point that the model leaves there, x, y, z, mm.

@@ -13,11 +13,70 @@ from itertools import product
 import numpy as np
 
 from matstd.compensation.field import MachineErrors, State
-from matstd.compensation.service.history import History
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
+from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, contribution
+from matstd.twin.record import Touches, at_poses
 from matstd.twin.units import HOUR, NM
+
+MAX_MOMENTS = 4000
+"""Moments that are kept; then every other one goes, so that old ones stand wider apart."""
+
+
+@dataclass(frozen=True, eq=False)
+class History:
+    """States of a machine in their order, the present one last."""
+
+    states: tuple[State, ...]
+
+    def __len__(self) -> int:
+        return len(self.states)
+
+    @property
+    def now(self) -> State:
+        """The present state."""
+        return self.states[-1]
+
+    def then(self, state: State) -> "History":
+        """The history with one more moment; raises DesignError."""
+        last = self.now
+        if not state.time > last.time:
+            raise DesignError(f"time {state.time:g} s, expected later than {last.time:g} s")
+        own, before = (", ".join(sorted(s.temperature)) or "none" for s in (state, last))
+        if own != before:
+            raise DesignError(f"sensors {own}, expected {before}")
+        states = (*self.states, state)
+        return History(states if len(states) <= MAX_MOMENTS else (*states[:-1:2], state))
+
+    def touches(
+        self, chain: Chain, q: Array, length: Array | float, approach: Array | None = None
+    ) -> Touches:
+        """Poses at the present moment, behind a pose at every moment before and now.
+
+        Returns:
+            As many touches as there are moments, then the N.
+        """
+        n, before = len(q), len(self)
+        states = (*self.states, *(self.now,) * n)
+        at = at_poses(chain, np.concatenate([np.tile(q[:1], (before, 1)), q]), length)
+        ways = np.zeros_like(at.approach)
+        if approach is not None:
+            ways[before:] = approach
+        speeds = [s.spindle_rpm for s in states]
+        return replace(
+            at,
+            time=np.array([s.time for s in states]),
+            approach=ways,
+            temperature=_columns([s.temperature for s in states]),
+            value=_columns([s.value for s in states]),
+            spindle_rpm=None if None in speeds else np.array(speeds, dtype=float),
+        )
+
+
+def _columns(rows: list[Mapping[str, float]]) -> dict[str, Array]:
+    return {name: np.array([row[name] for row in rows]) for name in rows[0]}
+
 
 MAX_INTERPOLATION = 2.0 * NM
 """What straight lines between the points of one table may leave at its middles, mm at the tip."""
@@ -61,11 +120,7 @@ class ErrorTable:
         return np.where(width > 0.0, width, 1.0) / (np.array(self.counts) - 1)
 
     def refined(self, close: float) -> "ErrorTable":
-        """Twice as fine until the middles between the points are close.
-
-        Raises:
-            DesignError: It would need more points than a table may have.
-        """
+        """Twice as fine until the middles between the points are close; raises DesignError."""
         counts, table = np.full(len(self.axes), _FEWEST_PLACES), self
         while True:
             table = replace(table, counts=tuple(map(int, counts))).following(None)
@@ -74,9 +129,11 @@ class ErrorTable:
                 return replace(table, left=float(left.sum()))
             if counts.max() >= _MOST[len(counts)]:
                 named = ", ".join(effect.name for effect, _ in self.terms[:3])
+                found = (
+                    f"{named}: {counts.max()} points leave {left.sum() / NM:.3g} nm between them"
+                )
                 raise DesignError(
-                    f"{named}: {counts.max()} points leave {left.sum() / NM:.3g} nm between them "
-                    f"and {close / NM:g} nm are wanted: too steep for a table"
+                    f"{found} and {close / NM:g} nm are wanted: too steep for a table"
                 )
             counts = np.where(left > 0.5 * close / len(counts), 2 * counts - 1, counts)
 
@@ -91,13 +148,17 @@ class ErrorTable:
         if learnt:
             terms = [(effect, learnt.get(effect.name, theta)) for effect, theta in self.terms]
             return replace(self, terms=terms).following(history)
-        lines = [np.linspace(a, b, n) for (a, b), n in zip(self.ends, self.counts, strict=True)]
-        rows = self._at(lines, history)
+        rows = self._at(self._lines, history)
         return replace(self, rows=rows.reshape(*self.counts, *rows.shape[1:]))
+
+    @property
+    def _lines(self) -> list[Array]:
+        """Points along each reading."""
+        return [np.linspace(a, b, n) for (a, b), n in zip(self.ends, self.counts, strict=True)]
 
     def _at_middles(self, along: int) -> float:
         """Largest difference to straight lines at the middles along one reading, mm at the tip."""
-        lines = [np.linspace(a, b, n) for (a, b), n in zip(self.ends, self.counts, strict=True)]
+        lines = self._lines
         lines[along] = 0.5 * (lines[along][1:] + lines[along][:-1])
         exact, rows = self._at(lines, None), np.moveaxis(self.rows, along, 0)
         middle = np.moveaxis(0.5 * (rows[1:] + rows[:-1]), 0, along).reshape(exact.shape)
@@ -122,7 +183,6 @@ def error_tables(
     """Tables of everything that twists a link; displaced lines of axes are not in them.
 
     Args:
-        length: Length of the tool, mm.
         close: What straight lines between the points of one table may leave, mm at the tip.
 
     Raises:

@@ -1,7 +1,7 @@
 """Tables of corrections over single axes, as controls without a volumetric model hold them."""
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -15,11 +15,10 @@ from matstd.compensation.field import (
 )
 from matstd.compensation.tables.by_name import (
     CHECKED_PLACES,
-    FIRST_POINTS,
-    MAX_INTERPOLATION,
     interpolated,
     line,
     on_table,
+    points_needed,
     span,
 )
 from matstd.twin.frames import Array
@@ -45,6 +44,12 @@ class AxisTable:
     def is_left_out(self) -> bool:
         """Whether it corrects at most what depends on the direction of motion (`harmless`)."""
         return not np.any(self.forward + self.reverse)
+
+    @property
+    def reversal(self) -> "AxisTable":
+        """What of it depends on the direction of motion alone."""
+        half = 0.5 * (self.forward - self.reverse)
+        return replace(self, forward=half, reverse=-half)
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,8 +84,9 @@ def along_axes(errors: MachineErrors, datum: Datum, most: int, crosswise: bool) 
     needed = _Needed(errors, datum)
     out = []
     for axis in chain.programmed_axes:
-        low, high = span(chain.link(axis)) if crosswise else chain.link(axis).range
-        nodes = np.linspace(low, high, _points(needed, axis, (low, high), most))
+        ends = span(chain.link(axis)) if crosswise else chain.link(axis).range
+        count = points_needed(ends, most, partial(needed.along, axis, move=1), np.max)
+        nodes = np.linspace(*ends, count)
         ways = [needed.along(axis, nodes, move) for move in _moves(errors, axis, crosswise)]
         names = [*chain.linear_axes, axis] if crosswise else [axis]
         for name in dict.fromkeys(names):
@@ -159,24 +165,6 @@ def _rotary(errors: MachineErrors, touches: Touches) -> Array:
     return out
 
 
-def _points(needed: _Needed, axis: str, over: tuple[float, float], most: int) -> int:
-    """Points of an axis, doubled until linear interpolation is good enough or the table full."""
-    low, high = over
-    count = FIRST_POINTS
-    while True:
-        between = np.linspace(low, high, CHECKED_PLACES * (count - 1) + 1)
-        values = needed.along(axis, between, 1)
-        if _missed(between, values, CHECKED_PLACES) < MAX_INTERPOLATION or 2 * count - 1 > most:
-            return count
-        count = 2 * count - 1
-
-
-def _missed(between: Array, values: Array, step: int) -> float:
-    """Largest difference between every `step`-th value and the line through them, mm."""
-    read = [np.interp(between, between[::step], v[::step]) for v in values.T]
-    return float(np.abs(values - np.column_stack(read)).max())
-
-
 def most_useful(
     tables: AxisTables, errors: MachineErrors, datum: Datum, q: Array, most: int
 ) -> AxisTables:
@@ -214,7 +202,7 @@ def harmless(tables: AxisTables, errors: MachineErrors, datum: Datum, q: Array) 
         if trials[worst] > rms_length(left + sum(kept.values())) - MIN_GAIN:
             break
         del kept[worst]
-    out = [t if k in kept else _reversal_of(t) for k, t in enumerate(tables.tables)]
+    out = [t if k in kept else t.reversal for k, t in enumerate(tables.tables)]
     return AxisTables(tables.chain, tuple(out))
 
 
@@ -229,12 +217,6 @@ def _fields(
         added = AxisTables(tables.chain, (table,)).correction(touches)
         effects.append(aligned(touches.point, np.einsum("nxa,na->nx", moves, added)))
     return aligned(touches.point, deviation(errors, touches)), effects
-
-
-def _reversal_of(table: AxisTable) -> AxisTable:
-    """What of a table depends on the direction of motion alone."""
-    half = 0.5 * (table.forward - table.reverse)
-    return replace(table, forward=half, reverse=-half)
 
 
 def line_bound(tables: AxisTables, errors: MachineErrors, datum: Datum) -> float:
@@ -285,7 +267,8 @@ def unheld_along(
     """What tables of corrections leave per unit of every parameter, (N, 3, P), to first order."""
     chain = errors.chain
     zero = _unit_zero(errors, datum)  # (A, P)
-    needed = {over: _unit_needed(errors, datum, over, tables) for over in _overs(tables)}
+    nodes = {table.over: table.nodes for table in tables.tables}
+    needed = {over: _unit_needed(errors, datum, over, at) for over, at in nodes.items()}
     out = errors.columns(touches)
     moves = _motion(errors, touches)  # (N, 3, A)
     for table in tables.tables:
@@ -298,11 +281,6 @@ def unheld_along(
             added = added + zero[k]
         out += moves[:, :, k, None] * added[:, None, :]
     return out
-
-
-def _overs(tables: AxisTables) -> dict[str, Array]:
-    """Axes whose readings count, with their points."""
-    return {table.over: table.nodes for table in tables.tables}
 
 
 def _motion(errors: MachineErrors, touches: Touches) -> Array:
@@ -321,19 +299,17 @@ def _unit_zero(errors: MachineErrors, datum: Datum) -> Array:
     """Zeros of the linear axes per unit of every parameter, (A, P)."""
     chain, there = errors.chain, errors.touches(datum.q[None, :], datum.length)
     links = [i for i, link in enumerate(chain.links) if link.kind == "linear"]
-    twist, place = (errors.amounts(there, part, links)[0] for part in ("twist", "place"))
-    moved = np.einsum("lcx,lcp->xp", there.reach.twist[0], twist)
-    moved += np.einsum("lcx,lcp->xp", there.reach.place[0], place)
+    moved = errors.columns(there, links)[0]
     out = np.zeros((len(chain.axes), moved.shape[1]))
     linear = chain.linear_columns
     out[linear] = -np.linalg.pinv(linear_directions(chain, there.q)[0]) @ moved
     return out
 
 
-def _unit_needed(errors: MachineErrors, datum: Datum, over: str, tables: AxisTables) -> Array:
+def _unit_needed(errors: MachineErrors, datum: Datum, over: str, nodes: Array) -> Array:
     """`_Needed.along` between both directions per unit of every parameter, (n, A, P)."""
     chain, there = errors.chain, errors.touches(datum.q[None, :], datum.length)
-    touches = line(errors, datum, over, _overs(tables)[over])
+    touches = line(errors, datum, over, nodes)
     out = _unit_rotary(errors, touches) - _unit_rotary(errors, there)
     zero, linear = _unit_zero(errors, datum), chain.linear_columns
     moves, at_datum = _motion(errors, touches), _motion(errors, there)

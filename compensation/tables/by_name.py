@@ -1,7 +1,8 @@
 """Tables of errors by their ISO 230-1 names, as controls with a volumetric model hold them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -110,16 +111,29 @@ def _twist(errors: MachineErrors, datum: Datum, axis: str, readings: Array) -> A
 
 
 def _points(errors: MachineErrors, datum: Datum, axis: str, most: int) -> int:
-    """Points of an axis, doubled until linear interpolation is good enough or the table full."""
     lever = _levers(errors.chain)
-    low, high = span(errors.chain.link(axis))
+    needed = partial(_twist, errors, datum, axis)
+    return points_needed(span(errors.chain.link(axis)), most, needed, lever.__matmul__)
+
+
+def points_needed(
+    ends: tuple[float, float],
+    most: int,
+    needed: Callable[[Array], Array],
+    cost: Callable[[Array], float],
+) -> int:
+    """Points of an axis, doubled until linear interpolation is good enough or the table full.
+
+    Args:
+        needed: Values (n, C) at readings (n,).
+        cost: What largest differences between points (C,) do at the tool point, mm.
+    """
     count = FIRST_POINTS
     while True:
-        nodes = np.linspace(low, high, count)
-        between = np.linspace(low, high, CHECKED_PLACES * (count - 1) + 1)
-        values = _twist(errors, datum, axis, between)
-        missed = _missed(between, values, nodes, values[::CHECKED_PLACES])
-        if missed @ lever < MAX_INTERPOLATION or 2 * count - 1 > most:
+        between = np.linspace(*ends, CHECKED_PLACES * (count - 1) + 1)
+        values = needed(between)
+        missed = _missed(between, values, between[::CHECKED_PLACES], values[::CHECKED_PLACES])
+        if cost(missed) < MAX_INTERPOLATION or 2 * count - 1 > most:
             return count
         count = 2 * count - 1
 
@@ -135,8 +149,8 @@ def point_spacing(errors: MachineErrors, datum: Datum) -> dict[str, float]:
 
 
 def _missed(between: Array, values: Array, nodes: Array, held: Array) -> Array:
-    """Largest difference of every component between points, (6,)."""
-    read = np.column_stack([np.interp(between, nodes, held[:, c]) for c in range(6)])
+    """Largest difference of every column from lines between points, (C,)."""
+    read = np.column_stack([np.interp(between, nodes, column) for column in held.T])
     return np.abs(values - read).max(axis=0)
 
 
@@ -153,9 +167,6 @@ def interpolation_bound(
 
     The largest difference of every component between its points, times the largest lever that it
     has at some poses, added up over all components as if they met at one place.
-
-    Args:
-        q: Poses over which levers are taken, (N, A).
     """
     lever = np.linalg.norm(errors.touches(q, datum.length).reach.twist, axis=-1).max(axis=0)
     total = 0.0

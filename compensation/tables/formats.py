@@ -130,8 +130,8 @@ def refuse_harmful(verified: VerifiedTables) -> None:
         )
 
 
-def _named(most: int) -> Callable[[MachineErrors, Datum, Array], Tables]:
-    return lambda errors, datum, _: sampled(errors, datum, most)
+def _iso(errors: MachineErrors, datum: Datum, _: Array) -> Tables:
+    return sampled(errors, datum, iso_csv.MOST_POINTS)
 
 
 def _cec(errors: MachineErrors, datum: Datum, q: Array) -> Tables:
@@ -151,12 +151,7 @@ def _com(errors: MachineErrors, datum: Datum, _: Array) -> Tables:
 FORMATS: Mapping[str, Format] = {
     f.name: f
     for f in (
-        Format(
-            "iso230",
-            _named(iso_csv.MOST_POINTS),
-            iso_csv.write,
-            iso_csv.read,
-        ),
+        Format("iso230", _iso, iso_csv.write, iso_csv.read),
         Format("sinumerik", _cec, sinumerik_cec.write, sinumerik_cec.read),
         Format("linuxcnc", _comp, linuxcnc_comp.write, linuxcnc_comp.read),
         Format("heidenhain", _com, heidenhain_com.write, heidenhain_com.read),

@@ -68,11 +68,7 @@ class Header:
 
 
 def header_of(chain: Chain, model: str, datum: Datum, state: State, sign: int = 1) -> Header:
-    """Head of the tables of a machine.
-
-    Args:
-        sign: -1 where the control wants the opposite.
-    """
+    """Head of the tables of a machine."""
     return Header(
         model=model,
         machine=f"{chain.name}, {machine_hash(chain)}",

@@ -37,11 +37,7 @@ def write(tables: NamedTables, head: Header) -> dict[str, str]:
 
 
 def read(folder: Path, chain: Chain) -> tuple[NamedTables, Header]:
-    """The tables and their head.
-
-    Raises:
-        BadFile: File, line, what stood there, what was expected.
-    """
+    """The tables and their head; raises BadFile."""
     nodes, values = {}, {}
     heads: list[Header] = []
     for axis in chain.programmed_axes:

@@ -47,11 +47,7 @@ def write(tables: NamedTables, head: Header) -> dict[str, str]:
 
 
 def read(folder: Path, chain: Chain) -> tuple[NamedTables, Header]:
-    """The tables and their head, as a control would take them.
-
-    Raises:
-        BadFile: File, line, what stood there, what was expected.
-    """
+    """The tables and their head, as a control would take them; raises BadFile."""
     path = folder / NAME
     text = path.read_text(encoding="utf-8")
     head = Header.of(text, path)

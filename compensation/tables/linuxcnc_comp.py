@@ -29,11 +29,7 @@ def write(tables: AxisTables, head: Header) -> dict[str, str]:
 
 
 def read(folder: Path, chain: Chain) -> tuple[AxisTables, Header]:
-    """The tables and their head, as LinuxCNC would take them.
-
-    Raises:
-        BadFile: File, line, what stood there, what was expected.
-    """
+    """The tables and their head, as LinuxCNC would take them; raises BadFile."""
     made, head = [], None
     for axis in chain.programmed_axes:
         path = folder / f"{axis}.comp"

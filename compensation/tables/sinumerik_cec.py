@@ -46,11 +46,7 @@ def write(tables: AxisTables, head: Header) -> dict[str, str]:
 
 
 def read(folder: Path, chain: Chain) -> tuple[AxisTables, Header]:
-    """The tables and their head, as a control would take them.
-
-    Raises:
-        BadFile: File, line, what stood there, what was expected.
-    """
+    """The tables and their head, as a control would take them; raises BadFile."""
     path = folder / NAME
     text = path.read_text(encoding="utf-8")
     values: dict[int, dict[int, float]] = {}

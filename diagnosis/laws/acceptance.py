@@ -82,7 +82,7 @@ def memory_left(fit: Fit, before: Memory) -> Memory | None:
     return replace(memory, is_filtered=before.is_filtered)
 
 
-def predicts_better(before: Fit, after: Fit, policy: LawPolicy) -> bool:
+def predicts_better(before: Fit, after: Fit) -> bool:
     """Whether touches left out, by poses and by times, are predicted better with a law.
 
     Freed of the uncertainty of the prediction: where a block takes most of a set-up with it, plain
@@ -90,7 +90,7 @@ def predicts_better(before: Fit, after: Fit, policy: LawPolicy) -> bool:
     """
     for groups in (pose_groups(before), time_groups(before)):
         was, now = _own_error(before, groups), _own_error(after, _same(groups, after))
-        if now > (1.0 - policy.least_gain) * was:
+        if now > was:
             return False
     return True
 
@@ -137,7 +137,7 @@ def held_out(before: Fit, after: Fit, laws: Sequence[Law]) -> list[HeldOut]:
     """Errors of touches left out: by poses, by times, and by blocks of every variable of a law."""
     blocks = {"poses": pose_groups(before), "times": time_groups(before)}
     touches = before.run.touches
-    for driver in dict.fromkeys(f.driver for law in laws for f in law.factors):
+    for driver in dict.fromkeys(driver for law in laws for driver in law.drivers):
         rows = np.flatnonzero(before.used)
         x = driver.values(touches)[rows]
         if len(np.unique(x)) > PLACE_BLOCKS:

@@ -69,32 +69,27 @@ def partial_residual(learning: Learning, law: Law) -> tuple[Array, Array]:
     return np.asarray(fit.residual + own), np.asarray(own)
 
 
-def curve_of(learning: Learning, law: Law, factor: int, x: Array) -> tuple[Array, Array]:
-    """One factor of a law over its variable, in units of the carrier, with its uncertainty.
+def curve_of(learning: Learning, law: Law, driver: Driver, x: Array) -> tuple[Array, Array]:
+    """A law over one of its variables, in units of the carrier, with its uncertainty.
 
-    The other factor is where it is largest. The uncertainty is that of amplitudes and parameters
-    together, by differences.
+    A shape of another variable is held where it is largest. The uncertainty is that of amplitudes
+    and parameters together, by differences.
 
     Args:
-        factor: Number of the factor.
-        x: Values of its variable, (M,), base unit.
+        x: Values of the variable, (M,), base unit.
 
     Returns:
         Values and standard uncertainty, (M,) each, mm or rad.
     """
     fit = learning.tangent
     theta = learning.after.theta[learning.after.of_effect(law.name)]
-    first = slice(0, len(theta))
-    indices = [t.index for t in fit.tangents if t.effect.name == law.name]
+    tangents = [t for t in fit.tangents if t.effect.name == law.name]
     rows = np.concatenate(
-        [
-            np.r_[fit.of_effect(law.name)],
-            *(np.r_[fit.of_effect(t.name)] for t in fit.tangents if t.effect.name == law.name),
-        ]
+        [np.r_[fit.of_effect(name)] for name in (law.name, *(t.name for t in tangents))]
     )
     covariance = fit.covariance[np.ix_(rows, rows)]
-    other = _other_factor(learning, law, factor)
-    S = _values(law, factor, x, law.places, other)
+    held = _held(learning, law, driver)
+    S = _values(law, driver, x, law.places, held)
     weights = theta.reshape(law.carrier.count, -1)
     way = int(np.argmax(np.abs(weights).sum(axis=1)))
     pick = np.zeros((law.carrier.count, S.shape[1]))
@@ -102,40 +97,38 @@ def curve_of(learning: Learning, law: Law, factor: int, x: Array) -> tuple[Array
     wide = (S[:, None, :] * pick[None]).reshape(len(x), -1)
     slope = [wide]
     inner = law.inner(fit.run.touches)
-    for i in indices:
+    for i in (t.index for t in tangents):
         step = 0.02 * float(inner[i].grid[-1] - inner[i].grid[-2]) or 1e-9
         moved = []
         for sign in (1.0, -1.0):
             at = list(law.places)
             at[i] += sign * step
-            moved.append(_values(law, factor, x, tuple(at), other) @ weights[way])
+            moved.append(_values(law, driver, x, tuple(at), held) @ weights[way])
         slope.append(((moved[0] - moved[1]) / (2.0 * step))[:, None])
     A = np.hstack(slope)
-    value = wide @ theta[first]
-    return value, np.sqrt(np.maximum(np.einsum("np,pk,nk->n", A, covariance, A), 0.0))
+    return wide @ theta, np.sqrt(np.maximum(np.einsum("np,pk,nk->n", A, covariance, A), 0.0))
 
 
-def _other_factor(learning: Learning, law: Law, factor: int) -> Array | None:
-    """Columns of the other factor where it acts most, (coefficients,); None without one."""
-    if len(law.factors) == 1:
-        return None
-    other = law.factors[1 - factor]
-    start = 0 if factor == 1 else len(law.factors[0].shape.places)
-    own = law.places[start : start + len(other.shape.places)]
-    x = other.driver.values(learning.after.run.touches)
-    S = np.stack(other.shape.values(x, *own), axis=1)
-    return np.asarray(S[int(np.argmax(np.abs(S).sum(axis=1)))])
+def _held(learning: Learning, law: Law, driver: Driver) -> Array:
+    """Columns of the shape of another variable where it acts most, (coefficients,); one without."""
+    held = np.ones(1)
+    for factor, own in law.parts:
+        if factor.driver != driver:
+            x = factor.driver.values(learning.after.run.touches)
+            S = np.stack(factor.shape.values(x, *law.places[own]), axis=1)
+            held = S[int(np.argmax(np.abs(S).sum(axis=1)))]
+    return held
 
 
-def _values(law: Law, factor: int, x: Array, at: tuple[float, ...], other: Array | None) -> Array:
-    """Columns of a law over one variable, the other factor held, (M, coefficients)."""
-    start = 0 if factor == 0 else len(law.factors[0].shape.places)
-    shape = law.factors[factor].shape
-    S = np.stack(shape.values(x, *at[start : start + len(shape.places)]), axis=1)
-    if other is None:
-        return S
-    pair = S[:, :, None] * other if factor == 0 else other[:, None] * S[:, None, :]
-    return np.asarray(pair.reshape(len(x), -1))
+def _values(law: Law, driver: Driver, x: Array, at: tuple[float, ...], held: Array) -> Array:
+    """Columns of a law over one variable, the shape of another one held, (M, coefficients)."""
+    out = np.ones((len(x), 1))
+    for factor, own in law.parts:
+        S = held[None]
+        if factor.driver == driver:
+            S = np.stack(factor.shape.values(x, *at[own]), axis=1)
+        out = (out[:, :, None] * S[:, None, :]).reshape(len(x), -1)
+    return out
 
 
 @dataclass(frozen=True, eq=False)

@@ -104,7 +104,7 @@ def scan(grids: Grids, C: Array, driver: Driver, each: int = 1) -> list[tuple[Pa
         Shape and place, squared residual explained, number of its parameters.
     """
     space, out = grids.space, []
-    bases = [space.basis * C[:, i : i + 1] for i in range(C.shape[1])]
+    bases = np.concatenate([space.basis * C[:, i : i + 1] for i in range(C.shape[1])], axis=1).T
     for shape, points, columns in grids.of(driver):
         explained = np.concatenate(
             [
@@ -119,22 +119,30 @@ def scan(grids: Grids, C: Array, driver: Driver, each: int = 1) -> list[tuple[Pa
     return out
 
 
-def _explained(space: Space, C: Array, bases: Sequence[Array], S: Array) -> Array:
-    """Squared residual that the carrier times the shape explains at every point, (G,)."""
-    m, _, points = S.shape
-    pairs = [(i, j) for i in range(C.shape[1]) for j in range(m)]
-    U = [bases[i].T @ S[j] for i, j in pairs]
-    b = np.stack([(C[:, i] * space.r) @ S[j] for i, j in pairs], axis=1)
-    raw = np.stack([C[:, i] ** 2 @ S[j] ** 2 for i, j in pairs], axis=1)
-    if len(pairs) == 1:
-        own = raw[:, 0] - np.einsum("pg,pg->g", U[0], U[0])
+def _explained(space: Space, C: Array, bases: Array, S: Array) -> Array:
+    """Squared residual that the carrier times the shape explains at every point, (G,).
+
+    Args:
+        bases: The basis of the model times every column of the carrier, (k P, N).
+    """
+    (m, _, points), k = S.shape, C.shape[1]
+    # products of columns are made once for all pairs: half the time of a pair at a time
+    squares = (C[:, :, None] * C[:, None, :]).reshape(len(C), -1).T  # (k k, N)
+    U = np.stack([(bases @ s).reshape(k, -1, points) for s in S], axis=1)  # (k, m, P, G)
+    b = np.stack([(C.T * space.r) @ s for s in S], axis=1).reshape(k * m, points).T
+    G = np.empty((points, k, m, k, m))
+    for j in range(m):
+        for g in range(j + 1):
+            cross = (squares @ (S[j] * S[g])).reshape(k, k, points).transpose(2, 0, 1)
+            G[:, :, j, :, g] = G[:, :, g, :, j] = cross
+    G = G.reshape(points, k * m, k * m)
+    raw = np.einsum("gaa->ga", G).copy()
+    U = U.reshape(k * m, -1, points).transpose(2, 0, 1)
+    G = G - U @ U.transpose(0, 2, 1)
+    if k * m == 1:
+        own = G[:, 0, 0]
         is_own = own > MIN_OWN * raw[:, 0]
         return np.where(is_own, b[:, 0] ** 2 / np.where(is_own, own, 1.0), 0.0)
-    G = np.empty((points, len(pairs), len(pairs)))
-    for a, (i, j) in enumerate(pairs):
-        for c, (h, g) in enumerate(pairs[: a + 1]):
-            cross = (C[:, i] * C[:, h]) @ (S[j] * S[g])
-            G[:, a, c] = G[:, c, a] = cross - np.einsum("pg,pg->g", U[a], U[c])
     size = np.sqrt(np.maximum(raw, 1e-300))
     G = G / (size[:, :, None] * size[:, None, :])
     values, vectors = np.linalg.eigh(G)
@@ -257,12 +265,7 @@ def refined(space: Space, field: Field, start: Candidate) -> Candidate:
     def parts_at(at: Array) -> list[Part]:
         moved = values.copy()
         moved[free] = values[free] + at * steps
-        out, first = [], 0
-        for factor in law.factors:
-            count = len(factor.shape.places)
-            out.append(Part(factor, tuple(float(v) for v in moved[first : first + count])))
-            first += count
-        return out
+        return [Part(factor, tuple(moved[own].tolist())) for factor, own in law.parts]
 
     def left(at: Array) -> float:
         parts = parts_at(at)

@@ -76,25 +76,20 @@ class LearntLaw:
     @property
     def second_choice(self) -> Rival | None:
         """The nearest law of another carrier or other variables."""
-        own = _what(self.law)
-        return next((rival for rival in self.rivals if _what(rival.law) != own), None)
+        own = self.law.explanation
+        return next((rival for rival in self.rivals if rival.law.explanation != own), None)
 
     def members(self, policy: LawPolicy) -> list[tuple[Law, float]]:
         """Laws that cannot be distinguished, with their shares of a prediction."""
-        near, seen = [], {_what(self.law)}
+        near, seen = [], {self.law.explanation}
         for rival in self.rivals:
-            if rival.log_odds < policy.class_odds and _what(rival.law) not in seen:
-                seen.add(_what(rival.law))
+            if rival.log_odds < policy.class_odds and rival.law.explanation not in seen:
+                seen.add(rival.law.explanation)
                 near.append(rival)
         laws = [self.law, *(r.law for r in near[: policy.most_members - 1])]
         odds = np.array([0.0, *(r.log_odds for r in near[: policy.most_members - 1])])
         shares = np.exp(-np.maximum(odds, 0.0))
         return list(zip(laws, (shares / shares.sum()).tolist(), strict=True))
-
-
-def _what(law: Law) -> tuple[str, ...]:
-    """Carrier and variables: shapes of the same are no other explanation."""
-    return (law.carrier.name, *sorted(f.driver.name for f in law.factors))
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,6 +156,22 @@ class Learning:
             if is_own or owner_of(law) == "machine":
                 out += share * (columns([law], run.touches) @ theta)
         return out
+
+    @cached_property
+    def saved(self) -> Fit:
+        """With what is not known of every formula beyond the values that its variables had.
+
+        No touch shows that: the estimates are those of `after`, with wider predictions elsewhere.
+        """
+        used = self.after.run.touches[self.after.used]
+        beyond: dict[str, Effect] = {}
+        for one in (one.law for one in self.laws if not one.law.is_curve_alone):
+            theta = self.after.theta[self.after.of_effect(one.name)]
+            beyond |= {law.name: law for law in one.beyond(theta, used)}
+        laws = [one.law for one in self.laws]
+        if not beyond:
+            return self.after
+        return self.beginning.fitted([*laws, *beyond.values()], gross=self.after.gross)
 
     @property
     def u(self) -> Array:
@@ -281,7 +292,7 @@ def _refusal(
     """
     if best.score < policy.min_score:
         return Refusal.CHANCE
-    if not predicts_better(*white, policy):
+    if not predicts_better(*white):
         return Refusal.PREDICTION
     if not stands_beside_memory(start, laws, best.law, best.score, white, policy):
         return Refusal.MEMORY

@@ -12,13 +12,11 @@ class LawPolicy:
         tried_products: The same for a product of two shapes: some hundred times as many are tried.
         switch_of_level: Charged for a jump over a temperature: what jumps happens at an instant as
             a rule, and over a temperature that only rises both are the same.
-        quick: Charged for a sine of more than eight periods in the range: some thousand
-            frequencies are tried.
+        quick: Charged for a sine of more than eight periods in the range, of which some thousand
+            frequencies are tried, and for a loop over readings, which go to and fro as quickly.
         unusual: Charged for a shape that is met seldom where another has as few parameters: a power
             or a saturation over time looks like an exponential.
         min_score: Log evidence that a law must gain beyond all charges: odds of 150 : 1.
-        least_gain: Share by which held-out errors must fall with a law.
-        curve_margin: Log evidence by which a curve must beat every formula to be kept instead.
         shorter: Log evidence below which the shorter of two formulas is taken.
         class_odds: Log odds below which laws form a class; predictions average over its members.
         most_laws: Laws learnt one after the other.
@@ -33,8 +31,6 @@ class LawPolicy:
     quick: float = 4.0
     unusual: float = 2.0
     min_score: float = 5.0
-    least_gain: float = 0.0
-    curve_margin: float = 0.0
     shorter: float = 2.0
     class_odds: float = 4.0
     most_laws: int = 3

@@ -15,7 +15,7 @@ import numpy as np
 from matstd.diagnosis.laws.space import MIN_OWN, Space
 from matstd.diagnosis.residual import Bearer, bearers
 from matstd.twin.frames import Array
-from matstd.twin.laws import Driver, curve_columns, drivers
+from matstd.twin.laws import ON_BALL, SHAPES, WORDS, Driver, curve_columns, drivers, grid
 
 LENGTHS = (0.03, 0.1, 0.3)
 """Correlation lengths of curves, as shares of the range."""
@@ -208,33 +208,76 @@ def _surface_waves(space: Space, field: Field, driver: Driver) -> tuple[Array, A
     return np.cos(np.pi * share[:, None] * k), weight / weight[1]
 
 
-def fast_sines(space: Space, field: Field, most: int) -> list[tuple[Bearer, Driver, float, float]]:
-    """Sines of readings and of time that are too quick for curves, the best first.
+class Rough(NamedTuple):
+    """A shape that no smooth curve shows, at a carrier, with the squared residual it explains."""
 
-    Returns:
-        Carrier, variable, period and the squared residual explained; approximate, since the model
-        imitates little of a quick wave.
+    bearer: Bearer
+    driver: Driver
+    word: str  # of the shape
+    places: tuple[float, ...]
+    explained: float
+
+
+def rough_shapes(space: Space, field: Field, each: int) -> list[Rough]:
+    """Quick sines of readings and of time, and loops of hysteresis: the best of either kind.
+
+    What they explain is approximate: the model imitates little of a quick wave or of a loop.
     """
-    out = []
-    P = space.basis.shape[1]
-    share = max(1.0 - P / space.count, 0.1)
     C = np.concatenate([b.C[:, i : i + 1] for b in field.bearers for i in range(b.C.shape[1])], 1)
     owner = [b for b in field.bearers for _ in range(b.C.shape[1])]
+    share = max(1.0 - space.basis.shape[1] / space.count, 0.1)
     R, S = C * space.r[:, None], C**2
+    waves, loops = [], []
     for driver in field.drivers:
-        if driver.nature != "linear" and driver.name != "time":
-            continue
         x = field.used(driver, space)
-        span = float(np.ptp(x))
-        # touches follow one another at nearly even times, at places anywhere
-        limit = 0.45 * len(np.unique(x)) if driver.nature == "time" else FAST_WAVES
-        f = np.arange(8.0, limit, 0.5) / span
-        angle = 2.0 * np.pi * x[:, None] * f
-        s, c = np.sin(angle), np.cos(angle)
-        along = (R.T @ s) ** 2 + (R.T @ c) ** 2  # (bearers, F)
-        power = along / (0.5 * share * S.sum(axis=0)[:, None] + MIN_OWN)
-        for i, j in zip(
-            *np.unravel_index(np.argsort(-power, axis=None)[:3], power.shape), strict=True
-        ):
-            out.append((owner[i], driver, float(1.0 / f[j]), float(power[i, j])))
-    return sorted(out, key=lambda one: -one[3])[:most]
+        if driver.nature == "linear" or driver.name == "time":
+            f = _quick_frequencies(driver, x)
+            angle = 2.0 * np.pi * x[:, None] * f
+            along = (R.T @ np.sin(angle)) ** 2 + (R.T @ np.cos(angle)) ** 2  # (carriers, F)
+            power = along / (0.5 * share * S.sum(axis=0)[:, None] + MIN_OWN)
+            waves += [
+                Rough(owner[i], driver, "sine", (float(1.0 / f[j]),), power[i, j])
+                for i, j in _of_carriers(power)
+            ]
+        if "hysteresis" in WORDS[driver.nature] and driver.name not in ON_BALL:
+            points = grid(SHAPES["hysteresis"], driver, x)
+            whole = field.x[driver.name]
+            H = np.stack([SHAPES["hysteresis"].values(whole, *p)[0][space.used] for p in points], 1)
+            power = (R.T @ H) ** 2 / (share * (S.T @ H**2) + MIN_OWN)
+            loops += [
+                Rough(owner[i], driver, "hysteresis", tuple(points[j].tolist()), power[i, j])
+                for i, j in _of_carriers(power)
+            ]
+    return [r for kind in (waves, loops) for r in sorted(kind, key=lambda r: -r.explained)[:each]]
+
+
+def _quick_frequencies(driver: Driver, x: Array) -> Array:
+    """Too quick for a curve; touches follow one another at nearly even times, anywhere."""
+    limit = 0.45 * len(np.unique(x)) if driver.nature == "time" else FAST_WAVES
+    return np.asarray(np.arange(8.0, limit, 0.5) / np.ptp(x))
+
+
+def _of_carriers(power: Array) -> list[tuple[int, int]]:
+    """Row of every carrier with its largest column."""
+    return list(enumerate(np.argmax(power, axis=1).tolist()))
+
+
+def modulations(space: Space, field: Field, C: Array) -> list[tuple[Driver, float]]:
+    """Variables on which the size of a law depends, by what a curve gains over none, best first.
+
+    Args:
+        C: Columns of a carrier times a shape, (N, k).
+    """
+    constant = np.ones((len(C), 1))
+    G, b, _ = normal_equations(space, C, constant)
+    plain, _, _ = curve_evidence(space, G, b, np.ones((1, C.shape[1])))
+    out = []
+    for driver in field.drivers:
+        B, weights, _ = waves_of(space, field, driver)
+        if driver.nature == "sign" or len(weights) == 1:
+            B = np.hstack([constant, B])
+            weights = np.ones((1, 2))
+        G, b, _ = normal_equations(space, C, B)
+        value, _, _ = curve_evidence(space, G, b, np.tile(weights, (1, C.shape[1])))
+        out.append((driver, value - plain))
+    return sorted(out, key=lambda one: -one[1])

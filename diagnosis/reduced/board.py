@@ -150,12 +150,14 @@ def learnt_board(learning: Learning, found: Sequence[Effect] = ()) -> Board:
 def compared_board(found: Comparison) -> Board:
     """The board of a comparison: effects of the model on; those that suit the residual best.
 
+    What is not known beyond the domain of a law has no size, and is no switch.
+
     What a model predicts is no unknown of the run: such an effect is there, whole, or not.
     """
     fit = found.fit
     names = {e.name for e in fit.model.effects}
     geometry = {e.name for e in ordinary_model(fit.model.chain).effects}
-    own = [e for e in fit.model.effects if e.name not in geometry]
+    own = [e for e in fit.model.effects if e.name not in geometry and not traits(e).is_margin]
     library = [e for e in candidate_effects(found.run.touches) if e.name not in names]
     known = {frozenset(e.name for e in own): (fit.rms, fit.test_rms)}
     return _board(fit, own, {}, library, fit, known, found.is_prediction)

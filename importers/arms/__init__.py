@@ -6,11 +6,5 @@ from matstd.importers.arms.table import ArmTable, read_arm
 from matstd.importers.arms.tracker import ArmImport, import_arm, tracker_run
 
 __all__ = [
-    "ArmImport",
-    "ArmTable",
-    "arm_from_dh",
-    "import_arm",
-    "oriented",
-    "read_arm",
-    "tracker_run",
-]
+    "ArmImport", "ArmTable", "arm_from_dh", "import_arm", "oriented", "read_arm", "tracker_run",
+]  # fmt: skip

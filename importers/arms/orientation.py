@@ -11,7 +11,6 @@ Reference:
 """
 
 import re
-from typing import NamedTuple
 
 import numpy as np
 
@@ -19,77 +18,65 @@ from matstd.importers.sheets import ANGLES, Sheet
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array, rotation, skew
 from matstd.twin.numbers import rms
+from matstd.twin.record import turn_of
 
 MAX_NORM_ERROR = 0.01
 """Error of the length of a quaternion beyond which its columns hold something else."""
-
 IMPLAUSIBLE_ANGLE = 0.1
 """Angle (rad rms) between measured and nominal orientations that is not that of an arm: zeros of
 joints that were never calibrated are off by 10 mrad."""
-
 MAX_SECOND_SHARE = 0.99
 """Second singular value over the first from which poses do not determine the orientations."""
-
 EXPLAINED_SHARE = 0.2  # inverse orientations explain the angles if at most this share remains
-
 PAIRS = ((0, 1), (1, 2), (2, 0))
 """Direction of the arm and direction of the reading of each pair of points."""
-
 _QUATERNION = re.compile(r"(?:\Aq|quat\w*?)[\s_.]*([wxyz])\Z", re.IGNORECASE)
 _ROTATION = re.compile(r"(?:\Ar|\brotvec|\brv)[\s_.]*([xyz])\Z", re.IGNORECASE)
 
 
-class Oriented(NamedTuple):
-    """Columns of an orientation: of a quaternion w, x, y, z, or of a rotation vector x, y, z."""
-
-    columns: tuple[int, ...]
-
-
-def oriented(sheet: Sheet) -> Oriented | None:
-    """Columns `qw qx qy qz` or `rx ry rz` of a table, None where it has neither."""
+def oriented(sheet: Sheet) -> tuple[int, ...]:
+    """Columns `qw qx qy qz` or `rx ry rz` of a table, none where it has neither."""
     for pattern, letters in ((_QUATERNION, "wxyz"), (_ROTATION, "xyz")):
         found = {
             m[1].lower(): i for i, name in enumerate(sheet.names) if (m := pattern.search(name))
         }
         if set(found) == set(letters):
-            return Oriented(tuple(found[c] for c in letters))
-    return None
+            return tuple(found[c] for c in letters)
+    return ()
 
 
-def rotations(sheet: Sheet, found: Oriented) -> Array:
+def rotations(sheet: Sheet, columns: tuple[int, ...]) -> Array:
     """Rotation of the target's frame in that of the tracker, (N, 3, 3); NaN where it is missing.
+
+    Args:
+        columns: Of a quaternion w, x, y, z, or of a rotation vector x, y, z.
 
     Raises:
         BadFile: A quaternion that is not of unit length, a rotation vector without a unit.
     """
-    if len(found.columns) == 3:
-        return rotation(np.stack([sheet.quantity(i, ANGLES) for i in found.columns], axis=1))
-    q = np.stack([sheet.numbers(i) for i in found.columns], axis=1)
+    if len(columns) == 3:
+        return rotation(np.stack([sheet.quantity(i, ANGLES) for i in columns], axis=1))
+    q = np.stack([sheet.numbers(i) for i in columns], axis=1)
     length = np.linalg.norm(q, axis=1)
     odd = np.flatnonzero(np.abs(length - 1.0) > MAX_NORM_ERROR)
     if len(odd):
-        raise sheet.bad(
-            int(odd[0]), found.columns[0], f"a quaternion of length {length[odd[0]]:.4g}", "1"
-        )
+        found = f"a quaternion of length {length[odd[0]]:.4g}"
+        raise sheet.bad(int(odd[0]), columns[0], found, "1")
     return from_quaternions(q / length[:, None])
 
 
 def from_quaternions(q: Array) -> Array:
     """Rotations of unit quaternions w, x, y, z, (N, 4) to (N, 3, 3)."""
     K = skew(q[:, 1:])
-    out: Array = np.eye(3) + 2.0 * (q[:, 0, None, None] * K + K @ K)
-    return out
+    return np.asarray(np.eye(3) + 2.0 * (q[:, 0, None, None] * K + K @ K))
 
 
 def disagreement(tool: Array, measured: Array) -> float:
     """Angle between measured orientations and those of the arm, rad rms; NaN where undetermined.
 
-    With M_i measured and B_i of the tool, ``M_i = Y B_i X`` for the orientations Y of the tracker
-    and X of the target that maximise ``sum trace(M_i' Y B_i X)``: a pair of singular vectors.
-
-    Args:
-        tool: Rotation of the tool in the table frame, (N, 3, 3).
-        measured: Orientation of the target in the frame of the tracker, (N, 3, 3).
+    With M_i measured in the frame of the tracker and B_i of the tool in the table frame, (N, 3, 3)
+    each, ``M_i = Y B_i X`` for the orientations Y of the tracker and X of the target that maximise
+    ``sum trace(M_i' Y B_i X)``: a pair of singular vectors.
     """
     K = np.einsum("nkl,npq->kpql", measured, tool).reshape(9, 9)
     U, s, _ = np.linalg.svd(K)
@@ -99,8 +86,7 @@ def disagreement(tool: Array, measured: Array) -> float:
     Y = nearest_rotation(sign * U[:, 0].reshape(3, 3))
     X = target_rotation(tool, measured, Y)
     off = np.einsum("nji,jk,nkl,lm->nim", measured, Y, tool, X)
-    angle = np.arccos(np.clip(0.5 * (np.trace(off, axis1=1, axis2=2) - 1.0), -1.0, 1.0))
-    return rms(angle)
+    return rms(turn_of(off))
 
 
 def check_orientations(sheet: Sheet, tool: Array, measured: Array) -> None:
@@ -119,11 +105,7 @@ def check_orientations(sheet: Sheet, tool: Array, measured: Array) -> None:
 
 
 def target_rotation(tool: Array, measured: Array, tracker: Array) -> Array:
-    """Rotation of the target in the tool frame, (3, 3), in closed form.
-
-    Args:
-        tracker: Rotation that takes table to tracker coordinates, (3, 3).
-    """
+    """Rotation of the target in the tool frame, (3, 3), in closed form, for that of the tracker."""
     return nearest_rotation(np.einsum("nji,kj,nkl->il", tool, tracker, measured))
 
 

@@ -15,17 +15,13 @@ from matstd.twin.record import rigid_motion
 MIN_POSES = 6
 """Poses for the nine unknown numbers of tracker and reflector, three equations each, with a
 margin."""
-
 UNDETERMINED_SD = 10.0
 """From this standard uncertainty (mm) a direction is undetermined. Thirty poses of an arm that is 1
 mm wrong give 0.4 mm; a path with one orientation gives metres."""
-
 MAX_SCATTER = 5.0
 """Largest scatter (mm) in this decision; larger scatter is not that of the stated arm."""
-
 UNEXPLAINED_SHARE = 0.5
 """From this share of the spread of the measured places, residuals are no errors of an arm."""
-
 MIN_COMPONENT = 0.05  # from this component of a unit vector a parameter belongs to a direction
 
 

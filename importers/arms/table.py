@@ -25,7 +25,6 @@ _COUPLED = re.compile(r"J?(\d{1,2})\s*([+-])\s*J?(\d{1,2})\Z", re.IGNORECASE)
 
 
 MAX_FIXED_MOTION = 2.0  # range (mm) of a fixed target in the frame of a tracker that drifts
-
 MIN_MOTION_RATIO = 20.0  # least motion of the reflectors on the arm, in ranges of a fixed target
 
 
@@ -67,9 +66,9 @@ def read_arm(sheet: Sheet, axes: Sequence[str] = (), is_oriented: bool = False) 
     Raises:
         BadFile: No such columns, a joint twice or missing, ambiguous columns of places.
     """
-    turned = oriented(sheet) if is_oriented else None
+    turned = oriented(sheet) if is_oriented else ()
     joints = _joints(sheet, axes)
-    reflectors, fixed = _reflectors(sheet, (*joints, *(turned.columns if turned else ())))
+    reflectors, fixed = _reflectors(sheet, (*joints, *turned))
     q = [sheet.quantity(i, {**ANGLES, **MM}, "deg") for i in joints]
     place = [[sheet.quantity(of[c], MM, "mm") for c in "xyz"] for of in reflectors]
     several = len(reflectors) > 1
@@ -179,13 +178,10 @@ def _words(name: str) -> str:
 
 
 def coupled(q: Array, how: str) -> Array:
-    """Readings of joints where one counts from the link of another, (N, J); raises DesignError.
+    """Readings of joints where one counts from the link of another, `J3+J2`; raises DesignError.
 
     On arms with a parallel linkage, and in the readings of some controls without one, joint 3
     counts from the horizontal: its angle against link 2 is J3 + J2 (or J3 - J2).
-
-    Args:
-        how: `J3+J2`.
     """
     match = _COUPLED.match(how.strip())
     joint, other = (int(match[1]) - 1, int(match[3]) - 1) if match else (-1, -1)

@@ -36,7 +36,6 @@ from matstd.twin.record import (
 from matstd.twin.units import UM
 
 IMPLAUSIBLE_RMS = 5.0  # deviations (mm rms) beyond those of an uncalibrated arm (about 1 mm)
-
 EXPLAINED_SHARE = 0.2  # a mistake explains the deviations if at most this share remains
 
 
@@ -77,7 +76,6 @@ def _mistakes(q: Array) -> Iterator[tuple[str, Array]]:
 
 
 SAME_READING = 1e-4  # readings that agree within this (mm, rad) are one pose, held out as a whole
-
 _TIME = re.compile(r"time|zeit|clock", re.IGNORECASE)
 
 

@@ -6,29 +6,23 @@ from dataclasses import replace
 import numpy as np
 
 from matstd.twin.errors import DesignError
-from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import Run
+from matstd.twin.text import toml_value
 from matstd.twin.units import UM
 
 ORDINARY_ERROR = (1.0 * UM, 15e-6)
 """Ordinary translational error of a linear axis: a constant (mm) and a share of the travel. New
 machines of ordinary accuracy have 8.5 µm over 500 mm (ISO 10791-4 tolerates 22 µm there)."""
-
 DATA_TRAVEL = "  # PLACEHOLDER: that of the data; --travel states it"
-
 SIDES = "# PLACEHOLDER: the data do not show which axes carry the workpiece (prime)"
 
 
 def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
     """Text of a machine file whose travels are those of some data.
 
-    Args:
-        source: What it was made from, for the first line.
-        is_known: Whether order, lines and sides of the axes are stated by the source.
-
-    Returns:
-        TOML; every line that the data do not determine is marked PLACEHOLDER.
+    Every line that the data do not determine is marked PLACEHOLDER; if the source states order,
+    lines and sides of the axes (`is_known`), those are not.
     """
     lines = [
         f"# Made from {source}. The data do not determine lines marked PLACEHOLDER: check them.",
@@ -41,21 +35,17 @@ def machine_text(chain: Chain, source: str, is_known: bool = False) -> str:
         link = chain.link(axis)
         low, high = (end / link.unit for end in link.range)
         doubt = "  # PLACEHOLDER: travel of the joint" if is_known else DATA_TRAVEL
-        lines += [
-            "",
-            f"[axis.{axis}]",
-            f"range = [{low:.12g}, {high:.12g}]{doubt}",
-        ]
+        lines += ["", f"[axis.{axis}]", f"range = [{low:.12g}, {high:.12g}]{doubt}"]
         if link.kind == "linear":
             expected = link.expected or usual(high - low)
             lines.append(f"expected = {expected:.2g}  # PLACEHOLDER: mm; reports name larger ones")
         if link.kind == "rotary":
             doubt = "" if is_known else "  # PLACEHOLDER: a point of its line, mm"
-            lines.append(f"point = {_listed(link.point)}{doubt}")
+            lines.append(f"point = {toml_value(link.point.tolist())}{doubt}")
         if not link.points_along_letter:
-            lines.append(f"direction = {_listed(link.direction)}")
+            lines.append(f"direction = {toml_value(link.direction.tolist())}")
     if np.any(chain.table_origin):
-        lines += ["", "[workpiece]", f"origin = {_listed(chain.table_origin)}"]
+        lines += ["", "[workpiece]", f"origin = {toml_value(chain.table_origin.tolist())}"]
     return "\n".join(lines) + "\n"
 
 
@@ -85,7 +75,3 @@ def with_travels(run: Run, travels: Mapping[str, tuple[float, float]]) -> Run:
 def usual(travel: float) -> float:
     """Ordinary translational error of a linear axis, mm."""
     return ORDINARY_ERROR[0] + ORDINARY_ERROR[1] * travel
-
-
-def _listed(values: Array) -> str:
-    return f"[{', '.join(repr(float(v)) for v in values)}]"

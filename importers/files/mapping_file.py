@@ -1,6 +1,5 @@
 """Mapping file (TOML, "import/1"): the columns of a run by those of a foreign table."""
 
-import csv
 import io
 import tempfile
 from collections.abc import Mapping, Sequence
@@ -25,6 +24,7 @@ from matstd.twin.files import (
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
 from matstd.twin.record import Run
+from matstd.twin.text import csv_text
 
 
 class ColumnTable(Table):
@@ -63,14 +63,11 @@ class MappedRun(NamedTuple):
 def import_mapped(
     sheet: Sheet, path: str | Path, folder: Path, chain: Chain | None = None
 ) -> MappedRun:
-    """A run by a mapping file, checked by reading it as the run file that it becomes.
+    """A run by a mapping file, checked by reading it as the run file that it makes; raises BadFile.
 
     Args:
         folder: Folder of the run file; its head names the machine relative to it.
         chain: The machine, in place of the one that the head names.
-
-    Raises:
-        BadFile: A key of the mapping file, or a fault of the run that it makes.
     """
     text, left_out = mapped_run(sheet, path)
     if chain is None:
@@ -122,8 +119,7 @@ def mapped_run(sheet: Sheet, path: str | Path) -> tuple[str, int]:
     out = io.StringIO()
     head = {"format": "run/1", **table.head}
     out.writelines(f"# {line}".rstrip() + "\n" for line in tomli_w.dumps(head).splitlines())
-    csv.writer(out, lineterminator="\n").writerows([names, *kept])
-    return out.getvalue(), len(lines) - len(kept)
+    return out.getvalue() + csv_text(names, kept), len(lines) - len(kept)
 
 
 def _blocks(table: MappingTable, path: str | Path) -> Sequence[Mapping[str, tuple[How, str]]]:

@@ -6,13 +6,6 @@ from matstd.importers.instruments.circle import circle_machine, circle_run, read
 from matstd.importers.instruments.positioning import PositioningTest, read_positioning
 
 __all__ = [
-    "PositioningTest",
-    "circle_machine",
-    "circle_run",
-    "component_range",
-    "one_axis_machine",
-    "positioning_figures",
-    "positioning_run",
-    "read_circle",
-    "read_positioning",
-]
+    "PositioningTest", "circle_machine", "circle_run", "component_range", "one_axis_machine",
+    "positioning_figures", "positioning_run", "read_circle", "read_positioning",
+]  # fmt: skip

@@ -11,10 +11,8 @@ from matstd.twin.record import Instrument, Run, Setup, at_poses
 from matstd.twin.thermal import CYCLE, PROGRESS
 
 ARM = 1000.0  # arm (mm) by which an angle is written as a length: 1 µrad is 1 µm
-
 MIN_CYCLES_TO_HOLD_OUT = 4
 """Cycles needed to hold one out; with fewer it would be more than a quarter of the test."""
-
 MIN_SINE = 0.5  # sine below which an axis and the direction it turns about count as parallel
 
 
@@ -52,9 +50,7 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
     cycles = np.unique(test.cycle, return_inverse=True)[1].reshape(-1)
     targets = np.unique(np.round(test.target, 9), return_inverse=True)[1].reshape(-1)
     # a log rarely repeats a reading exactly
-    held_out = (
-        cycles if test.is_log or cycles.max(initial=0) + 1 >= MIN_CYCLES_TO_HOLD_OUT else targets
-    )
+    by_cycles = test.is_log or cycles.max(initial=0) + 1 >= MIN_CYCLES_TO_HOLD_OUT
     touches = replace(
         at_poses(chain, q, -at[:, 2]),
         offset=at[:, :2],
@@ -65,7 +61,7 @@ def positioning_run(test: PositioningTest, chain: Chain, u: float) -> Run:
         approach=approach,
         temperature=test.temperature,
         feature=np.array([f"cycle{c}" for c in test.cycle]),
-        pose=held_out.astype(np.int64),
+        pose=(cycles if by_cycles else targets).astype(np.int64),
         value=_progress(test) if not test.is_log and cycles.max() > 1 else {},
         instrument=Instrument.AUTOCOLLIMATOR
         if test.is_angle

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from matstd.importers.sheets import ANGLES, MM, Sheet, picked, stacked, strokes
+from matstd.importers.sheets import ANGLES, MM, Sheet, stacked, strokes
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import Array
 from matstd.twin.machine import Axis, Chain, linear_directions, make_chain
@@ -22,9 +22,7 @@ from matstd.twin.record import Instrument, IntArray, Labels, Run, Setup, at_pose
 from matstd.twin.units import MINUTE
 
 PAUSE_BETWEEN_RUNS = 10.0  # assumed pause between two runs, s
-
 ANGLE_BEFORE_READING = 1e-6  # angle (rad) before a reading at which its axes were still moving
-
 RADIUS_TOLERANCE = 0.1
 """A column holds radii if its mean differs from the radius by less than this share of it."""
 
@@ -67,7 +65,8 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
         BadFile: No such columns, a unit or a direction that is not stated.
     """
     at = sheet.find(_ANGLE)
-    places = [i for i in map(sheet.find, map(_letter, plane)) if i is not None]
+    letters = (re.compile(rf"(?<![a-zA-Z]){c}(?![a-zA-Z])", re.IGNORECASE) for c in plane)
+    places = [i for i in map(sheet.find, letters) if i is not None]
     if at is None and len(places) < 2:
         raise sheet.lacking("a column of angles, or of both coordinates")
     if at is None:
@@ -80,22 +79,18 @@ def read_circle(sheet: Sheet, plane: str, radius: float, unit: str | None = None
         found = _columns(sheet, at, angle, radius, unit)
     parts = []
     for deviation, (sense, run, order) in found:
+        rows = order[np.isfinite(deviation + angle)[order]]
         test = CircularTest(
             plane=plane,
             radius=radius,
-            angle=angle,
-            deviation=deviation,
-            sense=sense,
-            run=run,
-            line=np.array(sheet.lines),
+            angle=angle[rows],
+            deviation=deviation[rows],
+            sense=sense[rows],
+            run=run[rows],
+            line=np.array(sheet.lines)[rows],
         )
-        parts.append(picked(test, order[np.isfinite(deviation + angle)[order]]))
+        parts.append(test)
     return stacked(parts)
-
-
-def _letter(letter: str) -> re.Pattern[str]:
-    """Pattern of the column of a coordinate."""
-    return re.compile(rf"(?<![a-zA-Z]){letter}(?![a-zA-Z])", re.IGNORECASE)
 
 
 def _columns(
@@ -208,9 +203,8 @@ def circle_run(
                 f"its travel is {low:g} to {high:g}; --centre states the middle of the circle"
             )
     approach = np.zeros(q.shape)
-    before = (
-        test.angle - ANGLE_BEFORE_READING * test.sense
-    )  # at a quadrant an axis has not reversed yet
+    # at a quadrant an axis has not reversed yet
+    before = test.angle - ANGLE_BEFORE_READING * test.sense
     turned = np.column_stack([-np.sin(before), np.cos(before)]) * test.sense[:, None]
     approach[:, [first, second]] = np.sign(turned)
     D = linear_directions(chain, at_centre)

@@ -189,15 +189,12 @@ def _readings(sheet: Sheet, target: int, named: str, is_own: bool) -> tuple[int 
     if is_own:
         actual = sheet.find(_REFERENCE) if actual is None else actual
         return (actual, True) if values is None else (values, False)
-    aside = [i for i, name in enumerate(sheet.names) if i != target and _is_aside(name)]
+    named_aside = (i for i, name in enumerate(sheet.names) if i != target and _ASIDE.search(name))
+    aside = [i for i in named_aside if not _COMPUTED.search(sheet.names[i])]
     values = next(iter(aside), actual) if values is None else values
     if named:
         return sheet.column(named), False
     return (None if len(aside) > 1 else values), False
-
-
-def _is_aside(name: str) -> bool:
-    return bool(_ASIDE.search(name)) and not _COMPUTED.search(name)
 
 
 def _filled_forward(at: Array) -> Array:

@@ -6,14 +6,6 @@ from matstd.importers.points.runs import PointsImport, import_points, linear_mac
 from matstd.importers.points.scan_log import ScanLog, read_scan_log
 
 __all__ = [
-    "Meaning",
-    "PointList",
-    "PointsImport",
-    "ScanLog",
-    "import_points",
-    "joined_points",
-    "linear_machine",
-    "points_run",
-    "read_points",
-    "read_scan_log",
-]
+    "Meaning", "PointList", "PointsImport", "ScanLog", "import_points", "joined_points",
+    "linear_machine", "points_run", "read_points", "read_scan_log",
+]  # fmt: skip

@@ -12,7 +12,6 @@ from matstd.importers.sheets import Sheet
 
 _VALUE = re.compile(r"\A(value|wert|valeur|reading|result|ergebnis)\Z", re.IGNORECASE)
 """Names of the column of measured values, where no clearer one exists."""
-
 MIN_COMPLETE_SHARE = 2.0 / 3.0
 """If points have a smaller share of their coordinates, the order of the rows does not define points
 (all X first, then all Y)."""

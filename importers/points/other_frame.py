@@ -20,16 +20,12 @@ from matstd.twin.record import rigid_motion, turn_of
 SHIFT = 1.0
 """A larger displacement (mm) is another frame; a smaller one is found by the linear fit of the
 set-up."""
-
 TURN = 1e-3
 """A larger rotation (rad) is another frame: half its square times 200 mm is 0.1 µm, the error of
 the linear fit of the set-up."""
-
 OFF_FRAME_RATIO = 5.0
 """Points farther off than this multiple of the median are outliers and left out of the fit."""
-
 MAX_FRAME_ROUNDS = 20  # repetitions of the choice of near points; two are usual
-
 MIRROR_RATIO = 10.0
 """A mirrored frame must fit better by this factor before an axis counts as reversed."""
 
@@ -69,7 +65,7 @@ def measured_frames(points: PointList) -> list[OtherFrame]:
         T[np.ix_(letters, letters)] = _motion(setup, a, a + off[whole][:, measured])
         middle = points.nominal[rows][whole].mean(axis=0)
         shift = float(np.linalg.norm(apply(T, middle) - middle))
-        out.append(OtherFrame(setup, T, shift, turn_of(T[:3, :3])))
+        out.append(OtherFrame(setup, T, shift, float(turn_of(T[:3, :3]))))
     return out
 
 

@@ -11,7 +11,6 @@ from matstd.twin.record import IntArray, Labels
 
 MISPLACED_RATIO = 2.0
 """A point this many times nearer to another one's place than to its own is misplaced."""
-
 MIN_LISTED_POINTS = 4  # points needed to determine a common displacement
 
 
@@ -32,11 +31,9 @@ class PointList:
 def misplaced(points: PointList) -> list[tuple[str, str]]:
     """Points found nearer to the nominal place of another one: (its name, the other's).
 
-    The median of each coordinate is subtracted first. Mixed-up names, or a list in another order,
-    cause this. A point without a name is named by its line.
-
-    Args:
-        points: Brought to the nominal frame.
+    In a list that was brought to the nominal frame the median of each coordinate is subtracted
+    first. Mixed-up names, or a list in another order, cause this. A point without a name is named
+    by its line.
     """
     from scipy.spatial import KDTree  # a fifth of a second, for lists of points alone
 
@@ -65,13 +62,8 @@ def joined_points(lists: Sequence[PointList], names: Sequence[str] = ()) -> Poin
         return lists[0]
     if len(set(names)) < len(names):
         names = [f"{name}-{i + 1}" for i, name in enumerate(names)]
-    return stacked(
-        [
-            replace(
-                p,
-                setup=np.array([f"{name}_{s}" for s in p.setup]),
-                run=np.full(len(p.line), name),
-            )
-            for p, name in zip(lists, names, strict=True)
-        ]
-    )
+    parts = []
+    for p, name in zip(lists, names, strict=True):
+        setup = np.array([f"{name}_{s}" for s in p.setup])
+        parts.append(replace(p, setup=setup, run=np.full(len(p.line), name)))
+    return stacked(parts)

@@ -77,10 +77,8 @@ def import_points(
 def linear_machine(points: PointList, frames: Sequence[OtherFrame] = ()) -> Chain:
     """A machine of the linear axes along which the points extend, for a list without a machine.
 
-    An axis along which points hardly extend travels `MIN_TRAVEL` about their middle.
-
-    Args:
-        frames: In which the machine measured them where it is not the nominal frame.
+    An axis along which points hardly extend travels `MIN_TRAVEL` about their middle. Frames are
+    those in which the machine measured where it is not the nominal one.
     """
     at = places(points, frames)
     low, high = at.min(axis=0), at.max(axis=0)

@@ -10,7 +10,7 @@ readings of rotary axes by their letters. Names of columns may be in capitals, w
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -43,17 +43,13 @@ class ScanLog:
     is_numbered: bool  # whether the file numbers its lines
 
 
-def read_scan_log(path: str | Path, unit: str = "mm", names: Sequence[str] = ()) -> ScanLog:
-    """The points of a scan.
-
-    Args:
-        unit: Of columns of lengths whose name has none.
-        names: Of the columns, of a table without a header.
+def read_scan_log(path: str | Path) -> ScanLog:
+    """The points of a scan; lengths are in mm unless their names say other units.
 
     Raises:
         BadFile: No table with x, y, z, an empty cell, time that runs back, or too few points.
     """
-    sheet = read_sheet(path, names=names)
+    sheet = read_sheet(path)
     found = {letter: _column(sheet, letter) for letter in "xyz"}
     if None in found.values():
         missing = ", ".join(name for name, column in found.items() if column is None)
@@ -62,10 +58,10 @@ def read_scan_log(path: str | Path, unit: str = "mm", names: Sequence[str] = ())
         )
     if len(sheet) < _FEWEST_POINTS:
         raise BadFile(path, "table", f"{len(sheet)} points", f"{_FEWEST_POINTS} or more of a scan")
-    position = np.column_stack([_lengths(sheet, found[letter], unit) for letter in "xyz"])
+    position = np.column_stack([_lengths(sheet, found[letter]) for letter in "xyz"])
     apart = [_column(sheet, f"d{letter}") for letter in "xyz"]
     if None not in apart:
-        position += np.column_stack([_lengths(sheet, column, unit) for column in apart])
+        position += np.column_stack([_lengths(sheet, column) for column in apart])
     along = _column(sheet, _DEFLECTION)
     line, time = _column(sheet, _LINE), _column(sheet, _TIME)
     rotary = {letter: _column(sheet, letter.lower()) for letter in "ABC"}
@@ -74,7 +70,7 @@ def read_scan_log(path: str | Path, unit: str = "mm", names: Sequence[str] = ())
         row=np.array(sheet.lines, dtype=np.int64),
         line=np.ones(len(sheet), dtype=np.int64) if line is None else _numbers(sheet, line),
         position=position,
-        deflection=np.zeros(len(sheet)) if along is None else _lengths(sheet, along, unit),
+        deflection=np.zeros(len(sheet)) if along is None else _lengths(sheet, along),
         rotary={
             letter: _complete(sheet, column, sheet.quantity(column, ANGLES, "deg"))
             for letter, column in rotary.items()
@@ -90,19 +86,16 @@ def _column(sheet: Sheet, names: str) -> int | None:
     return sheet.find(re.compile(rf"\A(?:{names})\Z", re.IGNORECASE))
 
 
-def _lengths(sheet: Sheet, column: int | None, unit: str) -> Array:
+def _lengths(sheet: Sheet, column: int | None) -> Array:
     """Lengths of a column, (N,), mm."""
     assert column is not None
-    return _complete(sheet, column, sheet.quantity(column, MM, unit))
+    return _complete(sheet, column, sheet.quantity(column, MM, "mm"))
 
 
 def _numbers(sheet: Sheet, column: int) -> IntArray:
     """Whole numbers of a column, (N,)."""
-    values = _complete(sheet, column, sheet.numbers(column))
-    broken = np.flatnonzero(values != np.round(values))
-    if len(broken):
-        raise sheet.bad(int(broken[0]), column, f"{values[broken[0]]:g}", "a whole number")
-    return values.astype(np.int64)
+    _complete(sheet, column, sheet.numbers(column))
+    return sheet.whole_numbers(column, "a whole number")
 
 
 def _times(sheet: Sheet, column: int) -> Array:

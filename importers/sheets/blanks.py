@@ -7,7 +7,6 @@ from matstd.importers.sheets.rows import filled_lines
 
 _WIDE = re.compile(r"\s{2,}|\t")
 _NUMBER = re.compile(r"[+-]?(\d+[.,]?\d*|[.,]\d+)([eE][+-]?\d+)?\Z")
-
 MIN_EQUAL_ROWS = 0.8  # share of the rows of numbers that must have the same number of columns
 
 
@@ -29,7 +28,8 @@ def by_blanks(text: str) -> list[tuple[int, list[str]]]:
     wide = {i: _WIDE.split(line) for i, line in lines}
     for cells in (wide, narrow):
         width, count = Counter(len(cells[i]) for i in data).most_common(1)[0]
-        if width > 1 and count >= MIN_EQUAL_ROWS * len(data) and _are_numbers_in(cells, data):
+        least = MIN_EQUAL_ROWS * len(data)
+        if width > 1 and min(count, sum(_are_numbers(cells[i]) for i in data)) >= least:
             return [(i, _row(wide[i], narrow[i], cells[i], i in data, width)) for i, _ in lines]
     return []
 
@@ -50,7 +50,3 @@ def _row(
 def _are_numbers(cells: list[str]) -> bool:
     """Whether more than half of the cells are numbers."""
     return 2 * sum(bool(_NUMBER.match(c)) for c in cells) > len(cells)
-
-
-def _are_numbers_in(cells: dict[int, list[str]], data: list[int]) -> bool:
-    return sum(_are_numbers(cells[i]) for i in data) >= MIN_EQUAL_ROWS * len(data)

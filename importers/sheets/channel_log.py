@@ -18,9 +18,7 @@ from matstd.importers.sheets.rows import filled_lines
 _LINE = re.compile(r"(\S+)\s+(\d{4}-\d{2}-\d{2})[T\s]+(\d{2}:\d{2}:\d{2}(?:\.\d+)?)\s+(\S.*)\Z")
 _CLOCK = re.compile(r"ts|t|time|timestamp|eventtime|zeit", re.IGNORECASE)
 """Keys of the time of an object."""
-
 MIN_LOG_SHARE = 0.8  # share of the lines that must be readings; others are remarks and alarms
-
 MIN_VALUES = 3  # values that distinguish a channel from a setting
 
 
@@ -121,16 +119,10 @@ def _scalars(at: Mapping[str, Sequence[Reading]], start: float) -> list[tuple[in
     """Values of all channels at the times of the fullest one."""
     leader = max(at.values(), key=len)
     time = np.array([r.time for r in leader]) - start
-    columns = [
-        np.interp(
-            time,
-            [r.time - start for r in rows],
-            [r.values[0] for r in rows],
-            left=np.nan,
-            right=np.nan,
-        )
-        for rows in at.values()
-    ]
+    columns = []
+    for readings in at.values():
+        own, values = zip(*((r.time - start, r.values[0]) for r in readings), strict=True)
+        columns.append(np.interp(time, own, values, left=np.nan, right=np.nan))
     table = np.column_stack([time, *columns])
     whole = np.flatnonzero(np.isfinite(table).all(axis=1))
     rows = [(leader[k].line, [repr(float(v)) for v in table[k]]) for k in whole.tolist()]

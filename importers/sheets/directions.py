@@ -38,11 +38,8 @@ def signs(sheet: Sheet, column: int) -> IntArray:
 def strokes(at: Array) -> tuple[IntArray, IntArray]:
     """Sign of the last motion at every row of a log, and the number of its stroke, (N,) each.
 
-    A reading that has not changed belongs to the stroke that brought it there; before the first
-    motion the sign is 0.
-
-    Args:
-        at: Readings in the order in which they were taken, (N,).
+    Readings are in the order in which they were taken. One that has not changed belongs to the
+    stroke that brought it there; before the first motion the sign is 0.
 
     Example:
         >>> strokes(np.array([0.0, 1.0, 1.0, 2.0, 1.0]))
@@ -57,15 +54,12 @@ def strokes(at: Array) -> tuple[IntArray, IntArray]:
 
 
 def approaches(at: Array) -> tuple[IntArray, IntArray]:
-    """Directions of approach and cycles of a positioning test, (N,) each, by the order of its rows.
+    """Directions of approach and cycles of a positioning test by the order of its targets, (N,).
 
     A target was reached from the one before it; of one that stands twice where the motion turns,
     the second belongs to the way back. A step over more than half the travel begins a new cycle,
     and so does every second turn. All signs are 0 where most rows repeat the one before: their
     order shows nothing.
-
-    Args:
-        at: Targets in the order in which they stand, (N,).
 
     Example:
         >>> approaches(np.array([0.0, 1.0, 2.0, 2.0, 1.0, 0.0, 0.0, 1.0]))

@@ -17,7 +17,6 @@ _MESH = re.compile(r"(?:#\*#\s*)?\[bed_mesh\s+([^\]]+)\]\s*\Z")
 _SECTION = re.compile(r"(?:#\*#\s*)?\[")
 _KEY = re.compile(r"(?:#\*#\s*)?([a-z_]+)\s*[=:]\s*(.*?)\s*\Z")
 _NOT_PROBED = ("0", "nan")  # cells of points that were not probed; a height of zero has decimals
-
 HEADER = ["x [mm]", "y [mm]", "dz [mm]", "set-up"]  # columns of the table that a height map becomes
 
 Rows = list[tuple[int, list[str]]]  # rows of a table, each with its line

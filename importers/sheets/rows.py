@@ -46,13 +46,10 @@ def stacked(records: Sequence[Record]) -> Record:
 
 
 def timed_by_rows(run: Run, step: float) -> Run:
-    """The run with times by the order of the rows of its table; those of one row are one moment.
+    """The run with times by the order of the rows of its table, `step` s apart.
 
-    Args:
-        step: Time from one row to the next, s.
-
-    Raises:
-        DesignError: A step out of range, or a run that has times.
+    Readings of one row are one moment. Raises DesignError for a step out of range, or a run that
+    has times.
     """
     if not 0.0 < step <= DAY:
         raise DesignError(f"--in-order {step:g}: expected seconds from 0 to {DAY:g}")

@@ -10,7 +10,6 @@ from matstd.twin.frames import Array
 
 _TILT = re.compile(r"tilt|incl|neig|level|libelle", re.IGNORECASE)
 """Names of channels of levels and inclinometers."""
-
 _LOAD = re.compile(r"F_?([xyz])\Z", re.IGNORECASE)
 
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 Row = tuple[int, Sequence[str | float]]  # a line of the file with its cells
 
 MIN_EQUAL_NAMES = 0.5  # from this share of equal names two headers belong to parts of one table
-
 _AXIS = re.compile(r"\b(?:axis|achse|axe|eje)\b\W*([XYZABC])\b", re.IGNORECASE)
 
 
@@ -17,12 +16,6 @@ class Part:
 
     rows: Sequence[Row]
     passed_over: tuple[int, ...] = ()
-
-
-@dataclass
-class _Header:
-    names: tuple[str, ...]
-    axis: str  # the last that words above it name, "" without any
 
 
 def separate_tables(
@@ -39,7 +32,7 @@ def separate_tables(
         ...     (3, ["c", "d"]), (4, [1.0, 2.0]), (5, [3.0, 4.0])], is_data)]
         [(3, 4, 5), (1, 2)]
     """
-    headers: list[_Header] = []
+    headers: list[tuple[tuple[str, ...], str]] = []  # names, and the last axis named above them
     of: list[int | None] = []
     at: int | None = None
     axis = ""
@@ -49,9 +42,9 @@ def separate_tables(
         axis = axis_in(" ".join(c for c in row if isinstance(c, str))) or axis
         if names and is_data(below) and len(names) == sum(c != "" for c in below):
             # a header that comes again, as of the way back, continues its table
-            own = (i for i, h in enumerate(headers) if h.axis == axis and _alike(h.names, names))
+            own = (i for i, h in enumerate(headers) if h[1] == axis and _alike(h[0], names))
             at = next(own, len(headers))
-            headers += [_Header(names, axis)] if at == len(headers) else []
+            headers += [(names, axis)] if at == len(headers) else []
             of.append(at)
         else:
             of.append(at if is_data(row) else None)

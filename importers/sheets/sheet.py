@@ -94,8 +94,7 @@ class Sheet:
 
     def cells_as_text(self, column: int) -> list[str]:
         """The same without counting the column as used."""
-        cells = [row[column] for row in self.cells]
-        return [f"{c:g}" if isinstance(c, float) else c for c in cells]
+        return [f"{c:g}" if isinstance(c := row[column], float) else c for row in self.cells]
 
     @property
     def unused(self) -> tuple[str, ...]:
@@ -105,14 +104,10 @@ class Sheet:
 
     def find(self, pattern: re.Pattern[str], *without: re.Pattern[str]) -> int | None:
         """The first column whose name matches one pattern and none of the others."""
-        return next(
-            (
-                i
-                for i, name in enumerate(self.names)
-                if pattern.search(name) and not any(w.search(name) for w in without)
-            ),
-            None,
-        )
+        for i, name in enumerate(self.names):
+            if pattern.search(name) and not any(w.search(name) for w in without):
+                return i
+        return None
 
     def column(self, name: str) -> int:
         """Index of a column by its whole name or its name without unit; raises BadFile."""

@@ -26,17 +26,12 @@ Row = tuple[int, Sequence[str | float]]  # cells of a line, with its number
 
 WORKBOOKS = (".xlsx", ".xlsm", ".xlsb", ".xls", ".ods")
 """Endings of files that are read as workbooks."""
-
 _SEPARATORS = (";", "\t", ",", "|")
 """In the order of trial: a comma late, because it may be a decimal mark."""
-
 MIN_NUMBER_SHARE = 0.6  # from this share of numbers a column is one of numbers
-
 MAX_LISTED_TABLES, MAX_LISTED_NAMES = 12, 6  # tables, and columns of each, that a message lists
-
 _RULE = re.compile(r":?-{2,}:?\Z|\Z")
 """Cells of a line that separates the header, as in tables of a wiki."""
-
 _DECIMAL_COMMA = re.compile(r"[+-]?\d+,\d+([eE][+-]?\d+)?\Z")
 _DECIMAL_POINT = re.compile(r"[+-]?\d+\.\d*([eE][+-]?\d+)?\Z")
 

@@ -16,14 +16,6 @@ from matstd.information.criteria.posterior import Posterior, prior_sd_of_tip, wh
 from matstd.information.criteria.tangents import RowStep, Tangent
 
 __all__ = [
-    "DesignCriterion",
-    "Posterior",
-    "RowStep",
-    "Tangent",
-    "five_criteria",
-    "mean_prediction",
-    "prior_sd_of_tip",
-    "robust",
-    "whitened",
-    "with_potential",
-]
+    "DesignCriterion", "Posterior", "RowStep", "Tangent", "five_criteria", "mean_prediction",
+    "prior_sd_of_tip", "robust", "whitened", "with_potential",
+]  # fmt: skip

@@ -55,33 +55,22 @@ class DesignCriterion:
         return np.eye(self.size)[None] if self.priors is None else self.priors
 
     @property
-    def sharpness(self) -> float:
-        """Power of the mean that stands for the largest of several; infinite where none does."""
-        return self.measure.sharpness
-
-    @property
     def is_curved(self) -> bool:
         """Whether the tangent turns as touches come and go."""
-        return np.isfinite(self.sharpness) or (self.tail < 1.0 and len(self.prior) > 1)
+        return np.isfinite(self.measure.sharpness) or (self.tail < 1.0 and len(self.prior) > 1)
 
     def sharper(self, factor: float) -> "DesignCriterion":
         """The same with a mean nearer to the largest, where it has one."""
-        if not isinstance(self.measure, LargestVariance | LargestEigenvalue):
-            return self
-        sharpness = factor * self.measure.sharpness
-        return replace(self, measure=replace(self.measure, sharpness=sharpness))
+        return replace(self, measure=self.measure.sharper(factor))
 
     def rows(self, W: Array) -> Array:
         """Whitened rows (N, P) in the directions that matter, (N, R')."""
-        reduced: Array = W @ self.directions
-        return reduced
+        return np.asarray(W @ self.directions)
 
     def raw(self, information: Array, smooth: bool = False) -> float:
         """Mean over the machines of what the tangents add up to: for D minus the log determinant.
 
-        Args:
-            information: W^T W of some rows, (R, R).
-            smooth: Whether a power mean stands for the largest.
+        For the information W^T W of some rows, (R, R); smooth with a power mean for the largest.
         """
         values = np.array([self.measure.value(M, smooth) for M in self.prior + information])
         return float(_worst_weights(values, self.tail) @ values)
@@ -110,11 +99,10 @@ def _worst_weights(values: Array, tail: float) -> Array:
     if tail >= 1.0 or count == 1:
         return np.full(count, 1.0 / count)
     most = 1.0 / (tail * count)
+    # each of the worst weighs as much as it may, the last of them what is left
+    upto = np.minimum(most * np.arange(count + 1), 1.0)
     weight = np.zeros(count)
-    left = 1.0
-    for s in np.argsort(-values, kind="stable"):
-        weight[s] = min(most, left)
-        left -= weight[s]
+    weight[np.argsort(-values, kind="stable")] = np.diff(upto)
     return weight
 
 
@@ -179,19 +167,10 @@ def with_potential(criterion: DesignCriterion, count: int, worth: float) -> Desi
     Rows have `count` columns more, standardised and times their small prior standard deviation;
     for D they join the determinant, else the mean of their posterior over prior variances counts,
     `worth` mm^2 when nothing is known of them.
-
-    Args:
-        criterion: Any over the primary terms.
-        count: Number of potential terms, Q.
     """
-    priors, R = None, criterion.size
-    if criterion.priors is not None:
-        priors = np.zeros((len(criterion.priors), R + count, R + count))
+    priors, R = criterion.priors, criterion.size
+    if priors is not None:
+        priors = np.tile(np.eye(R + count), (len(priors), 1, 1))
         priors[:, :R, :R] = criterion.priors
-        priors[:, R:, R:] = np.eye(count)
-    return replace(
-        criterion,
-        measure=criterion.measure.extended(count, worth),
-        priors=priors,
-        primary=criterion,
-    )
+    measure = criterion.measure.extended(count, worth)
+    return replace(criterion, measure=measure, priors=priors, primary=criterion)

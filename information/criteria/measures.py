@@ -7,12 +7,7 @@ With ``M = prior + F`` for the information ``F = W^T W`` of the touches,
     E      `LargestEigenvalue`   largest eigenvalue of r^T M^-1 r
     D      `Determinant`         -log det M, shown as det(M)^(-1/R)
 
-All are convex in F. Each has the same three methods: its `value` at M, (R, R), smooth or not; its
-`tangent` there times the weight of the machine, a weighted mean of forms that is nowhere above it,
-which searches follow and bounds rest on; and itself `extended` by potential terms, together `worth`
-when nothing is known of them. `shown` states a mean of values, `size` is R, directions and
-potential terms. The largest of several is smoothed in a search: a power mean stands for it, whose
-power is the `sharpness`; what has no largest is as sharp as can be.
+All are convex in F. The largest of several is smoothed in a search: a power mean stands for it.
 
 Reference:
     Pukelsheim, Optimal Design of Experiments (1993), chapters 5 to 7; Kiefer, Annals of Statistics
@@ -30,63 +25,90 @@ from matstd.twin.frames import Array
 
 MIN_EIGENVALUE_RATIO = 1e-13
 """Share of the largest eigenvalue below which a direction is neither felt nor shown: rounding."""
-
-_SHARPNESS = 16.0  # power that stands for the largest at first; searches raise it
 _MIN_WEIGHT_RATIO = 1e-6  # share of the largest weight below which a form is left out of a tangent
 
 
+class Measure(ABC):
+    """Remaining uncertainty of one machine; smaller is better."""
+
+    @property
+    @abstractmethod
+    def size(self) -> int:
+        """R, directions and potential terms."""
+
+    @property
+    def sharpness(self) -> float:
+        """Power of the mean that stands for the largest; infinite where nothing is smoothed."""
+        return np.inf
+
+    def sharper(self, factor: float) -> "Measure":
+        """The same with a mean nearer to the largest, where it has one."""
+        return self
+
+    @abstractmethod
+    def value(self, M: Array, smooth: bool = False) -> float:
+        """At M, (R, R); smooth with a power mean for the largest."""
+
+    @abstractmethod
+    def tangent(self, M: Array, weight: float) -> Tangent:
+        """Mean of forms that is nowhere above the measure, times the weight of the machine.
+
+        Searches follow it and bounds rest on it.
+        """
+
+    @abstractmethod
+    def extended(self, count: int, worth: float) -> "Measure":
+        """With potential terms, together `worth` when nothing is known of them."""
+
+    def shown(self, value: float) -> float:
+        """A mean of values as it is stated."""
+        return value
+
+
 @dataclass(frozen=True, eq=False)
-class MeanVariance:
+class MeanVariance(Measure):
     """``trace(K M^-1)``: the mean variance of a prediction (I), or of the parameters (A), mm^2."""
 
     K: Array  # moments of the prediction, (R, R), mm^2; the unit matrix for A
 
     @property
     def size(self) -> int:
-        """R."""
         return len(self.K)
 
-    @property
-    def sharpness(self) -> float:
-        """Nothing is smoothed."""
-        return np.inf
-
     def value(self, M: Array, smooth: bool = False) -> float:
-        """``trace(K M^-1)``."""
         return float(np.trace(np.linalg.solve(M, self.K)))
 
     def tangent(self, M: Array, weight: float) -> Tangent:
-        """The criterion itself."""
         return Trace(weight * self.K)
 
     def extended(self, count: int, worth: float) -> "MeanVariance":
-        """The mean of the potential terms' variances counts beside the prediction."""
         return MeanVariance(_joined(self.K, count, worth))
-
-    def shown(self, value: float) -> float:
-        """As it is."""
-        return value
 
 
 @dataclass(frozen=True, eq=False)
-class _Largest(ABC):
+class _Largest(Measure):
     """The largest of several variances, and the mean variance of what counts in any case."""
 
     roots: Array  # roots of the forms, (J, R, k)
     K: Array  # form that counts in any case, (R, R): that of potential terms
-    sharpness: float = _SHARPNESS  # power of the mean that stands for the largest in a search
+    sharpness: float = 16.0  # at first; searches raise it
 
     @property
     def size(self) -> int:
-        """R."""
         return len(self.K)
+
+    def sharper(self, factor: float) -> "_Largest":
+        return replace(self, sharpness=factor * self.sharpness)
 
     @abstractmethod
     def each(self, M: Array) -> tuple[Array, Array]:
         """What the largest is taken of, (J,), and the roots that belong to it."""
 
+    @abstractmethod
+    def mixed(self, roots: Array, share: Array) -> Array:
+        """Weighted mean of the forms, (R, R)."""
+
     def value(self, M: Array, smooth: bool = False) -> float:
-        """The largest, or its power mean, and what counts in any case."""
         value = float(np.trace(np.linalg.solve(M, self.K))) if np.any(self.K) else 0.0
         each = self.each(M)[0]
         largest = max(float(each.max()), 1e-300)
@@ -101,13 +123,11 @@ class _Largest(ABC):
         share = (np.maximum(each, 0.0) / max(float(each.max()), 1e-300)) ** (self.sharpness - 1.0)
         return Trace(weight * (self.K + self.mixed(roots, share / share.sum())))
 
-    @abstractmethod
-    def mixed(self, roots: Array, share: Array) -> Array:
-        """Weighted mean of the forms, (R, R)."""
-
-    def shown(self, value: float) -> float:
-        """As it is."""
-        return value
+    def extended(self, count: int, worth: float) -> "_Largest":
+        """The mean of the potential terms' variances counts beside the largest."""
+        unfelt = np.zeros((len(self.roots), count, self.roots.shape[2]))
+        roots = np.concatenate([self.roots, unfelt], axis=1)
+        return replace(self, roots=roots, K=_joined(self.K, count, worth))
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,23 +135,17 @@ class LargestVariance(_Largest):
     """Largest variance of the tool point at any pose (worst-case I; G in the books), mm^2."""
 
     def each(self, M: Array) -> tuple[Array, Array]:
-        """Variance at every pose."""
         J, R, k = self.roots.shape
         flat = np.moveaxis(self.roots, 1, 0).reshape(R, J * k)
         half = np.linalg.solve(np.linalg.cholesky(M), flat)
         return np.einsum("rn,rn->n", half, half).reshape(J, k).sum(axis=1), self.roots
 
     def mixed(self, roots: Array, share: Array) -> Array:
-        """Mean over the poses that are among the worst."""
         # what is left out makes the sum less than one: no harm
         loud = share > _MIN_WEIGHT_RATIO * share.max()
         flat = np.moveaxis(roots[loud] * np.sqrt(share[loud])[:, None, None], 1, 0)
         flat = flat.reshape(self.size, -1)
-        return np.asarray(flat @ flat.T, dtype=np.float64)
-
-    def extended(self, count: int, worth: float) -> "LargestVariance":
-        """The mean of the potential terms' variances counts beside the largest."""
-        return replace(self, roots=_padded(self.roots, count), K=_joined(self.K, count, worth))
+        return np.asarray(flat @ flat.T)
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,31 +171,23 @@ class LargestEigenvalue(_Largest):
         return values, root @ vectors
 
     def mixed(self, roots: Array, share: Array) -> Array:
-        """Mean over the eigenvectors."""
-        return np.asarray((roots * share) @ roots.T, dtype=np.float64)
-
-    def extended(self, count: int, worth: float) -> "LargestEigenvalue":
-        """The mean of the potential terms' variances counts beside the largest."""
-        return replace(self, roots=_padded(self.roots, count), K=_joined(self.K, count, worth))
+        return np.asarray((roots * share) @ roots.T)
 
 
 @dataclass(frozen=True)
-class Determinant:
+class Determinant(Measure):
     """``-log det M``: the volume of what stays unknown (Bayesian D), shown as ``det(M)^(-1/R)``."""
 
-    size: int  # R
+    R: int
 
     @property
-    def sharpness(self) -> float:
-        """Nothing is smoothed."""
-        return np.inf
+    def size(self) -> int:
+        return self.R
 
     def value(self, M: Array, smooth: bool = False) -> float:
-        """``-log det M``."""
         return float(-np.linalg.slogdet(M)[1])
 
     def tangent(self, M: Array, weight: float) -> Tangent:
-        """The criterion itself."""
         return LogDeterminant(weight)
 
     def extended(self, count: int, worth: float) -> "Determinant":
@@ -193,10 +199,6 @@ class Determinant:
         return float(np.exp(value / self.size))
 
 
-Measure = MeanVariance | LargestVariance | LargestEigenvalue | Determinant
-"""Remaining uncertainty of one machine; smaller is better."""
-
-
 def _joined(K: Array, count: int, worth: float) -> Array:
     """A form with the mean variance of potential terms beside it."""
     R = len(K)
@@ -205,8 +207,3 @@ def _joined(K: Array, count: int, worth: float) -> Array:
     if count:
         out[R:, R:] = worth / count * np.eye(count)
     return out
-
-
-def _padded(roots: Array, count: int) -> Array:
-    """Roots that do not feel potential terms."""
-    return np.concatenate([roots, np.zeros((len(roots), count, roots.shape[2]))], axis=1)

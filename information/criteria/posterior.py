@@ -20,18 +20,14 @@ def whitened(rows: Array, prior_sd: Array, u: Array | float) -> Array:
     """Rows in units of noise for parameters in units of their prior, ``W``, (N, P).
 
     Args:
-        rows: Deviation along the normal per unit of every parameter, shape (N, P).
+        rows: Deviation along the normal per unit of every parameter, (N, P).
         prior_sd: Expected standard deviation of every parameter, (P,).
         u: Standard uncertainty of each touch, scalar or (N,), mm.
-
-    Raises:
-        ShapeMismatch: Arrays that do not belong together.
     """
     if rows.ndim != 2 or rows.shape[1] != len(prior_sd):
         raise ShapeMismatch(f"rows of shape {rows.shape}, expected (N, {len(prior_sd)})")
     scale = np.broadcast_to(np.asarray(u, dtype=float), (len(rows),))
-    W: Array = rows * prior_sd / scale[:, None]
-    return W
+    return np.asarray(rows * prior_sd / scale[:, None])
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +56,7 @@ class Posterior:
     @cached_property
     def sd(self) -> Array:
         """Standard deviation of every parameter after the touches, (P,), base units."""
-        root: Array = np.sqrt(np.diag(self.covariance))
-        return root
+        return np.asarray(np.sqrt(np.diag(self.covariance)))
 
     @cached_property
     def log_det(self) -> float:
@@ -92,10 +87,8 @@ class Posterior:
     def predicted_sd(self, G: Array) -> Array:
         """Root mean square of what stays unknown of the tool point at M poses, (M,), mm.
 
-        ``sqrt(trace(G Sigma G^T))``.
-
-        Args:
-            G: Deviation of the tip per unit of every parameter, (M, 3, P).
+        ``sqrt(trace(G Sigma G^T))`` for the deviation G of the tip per unit of every parameter,
+        (M, 3, P).
         """
         scaled = np.moveaxis(G * self.prior_sd, 2, 0).reshape(len(self.prior_sd), -1)
         half = np.linalg.solve(self._factor, scaled).reshape(len(self.prior_sd), len(G), 3)
@@ -104,6 +97,4 @@ class Posterior:
 
 def prior_sd_of_tip(G: Array, prior_sd: Array) -> Array:
     """Root mean square of the tool point's deviation before any measurement, (M,), mm."""
-    scaled = G * prior_sd
-    size: Array = np.sqrt(np.einsum("mip,mip->m", scaled, scaled))
-    return size
+    return np.asarray(np.linalg.norm(G * prior_sd, axis=(1, 2)))

@@ -50,25 +50,22 @@ class Trace:
         return float(np.sum(inverse * self.K))
 
     def degree(self, inverse: Array) -> float:
-        """The value again."""
         return float(np.sum(inverse * self.K))
 
     def slope(self, inverse: Array) -> Array:
         """``M^-1 K M^-1``."""
         S = inverse @ self.K @ inverse
-        return np.asarray(0.5 * (S + S.T), dtype=np.float64)
+        return np.asarray(0.5 * (S + S.T))
 
     def numerators(self, reach: Array, leverage: Array) -> Array:
         """``w M^-1 K M^-1 w``."""
-        return np.asarray(np.einsum("nr,nr->n", reach @ self.K, reach), dtype=np.float64)
+        return np.asarray(np.einsum("nr,nr->n", reach @ self.K, reach))
 
     def fall(self, numerator: Array, leverage: Array, sign: float = 1.0) -> Array:
         """``k / (1 + h)``."""
-        out: Array = sign * numerator / (1.0 + sign * leverage)
-        return out
+        return np.asarray(sign * numerator / (1.0 + sign * leverage))
 
     def step(self, row: RowStep) -> tuple[Array, float]:
-        """Rank-one update."""
         Ka = self.K @ row.a
         kappa, across = float(row.a @ Ka), row.W @ (row.inverse @ Ka)
         change = row.c * row.c * kappa * row.along**2 - 2.0 * row.c * row.along * across
@@ -77,12 +74,10 @@ class Trace:
     def group_fall(self, reach: Array, inner: Array) -> Array:
         """``trace(inner^-1  w M^-1 K M^-1 w^T)``."""
         spread = reach @ self.K @ np.swapaxes(reach, 1, 2)
-        drops: Array = np.trace(np.linalg.solve(inner, spread), axis1=1, axis2=2)
-        return drops
+        return np.asarray(np.trace(np.linalg.solve(inner, spread), axis1=1, axis2=2))
 
     def pair(self, reach: Array) -> Array:
-        """``w M^-1 K M^-1 w``."""
-        return np.asarray(reach.T @ self.K @ reach, dtype=np.float64)
+        return np.asarray(reach.T @ self.K @ reach)
 
     def flow_slope(self, t: float, a: float, b: float, c: float, d: float) -> float:
         """Slope of ``(a t - c t^2) / (1 + b t - d t^2)``."""
@@ -90,12 +85,11 @@ class Trace:
         return ((a - 2.0 * t * c) * det - (t * a - t * t * c) * turn) / (det * det)
 
     def after_flow(self, W: Array, inverse: Array, reach: Array, inner: Array) -> Array:
-        """Change of ``w M^-1 K M^-1 w``."""
         Kr = self.K @ reach
         along, other = W @ reach, W @ (inverse @ Kr)
         kappa = inner @ (reach.T @ Kr) @ inner
         turned = along @ kappa - 2.0 * other @ inner
-        return np.asarray(np.einsum("ni,ni->n", turned, along), dtype=np.float64)
+        return np.asarray(np.einsum("ni,ni->n", turned, along))
 
 
 @dataclass(frozen=True)
@@ -105,7 +99,6 @@ class LogDeterminant:
     weight: float  # of the machine
 
     def value(self, M: Array, inverse: Array) -> float:
-        """``-log det M``."""
         return float(-self.weight * np.linalg.slogdet(M)[1])
 
     def degree(self, inverse: Array) -> float:
@@ -113,29 +106,22 @@ class LogDeterminant:
         return self.weight * len(inverse)
 
     def slope(self, inverse: Array) -> Array:
-        """``M^-1``."""
-        out: Array = self.weight * inverse
-        return out
+        return np.asarray(self.weight * inverse)
 
     def numerators(self, reach: Array, leverage: Array) -> Array:
-        """The leverages."""
         return leverage
 
     def fall(self, numerator: Array, leverage: Array, sign: float = 1.0) -> Array:
-        """``log(1 + h)``."""
-        out: Array = self.weight * np.log1p(sign * leverage)
-        return out
+        return np.asarray(self.weight * np.log1p(sign * leverage))
 
     def step(self, row: RowStep) -> tuple[Array, float]:
-        """Rank-one update."""
         return -row.c * row.along**2, self.weight * float(np.log1p(row.signed))
 
     def group_fall(self, reach: Array, inner: Array) -> Array:
-        """``log det inner``."""
-        return self.weight * np.asarray(np.linalg.slogdet(inner)[1], dtype=np.float64)
+        return np.asarray(self.weight * np.linalg.slogdet(inner)[1])
 
     def pair(self, reach: Array) -> Array:
-        """Not needed."""
+        """Not needed: the flow slope depends on the leverages alone."""
         return np.zeros((2, 2))
 
     def flow_slope(self, t: float, a: float, b: float, c: float, d: float) -> float:
@@ -143,7 +129,6 @@ class LogDeterminant:
         return self.weight * (b - 2.0 * d * t) / (1.0 + b * t - d * t * t)
 
     def after_flow(self, W: Array, inverse: Array, reach: Array, inner: Array) -> Array:
-        """Change of ``w M^-1 w``."""
         along = W @ reach
         return -self.weight * np.asarray(np.einsum("ni,ij,nj->n", along, inner, along))
 

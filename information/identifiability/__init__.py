@@ -22,20 +22,7 @@ from matstd.information.identifiability.nullspace import rank_analysis
 from matstd.information.identifiability.separation import Identifiability, identifiability
 
 __all__ = [
-    "STRONG_CORRELATION",
-    "Degree",
-    "EstimableCombination",
-    "Freedom",
-    "FreedomFamily",
-    "Identifiability",
-    "Pair",
-    "Resolution",
-    "Term",
-    "Ties",
-    "combinations",
-    "identifiability",
-    "in_families",
-    "rank_analysis",
-    "supported_degrees",
-    "ties",
-]
+    "STRONG_CORRELATION", "Degree", "EstimableCombination", "Freedom", "FreedomFamily",
+    "Identifiability", "Pair", "Resolution", "Term", "Ties", "combinations", "identifiability",
+    "in_families", "rank_analysis", "supported_degrees", "ties",
+]  # fmt: skip

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse.csgraph import connected_components
 
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array
@@ -42,17 +43,15 @@ def correlation(covariance: Array) -> Array:
     """Correlations from covariances, (P, P); a parameter without variance has none with others."""
     sd = np.sqrt(np.diag(covariance))
     scale = np.where(sd > 0.0, sd, 1.0)
-    r: Array = np.clip(covariance / np.outer(scale, scale), -1.0, 1.0)
+    r = np.clip(covariance / np.outer(scale, scale), -1.0, 1.0)
     np.fill_diagonal(r, 1.0)
     return r
 
 
 def ties(covariance: Array, names: Sequence[str], strong: float = STRONG_CORRELATION) -> Ties:
-    """Parameters that are tied after a fit; raises ShapeMismatch.
+    """Parameters that are tied after a fit with a covariance (P, P); raises ShapeMismatch.
 
-    Args:
-        covariance: Of the parameters after the touches, (P, P).
-        strong: Absolute correlation from which a pair counts, between 0 and 1.
+    A pair counts from the absolute correlation `strong` on, between 0 and 1.
     """
     if covariance.shape != (len(names), len(names)):
         raise ShapeMismatch(f"covariance of shape {covariance.shape} for {len(names)} names")
@@ -68,19 +67,11 @@ def ties(covariance: Array, names: Sequence[str], strong: float = STRONG_CORRELA
 
 def _groups(pairs: Sequence[Pair], r: Array) -> tuple[tuple[int, ...], ...]:
     """Parameters joined by ties, directly or through others."""
-    root: dict[int, int] = {}
-
-    def find(k: int) -> int:
-        while root.setdefault(k, k) != k:
-            k = root[k]
-        return k
-
-    for pair in pairs:
-        root[find(pair.first)] = find(pair.second)
-    members: dict[int, list[int]] = {}
-    for k in sorted(root):
-        members.setdefault(find(k), []).append(k)
-    ordered = (tuple(_alike_beside_alike(group, r)) for group in members.values())
+    tied = np.zeros(r.shape, dtype=bool)
+    tied[[p.first for p in pairs], [p.second for p in pairs]] = True
+    of = connected_components(tied, directed=False)[1]
+    members = (np.flatnonzero(of == k).tolist() for k in np.unique(of))
+    ordered = (tuple(_alike_beside_alike(m, r)) for m in members if len(m) > 1)
     return tuple(sorted(ordered, key=lambda group: (-len(group), group)))
 
 

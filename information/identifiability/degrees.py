@@ -12,7 +12,6 @@ from matstd.twin.model import Model, columns, traits
 from matstd.twin.record import Touches
 
 MAX_DEGREE = 8  # highest degree that is tried
-
 MAX_POSTERIOR_SHARE = 0.5
 """A coefficient is supported when the touches leave less than this part of its expected size."""
 
@@ -84,8 +83,7 @@ def _degree(symbol: Symbol, link: Link, A: Array, size: Array) -> Degree:
 def _run(is_supported: NDArray[np.bool_]) -> tuple[int, ...]:
     """Degrees that are supported together, the first being 1 or else 2.
 
-    Args:
-        is_supported: Degree k + 1 (columns) with n + 1 degrees free (rows), (n, k).
+    Degree k + 1 (columns) with n + 1 degrees free (rows), (n, k).
     """
     for first in (0, 1):
         n = first

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 from typing import NamedTuple
 
@@ -53,8 +53,7 @@ class Freedom:
     parameter: str  # that can be left out
     unit: str
     alike: tuple[Term, ...]  # what imitates it exactly; nothing for a parameter that moves no touch
-    # what makes them alike, or None
-    reason: Reason | None = None
+    reason: Reason | None = None  # what makes them alike
     resolution: Resolution = Resolution.UNTRIED  # measurement that would distinguish them
     resolved_by: str = ""  # name of the tried touches that would
 
@@ -127,14 +126,8 @@ def _joined(family: Sequence[Freedom]) -> FreedomFamily:
     lead = _without_shape(first.parameter, 1.0)
     shapes = [m.group(2) for f in family if (m := _SHAPED.match(f.parameter))]
     shapes.sort(key=lambda shape: _ORDER.index(shape) if shape in _ORDER else len(_ORDER))
-    plain = Freedom(
-        parameter=lead.name,
-        unit=lead.unit,
-        alike=tuple(_without_shape(term.name, term.value) for term in first.alike),
-        reason=first.reason,
-        resolution=first.resolution,
-        resolved_by=first.resolved_by,
-    )
+    alike = tuple(_without_shape(term.name, term.value) for term in first.alike)
+    plain = replace(first, parameter=lead.name, unit=lead.unit, alike=alike)
     return FreedomFamily(plain, tuple(shapes), len(family))
 
 

@@ -16,16 +16,15 @@ from functools import cached_property
 
 import numpy as np
 from scipy.optimize import linprog
+from scipy.sparse.csgraph import connected_components
 
 from matstd.twin.frames import Array
 
 MIN_SINGULAR_RATIO = 1e-8
 """Singular value over the largest, columns of length one, below which a direction is invisible: far
 above rounding, far below the weakest visible direction of a probed run."""
-
 MIN_LENGTH_RATIO = 1e-9
 """Length of a column over the longest below which its parameter moves nothing."""
-
 _MIN_WEIGHT_RATIO = 1e-6  # part of a direction's largest weight that counts as zero
 
 
@@ -40,9 +39,8 @@ class RankAnalysis:
     @property
     def rank(self) -> int:
         """Number of independent combinations that the rows see."""
-        return int(
-            np.sum(self.singular > MIN_SINGULAR_RATIO * max(float(self.singular.max()), 1e-300))
-        )
+        least = MIN_SINGULAR_RATIO * max(float(self.singular.max()), 1e-300)
+        return int(np.sum(self.singular > least))
 
     @property
     def condition(self) -> float:
@@ -79,31 +77,20 @@ def condition(W: Array, rank: int) -> float:
 
 
 def groups(null: Array) -> list[list[int]]:
-    """Parameters that share a null direction, directly or over others; silent ones alone.
-
-    Args:
-        null: Null directions, (G, P).
-    """
+    """Parameters that share a null direction, directly or over others; silent ones alone."""
     if not len(null):
         return []
-    basis = np.linalg.qr(_unit(null)[0].T)[0]
+    basis = _basis(null)
     tied = np.abs(basis @ basis.T) > _MIN_WEIGHT_RATIO
-    left, out = set(np.flatnonzero(np.diag(tied)).tolist()), []
-    while left:
-        group, fresh = set(), {min(left)}
-        while fresh:
-            group |= fresh
-            fresh = set(np.flatnonzero(tied[list(fresh)].any(axis=0)).tolist()) - group
-        out.append(sorted(group))
-        left -= group
-    return out
+    of = connected_components(tied, directed=False)[1]
+    of[~np.diag(tied)] = -1  # parameters without a null direction
+    return [np.flatnonzero(of == k).tolist() for k in dict.fromkeys(of[of >= 0].tolist())]
 
 
-def _unit(null: Array) -> tuple[Array, Array]:
-    """Null directions with every parameter's largest weight made one, and those weights, (P,)."""
+def _basis(null: Array) -> Array:
+    """Orthonormal null directions, (P, G), where every parameter's largest weight was made one."""
     size = np.abs(null).max(axis=0)
-    size = np.where(size > 0.0, size, 1.0)
-    return null / size, size
+    return np.linalg.qr((null / np.where(size > 0.0, size, 1.0)).T)[0]
 
 
 def sparse(
@@ -155,8 +142,7 @@ def _dimension(null: Array, group: list[int]) -> int:
 
     No singular value is compared with rounding: the block of a whole group is a projection itself.
     """
-    basis = np.linalg.qr(_unit(null)[0].T)[0]
-    return round(float((basis[group] ** 2).sum()))
+    return round(float((_basis(null)[group] ** 2).sum()))
 
 
 def _fewest(N: Array, have: list[Array], order: list[int]) -> list[Array]:
@@ -202,17 +188,15 @@ def _pairs(N: Array, order: list[int]) -> tuple[list[Array], list[int]]:
     size = np.sqrt(np.maximum(np.diag(seen_part), 0.0))
     vectors, gone = [], []
     for at, i in enumerate(order):
-        if size[i] < 1e-7:  # moves nothing by itself
-            vectors.append(np.eye(p)[i])
-            gone.append(i)
-            continue
-        for j in reversed(order[at + 1 :]):
-            if size[j] > 1e-7 and abs(seen_part[i, j]) > (1.0 - 1e-10) * size[i] * size[j]:
-                z = np.zeros(p)
-                z[i], z[j] = 1.0, -np.sign(seen_part[i, j]) * size[i] / size[j]
-                vectors.append(z)
-                gone.append(i)
-                break
+        z = np.eye(p)[i]
+        if size[i] >= 1e-7:  # else it moves nothing by itself
+            alike = np.abs(seen_part[i]) > (1.0 - 1e-10) * size[i] * size
+            j = next((j for j in reversed(order[at + 1 :]) if size[j] > 1e-7 and alike[j]), None)
+            if j is None:
+                continue
+            z[j] = -np.sign(seen_part[i, j]) * size[i] / size[j]
+        vectors.append(z)
+        gone.append(i)
     return vectors, gone
 
 
@@ -239,11 +223,8 @@ def _smallest(N: Array, lead: int) -> Array | None:
     if not support[lead]:  # beside the others it is nothing but rounding
         return None
     # the same support again, exactly: what is outside it is made zero by least squares
-    outside = N[:, ~support]
-    c = found.x[:g]
-    if outside.size:
-        U, s, _ = np.linalg.svd(outside, full_matrices=False)
-        U = U[:, s > _MIN_WEIGHT_RATIO]  # less than that is rounding of the readings, not a weight
-        c = c - U @ (U.T @ c)
+    U, s, _ = np.linalg.svd(N[:, ~support], full_matrices=False)
+    U = U[:, s > _MIN_WEIGHT_RATIO]  # less than that is rounding of the readings, not a weight
+    c = found.x[:g] - U @ (U.T @ found.x[:g])
     z = np.where(support, N.T @ c, 0.0)
-    return np.asarray(z / z[lead], dtype=np.float64)
+    return np.asarray(z / z[lead])

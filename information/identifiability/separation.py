@@ -32,9 +32,8 @@ from matstd.twin.machine import Chain, Family, Symbol
 from matstd.twin.model import traits
 from matstd.twin.units import UM, URAD
 
-_MIN_RESOLVED_SHARE = (
-    1e-6  # part of its length that a gauge direction must show in richer touches to be resolved
-)
+_MIN_RESOLVED_SHARE = 1e-6
+"""Part of its length that a gauge direction must show in richer touches to be resolved."""
 
 
 @dataclass(frozen=True)

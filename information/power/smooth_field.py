@@ -31,10 +31,7 @@ from matstd.twin.record import IntArray
 
 
 def low_rank(
-    diagonal: Array,
-    column: Callable[[int], Array],
-    left_out: float = 1e-3,
-    most: int | None = None,
+    diagonal: Array, column: Callable[[int], Array], left_out: float = 1e-3
 ) -> tuple[Array, IntArray]:
     """``F`` with ``F F^T = K`` but for a share of the trace: Cholesky with pivots.
 
@@ -45,7 +42,6 @@ def low_rank(
         diagonal: Of K, (N,).
         column: Column of K at a point, (N,).
         left_out: Share of the trace of K that may be left out.
-        most: Columns at most; None for N.
 
     Returns:
         Shape (N, M), and the points whose columns were used, (M,).
@@ -54,19 +50,15 @@ def low_rank(
         Harbrecht, Peters, Schneider, Applied Numerical Mathematics 62 (2012) 428.
     """
     left = np.array(diagonal, dtype=np.float64)
-    enough, most = left_out * left.sum(), len(left) if most is None else min(most, len(left))
-    F, pivots = np.zeros((most, len(left))), []
-    for m in range(most):
-        pivot = int(np.argmax(left))
-        if left.sum() <= enough or left[pivot] <= 0.0:
-            F = F[:m]
-            break
-        row = (column(pivot) - F[:m, pivot] @ F[:m]) / np.sqrt(left[pivot])
-        F[m] = row
+    enough = left_out * left.sum()
+    F, pivots = np.zeros((len(left), len(left))), list[int]()
+    while left.sum() > enough:
+        m, pivot = len(pivots), int(np.argmax(left))
+        F[m] = (column(pivot) - F[:m, pivot] @ F[:m]) / np.sqrt(left[pivot])
         pivots.append(pivot)
-        left = np.maximum(left - row**2, 0.0)
+        left = np.maximum(left - F[m] ** 2, 0.0)
         left[pivot] = 0.0
-    return F.T, np.array(pivots, dtype=np.int64)
+    return F[: len(pivots)].T, np.array(pivots, dtype=np.int64)
 
 
 def decorrelated(columns: Array, u: Array, memory: Array) -> Array:

@@ -13,14 +13,6 @@ from matstd.information.selection.shares import heaviest
 from matstd.information.selection.touch_selection import Quota, Selection, exchange, fill
 
 __all__ = [
-    "ROUNDS",
-    "Certificate",
-    "Quota",
-    "Selection",
-    "best_groups",
-    "exchange",
-    "fill",
-    "heaviest",
-    "relaxed",
-    "rounded",
-]
+    "ROUNDS", "Certificate", "Quota", "Selection", "best_groups", "exchange", "fill", "heaviest",
+    "relaxed", "rounded",
+]  # fmt: skip

@@ -8,9 +8,8 @@ heaviest touches a good start for exchanges.
 from dataclasses import dataclass
 
 from matstd.information.criteria import DesignCriterion
-from matstd.information.selection.relaxation import relaxed
 from matstd.information.selection.shares import heaviest
-from matstd.information.selection.touch_selection import Mask, Quota, Selection, exchange
+from matstd.information.selection.touch_selection import Quota, Selection, exchange
 from matstd.twin.frames import Array
 
 
@@ -37,32 +36,6 @@ class Certificate:
         )
 
 
-def certificate(
-    criterion: DesignCriterion,
-    W: Array,
-    chosen: Mask,
-    tolerance: float = 2e-3,
-    quotas: tuple[Quota, ...] = (),
-) -> Certificate:
-    """Certified efficiency of a choice among candidates; raises DesignError.
-
-    Args:
-        W: Rows of all candidates, (N, R).
-        tolerance: Relative gap to which the relaxed problem is solved.
-        quotas: Shares that the choice keeps and every other would have to keep.
-    """
-    count = int(chosen.sum())
-    best = relaxed(criterion, W, count, chosen, tolerance, quotas)
-    rows = W[chosen]
-    return Certificate(
-        candidates=len(W),
-        count=count,
-        value=criterion.value(rows.T @ rows),
-        bound=best.bound,
-        shares=bool(quotas),
-    )
-
-
 def rounded(
     criterion: DesignCriterion,
     W: Array,
@@ -71,14 +44,9 @@ def rounded(
     most: int = 300,
     quotas: tuple[Quota, ...] = (),
 ) -> Selection:
-    """A choice of whole touches from fractions: the heaviest, then exchanged until none helps.
+    """A choice of whole touches from fractions (N,) of candidates (N, R); raises DesignError.
 
-    Args:
-        W: Rows of all candidates, (N, R).
-        weight: Fractions, (N,).
-
-    Raises:
-        DesignError: No whole choice near the fractions keeps the shares.
+    The heaviest, then exchanged until none helps.
     """
     selection = Selection(criterion, W, heaviest(weight, count, quotas))
     exchange(selection, quotas, most=most)

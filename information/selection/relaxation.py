@@ -18,7 +18,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from matstd.information.criteria import DesignCriterion, Tangent
-from matstd.information.selection.shares import cells, keeps, largest_sum
+from matstd.information.selection.shares import cells, keeps, largest_sum, rank_in_cell
 from matstd.information.selection.touch_selection import Mask, Quota
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
@@ -37,8 +37,7 @@ class Slope:
 
     def gains(self, W: Array) -> Array:
         """Gain of every candidate, (N,)."""
-        total = self.S.sum(axis=0)
-        return np.asarray(np.einsum("nr,nr->n", W @ total, W), dtype=np.float64)
+        return np.asarray(np.einsum("nr,nr->n", W @ self.S.sum(axis=0), W))
 
     def bound(self, largest: float) -> float:
         """Bound for choices whose gains sum up to at most `largest`."""
@@ -133,11 +132,13 @@ def relaxed(
             break
         # a sharper mean gets nearer to the largest, but is harder to follow: only at a standstill
         if stalled >= _PATIENCE:
-            if criterion.sharpness > _SHARPEST:
+            if criterion.measure.sharpness > _SHARPEST:
                 break
             criterion, stalled = criterion.sharper(2.0), 0
         few = _candidates_to_search(gain, there, count, cell)
-        after, made = _exchanged(criterion, W[few], x[few], tuple(_of(q, few) for q in quotas))
+        # the same quotas over some rows, among which all weight is
+        own = tuple(Quota(q.kind[few], q.most, q.least) for q in quotas)
+        after, made = _exchanged(criterion, W[few], x[few], own)
         steps += made
         new = x.copy()
         new[few] = after
@@ -147,11 +148,6 @@ def relaxed(
     return Relaxed(best, lowest, bound, steps)
 
 
-def _of(quota: Quota, rows: IntArray) -> Quota:
-    """The same quota over some rows, among which all weight is."""
-    return Quota(quota.kind[rows], quota.most, quota.least)
-
-
 def _candidates_to_search(gain: Array, there: IntArray, count: int, cell: IntArray) -> IntArray:
     """Candidates with weight, as many again of the largest gains, and the best of every cell."""
     size = min(len(gain), 2 * count)
@@ -159,10 +155,8 @@ def _candidates_to_search(gain: Array, there: IntArray, count: int, cell: IntArr
     few = np.union1d(there, best)
     if not cell.any():
         return few
-    order = np.lexsort((-gain, cell))
-    start = np.searchsorted(cell[order], np.arange(int(cell.max()) + 1))
-    rank = np.arange(len(gain)) - start[cell[order]]
-    return np.union1d(few, order[rank < 4 + 2 * count // len(start)])
+    each = 4 + 2 * count // (int(cell.max()) + 1)
+    return np.union1d(few, np.flatnonzero(rank_in_cell(gain, cell) < each))
 
 
 def _stepped(criterion: DesignCriterion, W: Array, x: Array, towards: Array) -> Array:
@@ -179,8 +173,6 @@ def _stepped(criterion: DesignCriterion, W: Array, x: Array, towards: Array) -> 
             best, part = merit, t
         elif part > 0.0:
             break
-    if part == 0.0:
-        return x
     return np.clip((1.0 - part) * x + part * towards, 0.0, 1.0)
 
 
@@ -243,11 +235,9 @@ def _exchanged(
             return x, step
         pair = W[[up, down]]
         reach = inverse @ pair.T  # (S, R, 2)
-        most = min(1.0 - x[up], x[down], room)
         h = pair @ reach
-        flow = _best_flow(
-            tangents, h, np.stack([t.pair(r) for t, r in zip(tangents, reach, strict=True)]), most
-        )
+        k = np.stack([t.pair(r) for t, r in zip(tangents, reach, strict=True)])
+        flow = _best_flow(tangents, h, k, min(1.0 - x[up], x[down], room))
         x[up] = 1.0 if flow == 1.0 - x[up] else x[up] + flow
         x[down] = 0.0 if flow == x[down] else x[down] - flow
         turned = np.linalg.solve(np.diag([1.0 / flow, -1.0 / flow]) + h, np.eye(2)[None])
@@ -262,11 +252,8 @@ def _best_flow(tangents: Sequence[Tangent], h: Array, k: Array, most: float) -> 
 
     Along the flow t the determinant of a machine's information grows by ``1 + b t - d t^2``, and
     its share of the criterion falls by ``(a t - c t^2) / (1 + b t - d t^2)``, which is concave; the
-    root of the slope of the sum is found.
-
-    Args:
-        h: ``w M^-1 w`` of the pair, (S, 2, 2).
-        k: ``w M^-1 K M^-1 w`` of the pair, (S, 2, 2).
+    root of the slope of the sum is found. Of the pair h is ``w M^-1 w``, k ``w M^-1 K M^-1 w``,
+    (S, 2, 2).
     """
     b = (h[:, 0, 0] - h[:, 1, 1]).tolist()
     d = (h[:, 0, 0] * h[:, 1, 1] - h[:, 0, 1] ** 2).tolist()

@@ -43,8 +43,9 @@ def largest_sum(gain: Array, count: int, quotas: tuple[Quota, ...] = ()) -> Sum:
         top = np.argpartition(gain, len(gain) - count)[len(gain) - count :]
         x[top] = 1.0
         return Sum(float(gain[top].sum()), x)
-    # within a cell rows differ in gain alone, so only the best ones can enter the optimum
-    few = _first_of_each_cell(gain, count, quotas)
+    # within a cell rows differ in gain alone, so only the best can enter: as many as its shares let
+    room = np.min([q.most[q.kind] for q in quotas], axis=0)
+    few = np.flatnonzero(rank_in_cell(gain, cells(quotas, len(gain))) < np.minimum(room, count))
     A, b = _constraints(quotas, few)
     scale = float(np.abs(gain).max()) or 1.0
     found = linprog(
@@ -66,26 +67,21 @@ def largest_sum(gain: Array, count: int, quotas: tuple[Quota, ...] = ()) -> Sum:
     return Sum(float(top.sum() + multipliers @ limits), x)
 
 
-def _first_of_each_cell(gain: Array, count: int, quotas: tuple[Quota, ...]) -> IntArray:
-    """Rows that can matter: of every cell the best, as many as its shares let in."""
-    cell = cells(quotas, len(gain))
+def rank_in_cell(gain: Array, cell: IntArray) -> IntArray:
+    """Rank of every row among those of its cell, the largest gain first, (N,), from 0."""
     order = np.lexsort((-gain, cell))
     start = np.searchsorted(cell[order], np.arange(int(cell.max()) + 1))
     rank = np.empty(len(gain), dtype=np.int64)
     rank[order] = np.arange(len(gain)) - start[cell[order]]
-    room = np.full(len(gain), count)
-    for quota in quotas:
-        room = np.minimum(room, quota.most[quota.kind])
-    return np.flatnonzero(rank < room)
+    return rank
 
 
 def _constraints(quotas: tuple[Quota, ...], rows: IntArray) -> tuple[csr_array, Array]:
     """Shares as ``A x <= b`` over some rows."""
     parts, limits = [], []
     for quota in quotas:
-        kinds = len(quota.most)
         place = (np.ones(len(rows)), (quota.kind[rows], np.arange(len(rows))))
-        counts = csr_array(place, shape=(kinds, len(rows)))
+        counts = csr_array(place, shape=(len(quota.most), len(rows)))
         parts.append(counts)
         limits.append(quota.most)
         if quota.least is not None:

@@ -99,13 +99,10 @@ class Selection:
     def losses(self) -> Array:
         """Growth of the tangent with each chosen row removed, (N,); inf for rows not chosen."""
         out, i = np.full(len(self.W), np.inf), self.chosen
-        out[i] = -np.sum(
-            [
-                m.tangent.fall(m.numerator[i], np.minimum(m.leverage[i], _MAX_LEVERAGE), sign=-1.0)
-                for m in self._machines
-            ],
-            axis=0,
-        )
+        out[i] = 0.0
+        for m in self._machines:
+            leverage = np.minimum(m.leverage[i], _MAX_LEVERAGE)
+            out[i] -= m.tangent.fall(m.numerator[i], leverage, sign=-1.0)
         return out
 
     def add(self, row: int) -> None:
@@ -144,9 +141,7 @@ class Quota:
 
     def open(self, chosen: Mask) -> Mask:
         """Rows whose kind has room left, (N,)."""
-        count = self.count(chosen)
-        room: Mask = (count < self.most)[self.kind]
-        return room
+        return np.asarray((self.count(chosen) < self.most)[self.kind])
 
     def needed(self, chosen: Mask) -> Mask:
         """Rows of kinds that have too few; all where none has, (N,)."""
@@ -181,20 +176,11 @@ def fill(selection: Selection, count: int, quotas: tuple[Quota, ...] = ()) -> No
     selection.refresh()
 
 
-def exchange(
-    selection: Selection,
-    quotas: tuple[Quota, ...] = (),
-    kept: Mask | None = None,
-    most: int = 200,
-) -> int:
+def exchange(selection: Selection, quotas: tuple[Quota, ...] = (), most: int = 200) -> int:
     """Exchange chosen rows for better ones: the least useful out, the most useful in.
 
     A criterion that is curved is followed along its tangent for some exchanges; they are taken back
-    and fewer are tried where it grew.
-
-    Args:
-        quotas: Hold after every exchange.
-        kept: Rows that stay in, (N,).
+    and fewer are tried where it grew. Quotas hold after every exchange.
 
     Returns:
         Number of exchanges made; fewer than `most` means that no exchange that was tried helps.
@@ -202,28 +188,25 @@ def exchange(
     Reference:
         Fedorov, Theory of Optimal Experiments (1972); Cook and Nachtsheim (1980).
     """
-    stays = np.zeros(len(selection.W), dtype=bool) if kept is None else kept
     if not selection.criterion.is_curved:
-        return _exchange(selection, quotas, stays, most)
+        return _exchange(selection, quotas, most)
     given, total = selection.criterion, 0
-    for factor in _SHARPNESS_FACTORS if np.isfinite(given.sharpness) else (1.0,):
+    for factor in _SHARPNESS_FACTORS if np.isfinite(given.measure.sharpness) else (1.0,):
         selection.criterion = given.sharper(factor)
-        total += _exchange_curved(selection, quotas, stays, most - total)
+        total += _exchange_curved(selection, quotas, most - total)
     selection.criterion = given
     selection.refresh()
     return total
 
 
-def _exchange_curved(
-    selection: Selection, quotas: tuple[Quota, ...], stays: Mask, most: int
-) -> int:
+def _exchange_curved(selection: Selection, quotas: tuple[Quota, ...], most: int) -> int:
     """Exchanges in lots, each along one tangent, as long as the smooth criterion falls."""
     selection.refresh()
     total, batch = 0, _BATCH
     merit = selection.criterion.merit(selection.information)
     while batch and total < most:
         before = selection.chosen.copy()
-        made = _exchange(selection, quotas, stays, min(batch, most - total))
+        made = _exchange(selection, quotas, min(batch, most - total))
         now = selection.criterion.merit(selection.information)
         if made and now < merit * (1.0 - _MIN_RELATIVE_GAIN):
             merit, total = now, total + made
@@ -233,11 +216,11 @@ def _exchange_curved(
     return total
 
 
-def _exchange(selection: Selection, quotas: tuple[Quota, ...], stays: Mask, most: int) -> int:
+def _exchange(selection: Selection, quotas: tuple[Quota, ...], most: int) -> int:
     """Exchanges along the present tangent."""
-    made, tired = 0, np.zeros(len(stays), dtype=bool)
+    made, tired = 0, np.zeros(len(selection.W), dtype=bool)
     while made < most and int(tired.sum()) < _PATIENCE:
-        losses = np.where(stays | tired, np.inf, selection.losses)
+        losses = np.where(tired, np.inf, selection.losses)
         worst = int(np.argmin(losses))
         if not np.isfinite(losses[worst]):
             return made
@@ -249,7 +232,7 @@ def _exchange(selection: Selection, quotas: tuple[Quota, ...], stays: Mask, most
         best = int(np.argmax(np.where(free, selection.gains, -np.inf)))
         selection.add(best)
         if best != worst and selection.value <= before * (1.0 - _MIN_RELATIVE_GAIN):
-            made, tired = made + 1, np.zeros(len(stays), dtype=bool)
+            made, tired = made + 1, np.zeros_like(tired)
             continue
         if best != worst:
             selection.drop(best)

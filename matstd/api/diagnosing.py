@@ -89,7 +89,7 @@ class Diagnosis(Saveable, answer.Diagnosis):
         """The fit of the model that is saved and that compensates."""
         is_whole = self.auto or self.verdict is answer.Verdict.UNEXPLAINED
         if self.laws is not None and self.laws.laws and is_whole:
-            return self.laws.after
+            return self.laws.saved
         return self.predicting if self.auto else self.steps[self.named].fit
 
     @property
@@ -98,7 +98,7 @@ class Diagnosis(Saveable, answer.Diagnosis):
         made_with = f"material-standard {versions()['material-standard']}"
         is_all = self.learnt is self.predicting and self.choice is not None
         promised = self.choice.best.error if is_all and self.choice else None
-        if self.laws is not None and self.learnt is self.laws.after and self.laws.laws:
+        if self.laws is not None and self.learnt is self.laws.saved and self.laws.laws:
             promised = self.laws.held_out[0].after
         reported = {s.effect.name: s.reported for s in self.steps if s.effect is not None}
         # with a law in the model, too, as console and page report them: one error has one value

@@ -53,7 +53,7 @@ class LearntLaws(Saveable, laws.Learning):
         made_with = f"material-standard {versions()['material-standard']}"
         promised = self.held_out[0].after if self.held_out else None
         known = [row for row in self.geometry.rows if row.is_determined]
-        return model_text(self.after, self.title, None, made_with, promised, determined=known)
+        return model_text(self.saved, self.title, None, made_with, promised, determined=known)
 
     @cached_property
     def geometry(self) -> LearntGeometry:
@@ -63,7 +63,7 @@ class LearntLaws(Saveable, laws.Learning):
     @property
     def model(self) -> SavedModel:
         """What the model file says of the machine, for another run or a compensation."""
-        return parsed_model(self.model_text, "model.toml", self.after.model.effects)
+        return parsed_model(self.model_text, "model.toml", self.saved.model.effects)
 
     @property
     def effect_text(self) -> str:

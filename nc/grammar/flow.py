@@ -15,8 +15,7 @@ MAX_DEPTH = 8
 def label_places(found: Iterable[tuple[int, int, str]], path: Path) -> dict[str, int]:
     """Index of the block of every label; raises BadFile.
 
-    Args:
-        found: Index of a block, its line and the name of its label; "0" ends a subprogram.
+    Found are the index of a block, its line and the name of its label; "0" ends a subprogram.
     """
     places: dict[str, int] = {}
     lines: dict[str, int] = {}

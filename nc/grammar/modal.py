@@ -5,7 +5,6 @@ from dataclasses import dataclass
 MOVES = frozenset({0.0, 1.0, 2.0, 3.0})
 CYCLES = frozenset({73.0, 74.0, 81.0, 82.0, 83.0, 84.0, 85.0, 86.0, 89.0})
 """Canned cycles that go down along Z at one place and come up again."""
-
 DATUMS = frozenset({54.0, 55.0, 56.0, 57.0, 58.0, 59.0, 59.1, 59.2, 59.3})
 INCH = 25.4
 

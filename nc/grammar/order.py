@@ -20,7 +20,6 @@ from matstd.nc.grammar.formulas import (
 from matstd.twin.errors import BadFile
 
 MAX_BLOCKS = 1_000_000  # largest number of executed blocks; beyond it a program does not end
-
 _VALUE = rf"[+-]?Q\d+|{NUMBER}"
 _NAME = r'\d+|"[^"]+"'
 _LABEL = re.compile(f"LBL ({_NAME})")
@@ -34,7 +33,6 @@ _ASSIGNED = re.compile(r"Q(\d+) ?= ?(.+)")
 _USED = re.compile(r"([+-]?)Q(\d+)\b", re.IGNORECASE)
 _NAMED_NUMBERS = re.compile(r"\s*(?:CYCL DEF (?!7\.)|TCH PROBE)", re.IGNORECASE)
 """Cycles name their own numbers like parameters."""
-
 _ENDS = re.compile(r"(?:.* )?M0*(?:2|30)(?: .*)?")
 _KNOWN = "FN 0 to FN 8 and FN 13 with parameters and numbers, FN 9 to FN 12 with a label"
 

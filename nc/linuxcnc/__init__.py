@@ -16,9 +16,8 @@ SYSTEMS = 9  # coordinate systems G54 to G59.3
 def variables(offsets: Mapping[int, Sequence[float]]) -> str:
     """Text of a file of variables with G54 in force.
 
-    Args:
-        offsets: X, Y and Z of the zero of coordinate systems by number, 1 is G54, mm; others have
-            none.
+    Offsets are X, Y and Z of the zero of coordinate systems by number, 1 is G54, mm; others have
+    none.
     """
     # 5161, 5181: G28 and G30; 5210 to 5219: G92; 5220: system in force; 5221 + 20 k: its offsets
     values = [*enumerate([0.0] * 9, 5161), *enumerate([0.0] * 9, 5181)]

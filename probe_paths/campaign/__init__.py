@@ -18,10 +18,9 @@ from matstd.probe_paths.campaign.collisions import check_moves
 from matstd.probe_paths.campaign.contact_points import foot_points
 from matstd.probe_paths.campaign.contact_solver import ContactSolver, VirtualMachine
 from matstd.probe_paths.campaign.disturbances import effects_over_record, in_campaign
-from matstd.probe_paths.campaign.duration import probing_time
 from matstd.probe_paths.campaign.evaluation import ball_centres, evaluate, sag_remarks
 from matstd.probe_paths.campaign.log_parts import checked_parts
-from matstd.probe_paths.campaign.order_study import Ordering, orders
+from matstd.probe_paths.campaign.order_study import Ordering, orders, probing_time
 from matstd.probe_paths.campaign.simulation import Campaign, simulate, simulate_search, visits
 from matstd.probe_paths.campaign.stamps import read_program_of
 from matstd.probe_paths.campaign.tolerance import setup_tolerance

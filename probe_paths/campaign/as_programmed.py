@@ -22,8 +22,7 @@ LONGEST_CAMPAIGN = timedelta(days=30)
 COARSEST_STEP = 0.01
 """Step of positions that is too coarse for a measurement, mm; the masks print 0.000001."""
 
-FEWEST = 5
-"""Touches from which a clock or a step is judged."""
+FEWEST = 5  # touches from which a clock or a step is judged
 
 SAME_ANGLE = 0.05
 """Largest deviation of a rotary axis from its programmed position, degrees; as in the programs."""
@@ -124,11 +123,7 @@ def _check_touch(
 
 
 def with_program_lines(run: Run, programs: Mapping[str, ReadProgram]) -> Run:
-    """A run that knows the line of its program at every touch; 0 of programs that are not there.
-
-    Args:
-        programs: By name, as the logs name them.
-    """
+    """A run that knows the line of its program at every touch; 0 of programs that are not there."""
     line = {
         (name, touch.number): touch.line
         for name, program in programs.items()

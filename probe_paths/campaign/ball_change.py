@@ -95,17 +95,16 @@ def _change(
     dialect: Dialect | None,
 ) -> BallChange:
     _, rows, again = np.intersect1d(one.number, other.number, return_indices=True)
+    where = f"program {other.program} at {other.begin}"
     found = set(one.feature[rows].tolist()) | set(other.feature[again].tolist())
     standard = one.heading.touched(standard)
     names = list(standard.features)
     balls = {sphere.name: sphere for sphere in standard.spheres}
     name = names[min(found) - 1] if len(found) == 1 and 0 < min(found) <= len(names) else ""
     if len(rows) < _UNKNOWNS + 1 or name not in balls:
+        common = f"{len(rows)} touches in common with {one.begin} on features {sorted(found)}"
         raise BadFile(
-            other.path,
-            f"program {other.program} at {other.begin}",
-            f"{len(rows)} touches in common with {one.begin} on features {sorted(found)}",
-            f"{_UNKNOWNS + 1} at least, on one ball of {standard.name}",
+            other.path, where, common, f"{_UNKNOWNS + 1} at least, on one ball of {standard.name}"
         )
     before, after = ball_centres(one, chain, dialect)[rows], ball_centres(other, chain, dialect)
     around = one.heading.setup.T_table_artefact
@@ -116,12 +115,8 @@ def _change(
     A = np.column_stack([normal, np.ones(len(rows))])
     solved, _, rank, _ = np.linalg.lstsq(A, grown, rcond=1e-3)
     if rank < _UNKNOWNS:
-        raise BadFile(
-            other.path,
-            f"program {other.program} at {other.begin}",
-            f"{len(rows)} touches on one side of {name}",
-            "touches all round it",
-        )
+        found_all = f"{len(rows)} touches on one side of {name}"
+        raise BadFile(other.path, where, found_all, "touches all round it")
     left = grown - A @ solved
     # a difference of two touches has twice the variance of one
     scatter = float(np.sqrt(left @ left / (len(rows) - _UNKNOWNS) / 2.0))

@@ -4,15 +4,9 @@ import numpy as np
 
 from matstd.artefact.body import Meeting, Standard, contact
 from matstd.artefact.reach import Mask
+from matstd.artefact.tool import solid_hull, swing_height, top_height
 from matstd.probe_paths.control import Move, ProbeStep, ReadProgram
-from matstd.probe_paths.plan import (
-    SMALLEST_GAP,
-    ToolClearance,
-    solid_hull,
-    stroke_gaps,
-    swing_height,
-    top_height,
-)
+from matstd.probe_paths.plan import SMALLEST_GAP, ToolClearance, stroke_gaps
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array, apply, inverse, turn
 from matstd.twin.machine import Chain, linear_directions, tip
@@ -141,7 +135,6 @@ def _refuse(
     bad = np.flatnonzero(gap < least)
     if len(bad):
         i = bad[np.argmin(line[bad])]
-        raise BadFile(
-            program.path, f"line {line[i]}", f"a gap of {gap[i]:.2f} mm to {nearest[i]}",
-            f"at least {least:.2g} mm between probe and anything solid",
-        )  # fmt: skip
+        found = f"a gap of {gap[i]:.2f} mm to {nearest[i]}"
+        expected = f"at least {least:.2g} mm between probe and anything solid"
+        raise BadFile(program.path, f"line {line[i]}", found, expected)

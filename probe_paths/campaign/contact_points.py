@@ -29,9 +29,7 @@ _DISPLACED = 50.0 * UM
 leaves residuals of this size at all touches of one feature alone."""
 
 _SIGNIFICANT = 4.0  # least ratio of such a displacement to its standard error
-
 _ROUNDS = 4  # with errors of ordinary size and a standard 1 mm beside its place three were enough
-
 _CONVERGED = 1e-5  # change of deviations in a round below which the iteration has converged, mm
 
 
@@ -43,7 +41,6 @@ def foot_points(
     nan where a ball is so far off that its surface has no foot point for it.
 
     Args:
-        ball: Centres, (N, 3), mm.
         moved: Displacements of the features from their calibrated places, (N, 3), mm.
     """
     ball = ball - moved
@@ -64,9 +61,6 @@ def at_true_contacts(run: Run, standard: Standard) -> Run:
     ``p = foot point of (x + d)``, x the believed ball centre and d its displacement relative to the
     standard by the fitted model. The deviations ``n . (x - p) - radius`` remain those
     of the believed balls, referred to better points and normals.
-
-    Args:
-        run: With foot points of the believed balls.
     """
     weight, t = np.ones(len(run)), run.touches
     moved = standard.moved(t.chain, t.q, t.T_table_artefact, t.feature)

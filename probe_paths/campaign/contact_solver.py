@@ -17,9 +17,7 @@ from matstd.twin.record import IntArray, Setup, Touches
 from matstd.twin.units import NM
 
 CONTACT_TOLERANCE = 1e-3 * NM  # the ball touches when its gap is this small, mm
-
 _STEPS = 12  # limit for Newton's method; with errors of ordinary size four sufficed
-
 _BEYOND_END = 10.0  # mm beyond the end of a touch: far more than the errors of a working machine
 
 FIRST_MORNING = datetime(2000, 1, 1, 8, 0, 0)

@@ -7,7 +7,6 @@ whole record; the analysis of the run knows them at the touches only.
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from datetime import datetime
 
 import numpy as np
 
@@ -21,8 +20,7 @@ Disturbance = Callable[[Touches], Contribution]
 
 
 def effects_over_record(
-    effects: Sequence[tuple[Effect, Array]],
-    record: SensorRecord | None = None,
+    effects: Sequence[tuple[Effect, Array]], record: SensorRecord | None = None
 ) -> Disturbance:
     """Disturbance by effects of known size.
 
@@ -35,7 +33,8 @@ def effects_over_record(
     """
     if record is None:
         return lambda touches: contribution(effects, touches)
-    start = record.begin
+    # a touch repeated at every reading of the record is its history
+    start, moments = record.begin, record.since(record.begin)
     driven = [pair for pair in effects if traits(pair[0]).needs_history]
     others = [pair for pair in effects if pair not in driven]
 
@@ -43,19 +42,13 @@ def effects_over_record(
         touches = record.at_touches(touches, start)
         total = contribution(others, touches)
         if driven:
-            history = _history(touches[:1], record, start)
+            again = touches[np.zeros(len(moments), dtype=np.int64)]
+            history = record.at_touches(replace(again, time=moments), start)
             both = contribution(driven, joined_touches([history, touches]))
             total = Contribution(*(a + b[len(history) :] for a, b in zip(total, both, strict=True)))
         return total
 
     return disturbance
-
-
-def _history(touch: Touches, record: SensorRecord, begin: datetime) -> Touches:
-    """A touch repeated at every reading of the record."""
-    time = record.since(begin)
-    rows = touch[np.zeros(len(time), dtype=np.int64)]
-    return record.at_touches(replace(rows, time=time), begin)
 
 
 def joined_touches(parts: Sequence[Touches]) -> Touches:

@@ -25,6 +25,7 @@ from matstd.twin.record import (
     Run,
     Setup,
     Touches,
+    at_poses,
     computed_deviation,
     linear_approach,
 )
@@ -76,12 +77,12 @@ def evaluate(
         raise NotEnoughData("the logs hold no touch")
     _check_calibrations(parts)
     dialect = dialect or Dialect()
-    touches, gap = _touches_and_gaps(parts, standard, chain, dialect, is_fitted=False)
-    good, far = _split_by_gap(parts, gap, LARGEST_BELIEVED_GAP)
+    touches = _touches_on(parts, standard, chain, dialect, is_fitted=False)
+    good, far = _split_by_gap(parts, computed_deviation(touches), LARGEST_BELIEVED_GAP)
     while True:
         parts, remarks = without_rows(parts, good), [*remarks, *far]
-        touches, gap = _touches_and_gaps(parts, standard, chain, dialect, is_fitted=True)
-        good, far = _split_by_gap(parts, gap, LARGEST_FITTED_GAP)
+        touches = _touches_on(parts, standard, chain, dialect, is_fitted=True)
+        good, far = _split_by_gap(parts, computed_deviation(touches), LARGEST_FITTED_GAP)
         if not far:
             break
     u_touch = _uncertainty(standard, touches, u)
@@ -128,14 +129,10 @@ def _uncertainty(standard: Standard, t: Touches, u: float) -> Array:
     return np.asarray(np.sqrt(u**2 + form**2 + sag**2))
 
 
-def _touches_and_gaps(
-    parts: Sequence[LogPart],
-    standard: Standard,
-    chain: Chain,
-    dialect: Dialect,
-    is_fitted: bool,
-) -> tuple[Touches, Array]:
-    """Touches on the standard at its believed or fitted place, and their gaps (N,), mm."""
+def _touches_on(
+    parts: Sequence[LogPart], standard: Standard, chain: Chain, dialect: Dialect, is_fitted: bool
+) -> Touches:
+    """Touches on the standard at its believed or fitted place."""
     count = [len(part.number) for part in parts]
     radius = np.repeat([part.radius for part in parts], count)
     length = np.repeat([part.tool_length - part.radius for part in parts], count)
@@ -152,25 +149,34 @@ def _touches_and_gaps(
         setups[i] = _fitted_setup(
             believed, standard, feature[rows], ball_table[rows], radius[rows], moved[rows]
         )
-    point, normal, gap = _gaps(standard, setups, setup, feature, ball_table, radius, moved)
-    made = _touches(parts, chain, q, setups, setup, feature, point, normal)
-    return replace(made, length=length, radius=radius), gap
+    touches = replace(
+        at_poses(chain, q, length),
+        radius=radius,
+        setups=tuple(setups),
+        setup=setup,
+        feature=feature,
+        time=np.concatenate([p.time + (p.begin - parts[0].begin).total_seconds() for p in parts]),
+        temperature=logged_temperatures(parts)[0],
+        pose=_pose_labels(parts, setup),
+    )
+    point, normal = foot_points(standard, feature, touches.ball_artefact, moved)
+    touches = replace(touches, point=point, normal=normal)
+    approach = linear_approach(chain, q, touches.normal_table)
+    for letter in chain.rotary_axes:
+        approach[:, chain.axis_index(letter)] = np.concatenate([p.side[letter] for p in parts])
+    return replace(touches, approach=approach)
 
 
-def _gaps(
-    standard: Standard,
-    setups: Sequence[Setup],
-    setup: IntArray,
-    feature: Labels,
-    ball_table: Array,
-    radius: Array,
-    moved: Array,
-) -> tuple[Array, Array, Array]:
-    """Foot points and normals in the artefact frame, and gaps between balls and surfaces, mm."""
-    T_artefact_table = inverse(np.stack([s.T_table_artefact for s in setups])[setup])
-    ball = apply(T_artefact_table, ball_table)
-    point, normal = foot_points(standard, feature, ball, moved)
-    return point, normal, np.einsum("ni,ni->n", normal, ball - point) - radius
+def _pose_labels(parts: Sequence[LogPart], setup: IntArray) -> IntArray:
+    """Number of the table pose of every touch, (N,).
+
+    A pose that two probes visit counts as two: they share the readings only.
+    """
+    families = list(dict.fromkeys(map(_probe_prefix, parts)))
+    own, count = [families.index(_probe_prefix(p)) for p in parts], [len(p.number) for p in parts]
+    number = np.concatenate([part.pose for part in parts])
+    visited = np.column_stack([setup, np.repeat(own, count), number])
+    return np.unique(visited, axis=0, return_inverse=True)[1].reshape(-1).astype(np.int64)
 
 
 def _check_calibrations(parts: Sequence[LogPart]) -> None:
@@ -181,11 +187,11 @@ def _check_calibrations(parts: Sequence[LogPart]) -> None:
         known = first.setdefault((_probe_prefix(part), planned.radius, planned.length), part)
         radius, length = known.radius, known.tool_length
         if abs(part.radius - radius) > NM or abs(part.tool_length - length) > NM:
-            raise BadFile(
-                part.path, f"program {part.program}",
-                f"a probe of radius {part.radius:g} and length {part.tool_length:g} mm",
-                f"{radius:g} and {length:g} mm as in {known.program}: one calibration a probe",
-            )  # fmt: skip
+            found = f"a probe of radius {part.radius:g} and length {part.tool_length:g} mm"
+            expected = (
+                f"{radius:g} and {length:g} mm as in {known.program}: one calibration a probe"
+            )
+            raise BadFile(part.path, f"program {part.program}", found, expected)
 
 
 def _probe_prefix(part: LogPart) -> str:
@@ -225,10 +231,8 @@ def _setups(parts: Sequence[LogPart]) -> tuple[list[Setup], IntArray]:
         believed = part.heading.setup
         known = setups.setdefault(believed.name, believed)
         if not np.allclose(known.T_table_artefact, believed.T_table_artefact, rtol=0.0, atol=NM):
-            raise BadFile(
-                part.path, "ORIGIN, TURNED", f"another place for set-up {believed.name}",
-                "one place for each set-up name",
-            )  # fmt: skip
+            found = f"another place for set-up {believed.name}"
+            raise BadFile(part.path, "ORIGIN, TURNED", found, "one place for each set-up name")
         index += [list(setups).index(believed.name)] * len(part.number)
     return list(setups.values()), np.array(index, dtype=np.int64)
 
@@ -279,56 +283,7 @@ def _split_by_gap(
         found = f"{gap[row]:.3f} mm" if np.isfinite(gap[row]) else "no way"
         what = f"touch {part.number[i]} with {found} between ball and surface"
         if np.mean(~good) > LARGEST_OUTLIER_SHARE:
-            raise BadFile(
-                part.path,
-                f"line {part.line[i]}",
-                what,
-                f"less than {limit:g} mm: another feature, set-up, probe or meaning of Z",
-            )
+            expected = f"less than {limit:g} mm: another feature, set-up, probe or meaning of Z"
+            raise BadFile(part.path, f"line {part.line[i]}", what, expected)
         remarks.append(f"{part.path}: line {part.line[i]}: {what}; it is left out")
     return good, remarks
-
-
-def _touches(
-    parts: Sequence[LogPart],
-    chain: Chain,
-    q: Array,
-    setups: list[Setup],
-    setup: IntArray,
-    feature: Labels,
-    point: Array,
-    normal: Array,
-) -> Touches:
-    """The record of all touches without their probes; time counts from the first program's start.
-
-    A pose that two probes visit counts as two: they share the readings only.
-    """
-    start = parts[0].begin
-    T_table_artefact = np.stack([s.T_table_artefact for s in setups])[setup]
-    normal_table = np.einsum("nij,nj->ni", T_table_artefact[:, :3, :3], normal)
-    approach = linear_approach(chain, q, normal_table)
-    for letter in chain.rotary_axes:
-        approach[:, chain.axis_index(letter)] = np.concatenate([p.side[letter] for p in parts])
-    number = np.concatenate([part.pose for part in parts])
-    families = list(dict.fromkeys(map(_probe_prefix, parts)))
-    family = np.repeat(
-        [families.index(_probe_prefix(p)) for p in parts], [len(p.number) for p in parts]
-    )
-    # poses of different probes get different labels
-    visited = np.column_stack([setup, family, number])
-    pose_label = np.unique(visited, axis=0, return_inverse=True)[1]
-    return Touches(
-        chain=chain,
-        q=q,
-        length=np.zeros(len(q)),
-        radius=np.zeros(len(q)),
-        point=point,
-        normal=normal,
-        setups=tuple(setups),
-        setup=setup,
-        time=np.concatenate([p.time + (p.begin - start).total_seconds() for p in parts]),
-        approach=approach,
-        temperature=logged_temperatures(parts)[0],
-        feature=feature,
-        pose=pose_label.reshape(-1).astype(np.int64),
-    )

@@ -23,12 +23,9 @@ _PER_TOUCH = ("line", "number", "pose", "feature", "xyz", "time")
 
 
 def distinct_parts(parts: Sequence[LogPart]) -> list[LogPart]:
-    """Parts in the order of time, every touch of a run of a program once.
+    """Parts in the order of time, every touch of a run of a program once; raises BadFile.
 
     The same log may be given twice, whole and cut off: its parts have the same program and begin.
-
-    Raises:
-        BadFile: Two such parts with different numbers of the same touch.
     """
     found: list[LogPart] = []
     for part in sorted(_dated(parts), key=lambda part: (part.begin, -len(part.number))):
@@ -106,10 +103,11 @@ def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[Lo
         check_log_stamp(part.path, part.heading, standard)
         good = (part.feature >= 1) & (part.feature <= count)
         if len(good) and not np.any(good):
-            raise BadFile(
-                part.path, f"line {part.line[0]}", f"feature {part.feature[0]}",
+            found, expected = (
+                f"feature {part.feature[0]}",
                 f"1 to {count}, a feature of {standard.name}",
-            )  # fmt: skip
+            )
+            raise BadFile(part.path, f"line {part.line[0]}", found, expected)
         remarks += [
             f"{part.path}: line {part.line[i]}: feature {part.feature[i]} is none of 1 to {count}; "
             f"touch {part.number[i]} is left out"

@@ -11,20 +11,26 @@ from enum import Enum
 
 import numpy as np
 
+from matstd.artefact.body import Standard
+from matstd.artefact.reach import Requests
 from matstd.probe_paths.control import Clock, ProbeStep, step_times
 from matstd.probe_paths.emit import Feeds, make_programs
 from matstd.probe_paths.plan import (
     LINEAR,
+    PlanOptions,
+    Probe,
     TouchPlan,
     Visit,
     home_readings,
-    nearest_neighbours,
+    plan_touches,
     short_order,
 )
+from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
 from matstd.twin.library import parse_effect
+from matstd.twin.machine import Chain
 from matstd.twin.model import Effect, Model, columns
-from matstd.twin.record import IntArray, Touches
+from matstd.twin.record import IntArray, Setup, Touches, at_poses
 
 _PRIOR_FACTOR = 1e3
 """Prior of the sought effects in units of their typical size: almost uninformative."""
@@ -89,8 +95,7 @@ def _sd_beside(C: Array, W: Array) -> Array:
     """Standard deviations of C's parameters with W's unknown too, all with unit priors, (Q,)."""
     known = np.eye(W.shape[1]) + W.T @ W
     left = np.eye(C.shape[1]) + C.T @ C - C.T @ W @ np.linalg.solve(known, W.T @ C)
-    sd: Array = np.sqrt(np.diag(np.linalg.solve(left, np.eye(len(left)))))
-    return sd
+    return np.sqrt(np.diag(np.linalg.solve(left, np.eye(len(left)))))
 
 
 def _timed(plan: TouchPlan) -> tuple[Touches, float]:
@@ -106,16 +111,12 @@ def _timed(plan: TouchPlan) -> tuple[Touches, float]:
 
 
 def _record(plan: TouchPlan, time: Array, approach: Array) -> Touches:
-    n = len(plan)
-    return Touches(
-        chain=plan.chain,
-        q=plan.contact,
-        length=np.full(n, plan.probe.length),
-        radius=np.full(n, plan.probe.radius),
+    return replace(
+        at_poses(plan.chain, plan.contact, plan.probe.length),
+        radius=np.full(len(plan), plan.probe.radius),
         point=plan.point,
         normal=plan.normal,
         setups=(plan.setup,),
-        setup=np.zeros(n, dtype=np.int64),
         time=time,
         approach=approach,
         feature=plan.feature,
@@ -131,7 +132,7 @@ def _rows(plan: TouchPlan, rows: IntArray) -> TouchPlan:
 
 def _shortest(plan: TouchPlan) -> TouchPlan:
     """Visits in a short order from home and back, every pose approached from the one before."""
-    way = _short_way(np.array([v.rotary for v in plan.visits]), home_readings(plan.chain))
+    way = short_order(np.array([v.rotary for v in plan.visits]), home_readings(plan.chain))
     here, last = home_readings(plan.chain), np.zeros(len(plan.chain.rotary_axes))
     visits = []
     for stop in (plan.visits[i] for i in way):
@@ -142,23 +143,6 @@ def _shortest(plan: TouchPlan) -> TouchPlan:
         visits.append(replace(stop, before=before, side=side))
         here, last = stop.rotary, side
     return _each_pose_once(plan, tuple(visits))
-
-
-def _short_way(poses: Array, home: Array) -> list[int]:
-    """Short order of poses (V, R), by nearest neighbours and 2-opt."""
-    places = np.concatenate([home[None], poses])
-    cost = np.abs(places[:, None] - places).max(axis=-1, initial=0.0)  # the slowest decides
-    tour = [0, *(1 + nearest_neighbours(poses, home)).tolist()]
-    improved = True
-    while improved:
-        improved = False
-        for i in range(1, len(tour) - 1):
-            for j in range(i + 1, len(tour)):
-                a, b, c, d = tour[i - 1], tour[i], tour[j], tour[(j + 1) % len(tour)]
-                if cost[a, c] + cost[b, d] < cost[a, b] + cost[c, d] - 1e-9:
-                    tour[i : j + 1] = tour[i : j + 1][::-1]
-                    improved = True
-    return [int(k) - 1 for k in tour[1:]]
 
 
 def _each_pose_once(plan: TouchPlan, visits: tuple[Visit, ...] = ()) -> TouchPlan:
@@ -176,7 +160,26 @@ def _each_pose_once(plan: TouchPlan, visits: tuple[Visit, ...] = ()) -> TouchPla
     sizes = [len(mine) for mine in rows]
     moved = _rows(plan, np.concatenate(rows))
     return replace(
-        moved,
-        visits=tuple(first.values()),
-        visit=np.repeat(np.arange(len(first)), sizes),
+        moved, visits=tuple(first.values()), visit=np.repeat(np.arange(len(first)), sizes)
     )
+
+
+def probing_time(
+    body: Standard,
+    chain: Chain,
+    probe: Probe,
+    setup: Setup,
+    requests: Requests,
+    options: PlanOptions | None = None,
+) -> float:
+    """Time on the machine of a plan of the same care, s; nan where no plan can be made.
+
+    Touches that this plan refuses are counted as if they took as long as the others.
+    """
+    options = replace(options or PlanOptions(), tolerated=len(requests), is_swept=False)
+    try:
+        plan = plan_touches(body, chain, probe, setup, requests, options)
+    except NotReachable:
+        return float(np.nan)
+    planned = int(np.sum(plan.request >= 0))
+    return make_programs(plan).duration * len(requests) / planned

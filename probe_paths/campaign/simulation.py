@@ -40,10 +40,7 @@ class Campaign:
 
 
 def simulate_search(
-    program: ReadProgram,
-    standard: Standard,
-    machine: VirtualMachine,
-    rng: np.random.Generator,
+    program: ReadProgram, standard: Standard, machine: VirtualMachine, rng: np.random.Generator
 ) -> VirtualRun:
     """What a search or a commissioning program does on the twin, with the log that it leaves.
 

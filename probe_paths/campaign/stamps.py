@@ -41,14 +41,11 @@ def read_program_of(
 
 
 def check_program_stamp(program: ReadProgram, standard: Standard, believed: bool = True) -> None:
-    """Refuse a program of another standard.
+    """Refuse a program of another standard; raises DesignError.
 
     Args:
         believed: Whether the numbers of the standard are those that programs are made from; the
             piece as it really is has others.
-
-    Raises:
-        DesignError: What the program was written for, and what was given.
     """
     path, heading = program.path, program.heading
     _check_name(path, heading, standard)

@@ -15,7 +15,6 @@ STEPS_MM = (0.5, 1.0, 1.5, 2.0, 2.5)
 """Displacements that are tried, mm; a touch looks 3 mm beyond the surface."""
 
 STEPS_DEG = (0.1, 0.25, 0.5, 1.0)  # rotations that are tried, degrees
-
 _TOUCHES = 60  # of the plan, evenly: each takes 3 ms, and there are twelve directions
 
 

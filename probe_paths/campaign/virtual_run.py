@@ -62,19 +62,12 @@ class VirtualRun:
         if self.outcome is Outcome.DONE:
             return
         touch = self.program.touches[self.reached - 1]
+        name, planned = self.feature[touch.index], self.program.features.get(touch.feature, "")
+        what = f"touch {touch.number} on {planned} has no contact: the ball "
+        what += f"{self.meeting[touch.index]}" + (f" ({name})" if name else "")
         if touch.is_air:
-            raise NotReachable(
-                f"{self.program.path}: line {touch.line}: the touch in the air meets "
-                f"{self.feature[touch.index] or 'something'}",
-                run=self,
-            )
-        name = self.feature[touch.index]
-        raise NotReachable(
-            f"{self.program.path}: line {touch.line}: touch {touch.number} "
-            f"on {self.program.features[touch.feature]} has no contact: the ball "
-            f"{self.meeting[touch.index]}" + (f" ({name})" if name else ""),
-            run=self,
-        )
+            what = f"the touch in the air meets {name or 'something'}"
+        raise NotReachable(f"{self.program.path}: line {touch.line}: {what}", run=self)
 
 
 def run_programs(
@@ -83,12 +76,11 @@ def run_programs(
     machine: VirtualMachine,
     rng: np.random.Generator,
 ) -> list[VirtualRun]:
-    """Run programs one after the other; a stopped one ends the campaign.
-
-    Raises:
-        DesignError: A program made for another standard.
-    """
-    solvers = [_solver(program, standard, machine, rng) for program in programs]
+    """Run programs one after the other; a stopped one ends the campaign; raises DesignError."""
+    solvers = []
+    for program in programs:
+        noise = rng.normal(0.0, 1.0, len(program.touches)) * machine.noise
+        solvers.append(ContactSolver(program, standard, machine, noise))
     # a disturbance may depend on the touches of other programs
     planned = [] if machine.disturbance is None else _planned_touches(solvers)
     runs: list[VirtualRun] = []
@@ -113,13 +105,6 @@ def _planned_touches(solvers: Sequence[ContactSolver]) -> list[Touches]:
         planned.append(solver.touches(times[_rows(solver.program)]))
         begin = float(times[-1]) + CHANGEOVER
     return planned
-
-
-def _solver(
-    program: ReadProgram, standard: Standard, machine: VirtualMachine, rng: np.random.Generator
-) -> ContactSolver:
-    noise = rng.normal(0.0, 1.0, len(program.touches)) * machine.noise
-    return ContactSolver(program, standard, machine, noise)
 
 
 def _step_times(contacts: ContactSolver) -> Array:
@@ -173,11 +158,8 @@ class _Control:
         out = np.empty((len(q), 4))
         frames = [self.frame] * len(q)
         if self.program.heading.is_tilted:
-            frames = [
-                self.frame.tilted(touch.q[self.frame.rotary]) for touch in self.program.touches
-            ]
-        for i, letter in enumerate(LINEAR):
-            column = self.frame.chain.axis_index(letter)
+            frames = [self.frame.tilted(rotary) for rotary in q[:, self.frame.rotary]]
+        for i, (letter, column) in enumerate(zip(LINEAR, self.frame.linear, strict=True)):
             values = zip(frames, q[:, column], strict=True)
             out[:, i] = [frame.coordinate(letter, v) for frame, v in values]
         if self.dialect.result_height == "gauge":

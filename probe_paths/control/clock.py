@@ -32,8 +32,7 @@ class Clock:
             steps: Change of the readings, shape (M, A), mm and rad; nan counts as no motion.
             feed: mm/s or rad/s, shape (M,); nan is rapid.
         """
-        linear = chain.linear_columns
-        rotary = chain.rotary_columns
+        linear, rotary = chain.linear_columns, chain.rotary_columns
         travel = np.abs(np.nan_to_num(steps))
         fastest = np.maximum(
             _rapid(travel[:, linear], self.rapid, self.acceleration),
@@ -51,8 +50,7 @@ def _rapid(travel: Array, speed: float, acceleration: float) -> Array:
     trapezoid = travel / speed + speed / acceleration
     triangle = 2.0 * np.sqrt(travel / acceleration)
     short = travel < speed**2 / acceleration
-    slowest: Array = np.where(short, triangle, trapezoid).max(axis=1)
-    return slowest
+    return np.where(short, triangle, trapezoid).max(axis=1)
 
 
 def step_times(
@@ -86,5 +84,4 @@ def step_times(
                 extra[i] += step.step_back * (1.0 / step.feed + 1.0 / step.slow_feed)
             back = min(step.back, length) / clock.rapid + clock.block
     duration = np.where(is_motion, clock.durations(chain, change, feed), 0.0)
-    times: Array = np.cumsum(duration + extra)
-    return times
+    return np.cumsum(duration + extra)

@@ -114,7 +114,17 @@ def interpret(
     check_axes(blocks, frame.letters, head, path)
     stated = promise(blocks, head, path)
     runner = Runner(blocks, places, frame, path, name, masks, head)
-    state = _initial_state(path, frame, stated, head.is_tilted)
+    axes = len(chain.axes)
+    begin = State(
+        path,
+        frame,
+        q=np.full(axes, np.nan),
+        side=np.zeros(axes),
+        is_search=stated.is_search,
+        is_first=stated.is_first,
+        is_tilted=head.is_tilted,
+    )
+    state = begin.copied()
     steps = runner.run(0, state)
     runner.check_logged()
     _check_promise(stated, state, runner.touches, path)
@@ -122,20 +132,8 @@ def interpret(
     # the program must stop in every run in which one tested value is off its limit
     for test in (*interlocks(language, frame, stated.is_first), *turn_tests(language, frame)):
         for off in (-_BEYOND * test.limit, _BEYOND * test.limit):
-            runner.run(
-                0, replace(_initial_state(path, frame, stated, head.is_tilted), fault=test, off=off)
-            )
-    for touch in steps:
-        if not isinstance(touch, ProbeStep) or touch.is_air:
-            continue
-        if touch.feature not in features:
-            raise BadFile(
-                path,
-                f"line {touch.line}",
-                f"feature {touch.feature}",
-                "a number of the head's list (;FEATURE <number> IS <name>)",
-            )
-    return ReadProgram(
+            runner.run(0, replace(begin.copied(), fault=test, off=off))
+    program = ReadProgram(
         path=path,
         name=name,
         heading=head,
@@ -146,28 +144,17 @@ def interpret(
         tool=state.tool,
         preset=state.preset,
     )
-
-
-def _initial_state(path: Path, frame: ProgramFrame, stated: Promise, is_tilted: bool) -> State:
-    """State of the control at the start of a program, with unknown axis positions."""
-    axes = len(frame.chain.axes)
-    return State(
-        path,
-        frame,
-        np.full(axes, np.nan),
-        np.zeros(axes),
-        is_search=stated.is_search,
-        is_first=stated.is_first,
-        is_tilted=is_tilted,
-    )
+    for touch in program.touches:
+        if not touch.is_air and touch.feature not in features:
+            expected = "a number of the head's list (;FEATURE <number> IS <name>)"
+            raise BadFile(path, f"line {touch.line}", f"feature {touch.feature}", expected)
+    return program
 
 
 def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], path: Path) -> None:
     """Refuse a program that differs from the statements of its head."""
-    for what, said, done in (
-        ("tool", stated.tool, state.tool),
-        ("preset", stated.preset, state.preset),
-    ):
+    for what in ("tool", "preset"):
+        said, done = getattr(stated, what), getattr(state, what)
         if said != done:
             raise BadFile(path, "head", f"{what} {said}", f"{done}, as the program calls it")
     made = [touch.number for touch in touches if not touch.is_air]
@@ -183,27 +170,20 @@ def _check_promise(stated: Promise, state: State, touches: Sequence[ProbeStep], 
         wanted = wanted[-len(made) :] if made else []
     if made != wanted:
         promised = f"touches {wanted[0]} to {wanted[-1]} in order" if wanted else "none: a dry run"
-        raise BadFile(
-            path,
-            f"line {touches[-1].line}" if touches else "file",
-            f"{len(made)} touches before M30",
-            f"{promised}, as the head says",
-        )
+        where, found = f"line {touches[-1].line}" if touches else "file", f"{len(made)} touches"
+        raise BadFile(path, where, f"{found} before M30", f"{promised}, as the head says")
 
 
 def _probe(head: Heading, probe: Probe | None, path: Path) -> Probe:
     """The probe in the spindle, which must be the one that the program was made for."""
     if probe is None:
         return head.probe
-    for what, stated, actual in (
-        ("radius", head.probe.radius, probe.radius),
-        ("length", head.probe.length, probe.length),
-    ):
+    for what in ("radius", "length"):
+        stated, actual = getattr(head.probe, what), getattr(probe, what)
         if abs(stated - actual) > 1e-5:
-            raise BadFile(
-                path,
-                "head",
+            found, expected = (
                 f"a probe of {what} {stated:g} mm",
                 f"{actual:g} mm, as in the spindle",
             )
+            raise BadFile(path, "head", found, expected)
     return head.probe

@@ -41,8 +41,7 @@ BALL, FIRST = "CAL", "COM"
 """Last letters of the names of programs that measure nothing: touches on one ball before and after
 the others, and one touch that a control is tried with."""
 
-Line = tuple[int, str]
-"""Number in the file and text."""
+Line = tuple[int, str]  # number in the file and text
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,9 +92,6 @@ class LogPart:
 
 def read_log(path: str | Path, rotary: Sequence[str], text: str | None = None) -> list[LogPart]:
     """Parts of a log file; a program that was run again appends a further part.
-
-    Args:
-        text: Its text, if already read.
 
     Raises:
         BadFile: No part of the log has a head that can be read, or it is a log of another kind.
@@ -212,9 +208,8 @@ class _PartReader:
     def _peek(self, expected: str) -> str:
         """The next line; refuses the end of the part."""
         if self.place >= len(self.lines):
-            raise BadFile(
-                self.path, f"line {self.lines[-1][0]}", "the end of the part after it", expected
-            )
+            last = f"line {self.lines[-1][0]}"
+            raise BadFile(self.path, last, "the end of the part after it", expected)
         return self.lines[self.place][1]
 
     def _refusal(self, expected: str) -> BadFile:
@@ -225,7 +220,9 @@ class _PartReader:
         """Day of the head; None, and a remark, where it cannot be read."""
         match = _DATE.match(self._peek("DATE <y>-<m>-<d>"))
         try:
-            day = _day(match) if match else None
+            # as 2031-05-06, or as one number
+            parts = match and (match[1], match[2] or match[4], match[3] or match[5])
+            day = datetime(*map(int, parts)) if parts else None
         except ValueError:
             day = None
         if day is None:
@@ -292,28 +289,24 @@ class _PartReader:
         row: list[float] = []
         first = self.place
         for names in [*self.names, None]:
-            expected = (
-                "T <h>:<m>:<s>" if names is None else " ".join(f"{n} <number>" for n in names)
-            )
             is_end = self.place >= len(self.lines)
-            text = "the end of the part" if is_end else self.lines[self.place][1]
+            line, text = self.lines[-1 if is_end else self.place]
+            text = "the end of the part" if is_end else text
             if names is None:
-                now = _time_of_day(text)
+                expected, now = "T <h>:<m>:<s>", _time_of_day(text)
                 values = None if now is None else [float(now)]
             else:
+                expected = " ".join(f"{n} <number>" for n in names)
                 values = _numbers(text, names)
+            found = f"line {line}: found {text!r}, expected {expected}"
             if values is None and names in self.sensed:  # a touch without it is a touch
-                line = self.lines[min(self.place, len(self.lines) - 1)][0]
-                self.remarks.append(f"line {line}: found {text!r}, expected {expected}")
+                self.remarks.append(found)
                 row += [np.nan] * len(names)
                 self.place += text.startswith(names[0])
                 continue
             if values is None or (names == ["P", "S", "F"] and not _are_counters(values)):
-                line = self.lines[min(self.place, len(self.lines) - 1)][0]
-                self.remarks.append(
-                    f"line {line}: found {text!r}, expected {expected}; the touch that begins in "
-                    f"line {self.lines[first][0]} is left out"
-                )
+                begun = f"the touch that begins in line {self.lines[first][0]} is left out"
+                self.remarks.append(f"{found}; {begun}")
                 self.place = max(self.place, first + 1)
                 self._to_next()
                 return None
@@ -352,11 +345,6 @@ def _numbers(text: str, names: Sequence[str]) -> list[float] | None:
 def _are_counters(values: Sequence[float]) -> bool:
     """Whether the numbers of touch, pose and feature are whole and positive."""
     return all(0.0 < v < 1e6 and v == int(v) for v in values)
-
-
-def _day(match: re.Match[str]) -> datetime:
-    """Day of a head, as `2031-05-06` or as one number; raises ValueError for none."""
-    return datetime(int(match[1]), int(match[2] or match[4]), int(match[3] or match[5]))
 
 
 def _time_of_day(text: str) -> int | None:

@@ -43,9 +43,9 @@ def system_datum(block: Block, state: State) -> float:
     known = {*_CALIBRATED, *places, *([] if state.tool is None else [Datum.TOOL])}
     if datum is None or datum not in known:
         available = ", ".join(text for d, text in system.items() if d in known)
-        raise state.refusal(block, block.word("datum"), f"one of {available}")
+        raise state.refusal(block, f"one of {available}", block.word("datum"))
     if datum in places and not state.is_synchronous:
-        raise state.refusal(block, "a position read ahead", f"{state.terms.sync} before it")
+        raise state.refusal(block, f"{state.terms.sync} before it", "a position read ahead")
     fault = state.fault
     is_off = fault is not None and datum == (fault.work or fault.datum)
     if fault is not None and fault.label == Label.TURNED:  # the first move goes to zero
@@ -78,22 +78,20 @@ def _place(datum: Datum, places: Mapping[Datum, str], state: State) -> float:
 def check_cycle(state: State, block: Block, vector: Block, length: float) -> None:
     """Numbers of a cycle 4 that make sense."""
     if abs(length - 1.0) > 1e-3:
-        raise state.refusal(vector, f"a vector of length {length:.4f}", "length 1")
+        raise state.refusal(vector, "length 1", f"a vector of length {length:.4f}")
     if block.word("system") != "0":
-        raise state.refusal(block, "REFERENCE SYSTEM:1", "REFERENCE SYSTEM:0")
+        raise state.refusal(block, "REFERENCE SYSTEM:0", "REFERENCE SYSTEM:1")
     if not 0.0 < block.number("feed") <= MAX_PROBING_FEED:
-        raise state.refusal(block, f"F{block.word('feed')}", f"F1 to F{MAX_PROBING_FEED:.0f}")
+        raise state.refusal(block, f"F1 to F{MAX_PROBING_FEED:.0f}", f"F{block.word('feed')}")
     back, distance = block.number("back"), block.number("distance")
     if not SHORTEST_BACK <= back <= distance:
-        raise state.refusal(
-            block, repr(block.text), f"{state.terms.back} between {SHORTEST_BACK:g} mm and the path"
-        )
+        raise state.refusal(block, f"{state.terms.back} between {SHORTEST_BACK:g} mm and the path")
     is_down = state.is_search and vector.number("z") == -1.0
     if distance - back > LONGEST_SEARCH and not is_down:
         raise state.refusal(
             block,
-            f"a path of {distance:g} mm with {state.terms.back} {back:g}",
             f"at most {LONGEST_SEARCH:g} mm beyond the surface that is expected",
+            f"a path of {distance:g} mm with {state.terms.back} {back:g}",
         )
 
 
@@ -102,54 +100,52 @@ def set_mode(block: Block, state: State) -> None:
     if block.kind in _SETS:
         setattr(state, *_SETS[block.kind])
         return
-    setter = _SETTERS.get(block.kind)
-    if setter is None:
-        raise state.refusal(block, repr(block.text), "a subprogram that is called, after M30")
-    setter(block, state)
-
-
-def _plane_off(block: Block, state: State) -> None:
-    state.is_plane_off, state.plane = True, None
+    if block.kind is Kind.PRESET:
+        state.preset = int(block.word("row"))
+    elif block.kind is Kind.ASSIGN:
+        state.write(block, int(block.word("q")), block.number("value"))
+    elif block.kind is Kind.PLANE_OFF:
+        state.is_plane_off, state.plane = True, None
+    elif block.kind in _SETTERS:
+        _SETTERS[block.kind](block, state)
+    else:
+        raise state.refusal(block, "a subprogram that is called, after M30")
 
 
 def _plane(block: Block, state: State) -> None:
     """A tilted plane: announced in the head, square to the tool, activated at the retract."""
     rotary = state.q[state.frame.rotary]
     if not state.is_tilted:
-        raise state.refusal(block, repr(block.text), "a head that says FRAME SPATIAL")
+        raise state.refusal(block, "a head that says FRAME SPATIAL")
     if not state.is_retracted or not np.all(np.isfinite(rotary)):
         retract = state.terms.retract
-        raise state.refusal(block, repr(block.text), f"a retract ({retract}) and the turn before")
+        raise state.refusal(block, f"a retract ({retract}) and the turn before")
     angles = np.array([block.number(a) for a in "abc"])
     if not state.frame.is_plane(angles, rotary):
         angles = state.frame.plane(rotary)
         words = " ".join(f"SP{a}{v:+.4f}" for a, v in zip("ABC", angles, strict=True))
-        raise state.refusal(block, repr(block.text), f"{words}, square to the tool as it stands")
+        raise state.refusal(block, f"{words}, square to the tool as it stands")
     master = float(rotary[-1]) if len(rotary) else 0.0
     stated = float(f"{block.words['which']}1") if block.words["which"] else 0.0
     if stated != np.sign(round(master / DEG, 4)):
-        raise state.refusal(block, repr(block.text), "the solution that the axes stand at")
+        raise state.refusal(block, "the solution that the axes stand at")
     state.plane = state.frame.tilted(rotary)
 
 
 def _shift(block: Block, state: State) -> None:
     axis = LINEAR[int(block.word("index")) - 1]
     if block.word("axis") != axis or block.number("value") != 0.0:
-        raise state.refusal(block, repr(block.text), f"{axis}+0: only the preset may shift")
+        raise state.refusal(block, f"{axis}+0: only the preset may shift")
     state.shift_off.add(axis)
-
-
-def _preset(block: Block, state: State) -> None:
-    state.preset = int(block.word("row"))
 
 
 def _tool_call(block: Block, state: State) -> None:
     if block.words["speed"] is not None:
-        raise state.refusal(block, repr(block.text), "no speed: there is a probe in the spindle")
+        raise state.refusal(block, "no speed: there is a probe in the spindle")
     if not state.is_tcpm_off or not state.is_retracted:
         terms = state.terms
         expected = f"{terms.reset} and a retract with {terms.machine} before it"
-        raise state.refusal(block, repr(block.text), expected)
+        raise state.refusal(block, expected)
     state.tool = int(block.word("tool"))
     is_other = state.fault is not None and state.fault.datum is None
     state.parameters[TOOL_LENGTH] = state.frame.probe.tool_length + is_other * state.off
@@ -158,16 +154,12 @@ def _tool_call(block: Block, state: State) -> None:
     state.is_retracted = False
 
 
-def _assign(block: Block, state: State) -> None:
-    state.write(block, int(block.word("q")), block.number("value"))
-
-
 def _subtract(block: Block, state: State) -> None:
     """FN 2: a parameter minus a number or another parameter."""
     value, is_number = state.value(block, int(block.word("from"))), block.words["other"] is None
     other = block.number("value") if is_number else state.value(block, int(block.word("other")))
     if not isinstance(value, float) or not isinstance(other, float):
-        raise state.refusal(block, repr(block.text), "numbers, not results of touches")
+        raise state.refusal(block, "numbers, not results of touches")
     held = state.reached.get(int(block.word("from"))) if is_number else None
     state.write(block, int(block.word("q")), value - other)
     if held is not None:
@@ -185,11 +177,8 @@ _SETS = {
 """What a block alone sets in the state."""
 
 _SETTERS: Mapping[Kind, Callable[[Block, State], None]] = {
-    Kind.PLANE_OFF: _plane_off,
     Kind.PLANE: _plane,
     Kind.SHIFT: _shift,
-    Kind.PRESET: _preset,
     Kind.TOOL_CALL: _tool_call,
-    Kind.ASSIGN: _assign,
     Kind.SUBTRACT: _subtract,
 }

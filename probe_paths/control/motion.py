@@ -11,8 +11,7 @@ from matstd.probe_paths.plan import LINEAR
 from matstd.twin.frames import Array
 from matstd.twin.units import DEG, MINUTE
 
-AXIS = re.compile(r"([A-Z])([+-][\d.]+)")
-"""An axis and its coordinate in an L block."""
+AXIS = re.compile(r"([A-Z])([+-][\d.]+)")  # an axis and its coordinate in an L block
 
 MAX_FEED = 5000.0
 """Largest feed of a fed move, mm/min or degrees/min: it is fed because something is near."""
@@ -21,21 +20,15 @@ _FUNCTIONS = {"M91", "M126"}
 
 
 def straight_line(state: State, block: Block) -> Move:
-    """Execute an L block and return its move.
-
-    Raises:
-        BadFile: An axis that the machine lacks or a travel that it exceeds, a rotary move that is
-            not at the retracted height, a rapid move below the clearance height, sideways motion
-            near the standard, no feed, no R0, a mode that forbids the block.
-    """
+    """Execute an L block and return its move; raises BadFile."""
     state.check_status_was_tested(block)
     functions = set(block.word("functions").split())
     if not functions <= _FUNCTIONS:
         extra = " ".join(sorted(functions - _FUNCTIONS))
-        raise state.refusal(block, extra, "M91 or M126 and no other M function in an L block")
+        raise state.refusal(block, "M91 or M126 and no other M function in an L block", extra)
     state.is_radius_off = state.is_radius_off or block.words["radius"] is not None
     if not state.is_radius_off:
-        raise state.refusal(block, repr(block.text), "R0 on the first move")
+        raise state.refusal(block, "R0 on the first move")
     target, letters = _target(state, block, "M91" in functions)
     feed = _feed(state, block)
     state.is_shorter_way = state.is_shorter_way or "M126" in functions
@@ -58,7 +51,7 @@ def _target(state: State, block: Block, is_machine_datum: bool) -> tuple[Array, 
     letters: list[str] = []
     for letter, number in AXIS.findall(block.word("axes")):
         if letter in letters:
-            raise state.refusal(block, f"axis {letter} twice", "every axis once in a block")
+            raise state.refusal(block, "every axis once in a block", f"axis {letter} twice")
         letters.append(letter)
         column = state.frame.chain.axis_index(letter)
         if is_machine_datum and letter in LINEAR:
@@ -68,9 +61,7 @@ def _target(state: State, block: Block, is_machine_datum: bool) -> tuple[Array, 
     if not is_machine_datum:
         state.check_ready(block, repr(block.text))
         if state.is_tilted and state.plane is None and not set(letters).isdisjoint(LINEAR):
-            raise state.refusal(
-                block, repr(block.text), "PLANE SPATIAL before it, as the head says"
-            )
+            raise state.refusal(block, "PLANE SPATIAL before it, as the head says")
     return target, letters
 
 
@@ -82,10 +73,10 @@ def _feed(state: State, block: Block) -> float | None:
     if word is not None:
         state.feed = float(word)
     if not state.feed:
-        raise state.refusal(block, repr(block.text), f"a feed above zero, or {state.terms.rapid}")
+        raise state.refusal(block, f"a feed above zero, or {state.terms.rapid}")
     if state.feed > MAX_FEED:
         raise state.refusal(
-            block, f"F{state.feed:.0f}", f"F{MAX_FEED:.0f} at most, or {state.terms.rapid}"
+            block, f"F{MAX_FEED:.0f} at most, or {state.terms.rapid}", f"F{state.feed:.0f}"
         )
     return state.feed
 
@@ -93,11 +84,11 @@ def _feed(state: State, block: Block) -> float | None:
 def _turn(state: State, block: Block, target: Array, letters: list[str], rotary: list[str]) -> None:
     """Rules for a block with rotary axes; notes the direction that every axis came from."""
     if len(rotary) != len(letters):
-        raise state.refusal(block, repr(block.text), "rotary axes in a block of their own")
+        raise state.refusal(block, "rotary axes in a block of their own")
     if not state.is_retracted:
-        raise state.refusal(block, repr(block.text), f"a retract ({state.terms.retract}) before it")
+        raise state.refusal(block, f"a retract ({state.terms.retract}) before it")
     if state.plane is not None:
-        raise state.refusal(block, repr(block.text), f"{state.terms.plane} before it")
+        raise state.refusal(block, f"{state.terms.plane} before it")
     state.stale |= {Q.POSE, Q.SIDE_1, Q.SIDE_2}
     state.turns, state.turn_tested = state.turns + 1, set()
     for letter in rotary:
@@ -106,8 +97,8 @@ def _turn(state: State, block: Block, target: Array, letters: list[str], rotary:
         if state.is_shorter_way and abs(step) > np.pi + SAME:
             raise state.refusal(
                 block,
-                f"{letter} turning by {step / DEG:.1f} degrees with M126 active",
                 "at most 180 degrees, or the control takes the other way round",
+                f"{letter} turning by {step / DEG:.1f} degrees with M126 active",
             )
         if np.isfinite(step) and abs(step) > SAME:
             state.side[column] = np.sign(step)
@@ -116,19 +107,17 @@ def _turn(state: State, block: Block, target: Array, letters: list[str], rotary:
 def _retract(state: State, block: Block, target: Array, letters: list[str]) -> None:
     """Rules for a block with M91: Z alone, up, to the top of its travel."""
     if not state.is_tcpm_off:
-        raise state.refusal(
-            block, repr(block.text), f"{state.terms.reset} before {state.terms.machine}"
-        )
+        raise state.refusal(block, f"{state.terms.reset} before {state.terms.machine}")
     if letters != ["Z"]:
-        raise state.refusal(block, repr(block.text), f"Z alone with {state.terms.machine}")
+        raise state.refusal(block, f"Z alone with {state.terms.machine}")
     column = state.frame.chain.axis_index("Z")
     top = state.frame.chain.link("Z").range[1]
     if target[column] < top - TOP:
         raise state.refusal(
-            block, f"Z{target[column]:+.4f} {state.terms.machine}", f"at least Z{top - TOP:+.4f}"
+            block, f"at least Z{top - TOP:+.4f}", f"Z{target[column]:+.4f} {state.terms.machine}"
         )
     if target[column] < state.q[column] - SAME:
-        raise state.refusal(block, repr(block.text), "a retract that does not go down")
+        raise state.refusal(block, "a retract that does not go down")
     state.is_retracted, state.clearance = True, None
 
 
@@ -139,12 +128,12 @@ def _check_height(
     column = state.frame.chain.axis_index("Z")
     before, after = state.q[column], target[column]
     if not np.isfinite(before):
-        raise state.refusal(block, repr(block.text), f"a retract ({state.terms.retract}) first")
+        raise state.refusal(block, f"a retract ({state.terms.retract}) first")
     if state.is_retracted:
         if "Z" not in letters:
             return
         if letters != ["Z"] or not np.all(np.isfinite(target[state.frame.linear])):
-            raise state.refusal(block, repr(block.text), "X and Y at the retract, then Z alone")
+            raise state.refusal(block, "X and Y at the retract, then Z alone")
         state.check_is_as_planned(block)
         state.is_retracted, state.clearance = False, after
         return
@@ -153,16 +142,12 @@ def _check_height(
     is_up = letters == ["Z"] and after >= before
     if is_rapid and not is_up and min(before, after) < state.clearance - SAME:
         raise state.refusal(
-            block,
-            repr(block.text),
-            "no rapid move below the clearance height, where this pose was entered",
+            block, "no rapid move below the clearance height, where this pose was entered"
         )
     is_back = state.way_back is not None
     if letters != ["Z"] and not is_back and min(before, after) < state.clearance - SAME:
         raise state.refusal(
-            block,
-            repr(block.text),
-            "below the clearance height only moves along Z, or back from a touch",
+            block, "below the clearance height only moves along Z, or back from a touch"
         )
 
 
@@ -170,9 +155,7 @@ def _arrive(state: State, block: Block, target: Array) -> None:
     """Move the state to the target."""
     if state.way_back is not None:
         if not np.allclose(target, state.way_back, rtol=0.0, atol=SAME, equal_nan=True):
-            raise state.refusal(
-                block, repr(block.text), "a move back to the start of the touch first"
-            )
+            raise state.refusal(block, "a move back to the start of the touch first")
         state.way_back = None
     for column in state.frame.linear:
         step = target[column] - state.q[column]
@@ -186,9 +169,7 @@ def retract_max(state: State, block: Block) -> Move:
     """Execute the retract after a missed touch: along the tool axis to the end of the travel."""
     state.check_status_was_tested(block)
     if not state.is_tcpm_off:
-        raise state.refusal(
-            block, repr(block.text), f"{state.terms.reset} before {state.terms.retract_max}"
-        )
+        raise state.refusal(block, f"{state.terms.reset} before {state.terms.retract_max}")
     target = state.q.copy()
     column = state.frame.chain.axis_index("Z")
     target[column] = state.frame.chain.link("Z").range[1]

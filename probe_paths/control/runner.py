@@ -98,7 +98,7 @@ class Runner:
             block = self.blocks[i]
             flow.count(block.line)
             if block.kind is Kind.END:
-                raise state.refusal(block, "END PGM", "M30 or LBL 0 before it")
+                raise state.refusal(block, "M30 or LBL 0 before it", "END PGM")
             if block.kind is Kind.PROGRAM_STOP:
                 self._check_end(state, block, flow)
                 return steps
@@ -117,7 +117,7 @@ class Runner:
         if block.kind is Kind.LABEL and block.word("label") == "0":
             back = flow.end()
             if back is None:
-                raise state.refusal(block, "LBL 0 without a call", "M30 before subprograms")
+                raise state.refusal(block, "M30 before subprograms", "LBL 0 without a call")
             return back
         if block.kind is Kind.JUMP:
             return self._jump(i, block, state)
@@ -143,7 +143,7 @@ class Runner:
             state.note_test(q, int(label), limit, is_less)
             return i + 1
         if value.part != STATUS or limit != 0.0 or not is_less:
-            raise state.refusal(block, repr(block.text), "the status (fourth result) LT +0")
+            raise state.refusal(block, "the status (fourth result) LT +0")
         touch = self.touches[value.touch]
         state.untested = None
         missed = state.copied()
@@ -151,11 +151,11 @@ class Runner:
         wrong, right = (i + 1, target) if touch.is_air else (target, i + 1)
         self.branches += 1
         if self.branches > MAX_DEPTH:  # a branch that comes back to its own touch
-            raise state.refusal(block, "a loop without end", "a program that comes to M30")
+            raise state.refusal(block, "a program that comes to M30", "a loop without end")
         touch.on_miss.extend(self.run(wrong, missed, is_branch=True))
         self.branches -= 1
         if touch.is_air and not isinstance(touch.on_miss[-1], Halt):
-            raise state.refusal(block, "a contact in the air that does not stop", state.terms.halt)
+            raise state.refusal(block, state.terms.halt, "a contact in the air that does not stop")
         return right
 
     def _check_skip(self, i: int, block: Block, state: State) -> None:
@@ -168,12 +168,8 @@ class Runner:
         is_start = block.word("q") == str(int(Q.START)) and block.word("than") == "GT"
         is_start = is_start and Label.is_behind(int(label))
         if not (is_start and place > i and is_retract and state.is_retracted):
-            raise state.refusal(
-                block,
-                repr(block.text),
-                f"Q{Q.START:d} GT, a label behind the visit, a retract ({state.terms.retract}) "
-                "before it and there",
-            )
+            expected = f"Q{Q.START:d} GT, a label behind the visit, a retract "
+            raise state.refusal(block, f"{expected}({state.terms.retract}) before it and there")
 
     def _execute(self, i: int, block: Block, state: State) -> Step | None:
         """Execute a block that changes the state or makes a step."""
@@ -201,18 +197,17 @@ class Runner:
         column = state.frame.chain.axis_index("Z")
         moving = [*state.frame.linear, *state.frame.rotary]
         if not np.all(np.isfinite(state.q[moving])):
-            raise state.refusal(block, "a touch", "a position of every axis before it")
-        if (
-            state.clearance is None
-            or state.q[column] > state.clearance
-            or state.way_back is not None
-        ):
-            raise state.refusal(block, "a touch", "a move down to its start before it")
+            raise state.refusal(block, "a position of every axis before it", "a touch")
+        is_above = state.clearance is None or state.q[column] > state.clearance
+        if is_above or state.way_back is not None:
+            raise state.refusal(block, "a move down to its start before it", "a touch")
         direction = np.zeros(len(state.q))
         direction[state.frame.linear] = [vector.number(a) for a in "xyz"]
         length = float(np.linalg.norm(direction))
         check_cycle(state, block, vector, length)
-        is_air = state.is_first and self._goes_to(i + 1, Label.AIR)
+        after = self.blocks[i + 1]
+        goes_on = after.kind is Kind.JUMP and after.word("label") == str(int(Label.AIR))
+        is_air = state.is_first and goes_on
         touch = ProbeStep(
             line=block.line,
             index=len(self.touches),
@@ -240,38 +235,33 @@ class Runner:
             unset = state.terms.unset.format(q=result + STATUS)
             raise state.refusal(
                 block,
-                "the status of the touch before",
                 f"{unset.replace('-1', '+0') if is_air else unset} before it",
+                "the status of the touch before",
             )
         state.untested, state.way_back = touch.index, state.q.copy()
         state.is_synchronous = False
         self.touches.append(touch)
         return touch
 
-    def _goes_to(self, i: int, label: Label) -> bool:
-        """Whether a block is a jump to a label."""
-        block = self.blocks[i]
-        return block.kind is Kind.JUMP and block.word("label") == str(int(label))
-
     def _check_sides(self, block: Block, state: State, touch: ProbeStep) -> None:
         """Refuse stated sides that differ from those that the axes came from."""
         if any(other.number == touch.number for other in self.touches):
-            raise state.refusal(block, f"touch number {touch.number} again", "a number of its own")
+            raise state.refusal(block, "a number of its own", f"touch number {touch.number} again")
         names = state.frame.chain.rotary_axes
         for q, column, name in zip((Q.SIDE_1, Q.SIDE_2), state.frame.rotary, names, strict=False):
             stated = state.whole(block, q, f"side of {name}")
             if stated != touch.side[column]:
                 raise state.refusal(
                     block,
-                    f"{name} said to come from side {stated:+d}",
                     f"{touch.side[column]:+.0f}, as it last moved",
+                    f"{name} said to come from side {stated:+d}",
                 )
 
     def _print(self, block: Block, state: State) -> Print:
         """FN 16 with the present values."""
         state.check_status_was_tested(block)
         if not state.is_synchronous:
-            raise state.refusal(block, "a line printed ahead", f"{state.terms.sync} before it")
+            raise state.refusal(block, f"{state.terms.sync} before it", "a line printed ahead")
         self._check_place(block, state)
         lines = self._mask(block, state)
         wanted = {a for line in lines for a in line.arguments if isinstance(a, int)}
@@ -288,40 +278,33 @@ class Runner:
         self.folder = self.folder or folder
         expected = f"{self.folder}\\{self.name}.TXT".lstrip("\\")
         if target != expected:
-            raise state.refusal(block, f"a log {target}", expected)
+            raise state.refusal(block, expected, f"a log {target}")
         if mask.rpartition("\\")[0] != self.folder:
-            raise state.refusal(block, f"mask {mask}", f"a mask in {self.folder}, where the log is")
+            raise state.refusal(block, f"a mask in {self.folder}, where the log is", f"mask {mask}")
 
     def _mask(self, block: Block, state: State) -> tuple[MaskLine, ...]:
-        if "lines" in block.words:
-            return self._readable(parse_mask(block.word("lines"), self.path), block, state)
+        """Lines that a block prints; refuses those that the reader of logs does not know."""
         name = block.word("mask").split("\\")[-1]
-        if name not in self.masks:
-            text = self.source(name)
-            if text is None:
-                raise state.refusal(block, f"mask {name}", "a mask file beside the program")
-            lines = parse_mask(text, self.path.parent / name)
-            self.masks[name] = self._readable(lines, block, state)
-        return self.masks[name]
-
-    def _readable(
-        self, lines: tuple[MaskLine, ...], block: Block, state: State
-    ) -> tuple[MaskLine, ...]:
-        """Refuse lines that the reader of logs does not know."""
+        if name in self.masks:
+            return self.masks[name]
+        text = block.words["lines"] if "lines" in block.words else self.source(name)
+        if text is None:
+            raise state.refusal(block, "a mask file beside the program", f"mask {name}")
+        lines = parse_mask(text, self.path.parent / name if name else self.path)
         if _shape(lines) not in self.readable:
-            raise state.refusal(
-                block,
-                f"{len(lines)} lines for the log that begin with {lines[0].text!r}",
-                "those of a head, a touch, a missed touch or an end, as they are emitted",
-            )
+            expected = "those of a head, a touch, a missed touch or an end, as they are emitted"
+            found = f"{len(lines)} lines for the log that begin with {lines[0].text!r}"
+            raise state.refusal(block, expected, found)
+        if name:
+            self.masks[name] = lines
         return lines
 
     def _check_end(self, state: State, block: Block, flow: Flow) -> None:
         state.check_status_was_tested(block)
         if flow.returns:
-            raise state.refusal(block, "M30 inside a subprogram", "LBL 0 at its end")
+            raise state.refusal(block, "LBL 0 at its end", "M30 inside a subprogram")
         if not state.is_retracted:
-            raise state.refusal(block, "M30", f"a retract ({state.terms.retract}) at the end")
+            raise state.refusal(block, f"a retract ({state.terms.retract}) at the end", "M30")
 
     def _check_alarm(self, i: int, state: State, fault: Interlock) -> None:
         """Refuse a stop behind another label than that of its alarm."""
@@ -329,29 +312,22 @@ class Runner:
         if label.word("label") != str(int(fault.label)):
             raise state.refusal(
                 self.blocks[i],
-                f"a stop behind LBL {label.word('label')} where {fault.what} is off",
                 f"LBL {fault.label:d}, the alarm of that",
+                f"a stop behind LBL {label.word('label')} where {fault.what} is off",
             )
 
     def _check_halt(self, block: Block, steps: list[Step], is_branch: bool) -> None:
         """Refuse an early end other than after a touch without contact and a retract."""
         up = [step for step in steps if isinstance(step, Move)]
         if not is_branch or len(up) != 1 or up[0].checked:
-            raise BadFile(
-                self.path,
-                f"line {block.line}",
-                repr(block.text),
-                f"{language_of(self.path).terms.retract_max}, and no other move, after a touch "
-                "without contact",
-            )
+            retract = language_of(self.path).terms.retract_max
+            expected = f"{retract}, and no other move, after a touch without contact"
+            raise BadFile(self.path, f"line {block.line}", repr(block.text), expected)
 
     def check_logged(self) -> None:
         """Every touch ends up in the log; raises BadFile."""
         for touch in self.touches:
             if touch.index not in self.logged and not touch.is_air:
-                raise BadFile(
-                    self.path,
-                    f"line {touch.line}",
-                    f"touch {touch.number} without a log line",
-                    f"{language_of(self.path).terms.printed} with its results",
-                )
+                found = f"touch {touch.number} without a log line"
+                expected = f"{language_of(self.path).terms.printed} with its results"
+                raise BadFile(self.path, f"line {touch.line}", found, expected)

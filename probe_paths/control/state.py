@@ -31,64 +31,39 @@ SAME = 1e-6  # positions that differ by less are the same, mm or rad
 
 @dataclass
 class State:
-    """Everything that one block can change.
-
-    Attributes:
-        frame: Conversion of words to readings.
-        q: Readings, (A,); nan where an axis has not been positioned.
-        side: Sign of the last motion of every axis, (A,).
-        feed: Modal feed, mm/min.
-        is_tcpm_off: None until the program says.
-        is_radius_off: R0 has been read.
-        is_shorter_way: M126 is active.
-        is_plane_off: PLANE RESET has been read.
-        is_tilted: The head says that coordinates are those of tilted planes.
-        plane: The tilted plane that is active; None where none is.
-        shift_off: Axes whose datum shift was set to zero.
-        is_retracted: Z stands where M91 or M140 put it.
-        clearance: Reading of Z that the first move down from the retract went to.
-        untested: Touch whose status has not been tested.
-        way_back: Readings that the next move must return to after a touch.
-        is_synchronous: FN 20 was read since the last motion.
-        is_spindle_off: M5 has been read.
-        fault: Planted deviation at which the program has to stop.
-        stale: Counters that belong to the touch or the visit before.
-        off: By how much, mm or degrees.
-        is_search: Touches may be long where they come from above.
-        is_first: One touch may be in the air, where it must meet nothing.
-        turns: Moves of rotary axes so far.
-        reached: Parameters that hold where a rotary axis stands, less a number, in degrees.
-        turn_tested: Rotary axes whose last turn was tested, by axis and side of the limit.
-    """
+    """Everything that one block can change."""
 
     path: Path
-    frame: ProgramFrame
-    q: Array
-    side: Array
+    frame: ProgramFrame  # conversion of words to readings
+    q: Array  # readings, (A,); nan where an axis has not been positioned
+    side: Array  # sign of the last motion of every axis, (A,)
     parameters: dict[int, Value] = field(default_factory=dict)
-    feed: float | None = None
-    is_tcpm_off: bool | None = None
-    is_radius_off: bool = False
-    is_shorter_way: bool = False
-    is_plane_off: bool = False
-    is_tilted: bool = False
-    plane: ProgramFrame | None = None
-    shift_off: set[str] = field(default_factory=set)
+    feed: float | None = None  # modal feed, mm/min
+    is_tcpm_off: bool | None = None  # None until the program says
+    is_radius_off: bool = False  # R0 has been read
+    is_shorter_way: bool = False  # M126 is active
+    is_plane_off: bool = False  # PLANE RESET has been read
+    is_tilted: bool = False  # the head says that coordinates are those of tilted planes
+    plane: ProgramFrame | None = None  # the tilted plane that is active; None where none is
+    shift_off: set[str] = field(default_factory=set)  # axes whose datum shift was set to zero
     preset: int | None = None
     tool: int | None = None
-    is_retracted: bool = False
-    clearance: float | None = None
-    untested: int | None = None
-    way_back: Array | None = None
-    is_synchronous: bool = False
-    is_spindle_off: bool = False
-    fault: Interlock | None = None
-    off: float = 0.0
+    is_retracted: bool = False  # Z stands where M91 or M140 put it
+    clearance: float | None = None  # reading of Z that the first move down from the retract went to
+    untested: int | None = None  # touch whose status has not been tested
+    way_back: Array | None = None  # readings that the next move must return to after a touch
+    is_synchronous: bool = False  # FN 20 was read since the last motion
+    is_spindle_off: bool = False  # M5 has been read
+    fault: Interlock | None = None  # planted deviation at which the program has to stop
+    off: float = 0.0  # by how much, mm or degrees
+    # counters that belong to the touch or the visit before
     stale: set[int] = field(default_factory=set)
-    is_search: bool = False
-    is_first: bool = False
-    turns: int = 0
+    is_search: bool = False  # touches may be long where they come from above
+    is_first: bool = False  # one touch may be in the air, where it must meet nothing
+    turns: int = 0  # moves of rotary axes so far
+    # parameters that hold where a rotary axis stands, less a number, in degrees
     reached: dict[int, tuple[str, float]] = field(default_factory=dict)
+    # rotary axes whose last turn was tested, by axis and side of the limit
     turn_tested: set[tuple[str, bool]] = field(default_factory=set)
 
     def copied(self) -> "State":
@@ -105,9 +80,9 @@ class State:
         """How the program's language says what a refusal asks for."""
         return language_of(self.path).terms
 
-    def refusal(self, block: Block, found: str, expected: str) -> BadFile:
-        """The one clear line about a block."""
-        return BadFile(self.path, f"line {block.line}", found, expected)
+    def refusal(self, block: Block, expected: str, found: str = "") -> BadFile:
+        """The one clear line about a block; its text is what was found unless that is stated."""
+        return BadFile(self.path, f"line {block.line}", found or repr(block.text), expected)
 
     def check_ready(self, block: Block, what: str) -> None:
         """Refuse a coordinate before preset, tool and a reset frame."""
@@ -124,15 +99,15 @@ class State:
             if not there
         ]
         if missing:
-            raise self.refusal(block, what, f"{missing[0]} before it")
+            raise self.refusal(block, f"{missing[0]} before it", what)
 
     def check_is_as_planned(self, block: Block) -> None:
         """Refuse a move down while a fault has not been tested."""
         if self.fault is not None:
             raise self.refusal(
                 block,
-                f"{block.text!r} although {self.fault.what} is off by {self.off:+g}",
                 f"a test that stops the program before it (LBL {self.fault.label:d})",
+                f"{block.text!r} although {self.fault.what} is off by {self.off:+g}",
             )
 
     def check_turn_was_tested(self, block: Block) -> None:
@@ -145,7 +120,7 @@ class State:
         for letter in self.frame.chain.rotary_axes:
             if not {(letter, False), (letter, True)} <= self.turn_tested:
                 expected = f"a test of where {letter} stands, after its turn (O{Label.TURNED:d})"
-                raise self.refusal(block, "a touch", expected)
+                raise self.refusal(block, expected, "a touch")
 
     def note_test(self, q: int, label: int, limit: float, is_less: bool) -> None:
         """Note a test of a turn that was passed."""
@@ -163,14 +138,14 @@ class State:
         if self.untested is not None:
             raise self.refusal(
                 block,
-                f"{block.text!r} after touch {self.untested + 1}",
                 f"{self.terms.status} first",
+                f"{block.text!r} after touch {self.untested + 1}",
             )
 
     def write(self, block: Block, q: int, value: Value) -> None:
         """Set a Q parameter of the free range."""
         if q not in FREE:
-            raise self.refusal(block, f"Q{q}", f"a free parameter, Q{FREE[0]} to Q{FREE[-1]}")
+            raise self.refusal(block, f"a free parameter, Q{FREE[0]} to Q{FREE[-1]}", f"Q{q}")
         self.parameters[q] = value
         self.stale.discard(q)
         self.reached.pop(q, None)
@@ -178,17 +153,17 @@ class State:
     def value(self, block: Block, q: int) -> Value:
         """A Q parameter that this run has set; values left by other programs do not count."""
         if q not in self.parameters:
-            raise self.refusal(block, f"Q{q} without a value", "a parameter set by this program")
+            raise self.refusal(block, "a parameter set by this program", f"Q{q} without a value")
         return self.parameters[q]
 
     def whole(self, block: Block, q: int, name: str) -> int:
         """A counter that must be set before a touch."""
         value = self.parameters.get(q)
         if q in self.stale:
-            raise self.refusal(block, f"the {name} of the one before", f"{name} set anew")
+            raise self.refusal(block, f"{name} set anew", f"the {name} of the one before")
         if not isinstance(value, float) or value != int(value):
             raise self.refusal(
-                block, f"Q{q} = {value}", f"a whole number ({name}) before the touch"
+                block, f"a whole number ({name}) before the touch", f"Q{q} = {value}"
             )
         return int(value)
 
@@ -202,6 +177,6 @@ class State:
                 scale = self.frame.coordinate(letter, 1.0) if letter not in "XYZ" else 1.0
                 raise self.refusal(
                     block,
-                    f"{letter} reading {value * scale:.4f}",
                     f"{low * scale:g} to {high * scale:g}, the travel of {letter}",
+                    f"{letter} reading {value * scale:.4f}",
                 )

@@ -20,12 +20,6 @@ _PRESET = re.compile(r"PRESET (\d+):.*")
 _TOOL = re.compile(r"TOOL (\d+) IS THE PROBE: L([+-][\d.]+) R([+-][\d.]+),.*")
 _FEATURE = re.compile(r"FEATURE (\d+) IS (\S+)")
 _CYCLE = (Kind.PROBE_NAME, Kind.PROBE_RESULT, Kind.PROBE_VECTOR, Kind.PROBE_PATH)
-_NAMES = {
-    Kind.PROBE_NAME: "4.0",
-    Kind.PROBE_RESULT: "4.1",
-    Kind.PROBE_VECTOR: "4.2",
-    Kind.PROBE_PATH: "4.3",
-}
 
 _DIGITS = 1e-4
 """Largest difference of a stated coordinate from the planned one, mm: the last decimal."""
@@ -43,19 +37,13 @@ class Promise(NamedTuple):
 
 
 def program_name(blocks: Sequence[Block], path: Path) -> str:
-    """Name of the program, after its frame has been checked.
-
-    Raises:
-        BadFile: First or last block missing, a frame inside the program, names that differ from
-            each other or from the file's, inches.
-    """
+    """Name of the program, after its frame has been checked; raises BadFile."""
     first, last = blocks[0], blocks[-1]
     if first.kind is not Kind.BEGIN:
         raise BadFile(path, f"line {first.line}", repr(first.text), "BEGIN PGM <name> MM")
     if last.kind is not Kind.END:
-        raise BadFile(
-            path, f"line {last.line}", f"{last.text!r} as the last block", "END PGM: cut off?"
-        )
+        found = f"{last.text!r} as the last block"
+        raise BadFile(path, f"line {last.line}", found, "END PGM: cut off?")
     for block in blocks[1:-1]:
         if block.kind in (Kind.BEGIN, Kind.END):
             raise BadFile(path, f"line {block.line}", repr(block.text), "one frame per file")
@@ -71,11 +59,7 @@ def program_name(blocks: Sequence[Block], path: Path) -> str:
 
 
 def labels(blocks: Sequence[Block], path: Path) -> dict[str, int]:
-    """Block index of every label.
-
-    Raises:
-        BadFile: A label that stands twice or is not defined, a subprogram before M30, no M30.
-    """
+    """Block index of every label; raises BadFile."""
     kinds = [block.kind for block in blocks]
     if Kind.PROGRAM_STOP not in kinds:
         raise BadFile(path, f"line {blocks[-1].line}", "no M30", "M30 at the end of the program")
@@ -109,12 +93,8 @@ def check_cycles(blocks: Sequence[Block], path: Path) -> None:
     for block in blocks:
         place = _CYCLE.index(block.kind) if block.kind in _CYCLE else None
         if (place is None and expected) or (place is not None and place != expected):
-            raise BadFile(
-                path,
-                f"line {block.line}",
-                repr(block.text),
-                f"TCH PROBE {_NAMES[_CYCLE[expected]]} in its place",
-            )
+            wanted = f"TCH PROBE 4.{expected} in its place"
+            raise BadFile(path, f"line {block.line}", repr(block.text), wanted)
         expected = 0 if place is None else (place + 1) % len(_CYCLE)
 
 
@@ -139,11 +119,7 @@ def check_axes(blocks: Sequence[Block], letters: Sequence[str], head: Heading, p
 
 
 def heading(blocks: Sequence[Block], path: Path) -> tuple[Heading, Mapping[int, str]]:
-    """Head of a program, and the feature that every number stands for.
-
-    Raises:
-        BadFile: The head is missing or spelt otherwise, a number stands for two features.
-    """
+    """Head of a program, and the feature that every number stands for; raises BadFile."""
     remarks = _remarks(blocks)
     starts = [i for i, (_, text) in enumerate(remarks) if text.startswith("STANDARD ")]
     if not starts:
@@ -168,11 +144,7 @@ def _remarks(blocks: Sequence[Block]) -> list[tuple[int, str]]:
 
 
 def promise(blocks: Sequence[Block], head: Heading, path: Path) -> Promise:
-    """Touches, tool and preset as the head states them.
-
-    Raises:
-        BadFile: One of the three remarks is missing, or states another probe than the heading.
-    """
+    """Touches, tool and preset as the head states them; raises BadFile."""
     remarks = _remarks(blocks)
     # a dry run makes no touches
     if any(_DRY.fullmatch(text) for _, text in remarks):
@@ -181,24 +153,18 @@ def promise(blocks: Sequence[Block], head: Heading, path: Path) -> Promise:
         touches, _ = _remark(_TOUCHES, ";TOUCHES <first> TO <last>, ...", remarks, path)
         made = range(int(touches[0]), int(touches[1]) + 1)
     preset, _ = _remark(_PRESET, ";PRESET <row>: ...", remarks, path)
-    tool, line = _remark(
-        _TOOL, ";TOOL <number> IS THE PROBE: L<signed> R<signed>, ...", remarks, path
-    )
-    for name, stated, planned in (
-        ("L", tool[1], head.probe.tool_length),
-        ("R", tool[2], head.probe.radius),
-    ):
+    form = ";TOOL <number> IS THE PROBE: L<signed> R<signed>, ..."
+    tool, line = _remark(_TOOL, form, remarks, path)
+    planned_words = (("L", head.probe.tool_length), ("R", head.probe.radius))
+    for (name, planned), stated in zip(planned_words, tool[1:], strict=True):
         if abs(float(stated) - planned) > _DIGITS:
             raise BadFile(path, f"line {line}", f"{name}{stated}", f"{planned:+.4f} as PROBE says")
-    is_search, is_first = (
-        any(form.fullmatch(text) for _, text in remarks) for form in (_SEARCH, _FIRST)
-    )
     return Promise(
         touches=made,
         tool=int(tool[0]),
         preset=int(preset[0]),
-        is_search=is_search,
-        is_first=is_first,
+        is_search=any(_SEARCH.fullmatch(text) for _, text in remarks),
+        is_first=any(_FIRST.fullmatch(text) for _, text in remarks),
     )
 
 

@@ -7,7 +7,7 @@ what decides where the ball comes down, has one alarm, and prints its whole log 
 import numpy as np
 
 from matstd.probe_paths.emit.writer import Writer
-from matstd.probe_paths.language import Datum, ErrorText, Label, Q, Touch, interlocks
+from matstd.probe_paths.language import ErrorText, Label, Q, Touch, interlocks
 from matstd.probe_paths.plan import home_readings
 from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
@@ -40,7 +40,7 @@ class FirstWriter(Writer):
             *self._on_ball(row, visit.pose),
             self.retract,
             k.wait,
-            *(k.read(q, Datum(a)) for q, a in self._places()),
+            *self._places(),
             self._print(f"{name}.A", name),
             k.program_stop,
             k.label(Label.NO_CONTACT, "NO CONTACT"),
@@ -61,7 +61,6 @@ class FirstWriter(Writer):
         return row
 
     def _first_remarks(self, row: int, duration: float) -> list[str]:
-        assert self.purpose is not None
         k, feature = self.language, str(self.plan.feature[row])
         remarks = [
             *self.heading.lines,
@@ -71,9 +70,6 @@ class FirstWriter(Writer):
             *self._tool_remarks(),
         ]
         return [k.comment(text) for text in remarks]
-
-    def _places(self) -> list[tuple[Q, str]]:
-        return list(zip((Q.ROTARY_1, Q.ROTARY_2), self.rotary, strict=False))
 
     def _cycle(self, row: int) -> list[str]:
         options = self.plan.options

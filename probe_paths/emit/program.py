@@ -83,36 +83,31 @@ def make_programs(
         BadFile: The strict interpreter does not accept what was written.
         DesignError: A name or number that cannot stand in a program.
     """
-    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), clock=clock)
-    limits, sizes = made.writer.feeds, np.bincount(plan.visit, minlength=len(plan.visits))
+    maker = _Maker(plan, dialect, feeds, clock=clock)
+    limits, sizes = maker.writer.feeds, np.bincount(plan.visit, minlength=len(plan.visits))
     stretch = np.array([visit.stretch for visit in plan.visits])
     count = max(int(np.ceil(sizes.sum() / limits.touches_per_file)), 1)
     while True:
         parts = _parts(sizes, count, stretch)
-        programs = made.programs(parts)
+        made = maker.made(parts)
         too_long = [
             program.duration > limits.minutes_per_file * MINUTE and len(part) > 1
-            for program, part in zip(programs, parts, strict=True)
+            for program, part in zip(made.programs, parts, strict=True)
         ]
         if not any(too_long):
-            return ProgramSet(programs, made.printed_masks)
+            return made
         count += 1
 
 
 def make_dry_run(
-    plan: TouchPlan,
-    raised: float,
-    dialect: Dialect | None = None,
-    feeds: Feeds | None = None,
+    plan: TouchPlan, raised: float, dialect: Dialect | None = None, feeds: Feeds | None = None
 ) -> ProgramSet:
     """One program that goes where a plan's programs go, higher, and touches nothing.
 
     Args:
         raised: By how much, mm; moves that would end above the retract end there.
     """
-    purpose = Purpose(DRY_RUN, raised=raised)
-    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), purpose)
-    return ProgramSet(made.programs([list(range(len(plan.visits)))]), {})
+    return _one_program(plan, Purpose(DRY_RUN, raised=raised), dialect, feeds)
 
 
 def make_search(
@@ -125,19 +120,15 @@ def make_search(
 
     Args:
         within: How far beside its place the standard may stand, mm and rad.
-        feeds: Feeds; it touches at `SEARCH_FEED`.
     """
     feeds = replace(feeds or Feeds(), probing=SEARCH_FEED)
     mm, angle = within
     stands = f"SEARCH FROM ABOVE, STANDS WITHIN {mm:.1f} MM AND {angle / DEG:.2f} DEG"
-    purpose = Purpose(SEARCH, (stands,))
-    return _one_program(plan, purpose, dialect, feeds)
+    return _one_program(plan, Purpose(SEARCH, (stands,)), dialect, feeds)
 
 
 def make_ball(
-    plan: TouchPlan,
-    dialect: Dialect | None = None,
-    feeds: Feeds | None = None,
+    plan: TouchPlan, dialect: Dialect | None = None, feeds: Feeds | None = None
 ) -> ProgramSet:
     """One program that measures a ball of the standard, before the others and after them."""
     purpose = Purpose(BALL, (f"PROBE ON BALL {plan.feature[0]}, BEFORE AND AFTER THE OTHERS",))
@@ -145,9 +136,7 @@ def make_ball(
 
 
 def make_first(
-    plan: TouchPlan,
-    dialect: Dialect | None = None,
-    feeds: Feeds | None = None,
+    plan: TouchPlan, dialect: Dialect | None = None, feeds: Feeds | None = None
 ) -> ProgramSet:
     """The program that a control is tried with: one touch in the air and one on a ball.
 
@@ -158,21 +147,17 @@ def make_first(
         NotReachable: The ball is touched at another pose than home, or not from above.
         DesignError: A control of another language.
     """
-    dialect = dialect or Dialect()
-    if not LANGUAGES[dialect.language].has_masks:
+    if dialect is not None and not LANGUAGES[dialect.language].has_masks:
         raise DesignError(f"a commissioning program in {dialect.language}: expected klartext")
     remark = f"COMMISSIONING: ONE TOUCH IN AIR, ONE ON BALL {plan.feature[0]}"
-    purpose = Purpose(FIRST, (remark,), is_first=True)
-    made = _Maker(plan, dialect, feeds or Feeds(), purpose)
-    return ProgramSet(made.programs([[0]]), made.printed_masks)
+    return _one_program(plan, Purpose(FIRST, (remark,), is_first=True), dialect, feeds)
 
 
 def _one_program(
     plan: TouchPlan, purpose: Purpose, dialect: Dialect | None, feeds: Feeds | None
 ) -> ProgramSet:
     """All visits of a plan in one program."""
-    made = _Maker(plan, dialect or Dialect(), feeds or Feeds(), purpose)
-    return ProgramSet(made.programs([list(range(len(plan.visits)))]), made.printed_masks)
+    return _Maker(plan, dialect, feeds, purpose).made([list(range(len(plan.visits)))])
 
 
 class _Maker:
@@ -181,45 +166,41 @@ class _Maker:
     def __init__(
         self,
         plan: TouchPlan,
-        dialect: Dialect,
-        feeds: Feeds,
+        dialect: Dialect | None,
+        feeds: Feeds | None,
         purpose: Purpose | None = None,
         clock: Clock | None = None,
     ) -> None:
-        self.plan, self.dialect, self.clock = plan, dialect, clock or Clock()
-        self.language = LANGUAGES[dialect.language]
+        self.plan, self.dialect, self.clock = plan, dialect or Dialect(), clock or Clock()
+        self.purpose, self.language = purpose or Purpose(), LANGUAGES[self.dialect.language]
         form, rotary = self.language.log, plan.chain.rotary_axes
-        self.shared = shared_masks(form, dialect.log_decimals, rotary, dialect.sensors)
+        self.shared = shared_masks(form, self.dialect.log_decimals, rotary, self.dialect.sensors)
         self.masks = dict(self.shared)
-        self.is_first = purpose is not None and purpose.is_first
-        written_by = FirstWriter if self.is_first else Writer
-        self.writer = written_by(plan, dialect, feeds, self.masks, purpose)
-        self.only = purpose.ending if purpose else ""
+        written_by = FirstWriter if self.purpose.is_first else Writer
+        self.writer = written_by(plan, self.dialect, feeds or Feeds(), self.masks, self.purpose)
 
-    @property
-    def printed_masks(self) -> dict[str, str]:
-        """Mask files, where the control has them."""
-        only_own = [name for name in self.masks if not (self.is_first and name in self.shared)]
-        return {name: self.masks[name] for name in only_own} if self.language.has_masks else {}
-
-    def programs(self, parts: list[list[int]]) -> tuple[Program, ...]:
-        """One program of each part."""
+    def made(self, parts: list[list[int]]) -> ProgramSet:
+        """One program of each part, and mask files where the control has them."""
         setup = "".join(c for c in self.plan.setup.name.upper() if c.isalnum() or c == "_")
-        count = len(parts)
-        names = [self.only] if self.only else [str(i + 1) for i in range(count)]
-        titles = [f"FREEFORM STANDARD, PART {i + 1} OF {count}" for i in range(count)]
-        stretch = [self.plan.visits[part[0]].stretch for part in parts]
-        for i in np.flatnonzero(np.diff(stretch)) + 1:
-            titles[i] += ", AFTER STANDSTILL"
-        named = zip(names, titles, parts, strict=True)
-        return tuple(
-            self._program(checked_name(f"{self.dialect.prefix}_{setup}_{name}"), title, part)
-            for name, title, part in named
-        )
+        programs, before = [], self.plan.visits[parts[0][0]].stretch
+        for number, part in enumerate(parts, start=1):
+            title = f"FREEFORM STANDARD, PART {number} OF {len(parts)}"
+            stretch = self.plan.visits[part[0]].stretch
+            title, before = title + ", AFTER STANDSTILL" * (stretch != before), stretch
+            ending = self.purpose.ending or str(number)
+            name = checked_name(f"{self.dialect.prefix}_{setup}_{ending}")
+            programs.append(self._program(name, title, part))
+        is_dry = self.purpose.raised is not None
+        if is_dry or not self.language.has_masks:
+            return ProgramSet(tuple(programs), {})
+        # the commissioning program prints its whole log with a mask of its own
+        unused = self.shared if self.purpose.is_first else ()
+        masks = {name: text for name, text in self.masks.items() if name not in unused}
+        return ProgramSet(tuple(programs), masks)
 
     def _program(self, name: str, title: str, part: list[int]) -> Program:
         form, remarks = self.language.log, self.writer.heading.log_lines
-        rotary = self.plan.chain.rotary_axes if self.is_first else None
+        rotary = self.plan.chain.rotary_axes if self.purpose.is_first else None
         self.masks[f"{name}.A"] = head_mask(form, name, remarks, rotary, self.dialect.log_decimals)
         # the head states the duration, which is known once the program has been read back
         first = self.writer.text(name, title, part, 0.0)
@@ -228,13 +209,12 @@ class _Maker:
         text = self.writer.text(name, title, part, duration)
         if not _is_same_but_for_a_remark(first, text):
             read = self._read(name, text)
-        touches = 0 if self.writer.raised is not None else np.isin(self.plan.visit, part).sum()
-        touches = 1 if self.is_first else touches
+        touches = 0 if self.purpose.raised is not None else np.isin(self.plan.visit, part).sum()
         return Program(
             name=name,
             ending=self.language.ending,
             text=text,
-            touches=int(touches),
+            touches=1 if self.purpose.is_first else int(touches),
             duration=duration,
             read=read,
         )

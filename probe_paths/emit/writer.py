@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from matstd.artefact.body import Standard
 from matstd.probe_paths.language import (
     LANGUAGES,
     MAX_LINE,
@@ -55,9 +54,9 @@ class Feeds:
 
 @dataclass(frozen=True)
 class Purpose:
-    """What a program beside those that measure is for."""
+    """What a program is for."""
 
-    ending: str  # last letters of its name
+    ending: str = ""  # last letters of its name; empty for programs that measure
     remarks: tuple[str, ...] = ()
     # by how much a dry run is raised, which goes where the programs go and touches nothing, mm;
     # None for a program that touches
@@ -74,13 +73,12 @@ class Writer:
         dialect: Dialect,
         feeds: Feeds,
         masks: Mapping[str, str],
-        purpose: Purpose | None = None,
+        purpose: Purpose,
     ) -> None:
         self.plan, self.dialect, self.feeds, self.masks = plan, dialect, feeds, masks
-        self.purpose = purpose
-        self.raised = purpose.raised if purpose else None
+        self.purpose, self.raised = purpose, purpose.raised
         self.language = LANGUAGES[dialect.language]
-        is_first = purpose is not None and purpose.is_first
+        is_first = purpose.is_first
         # the commissioning program touches at home only, where no plane is tilted
         tilted = dialect.is_tilted and not is_first
         self.tilting = self.language.tilting if tilted and dialect.has_planes else None
@@ -90,13 +88,16 @@ class Writer:
         self.rotary = plan.chain.rotary_axes
         self.tests = interlocks(self.language, self.frame)
         self.number = {name: i + 1 for i, name in enumerate(plan.standard.features)}
+        own = plan.standard
+        if plan.options.ball is not None:  # which is not part of its calibration
+            own = replace(own, spheres=own.spheres[:-1])
         self.heading = Heading(
             standard=plan.standard.name,
             setup=plan.setup,
             probe=plan.probe,
             workshop=plan.options.workshop,
             serial=stated_serial(plan.standard.serial),
-            calibration=calibration_hash(self._without_workshop_ball(plan)),
+            calibration=calibration_hash(own),
             ball=plan.options.ball,
             is_tilted=self.tilting is not None,
             sensors=() if is_first else dialect.sensors,
@@ -104,14 +105,6 @@ class Writer:
         top = plan.chain.link("Z").range[1]
         self.top = top - plan.options.retract
         self.retract = self.language.retract(self.top)
-
-    @staticmethod
-    def _without_workshop_ball(plan: TouchPlan) -> Standard:
-        """The standard without the workshop's ball, which is not part of its calibration."""
-        standard = plan.standard
-        if plan.options.ball is None:
-            return standard
-        return replace(standard, spheres=standard.spheres[:-1])
 
     def text(self, name: str, title: str, part: list[int], duration: float) -> str:
         """Whole text of a program that makes the visits `part`."""
@@ -148,8 +141,7 @@ class Writer:
                 if self.raised is None
                 else f"DRY RUN, RAISED BY {self.raised:+.1f} MM, NO TOUCH"
             ),
-            *(k.comment(text) for text in (self.purpose.remarks if self.purpose else ())),
-            *(k.comment(text) for text in self._tool_remarks()),
+            *(k.comment(text) for text in (*self.purpose.remarks, *self._tool_remarks())),
             k.comment("TABLE MUST BE FREE TO TURN WITH Z RETRACTED"),
         ]
 
@@ -278,15 +270,12 @@ class Writer:
         master = float(visit.rotary[-1]) / DEG if self.rotary else 0.0
         return [self.tilting.on(list(self.frame.plane(visit.rotary)), master)]
 
-    def _frame(self, visit: Visit) -> ProgramFrame:
-        return self.frame.tilted(visit.rotary) if self.tilting else self.frame
-
     def _touches(self, visit: Visit, rows: IntArray) -> list[str]:
         """All touches of a visit, each from the clearance height and back to it."""
         k, options, feeds = self.language, self.plan.options, self.feeds
+        frame = self.frame.tilted(visit.rotary) if self.tilting else self.frame
         if self.raised is not None:
-            return self._dry(visit, rows)
-        frame = self._frame(visit)
+            return self._dry(visit, rows, frame)
         up, out = k.line({"Z": frame.coordinate("Z", visit.height)}, None), []
         for count, row in enumerate(rows):
             start = frame.coordinates(self.plan.start[row], LINEAR)
@@ -309,11 +298,11 @@ class Writer:
             ]
         return out
 
-    def _dry(self, visit: Visit, rows: IntArray) -> list[str]:
+    def _dry(self, visit: Visit, rows: IntArray, frame: ProgramFrame) -> list[str]:
         """Moves to the same places at a greater height, without touches."""
         assert self.raised is not None
         k, z = self.language, self.plan.chain.axis_index("Z")
-        high, frame = min(visit.height + self.raised, self.top), self._frame(visit)
+        high = min(visit.height + self.raised, self.top)
         up, out = k.line({"Z": frame.coordinate("Z", high)}, None), []
         for count, row in enumerate(rows):
             start = frame.coordinates(self.plan.start[row], "XY")
@@ -333,9 +322,14 @@ class Writer:
         end = [k.structure("END"), self.retract, *logged]
         return [*end, *self._end_plane(), *self._home(), k.program_stop]
 
+    def _places(self) -> list[str]:
+        """Read where the rotary axes stand."""
+        named = zip((Q.ROTARY_1, Q.ROTARY_2), self.rotary, strict=False)
+        return [self.language.read(q, Datum(a)) for q, a in named]
+
     def _subprograms(self, name: str) -> list[str]:
         """Test the status and log the touch; retract and stop where there was no contact."""
-        k, places = self.language, zip((Q.ROTARY_1, Q.ROTARY_2), self.rotary, strict=False)
+        k = self.language
         missed = [
             k.label(Label.NO_CONTACT, "NOTRIGGER: NO CONTACT"),
             k.retract_max(self.top),
@@ -350,7 +344,7 @@ class Writer:
             k.label(Label.LOG, "CHECK AND LOG ONE TOUCH"),
             k.jump_if_less(Q.STATUS, 0, Label.NO_CONTACT),
             k.wait,
-            *(k.read(q, Datum(a)) for q, a in places),
+            *self._places(),
             self._print(f"{SharedMask.POINT}.A", name),
             k.label_end,
             *missed,

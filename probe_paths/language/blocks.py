@@ -125,17 +125,10 @@ class Block:
 
 
 def read_klartext(data: bytes, path: str | Path, dialect: Dialect) -> list[Block]:
-    """Blocks of a program file.
+    """Blocks of a program file; raises BadFile.
 
     Block numbers either stand everywhere and count from 0, or nowhere. A line that ends in a
     tilde continues on the next one.
-
-    Args:
-        dialect: Whose spelling of cycle 4 is known besides the usual ones.
-
-    Raises:
-        BadFile: A byte outside ASCII, mixed line ends, a last line cut off, a number out of
-            sequence, a block that is not in the closed list.
     """
     blocks: list[Block] = []
     is_numbered: bool | None = None
@@ -195,8 +188,5 @@ def _parse(text: str, line: int, path: str | Path, dialect: Dialect) -> Block:
 
 def _is_known(words: Mapping[str, str | None], dialect: Dialect) -> bool:
     """Whether the dialog text of cycle 4 is the usual one or that of the dialect."""
-    return words.get("cycle") in (None, *CYCLE_NAMES, dialect.cycle_name) and words.get("word") in (
-        None,
-        *DISTANCE_WORDS,
-        dialect.distance_word,
-    )
+    cycles, ways = (*CYCLE_NAMES, dialect.cycle_name), (*DISTANCE_WORDS, dialect.distance_word)
+    return words.get("cycle") in (None, *cycles) and words.get("word") in (None, *ways)

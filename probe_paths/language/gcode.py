@@ -23,8 +23,7 @@ MODES = "G17 G21 G40 G49 G80 G90 G94"
 WAIT, DATE = "M66 E0 L0", "M66 E1 L0"
 INPUT = "#5399"
 
-LENGTH = "#5403"
-"""Length of the tool in the spindle, as in the tool table."""
+LENGTH = "#5403"  # length of the tool in the spindle, as in the tool table
 
 SYSTEM: Mapping[Datum, str] = {
     Datum.RADIUS: "[#5410 / 2]",

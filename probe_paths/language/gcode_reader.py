@@ -1,7 +1,7 @@
 """Text of a LinuxCNC program to the blocks of the closed list, and one clear line for the rest."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from matstd.nc.grammar import SIGNED, gcode_lines
@@ -15,8 +15,10 @@ from matstd.twin.errors import BadFile
 Words = dict[str, str | None]
 
 _SYSTEM = "|".join(re.escape(text) for text in g.SYSTEM.values())
-_CALL = " ".join([rf"\[({SIGNED})\]"] * 4 + [r"\[(\d+)\]", rf"\[({SIGNED})\]"])
-_TOUCH = re.compile(rf"O{g.TOUCH} CALL {_CALL} \[(\d+)\] \[({SIGNED})\]\Z")
+_ARGUMENTS = {name: SIGNED for name in ("x", "y", "z", "distance", "feed", "back", "slow", "step")}
+_ARGUMENTS |= {"feed": r"\d+", "slow": r"\d+"}
+_CALL = " ".join(rf"\[(?P<{name}>{form})\]" for name, form in _ARGUMENTS.items())
+_TOUCH = re.compile(rf"O{g.TOUCH} CALL {_CALL}\Z")
 
 _LINES = {
     Kind.BEGIN: r"\(BEGIN PGM (?P<name>\S+) (?P<unit>\S+)\)",
@@ -201,52 +203,33 @@ class _Reader:
         for kind, pattern in _PATTERNS.items():
             match = pattern.match(text)
             if match is not None:
-                words = _MEANT.get(kind, dict)(match.groupdict())
-                many = [words]
+                many = [_meant(kind, match.groupdict())]
                 if kind is Kind.SHIFT:
-                    many = [{"index": str(i + 1), "axis": a, "value": "+0"} for i, a in _XYZ]
+                    shifts = enumerate("XYZ", 1)
+                    many = [{"index": str(i), "axis": a, "value": "+0"} for i, a in shifts]
                 yield from (Block(line, kind, one, text) for one in many)
                 return
         expected = next((e for begin, e in _EXPECTED if re.match(begin, text)), _ANYTHING)
         raise BadFile(self.path, f"line {line}", repr(text), expected)
 
 
-_XYZ = tuple(enumerate("XYZ"))
-
-
 def _touch_blocks(line: int, text: str, match: re.Match[str]) -> Iterator[Block]:
-    x, y, z, distance, feed, back, slow, step = match.groups()
-    shared = {"slow": slow, "step": step}
     yield Block(line, Kind.PROBE_NAME, {}, text)
     yield Block(line, Kind.PROBE_RESULT, {"q": str(int(Q.RESULT_X))}, text)
-    yield Block(line, Kind.PROBE_VECTOR, {"x": x, "y": y, "z": z}, text)
-    words = {"distance": distance, "feed": feed, "back": back, "system": "0", **shared}
-    yield Block(line, Kind.PROBE_PATH, words, text)
+    yield Block(line, Kind.PROBE_VECTOR, match.groupdict(), text)
+    yield Block(line, Kind.PROBE_PATH, {**match.groupdict(), "system": "0"}, text)
 
 
-def _row(words: Words) -> Words:
-    return {"row": parameter(int(words["row"] or 0) - 3)}
-
-
-def _straight(words: Words) -> Words:
-    """`G0` is rapid whatever feed was before; G53 is for one line, as M91."""
-    functions = " M91" if words["machine"] else ""
-    feed = "MAX" if words["g"] == "G0" else words["feed"]
-    return {"axes": words["axes"], "radius": " R0", "feed": feed, "functions": functions}
-
-
-def _minuend(words: Words) -> Words:
-    is_length = f"#{words['from']}" == g.LENGTH and words["other"] is None
-    return {**words, "from": str(TOOL_LENGTH) if is_length else words["from"]}
-
-
-def _label(words: Words) -> Words:
-    return {"label": "0" if words["what"] == "ENDSUB" else words["label"]}
-
-
-_MEANT: dict[Kind, Callable[[Words], Words]] = {
-    Kind.PRESET: _row,
-    Kind.LINE: _straight,
-    Kind.SUBTRACT: _minuend,
-    Kind.LABEL: _label,
-}
+def _meant(kind: Kind, words: Words) -> Words:
+    """Words of a line as the closed list has them."""
+    if kind is Kind.PRESET:
+        return {"row": parameter(int(words["row"] or 0) - 3)}
+    if kind is Kind.LINE:  # G0 is rapid whatever feed was before; G53 is for one line, as M91
+        functions = " M91" if words["machine"] else ""
+        feed = "MAX" if words["g"] == "G0" else words["feed"]
+        return {"axes": words["axes"], "radius": " R0", "feed": feed, "functions": functions}
+    if kind is Kind.SUBTRACT and f"#{words['from']}" == g.LENGTH and words["other"] is None:
+        return {**words, "from": str(TOOL_LENGTH)}
+    if kind is Kind.LABEL and words["what"] == "ENDSUB":
+        return {"label": "0"}
+    return words

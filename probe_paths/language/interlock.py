@@ -36,13 +36,7 @@ class Interlock(NamedTuple):
     limit: float  # by how much it may differ
 
 
-_FIRST = (
-    Label.OTHER_PROBE,
-    Label.ROTATION,
-    Label.PRESET_X,
-    Label.PRESET_Y,
-    Label.PRESET_Z,
-)
+_FIRST = (Label.OTHER_PROBE, Label.ROTATION, Label.PRESET_X, Label.PRESET_Y, Label.PRESET_Z)
 """What decides where the ball comes down, which a commissioning program tests."""
 
 

@@ -252,11 +252,7 @@ class Language:
         return self._form("call", label=number)
 
     def listed(self, blocks: Sequence[str]) -> str:
-        """The whole file.
-
-        Raises:
-            DesignError: A line too long or not ASCII, or a block that starts the spindle.
-        """
+        """The whole file; raises DesignError."""
         lines = [checked_line(line, self.longest) for line in self.lines(blocks)]
         return self.line_end.join(lines) + self.line_end
 

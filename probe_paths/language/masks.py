@@ -103,17 +103,12 @@ def parse_mask(text: str, path: str | Path) -> tuple[MaskLine, ...]:
         match = _LINE.match(raw.strip())
         if match is None:
             raise BadFile(path, where, repr(raw), '"text",Q1620,HOUR; with quotes and semicolon')
-        arguments = tuple(
-            _argument(word, path, where) for word in match["arguments"].split(",")[1:]
-        )
-        formats = _FORMAT.findall(match["text"])
-        if len(formats) != match["text"].count("%") or len(formats) != len(arguments):
-            raise BadFile(
-                path,
-                where,
-                f"{match['text'].count('%')} formats for {len(arguments)} values",
-                "one format such as %13.6LF or %3d for each value",
-            )
+        words = match["arguments"].split(",")[1:]
+        arguments = tuple(_argument(word, path, where) for word in words)
+        formats, signs = _FORMAT.findall(match["text"]), match["text"].count("%")
+        if not len(formats) == signs == len(arguments):
+            found = f"{signs} formats for {len(arguments)} values"
+            raise BadFile(path, where, found, "one format such as %13.6LF or %3d for each value")
         lines.append(MaskLine(match["text"], arguments))
     if not lines:
         raise BadFile(path, "file", "no line", "at least one line of text")

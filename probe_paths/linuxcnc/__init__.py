@@ -10,8 +10,4 @@ from matstd.probe_paths.linuxcnc.rehearsal import rehearse
 from matstd.probe_paths.linuxcnc.replanned import shortened
 from matstd.probe_paths.linuxcnc.session import installed
 
-__all__ = [
-    "installed",
-    "rehearse",
-    "shortened",
-]
+__all__ = ["installed", "rehearse", "shortened"]

@@ -12,7 +12,6 @@ from matstd.nc.linuxcnc import net, tool_table, variables
 from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.plan import Probe, ProgramFrame
 from matstd.twin.machine import Chain
-from matstd.twin.units import DEG
 
 SERVO_PERIOD = 1e-3  # period of the servo thread of our machine, s
 
@@ -37,11 +36,6 @@ def latch_u(feed: float, period: float = SERVO_PERIOD, latency: float = 0.0) -> 
     The root of the mean square of an error that is uniform between ``a = feed latency`` and
     ``b = feed (period + latency)``: ``sqrt((a^2 + a b + b^2) / 3)``. Nothing is corrected: the
     common part acts as a larger ball, which the calibration of the probe absorbs.
-
-    Args:
-        feed: Feed of the touch that measures, mm/s.
-        period: Period of the servo thread, s.
-        latency: Latency of the probe's signal, s.
 
     Reference:
         JCGM 100, 4.3.7 (rectangular distribution).
@@ -68,9 +62,6 @@ def machine_files(chain: Chain, probe: Probe, dialect: Dialect, socket: str) -> 
     """Text of every file of the machine, by name.
 
     The preset stands where `ProgramFrame` wants it, the probe in the tool table.
-
-    Args:
-        dialect: Numbers of tool and preset.
     """
     frame = ProgramFrame(chain, probe)
     letters = sorted(frame.letters, key="XYZABC".index)
@@ -101,8 +92,8 @@ def _text(name: str) -> str:
 
 def _axis(chain: Chain, letter: str, joint: int) -> str:
     """Tables of one axis; a rotary axis is not wrapped, so that its readings are unchanged."""
-    is_linear = letter in "XYZ"
-    low, high = (v if is_linear else v / DEG for v in chain.link(letter).range)
+    link = chain.link(letter)
+    low, high = (v / link.unit for v in link.range)
     return _text("axis.ini").format(
         letter=letter,
         joint=joint,
@@ -110,20 +101,15 @@ def _axis(chain: Chain, letter: str, joint: int) -> str:
         high=high,
         speed=SPEED,
         acceleration=ACCELERATION,
-        kind="LINEAR" if is_linear else "ANGULAR",
+        kind="LINEAR" if link.kind == "linear" else "ANGULAR",
         home=min(max(0.0, low), high),
     )
 
 
 def _positions(joints: int) -> str:
     """Position feedback of every joint, equal to its command."""
-    return "\n".join(
-        net(
-            f"position-{i}",
-            f"joint.{i}.motor-pos-cmd",
-            f"joint.{i}.motor-pos-fb",
-            f"prober.joint-{i}",
-            *_SUMMED[i : i + 1],
-        )
-        for i in range(joints)
-    )
+    lines = []
+    for i in range(joints):
+        sinks = (f"joint.{i}.motor-pos-fb", f"prober.joint-{i}", *_SUMMED[i : i + 1])
+        lines.append(net(f"position-{i}", f"joint.{i}.motor-pos-cmd", *sinks))
+    return "\n".join(lines)

@@ -44,10 +44,8 @@ def rehearse(
     """Run programs of one set-up on LinuxCNC; programs and logs stay in a folder, come what may.
 
     Args:
-        files: Programs of a design, for any control.
         machine: As it really is; its dialect is that of LinuxCNC.
         count: Touches that are made; None for all.
-        announce: Called with the programs before they run.
 
     Raises:
         DesignError: A control that stopped, died or was too busy; the folder says how far it came.

@@ -48,14 +48,11 @@ def run_on_linuxcnc(
     socket_path: Path,
     user: str = "",
 ) -> Session:
-    """Run programs one after the other.
+    """Run programs one after the other; raises DesignError.
 
     Args:
         socket_path: Where the component of the probe asks; its folder is the machine's.
         user: Who runs LinuxCNC; needed where we are root, as LinuxCNC refuses that.
-
-    Raises:
-        DesignError: LinuxCNC is not installed, runs already, or there is no user for it.
     """
     folder = socket_path.parent
     _write(folder, files, programs)
@@ -93,10 +90,8 @@ def installed(user: str) -> str:
     """
     missing = [name for name in NEEDED if shutil.which(name) is None]
     if missing:
-        raise DesignError(
-            f"LinuxCNC is not installed here ({', '.join(missing)} not found); docs/controls.md "
-            "says how to install it"
-        )
+        found = f"LinuxCNC is not installed here ({', '.join(missing)} not found)"
+        raise DesignError(f"{found}; docs/controls.md says how to install it")
     if LOCK.exists():
         raise DesignError(f"LinuxCNC is already running on this computer ({LOCK}); stop it first")
     if os.geteuid() == 0 and not user:

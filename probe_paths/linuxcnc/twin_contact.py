@@ -47,7 +47,7 @@ class TwinContact:
         frame = ProgramFrame(chain, programs[0].heading.probe)
         self.letters = sorted(frame.letters, key="XYZABC".index)
         self.columns = [chain.axis_index(a) for a in self.letters]
-        self.units = np.array([1.0 if a in "XYZ" else np.pi / 180.0 for a in self.letters])
+        self.units = np.array([chain.link(a).unit for a in self.letters])
         self.begin = time.monotonic()
         self.strokes: list[Stroke] = []
         self.failure = ""
@@ -72,12 +72,8 @@ class TwinContact:
         program, step = self.touches[row]
         # from the start of the programmed touch: the second stroke begins within the errors
         touch = replace(step, q=q - along * way, direction=way, index=0, on_miss=[])
-        solver = ContactSolver(
-            replace(program, steps=(touch,)),
-            self.standard,
-            self._machine_at(row),
-            self.noise[row : row + 1],
-        )
+        alone, noise = replace(program, steps=(touch,)), self.noise[row : row + 1]
+        solver = ContactSolver(alone, self.standard, self._machine_at(row), noise)
         now = np.array([time.monotonic() - self.begin])
         solver.solve(now)
         solver.classify()
@@ -135,10 +131,10 @@ class TwinContact:
         same = np.flatnonzero(off <= off.min() + 1e-3 * _ON_LINE)
         row = int(next((k for k in same if k >= max(self.made, default=0)), same[0]))
         if wrong[row] or beside[row] > _ON_LINE:
-            raise DesignError(
-                f"LinuxCNC probes from {np.round(q[self.columns] / self.units, 4).tolist()} along "
-                f"{np.round(way[self.columns[:3]], 4).tolist()}, where no programmed touch begins"
-            )
+            here = np.round(q[self.columns] / self.units, 4).tolist()
+            along_it = np.round(way[self.columns[:3]], 4).tolist()
+            found = f"LinuxCNC probes from {here} along {along_it}"
+            raise DesignError(f"{found}, where no programmed touch begins")
         return row, float(along[row])
 
     def _machine_at(self, row: int) -> VirtualMachine:
@@ -147,9 +143,8 @@ class TwinContact:
         if disturbance is None:
             return self.machine
         before = [self.made[k] for k in sorted(self.made) if k < row]
-        return replace(
-            self.machine, disturbance=in_campaign(disturbance, before, self.planned[row + 1 :])
-        )
+        between = in_campaign(disturbance, before, self.planned[row + 1 :])
+        return replace(self.machine, disturbance=between)
 
 
 def _planned(program: ReadProgram, standard: Standard, machine: VirtualMachine) -> list[Touches]:

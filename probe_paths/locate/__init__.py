@@ -6,10 +6,14 @@ the touches of earlier programs, or those of a planned visit (`read_visit`), pla
 (`planned_again`). `companions` are the programs that are run beside those of a plan.
 """
 
-from matstd.probe_paths.locate.again import planned_again
 from matstd.probe_paths.locate.beside import RAISED, Companions, companions
 from matstd.probe_paths.locate.find import SPREADS, Found, Spread, find_standard
-from matstd.probe_paths.locate.planned_visit import PlannedVisit, VisitSchedule, read_visit
+from matstd.probe_paths.locate.planned_visit import (
+    PlannedVisit,
+    VisitSchedule,
+    planned_again,
+    read_visit,
+)
 from matstd.probe_paths.locate.search_plan import plan_search
 
 __all__ = [

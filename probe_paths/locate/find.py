@@ -8,6 +8,7 @@ sides.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -36,7 +37,6 @@ _TRIED, _FEWEST_TRIED = 40_000, 2_000
 """Places in the first round for a spread of 20 mm and 5 degrees, and for a small one."""
 
 _KEPT = 60  # number improved on the relief
-
 _EXACT = 3  # number improved on the exact surfaces
 
 _ROUNDS, _EXACT_ROUNDS, _LAST_ROUNDS = 25, 15, 15
@@ -83,8 +83,6 @@ def find_standard(
     Args:
         ball_table: Centres of the balls at their contacts, table frame, (N, 3), mm; they came along
             -z of the believed standard.
-        radius: Radius of the ball, mm.
-        rng: For the places of the first round.
 
     Raises:
         NotEnoughData: Fewer than nine touches, no place that fits, or two that fit alike.
@@ -96,12 +94,8 @@ def find_standard(
     limit = np.repeat([spread.distance, spread.angle], 3)
     relief = Relief.of(standard, radius)
 
-    def on_relief(theta: Array) -> Array:
-        return lifted(relief, ball, theta)
-
-    def on_surfaces(theta: Array) -> Array:
-        return _lifted_exactly(standard, ball, theta, radius)
-
+    on_relief = partial(lifted, relief, ball)
+    on_surfaces = partial(_lifted_exactly, standard, ball, radius)
     # fewer places for a smaller spread
     share = (spread.distance / Spread.distance) * (spread.angle / Spread.angle)
     count = max(int(min(share, 1.0) * _TRIED), _FEWEST_TRIED)
@@ -130,15 +124,11 @@ def find_standard(
 def _refuse_ambiguous_place(rms: Array, u: Array) -> None:
     """Refuse a place that does not fit, is not the only one, or is too uncertain to plan for."""
     if rms[0] > GOOD:
-        raise NotEnoughData(
-            f"no place within the spread fits the touches: the best leaves {rms[0]:.2f} mm; "
-            "another standard, farther away, or another probe?"
-        )
+        found = f"no place within the spread fits the touches: the best leaves {rms[0]:.2f} mm"
+        raise NotEnoughData(f"{found}; another standard, farther away, or another probe?")
     if len(rms) > 1 and rms[1] < _CLEAR * max(rms[0], _ROUGH):
-        raise NotEnoughData(
-            f"two places fit the touches ({rms[0]:.2f} and {rms[1]:.2f} mm): align the standard "
-            "better and search again"
-        )
+        found = f"two places fit the touches ({rms[0]:.2f} and {rms[1]:.2f} mm)"
+        raise NotEnoughData(f"{found}: align the standard better and search again")
     if u[:3].max() > KNOWN or u[3:].max() > KNOWN_ANGLE:
         raise NotEnoughData(
             f"the touches fix the position to {u[:3].max():.2f} mm and {u[3:].max() / DEG:.2f} "
@@ -172,7 +162,7 @@ def lifted(relief: Relief, ball: Array, theta: Array) -> Array:
     return np.concatenate(out)
 
 
-def _lifted_exactly(standard: Standard, ball: Array, theta: Array, radius: float) -> Array:
+def _lifted_exactly(standard: Standard, ball: Array, radius: float, theta: Array) -> Array:
     """The same on the exact surfaces, by first contacts."""
     above = 80.0  # mm; farther than any place of the few is from where it shall be
     back = inverse(_pose(theta))
@@ -188,8 +178,7 @@ def _cost(lifted: Array) -> Array:
     """Huber's cost: quadratic up to `_ROBUST`, linear beyond."""
     size = np.abs(lifted)
     cost = np.where(size < _ROBUST, 0.5 * size**2, _ROBUST * (size - 0.5 * _ROBUST))
-    total: Array = cost.sum(axis=1)
-    return total
+    return cost.sum(axis=1)
 
 
 def _best(tried: Array, lift: Lift, count: int) -> Array:
@@ -248,8 +237,7 @@ def _gauss_newton_step(theta: Array, lift: Lift, step: Array) -> Array:
         candidates.append(theta + way * np.minimum(1.0, 5.0 / np.maximum(size, 1e-12)))
     every = np.stack(candidates, axis=1)
     costs = _cost(lift(every.reshape(-1, 6))).reshape(every.shape[:2])
-    chosen: Array = every[np.arange(len(theta)), np.argmin(costs, axis=1)]
-    return chosen
+    return every[np.arange(len(theta)), np.argmin(costs, axis=1)]
 
 
 def _distinct(theta: Array, lift: Lift, ball: Array) -> Array:
@@ -270,5 +258,4 @@ def _uncertainty(theta: Array, lift: Lift) -> Array:
     J = (both[:6] - both[6:]).T / (2.0 * _FINE)
     r = lift(theta[None])[0]
     s = np.sqrt(r @ r / (len(r) - 6))
-    u: Array = s * np.sqrt(np.diag(np.linalg.pinv(J.T @ J)))
-    return u
+    return s * np.sqrt(np.diag(np.linalg.pinv(J.T @ J)))

@@ -1,19 +1,26 @@
-"""A planned visit as `matstd learn` writes it: touches, their order and sides, standstills."""
+"""Touches planned again where the standard stands: those of programs, or of a planned visit.
+
+`matstd learn` writes a planned visit as a table of touches with their order, sides and standstills.
+"""
 
 import re
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from matstd.artefact.body import Standard
-from matstd.artefact.reach import Requests
+from matstd.artefact.reach import DatumBall, Requests, Workshop
 from matstd.probe_paths.campaign import foot_points
-from matstd.probe_paths.plan import StatedVisits
+from matstd.probe_paths.control import ReadProgram
+from matstd.probe_paths.linuxcnc import shortened
+from matstd.probe_paths.plan import StatedVisits, TouchPlan, plan_touches
 from matstd.twin.errors import BadFile
 from matstd.twin.files import CsvTable, read_text, reading_columns
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
+from matstd.twin.record import Setup
 
 OFF_THE_SURFACE = 0.1
 """Distance from its feature beyond which a touch is that of another standard, mm."""
@@ -21,29 +28,19 @@ OFF_THE_SURFACE = 0.1
 
 @dataclass(frozen=True, eq=False)
 class PlannedVisit:
-    """Touches of one set-up in the order in which they are wanted.
-
-    Attributes:
-        order: Visits of the poses, with their sides and the standstills between them.
-    """
+    """Touches of one set-up in the order in which they are wanted."""
 
     requests: Requests
-    order: StatedVisits
+    order: StatedVisits  # visits of the poses, with their sides and the standstills between them
 
 
 @dataclass(frozen=True)
 class VisitSchedule:
-    """What the operator does besides the programs.
+    """What the operator does besides the programs."""
 
-    Attributes:
-        warm_up: How long the machine has moved before the first touch, s.
-        pause: How long it stands still, s.
-        slowness: Time from touch to touch over that of the programs.
-    """
-
-    warm_up: float = 0.0
-    pause: float = 0.0
-    slowness: float = 1.0
+    warm_up: float = 0.0  # how long the machine has moved before the first touch, s
+    pause: float = 0.0  # how long it stands still, s
+    slowness: float = 1.0  # time from touch to touch over that of the programs
 
 
 def read_visit(
@@ -108,9 +105,55 @@ def _schedule(head: str) -> tuple[VisitSchedule, float]:
         found = re.search(pattern + r"([\d.]+)", head)
         return float(found[1]) if found else otherwise
 
-    schedule = VisitSchedule(
-        warm_up=number("warm_up_s = ", 0.0),
-        pause=number("pause_s = ", 0.0),
-        slowness=number("slowness = ", 1.0),
-    )
+    warm_up, pause = number("warm_up_s = ", 0.0), number("pause_s = ", 0.0)
+    schedule = VisitSchedule(warm_up, pause, number("slowness = ", 1.0))
     return schedule, number("after touch ", np.inf)
+
+
+DROPPED = 0.1  # share of the touches that may be refused at another place, each with its reason
+
+
+def planned_again(
+    programs: Sequence[ReadProgram],
+    standard: Standard,
+    chain: Chain,
+    setup: Setup,
+    ball: DatumBall | None = None,
+    visit: PlannedVisit | None = None,
+) -> TouchPlan:
+    """Plan of the touches that programs make, for another place of the standard.
+
+    Poses, places on the standard, probe and workshop are those of the programs; anchor touches,
+    heights, ways and order are planned again.
+
+    Args:
+        ball: On the table, by which the probe is watched; programs state it as cylinders.
+        visit: Touches that are made in the place of theirs, in its order.
+
+    Raises:
+        NotReachable: More touches cannot be made there than may be dropped.
+    """
+    old = shortened(programs, standard, chain)
+    wanted = _touches_of(old, standard) if visit is None else visit.requests
+    options = replace(old.options, tolerated=int(DROPPED * len(wanted)))
+    if ball is not None:
+        known = Workshop(options.workshop.table, (), ball)
+        stated = {solid.name for solid in known.solids}
+        others = tuple(s for s in options.workshop.bodies if s.name not in stated)
+        options = replace(options, workshop=replace(known, bodies=others))
+    order = None if visit is None else visit.order
+    return plan_touches(standard, chain, old.probe, setup, wanted, options, order)
+
+
+def _touches_of(old: TouchPlan, standard: Standard) -> Requests:
+    """What a plan touches besides its anchors."""
+    # a ball at the beginning of a visit is an anchor, which the new plan adds itself
+    first = np.concatenate([[True], np.diff(old.visit) > 0])
+    balls = [sphere.name for sphere in standard.spheres]
+    rows = np.flatnonzero(~(first & np.isin(old.feature, balls)))
+    return Requests(
+        old.feature[rows],
+        old.point[rows],
+        old.normal[rows],
+        np.array([visit.rotary for visit in old.visits])[old.visit[rows]],
+    )

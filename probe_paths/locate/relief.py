@@ -13,7 +13,6 @@ from matstd.twin.frames import Array
 from matstd.twin.sampling import grid_points
 
 PITCH = 1.0  # spacing of the places, mm; what is found on them is refined on the exact surfaces
-
 _FINE = 0.4  # mm between points of a face: no place between them stays empty
 _ROUND = 60.0  # mm round the base that belongs to the picture
 NOWHERE = -1e3  # height where there is nothing, mm
@@ -69,15 +68,13 @@ class Relief:
 
     def index(self, xy: Array) -> Array:
         """Fractional rows and columns (2, N) of places (N, 2)."""
-        at: Array = ((xy - self.x0) / PITCH).T
-        return at
+        return ((xy - self.x0) / PITCH).T
 
     def ball_at(self, xy: Array) -> Array:
         """Height of the ball's centre at places (N, 2), (N,), mm."""
-        height: Array = ndimage.map_coordinates(
+        return ndimage.map_coordinates(
             self.ball, self.index(xy), order=1, mode="nearest", prefilter=False
         )
-        return height
 
 
 def _face_and_walls(patch: FreeformPatch) -> Array:

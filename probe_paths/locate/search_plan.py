@@ -10,6 +10,7 @@ from scipy import ndimage
 
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import Workshop
+from matstd.artefact.tool import readings_at
 from matstd.probe_paths.locate.find import KNOWN, KNOWN_ANGLE, Spread, lifted
 from matstd.probe_paths.locate.relief import NOWHERE, PITCH, Relief
 from matstd.probe_paths.plan import (
@@ -19,7 +20,6 @@ from matstd.probe_paths.plan import (
     TouchPlan,
     Visit,
     home_readings,
-    readings_at,
 )
 from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array, apply
@@ -38,7 +38,6 @@ the more informative edges. For 15 mm and 4 degrees 18 of the example's 20 touch
 base, and determine 0.5; for 10 mm and 3 degrees, 1.0."""
 
 _NOISE = 0.03  # standard uncertainty of a touch of a search, the errors of the machine included, mm
-
 _FREE_BESIDE = 3.0  # kept free beside the ball's way and under the body besides everything else, mm
 
 _UPRIGHT = np.cos(1.0 * DEG)
@@ -55,9 +54,6 @@ def plan_search(
     retract: float = PlanOptions.retract,
 ) -> TouchPlan:
     """Touches from above, at the readings at which programs begin and end.
-
-    Args:
-        retract: Below the upper end of Z's travel, mm.
 
     Raises:
         NotReachable: The table is not level there, the stylus is too short for the steps of the
@@ -146,8 +142,7 @@ def _refuse_undetermined_place(relief: Relief, place: Array, spread: Spread) -> 
 def _most(values: Array, half: float) -> Array:
     """Largest value within a square of the given half side, mm."""
     size = 2 * int(np.ceil(half / PITCH)) + 1
-    largest: Array = ndimage.maximum_filter(values, size=size, mode="nearest")
-    return largest
+    return ndimage.maximum_filter(values, size=size, mode="nearest")
 
 
 def _far_apart(place: Array, count: int) -> list[int]:
@@ -184,14 +179,7 @@ def _plan(
         setup=setup,
         options=options,
         visits=(
-            Visit(
-                pose=0,
-                rotary=home,
-                side=side,
-                before=before,
-                rows=np.arange(n),
-                height=height,
-            ),
+            Visit(pose=0, rotary=home, side=side, before=before, rows=np.arange(n), height=height),
         ),
         visit=np.zeros(n, dtype=np.int64),
         request=np.arange(n),
@@ -217,15 +205,10 @@ def _refuse_out_of_travel_or_collision(plan: TouchPlan, path: float) -> None:
             f"a search from above would go from Z {plan.start[:, z].max():.0f} to "
             f"{end[:, z].min():.0f} mm and is out of travel: state a smaller spread"
         )
-    room = ToolClearance(
-        chain=chain,
-        standard=plan.standard,
-        setup=plan.setup,
-        probe=plan.probe,
-        workshop=plan.options.workshop,
-    )
+    workshop = plan.options.workshop
+    room = ToolClearance(chain, plan.standard, plan.setup, plan.probe, workshop=workshop)
     # the standard is spared, as the touches are to meet it
-    ours = np.isin(room.bodies.name, [solid.name for solid in plan.options.workshop.solids[1:]])
+    ours = np.isin(room.bodies.name, [solid.name for solid in workshop.solids[1:]])
     spared = np.broadcast_to(~ours, (len(end), len(ours)))
     gap, nearest = room.swept_gap(plan.start, end, spared=spared)
     worst = int(np.argmin(gap))

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.artefact.body import Meeting, Standard, contact
+from matstd.artefact.body import Meeting, contact
 from matstd.artefact.reach import Mask
+from matstd.probe_paths.plan.clearance import ToolClearance
 from matstd.twin.frames import Array, apply, inverse, turn
-from matstd.twin.machine import Chain, linear_directions, table_to_tool, tip
-from matstd.twin.record import Labels, Setup
+from matstd.twin.machine import linear_directions, table_to_tool, tip
+from matstd.twin.record import Labels
 from matstd.twin.units import DEG
 
 _LEANS = (15.0 * DEG, 30.0 * DEG)
@@ -29,11 +30,7 @@ _ROUNDING = 9  # decimals: a motion that is nothing but the rounding of one has 
 class Approaches:
     """Ways to N touches of one table pose each."""
 
-    chain: Chain
-    standard: Standard
-    setup: Setup
-    length: float  # gauge point to ball centre, mm
-    radius: float  # radius of the ball, mm
+    clearance: ToolClearance  # machine, standard, set-up and probe
     contact: Array  # readings at the expected contact, (N, A)
     normal: Array  # outward unit normals, artefact frame, (N, 3)
     feature: Labels
@@ -47,9 +44,9 @@ class Approaches:
         in the senses of the normal: the evaluation of a log takes the sides of all reversals from
         the normal.
         """
-        place = self.setup.T_table_artefact
+        place = self.clearance.setup.T_table_artefact
         normal = turn(place, self.normal)
-        tool = table_to_tool(self.chain, self.contact)[:, :3, 2]
+        tool = table_to_tool(self.clearance.chain, self.contact)[:, :3, 2]
         towards = tool - np.einsum("ni,ni->n", tool, normal)[:, None] * normal
         size = np.linalg.norm(towards, axis=1, keepdims=True)
         any_side = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal), axis=1)])
@@ -63,7 +60,7 @@ class Approaches:
 
     def _along(self, away: Array, normal: Array) -> tuple[Array, Array, Mask]:
         """Ways along given directions in the table frame."""
-        chain = self.chain
+        chain, probe = self.clearance.chain, self.clearance.probe
         columns = chain.linear_columns
         per_axis = np.linalg.inv(linear_directions(chain, self.contact))
         motion = np.zeros(self.contact.shape)
@@ -71,18 +68,16 @@ class Approaches:
         usual = -np.einsum("nij,nj->ni", per_axis, normal)
         start = self.contact - self.back * motion
         ends = np.stack([start, self.contact + self.beyond * motion])[..., columns]
-        low, high = np.array([chain.link(a).range for a in chain.linear_axes]).T
-        same = np.sign(np.round(motion[:, columns], _ROUNDING)) == np.sign(
-            np.round(usual, _ROUNDING)
-        )
-        T_artefact_table = inverse(self.setup.T_table_artefact)
+        low, high = chain.travels[columns].T
+        here, there = (np.sign(np.round(v, _ROUNDING)) for v in (motion[:, columns], usual))
+        T_artefact_table = inverse(self.clearance.setup.T_table_artefact)
         met = contact(
-            self.standard,
-            apply(T_artefact_table, tip(chain, start, self.length)),
+            self.clearance.standard,
+            apply(T_artefact_table, tip(chain, start, probe.length)),
             turn(T_artefact_table, -away),
-            self.radius,
+            probe.radius,
             np.full(len(start), self.back + self.beyond),
         )
         is_met = (met.meeting == Meeting.SURFACE) & (met.feature == self.feature)
-        good: Mask = is_met & same.all(axis=1) & ((ends >= low) & (ends <= high)).all(axis=(0, 2))
-        return start, motion, good
+        is_within = ((ends >= low) & (ends <= high)).all(axis=(0, 2))
+        return start, motion, is_met & (here == there).all(axis=1) & is_within

@@ -5,6 +5,7 @@ every obstacle is found directly (`separation`). Where a hull is near, its parts
 """
 
 from dataclasses import dataclass
+from enum import StrEnum
 from functools import cached_property
 
 import numpy as np
@@ -71,7 +72,6 @@ class ToolClearance:
         Args:
             before: Readings at the beginning, (M, A).
             after: Readings at the end, (M, A).
-            with_tool: Whether what is above the ball is.
             spared: Bodies that a move is meant to come near to, (M, B).
             enough: A gap that is larger need not be known better than that, mm.
         """
@@ -106,29 +106,34 @@ def _gaps_to(
     spared: NDArray[np.bool_] | None,
     enough: Array,
 ) -> Array:
-    """Gaps of M moves from some bodies, over all pieces of the tool, (M, rows), mm.
-
-    Args:
-        enough: A least gap of a move that is larger need not be known better than that, (M,), mm.
-    """
-    move, piece, body = (i.reshape(-1) for i in np.indices((len(place[0]), len(tool), len(rows))))
+    """Gaps of M moves from some bodies, over all pieces of the tool, (M, rows), mm."""
+    centre, axis, way = place
+    move, piece, body = (i.reshape(-1) for i in np.indices((len(centre), len(tool), len(rows))))
     if spared is not None:
         keep = ~spared[move, body]
         move, piece, body = move[keep], piece[keep], body[keep]
     of = rows[body]
+    low, high, radius, ball = tool[piece].T
+    sweeps = Sweeps(
+        centre=centre[move],
+        axis=axis[move],
+        way=way[move],
+        low=low,
+        high=high,
+        radius=radius,
+        ball=ball,
+    )
 
     def search(some: IntArray, limit: Array) -> Array:
-        sweeps = _sweeps(place, tool, move[some], piece[some])
-        gap = gaps(sweeps, bodies.hulls[of[some]], limit)
+        gap = gaps(sweeps[some], bodies.hulls[of[some]], limit)
         for i in bodies.parts:
             near = np.flatnonzero((of[some] == i) & (gap < limit))
-            gap[near] = _least_to_parts(bodies.parts[i], sweeps[near], limit[near])
+            gap[near] = _least_to_parts(bodies.parts[i], sweeps[some[near]], limit[near])
         return gap
 
     # the gap of enclosing balls is cheap and never too large: most pairs need no exact one
-    bound = balls_apart(_sweeps(place, tool, move, piece), bodies.hulls[of])
-    gap = least_gaps(bound, move, enough[move], search)
-    best = np.full((len(place[0]), len(rows)), np.inf)
+    gap = least_gaps(balls_apart(sweeps, bodies.hulls[of]), move, enough[move], search)
+    best = np.full((len(centre), len(rows)), np.inf)
     np.minimum.at(best, (move, body), gap)
     return best
 
@@ -141,22 +146,57 @@ def _least_to_parts(parts: Hulls, sweeps: Sweeps, enough: Array) -> Array:
     def search(some: IntArray, limit: Array) -> Array:
         return gaps(sweeps[each[some]], parts[part[some]], limit)
 
-    bound = balls_apart(sweeps[each], parts[part])
-    gap = least_gaps(bound, each, enough[each], search)
-    return np.asarray(gap.reshape(len(sweeps), len(parts)).min(axis=1))
+    gap = least_gaps(balls_apart(sweeps[each], parts[part]), each, enough[each], search)
+    return gap.reshape(len(sweeps), len(parts)).min(axis=1)
 
 
-def _sweeps(
-    place: tuple[Array, Array, Array], tool: Array, move: IntArray, piece: IntArray
-) -> Sweeps:
-    centre, axis, way = place
-    low, high, radius, ball = tool[piece].T
-    return Sweeps(
-        centre=centre[move],
-        axis=axis[move],
-        way=way[move],
-        low=low,
-        high=high,
-        radius=radius,
-        ball=ball,
-    )
+class Stage(StrEnum):
+    """Part of a touch in which the tool may come too near to something."""
+
+    WAY_IN = "on its way in"
+    TOUCH = "at the touch"
+    OVER_TRAVEL = "where it goes on if the surface is not met"
+    RETRACT = "on its way up after a miss"
+
+    def least_gap(self, radius: float) -> float:
+        """Gap that a ball of a radius needs, mm: beside what it touches its stylus has a third."""
+        return min(SMALLEST_GAP, radius / 3.0) if self is Stage.TOUCH else SMALLEST_GAP
+
+
+def stroke_gaps(
+    clearance: ToolClearance,
+    start: Array,
+    direction: Array,
+    back: Array,
+    distance: Array,
+    feature: Labels,
+    enough: float,
+) -> dict[Stage, tuple[Array, Labels]]:
+    """Smallest gaps in the parts of N touches, with what is nearest.
+
+    To the expected contact the tool above its ball keeps clear of everything, and the ball of all
+    but the touched feature. Beyond it, and on the way up after a miss, both keep clear of all but
+    the feature and the core, from which the columns of the faces rise.
+
+    Args:
+        start: Readings at the start, (N, A).
+        direction: Direction of the motion in readings, unit vectors, (N, A).
+        back: Distance to the expected contact, (N,), mm.
+        distance: Longest travel, (N,), mm.
+    """
+    bodies = clearance.bodies
+    own = np.zeros((len(start), len(bodies.name)), dtype=bool)
+    for name in dict.fromkeys(feature.tolist()):
+        own[np.ix_(np.flatnonzero(feature == name), bodies.rows_of(name))] = True
+    # beyond the contact the core is spared, as columns come out of it
+    core = np.broadcast_to(bodies.name == "CORE", own.shape)
+    contact = start + back[:, None] * direction
+    end = start + distance[:, None] * direction
+    above = end.copy()
+    z = clearance.chain.axis_index("Z")
+    above[:, z] = np.maximum(end[:, z], clearance.chain.link("Z").range[1])
+    tool = clearance.swept_gap(start, contact, with_ball=False, enough=enough)
+    ball = clearance.swept_gap(start, contact, with_tool=False, spared=own & ~core, enough=enough)
+    beyond = clearance.swept_gap(start, end, spared=own | core, enough=enough)
+    up = clearance.swept_gap(end, above, spared=own | core, enough=enough)
+    return {Stage.TOUCH: tool, Stage.WAY_IN: ball, Stage.OVER_TRAVEL: beyond, Stage.RETRACT: up}

@@ -41,21 +41,15 @@ class ProgramFrame:
     def __post_init__(self) -> None:
         chain = self.chain
         if sorted(chain.linear_axes) != sorted(LINEAR):
-            raise DesignError(
-                f"machine {chain.name} has linear axes {', '.join(chain.linear_axes) or 'none'}; "
-                "a probing program needs exactly X, Y and Z"
-            )
+            found = f"machine {chain.name} has linear axes {', '.join(chain.linear_axes) or 'none'}"
+            raise DesignError(f"{found}; a probing program needs exactly X, Y and Z")
         for name in LINEAR:
             if not chain.link(name).points_along_letter:
-                raise DesignError(
-                    f"axis {name} of {chain.name} does not point along its letter; "
-                    "programs without a tilted plane need that"
-                )
+                found = f"axis {name} of {chain.name} does not point along its letter"
+                raise DesignError(f"{found}; programs without a tilted plane need that")
         if any(len(name) > 1 for name in chain.rotary_axes) or len(chain.rotary_axes) > 2:
-            raise DesignError(
-                f"rotary axes {', '.join(chain.rotary_axes)} of {chain.name}: "
-                "expected at most two, named A, B or C"
-            )
+            found = f"rotary axes {', '.join(chain.rotary_axes)} of {chain.name}"
+            raise DesignError(f"{found}: expected at most two, named A, B or C")
 
     @cached_property
     def letters(self) -> tuple[str, ...]:

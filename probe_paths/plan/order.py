@@ -22,7 +22,6 @@ LONGEST_TURN = 170.0 * DEG
 """A rotary move is cut into pieces below half a turn, so that M126 cannot change its way."""
 
 _PART, _NO_GAIN = 3, 1e-9  # places that are put elsewhere together; mm
-
 _ROUNDING = 1e-9  # a reading at the very end of the travel is inside, whatever its last digit, rad
 
 
@@ -97,17 +96,14 @@ def _visit(
     for i, name in enumerate(chain.rotary_axes):
         low, high = chain.link(name).range
         low, high = low - _ROUNDING, high + _ROUNDING
+        where = f"pose {name}{rotary[i] / DEG:+.4f}"
         if not low <= rotary[i] <= high:
-            raise NotReachable(
-                f"pose {name}{rotary[i] / DEG:+.4f}: outside the travel of {name}, "
-                f"{low / DEG:g} to {high / DEG:g} degrees"
-            )
+            travel = f"{low / DEG:g} to {high / DEG:g} degrees"
+            raise NotReachable(f"{where}: outside the travel of {name}, {travel}")
         if not low <= rotary[i] - side[i] * overshoot <= high:
             side[i] = -side[i]
         if not low <= rotary[i] - side[i] * overshoot <= high:
-            raise NotReachable(
-                f"pose {name}{rotary[i] / DEG:+.4f}: travel of {name} leaves no room to approach it"
-            )
+            raise NotReachable(f"{where}: travel of {name} leaves no room to approach it")
     return Visit(pose=pose, rotary=rotary, side=side, before=rotary - side * overshoot, rows=rows)
 
 
@@ -115,8 +111,7 @@ def waypoints(start: Array, end: Array) -> Array:
     """Rotary readings (W, R) after `start` up to `end`, no step longer than `LONGEST_TURN`."""
     pieces = max(int(np.ceil(np.abs(end - start).max(initial=0.0) / LONGEST_TURN)), 1)
     share = np.arange(1, pieces + 1)[:, None] / pieces
-    between: Array = start + share * (end - start)
-    return between
+    return start + share * (end - start)
 
 
 def rotary_path(start: Array, stops: list[Visit], end: Array) -> Array:
@@ -128,13 +123,13 @@ def rotary_path(start: Array, stops: list[Visit], end: Array) -> Array:
 
 
 def short_order(places: Array, first: Array) -> IntArray:
-    """Order of places (N, 2) that goes from `first` (2,) a short way, as rapid moves take time.
+    """Order of places (N, D) that goes from `first` (D,) a short way, as rapid moves take time.
 
     The axis with the longest way decides the time of a move. From nearest neighbours, parts are
     reversed (2-opt) and parts of up to three moved (Or-opt) while that shortens the way.
     """
-    cost = np.abs(places[:, None] - places).max(axis=-1)
-    away = np.abs(places - first).max(axis=-1)
+    cost = np.abs(places[:, None] - places).max(axis=-1, initial=0.0)
+    away = np.abs(places - first).max(axis=-1, initial=0.0)
     order = nearest_neighbours(places, first)
     while True:
         tried = [_best_two_opt(order, cost, away), _best_or_opt(order, cost, away)]

@@ -11,17 +11,10 @@ import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import ProbeReach, Requests, joined
-from matstd.artefact.tool import (
-    Probe,
-    home_readings,
-    readings_at,
-    solid_hull,
-    swing_height,
-    top_height,
-)
+from matstd.artefact.tool import Probe, home_readings, solid_hull, swing_height, top_height
 from matstd.probe_paths.plan.approach import Approaches
-from matstd.probe_paths.plan.clearance import SMALLEST_GAP, ToolClearance
-from matstd.probe_paths.plan.frame import LINEAR, ProgramFrame
+from matstd.probe_paths.plan.clearance import SMALLEST_GAP, Stage, ToolClearance, stroke_gaps
+from matstd.probe_paths.plan.frame import ProgramFrame
 from matstd.probe_paths.plan.heading import rounded_setup, rounded_workshop
 from matstd.probe_paths.plan.order import (
     StatedVisits,
@@ -31,11 +24,17 @@ from matstd.probe_paths.plan.order import (
     stated_visits,
     visits,
 )
-from matstd.probe_paths.plan.strokes import Stage, stroke_gaps
-from matstd.probe_paths.plan.touch_plan import GRID, PlanOptions, Refusal, TouchPlan
+from matstd.probe_paths.plan.touch_plan import (
+    GRID,
+    PlanOptions,
+    Refusal,
+    TouchPlan,
+    ring_normals,
+    ring_requests,
+)
 from matstd.twin.errors import DesignError, NotReachable, ShapeMismatch
 from matstd.twin.frames import Array
-from matstd.twin.machine import Chain, table_to_tool
+from matstd.twin.machine import Chain
 from matstd.twin.record import IntArray, Labels, Setup
 from matstd.twin.units import DEG
 
@@ -56,29 +55,32 @@ class _Task:
     @cached_property
     def clearance(self) -> ToolClearance:
         """Room for the tool."""
-        return ToolClearance(
-            chain=self.chain,
-            standard=self.standard,
-            setup=self.setup,
-            probe=self.probe,
-            workshop=self.options.workshop,
-        )
+        workshop = self.options.workshop
+        return ToolClearance(self.chain, self.standard, self.setup, self.probe, workshop=workshop)
+
+    @cached_property
+    def frame(self) -> ProgramFrame:
+        """Words of programs."""
+        return ProgramFrame(self.chain, self.probe)
+
+    @property
+    def linear(self) -> list[int]:
+        """Columns of X, Y, Z."""
+        return self.frame.linear
+
+    @property
+    def top(self) -> float:
+        """Reading of Z where rotary axes may turn, mm."""
+        return self.chain.link("Z").range[1] - self.options.retract
+
+    def whole(self, z: float) -> float:
+        """The next whole millimetre in the program: an operator reads it at a glance."""
+        return self.frame.reading("Z", np.ceil(self.frame.coordinate("Z", z)))
 
     @property
     def probing(self) -> ProbeReach:
-        """What can be touched, with the margins of the plan."""
-        o = self.options
-        return ProbeReach(
-            chain=self.chain,
-            setup=self.setup,
-            shape=self.probe.shape,
-            length=self.probe.length,
-            steepest=o.steepest,
-            room=-np.inf,  # exact gaps are computed later, with the whole approach
-            standoff=o.standoff,
-            search=o.search,
-            workshop=o.workshop,
-        )
+        """What can be touched; exact gaps are computed later, with the whole approach."""
+        return self.options.reach(self.chain, self.setup, self.probe, room=-np.inf)
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,46 +164,39 @@ def _with_heights(task: _Task, stops: list[Visit]) -> list[Visit]:
     """Visits with their clearance heights, after checking that the table can turn between them."""
     chain, probe, options = task.chain, task.probe, task.options
     solid = solid_hull(task.standard, task.setup, options.workshop)
-    retract = chain.link("Z").range[1] - options.retract
     rotary = np.array([stop.rotary for stop in stops])
-    frame = ProgramFrame(chain, probe)
-    heights = top_height(chain, rotary, solid, probe) + options.clearance
-    # whole millimetres in the program: an operator reads them at a glance
-    heights = np.array([frame.reading("Z", np.ceil(frame.coordinate("Z", h))) for h in heights])
+    tops = top_height(chain, rotary, solid, probe) + options.clearance
+    heights = np.array([task.whole(top) for top in tops])
     home = home_readings(chain)
     swing = swing_height(chain, rotary_path(home, stops, home), solid, probe).max(initial=-np.inf)
     highest = max(heights.max(), swing + 0.5 * options.clearance)
-    if highest > retract:
+    if highest > task.top:
         raise NotReachable(
             f"Z would have to rise to {highest:.1f} mm to clear standard and table while they "
-            f"turn; it retracts to {retract:.1f} mm"
+            f"turn; it retracts to {task.top:.1f} mm"
         )
     return [replace(stop, height=float(h)) for stop, h in zip(stops, heights, strict=True)]
 
 
 def _raised(task: _Task, stops: list[Visit], wanted: Requests) -> list[Visit]:
     """Visits raised above all starts of their touches, as far as Z retracts."""
-    frame, z = ProgramFrame(task.chain, task.probe), task.chain.axis_index("Z")
-    retract = task.chain.link("Z").range[1] - task.options.retract
-    start = task.probing.readings(wanted, task.options.standoff)[:, z]
+    start = task.probing.readings(wanted, task.options.standoff)[:, task.linear[2]]
     start = np.where(task.probing.is_reachable(wanted), start, -np.inf)
     out = []
     for stop in stops:
         highest = float(start[stop.rows].max(initial=-np.inf))
         if highest > stop.height:
-            whole = frame.reading("Z", np.ceil(frame.coordinate("Z", highest)))
-            stop = replace(stop, height=min(float(whole), retract))
+            stop = replace(stop, height=min(float(task.whole(highest)), task.top))
         out.append(stop)
     return out
 
 
 def _examined(task: _Task, wanted: Requests) -> _Touches:
     """Touches in readings, with the first reason against each."""
-    chain, options, probing = task.chain, task.options, task.probing
+    options, probing = task.options, task.probing
     contact = probing.readings(wanted)
     start = probing.readings(wanted, options.standoff)
-    linear = [chain.axis_index(name) for name in LINEAR]
-    direction = (contact - start)[:, linear] / options.standoff
+    direction = (contact - start)[:, task.linear] / options.standoff
     return _Touches(
         feature=wanted.feature,
         point=wanted.point,
@@ -228,13 +223,9 @@ def _cleared(task: _Task, wanted: Requests, height: Array) -> _Touches:
     # without room at the contact no other approach helps
     room, _ = task.clearance.gap(touches.contact[rows])
     rows = rows[room >= task.options.smallest_gap]
-    linear = [task.chain.axis_index(name) for name in LINEAR]
+    linear = task.linear
     ways = Approaches(
-        chain=task.chain,
-        standard=task.standard,
-        setup=task.setup,
-        length=task.probe.length,
-        radius=task.probe.radius,
+        clearance=task.clearance,
         contact=touches.contact[rows],
         normal=touches.normal[rows],
         feature=touches.feature[rows],
@@ -268,7 +259,7 @@ def _swept(task: _Task, touches: _Touches, height: Array) -> _Touches:
     clearance = task.clearance
     start, enough = touches.start[rows], max(SMALLEST_GAP + _GAP_MARGIN, o.smallest_gap)
     direction = np.zeros(start.shape)
-    direction[:, [task.chain.axis_index(name) for name in LINEAR]] = touches.direction[rows]
+    direction[:, task.linear] = touches.direction[rows]
     looks = stroke_gaps(
         clearance,
         start,
@@ -325,22 +316,13 @@ def _anchor_requests(task: _Task, stop: Visit) -> Requests:
     """Possible anchor touches of a pose, best first."""
     options = task.options
     spheres = sorted(task.standard.spheres, key=lambda s: s.name != options.anchor)
-    q = readings_at(task.chain, stop.rotary[None])
-    R_table_tool = table_to_tool(task.chain, q)[0, :3, :3]
     azimuth = 120.0 * DEG * stop.pose + 60.0 * DEG * np.arange(6)
-    sin, cos = np.sin(options.anchor_tilt), np.cos(options.anchor_tilt)
-    local = np.stack([sin * np.cos(azimuth), sin * np.sin(azimuth), np.full(6, cos)], axis=-1)
-    tilted = np.concatenate([local, [[0.0, 0.0, 1.0]]]) @ R_table_tool.T
-    normal = tilted @ task.setup.T_table_artefact[:3, :3]
-    wanted = Requests(
-        np.repeat([s.name for s in spheres], len(normal)),
-        np.concatenate([s.centre + s.radius * normal for s in spheres]),
-        np.tile(normal, (len(spheres), 1)),
-        np.repeat(stop.rotary[None], len(spheres) * len(normal), axis=0),
-    )
+    along = np.concatenate([ring_normals(options.anchor_tilt, azimuth), [[0.0, 0.0, 1.0]]])
+    wanted = ring_requests(task.chain, task.setup, spheres, stop.rotary, along)
+    normal = wanted.normal[: len(along)]
     # where the machine errs by some tenths of a millimetre the ball is met a few degrees lower
     lower = np.arcsin(np.clip(normal[:, 2], -1.0, 1.0)) - _ANCHOR_SPARE
-    around = np.column_stack([np.zeros(len(normal)), lower])
+    around = np.column_stack([np.zeros(len(along)), lower])
     return wanted[np.concatenate([s.contains(around) for s in spheres])]
 
 
@@ -355,7 +337,7 @@ def _assembled(
     kept: list[Visit] = []
     stops = [stop for stop in stops if np.any(wanted.reason[stop.rows] == "")]
     anchors = _anchors(task, stops)
-    sideways = [task.chain.axis_index(name) for name in LINEAR[:2]]  # every touch goes up and down
+    sideways = task.linear[:2]  # every touch goes up and down
     for stop in stops:
         rows = stop.rows[wanted.reason[stop.rows] == ""]
         anchor, refusal = anchors.get(stop.pose, (wanted[rows[:0]], None))
@@ -369,6 +351,7 @@ def _assembled(
         kept.append(stop)
     if not kept:
         raise NotReachable("no touch can be made", refused=failed)
+    names = [name for name in _Touches.__dataclass_fields__ if name != "reason"]
     plan = TouchPlan(
         chain=task.chain,
         probe=task.probe,
@@ -378,12 +361,7 @@ def _assembled(
         visits=tuple(kept),
         visit=np.array(visit),
         request=np.array(request),
-        feature=np.concatenate([part.feature for part in parts]),
-        point=np.concatenate([part.point for part in parts]),
-        normal=np.concatenate([part.normal for part in parts]),
-        start=np.concatenate([part.start for part in parts]),
-        contact=np.concatenate([part.contact for part in parts]),
-        direction=np.concatenate([part.direction for part in parts]),
+        **{name: np.concatenate([getattr(part, name) for part in parts]) for name in names},
     )
     return plan, failed
 

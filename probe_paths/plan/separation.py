@@ -18,9 +18,7 @@ from matstd.twin.frames import Array
 from matstd.twin.record import IntArray
 
 CORNERS = 8  # most corners of a body
-
 EXACT = 0.01  # accuracy of a gap that matters, mm
-
 _ROUNDS = 60  # of the search; cylinders beside cylinders took up to 35
 _INSIDE = 1e-7  # mm: nearer than this the bodies are in each other
 _NOISE = 1e-9  # of a direction across an axis, in mm as all directions here: rounding is 1e-14
@@ -50,8 +48,7 @@ class Hulls:
         reach = np.einsum("bki,bi->bk", self.corner, direction) + self.disc * size[:, None]
         row, best = np.arange(len(self)), np.argmax(reach, axis=1)
         share = self.disc[row, best] * _inverted(size)
-        point: Array = self.corner[row, best] + share[:, None] * across
-        return point
+        return self.corner[row, best] + share[:, None] * across
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,13 +82,12 @@ class Sweeps:
         share = self.radius * _inverted(np.linalg.norm(across, axis=1))
         height = np.where(along > 0.0, self.high, self.low)
         is_end = np.einsum("mi,mi->m", direction, self.way) > 0.0
-        point: Array = (
+        return (
             self.centre
             + height[:, None] * self.axis
             + share[:, None] * across
             + is_end[:, None] * self.way
         )
-        return point
 
 
 def balls_apart(sweeps: Sweeps, hulls: Hulls) -> Array:
@@ -120,7 +116,6 @@ def least_gaps(
         bound: Gaps that are never too large, (M,), mm.
         group: Of every row, (M,), from 0.
         enough: As of `gaps`, (M,), alike within a group.
-        search: Gaps of some rows, for their `enough`.
     """
     gap, limit = bound.copy(), enough.copy()
     order = np.lexsort((gap, group))
@@ -226,5 +221,4 @@ def _solved(gram: Array, right: Array) -> Array:
             return np.column_stack([x, y]) / determinant[:, None]
         adjoint = np.stack([np.cross(gram[:, (i + 1) % 3], gram[:, (i + 2) % 3]) for i in range(3)])
         determinant = np.einsum("mi,mi->m", gram[:, 0], adjoint[0])
-        solution: Array = np.einsum("imk,mi->mk", adjoint, right) / determinant[:, None]
-        return solution
+        return np.einsum("imk,mi->mk", adjoint, right) / determinant[:, None]

@@ -73,14 +73,8 @@ class ScanPoints:
         return len(self.q)
 
     def __getitem__(self, rows: IntArray) -> "ScanPoints":
-        return replace(
-            self,
-            row=self.row[rows],
-            line=self.line[rows],
-            q=self.q[rows],
-            deflection=self.deflection[rows],
-            time=self.time[rows],
-        )
+        per_point = ("row", "line", "q", "deflection", "time")
+        return replace(self, **{name: getattr(self, name)[rows] for name in per_point})
 
     def refuse(self, at: int, found: str, expected: str) -> BadFile:
         """A refusal that names the line of a point."""
@@ -112,7 +106,6 @@ def evaluate_scan(
     """Rows of a run from a scan of one freeform face; the set-up is fitted to it.
 
     Args:
-        face: Name of the face.
         radius: Of the ball, mm.
         length: From the gauge point to its centre, mm.
         setup: Where the standard is believed to stand.
@@ -163,11 +156,9 @@ def _averaged(points: ScanPoints, place: Array) -> tuple[ScanPoints, Array]:
     wide = same & (step > max(_LARGEST_STEP, _USUAL_STEPS * usual))
     if wide.any() and points.is_numbered:
         at = int(np.flatnonzero(wide)[0])
-        raise points.refuse(
-            at + 1,
-            f"a gap of {step[at]:.1f} mm in line {points.line[at]} of the scan",
-            f"points every {usual:.2f} mm, or another number for what follows",
-        )
+        found = f"a gap of {step[at]:.1f} mm in line {points.line[at]} of the scan"
+        expected = f"points every {usual:.2f} mm, or another number for what follows"
+        raise points.refuse(at + 1, found, expected)
     # a log without line numbers begins a new line at a gap: the probe was lifted there
     line = np.cumsum([1, *(~same | wide).astype(int)])
     along = np.concatenate([[0.0], np.cumsum(step)])
@@ -179,16 +170,10 @@ def _averaged(points: ScanPoints, place: Array) -> tuple[ScanPoints, Array]:
 
     def mean(values: Array) -> Array:
         sums = np.add.reduceat(values, first, axis=0)
-        return np.asarray(sums / count.reshape(-1, *([1] * (values.ndim - 1))))
+        return sums / count.reshape(-1, *([1] * (values.ndim - 1)))
 
-    some = points[first]
-    some = replace(
-        some,
-        line=line[first],
-        q=mean(points.q),
-        deflection=mean(points.deflection),
-        time=mean(points.time),
-    )
+    q, deflection, time = mean(points.q), mean(points.deflection), mean(points.time)
+    some = replace(points[first], line=line[first], q=q, deflection=deflection, time=time)
     return some, mean(place)
 
 
@@ -215,8 +200,7 @@ def _fitted(
         normal = patch.normal(uv)
         rows = np.concatenate([normal, np.cross(ball, normal) / _ARM], axis=1)
         step = np.linalg.lstsq(rows, gap, rcond=1e-6)[0]
-        turned = pose(rotation(step[3:] / _ARM), step[:3])
-        T_table_artefact = T_table_artefact @ turned
+        T_table_artefact = T_table_artefact @ pose(rotation(step[3:] / _ARM), step[:3])
         if np.abs(step).max() < 1e-2 * NM:
             break
         limit = max(LARGEST_GAP, 0.5 * limit)
@@ -224,12 +208,11 @@ def _fitted(
     uv = patch.project(ball)
     gap = _gaps(points, ball, uv, patch, radius, LARGEST_GAP)
     if rms(gap) > LARGEST_RMS:
-        raise points.refuse(
-            0,
-            f"deviations of {rms(gap):.2f} mm rms with the set-up fitted",
+        found = f"deviations of {rms(gap):.2f} mm rms with the set-up fitted"
+        expected = (
             f"at most {LARGEST_RMS:g} mm: another face, radius of the ball, or a filter that "
-            "takes off the radius of the tip",
         )
+        raise points.refuse(0, found, f"{expected}takes off the radius of the tip")
     return replace(setup, T_table_artefact=T_table_artefact), uv
 
 
@@ -253,14 +236,10 @@ def _gaps(
     if far.any():
         at = int(np.flatnonzero(far)[0])
         why = "another face, set-up, probe or unit" if far.mean() > 0.5 else "another face"
-        raise BadFile(
-            points.path,
-            f"line {points.row[at]}",
-            f"a point {gap[at]:.1f} mm from {patch.name} or beyond its edge, as "
-            f"{100.0 * far.mean():.0f} % of all",
-            f"points within {limit:g} mm of it: this is {why}",
-        )
-    return np.asarray(gap)
+        found = f"a point {gap[at]:.1f} mm from {patch.name} or beyond its edge, as "
+        found += f"{100.0 * far.mean():.0f} % of all"
+        raise points.refuse(at, found, f"points within {limit:g} mm of it: this is {why}")
+    return gap
 
 
 def _touches(
@@ -274,7 +253,7 @@ def _touches(
 ) -> Touches:
     """The record of all points."""
     count = len(points)
-    poses = points.q[:, [chain.axis_index(name) for name in chain.rotary_axes]]
+    poses = points.q[:, chain.rotary_columns]
     label = np.unique(np.round(poses, 6), axis=0, return_inverse=True)[1].reshape(-1)
     return replace(
         at_poses(chain, points.q, probe[1]),
@@ -296,9 +275,7 @@ def _with_deviations(touches: Touches, wanted: Array) -> Touches:
     shift = (wanted - computed_deviation(touches))[:, None] * touches.normal_table
     back = np.linalg.pinv(linear_directions(chain, touches.q))
     q = touches.q.copy()
-    q[:, [chain.axis_index(name) for name in chain.linear_axes]] += np.einsum(
-        "nmi,ni->nm", back, shift
-    )
+    q[:, chain.linear_columns] += np.einsum("nmi,ni->nm", back, shift)
     return replace(touches, q=q)
 
 

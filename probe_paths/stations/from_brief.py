@@ -36,12 +36,9 @@ def make_stations(
 
     Args:
         plans: As of `plan_campaign`, with the number of the probe.
-        words: Words of the control, for every probe.
     """
-    return tuple(
-        Station(plan, words[probe], make_programs(plan, words[probe], feeds))
-        for probe, plan in plans
-    )
+    named = ((plan, words[probe]) for probe, plan in plans)
+    return tuple(Station(plan, word, make_programs(plan, word, feeds)) for plan, word in named)
 
 
 def all_programs(stations: Sequence[Station]) -> ProgramSet:
@@ -94,12 +91,10 @@ def _is_tilted(brief: Brief, words: Dialect) -> bool:
         return False
     chain = brief.chain
     turns = [a for a in chain.rotary_axes if not chain.link(a).carries_workpiece]
-    for why in (
-        "a dialect with has_planes = true" if not words.has_planes else "",
-        f"axes on this machine, whose tool {turns[0]} turns" if turns else "",
-    ):
-        if why:
-            raise BadFile(brief.path, "workshop.strategy", repr("plane-spatial"), why)
+    if not words.has_planes or turns:
+        why = "a dialect with has_planes = true"
+        why = f"axes on this machine, whose tool {turns[0]} turns" if words.has_planes else why
+        raise BadFile(brief.path, "workshop.strategy", repr("plane-spatial"), why)
     return True
 
 

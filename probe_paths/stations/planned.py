@@ -43,7 +43,6 @@ def plan_campaign(
         probes: The one that the standard was designed for, then those for the remaining touches.
         clampings: The one that it was designed for, then others.
         requests: Wanted touches, at table poses of the first clamping.
-        options: How carefully; its workshop is that of each clamping.
 
     Raises:
         NotReachable: More requests of the first clamping refused by all probes than tolerated; a
@@ -52,12 +51,10 @@ def plan_campaign(
     out: list[tuple[int, TouchPlan]] = []
     for number, clamping in enumerate(clampings):
         here = replace(options, workshop=clamping.workshop)
-        wanted = (
-            requests
-            if number == 0
-            else _in_other_clamping(standard, chain, probes, clamping, requests)
-        )
-        tolerated = options.tolerated if number == 0 else len(wanted)
+        wanted, tolerated = requests, options.tolerated
+        if number:
+            wanted = _in_other_clamping(standard, chain, probes, clamping, requests)
+            tolerated = len(wanted)
         out += _plans(standard, chain, probes, clamping.setup, wanted, here, tolerated)
     return out
 
@@ -78,12 +75,9 @@ def _plans(
     for number, probe in enumerate(probes):
         if not len(left):
             break
-        here = replace(options, tolerated=most)
-        rows = (
-            np.concatenate([left, _repeated_ball_touches(standard, wanted, left)])
-            if number
-            else left
-        )
+        here, rows = replace(options, tolerated=most), left
+        if number:
+            rows = np.concatenate([left, _repeated_ball_touches(standard, wanted, left)])
         try:
             plan = plan_touches(standard, chain, probe, setup, wanted[rows], here)
         except NotReachable:
@@ -92,7 +86,8 @@ def _plans(
             continue  # the reasons of the first probe stand
         refused = [r for r in plan.refused if 0 <= r.request < len(left)]
         anchors = tuple(r for r in plan.refused if r.request < 0)
-        plan = replace(plan, request=_numbered(plan.request, rows), refused=anchors)
+        among_all = np.where(plan.request >= 0, rows[np.maximum(plan.request, 0)], plan.request)
+        plan = replace(plan, request=among_all, refused=anchors)
         left = left[[r.request for r in refused]] if refused else left[:0]
         for row, refusal in zip(left.tolist(), refused, strict=True):
             against.setdefault(row, replace(refusal, request=row))
@@ -119,11 +114,6 @@ def _repeated_ball_touches(standard: Standard, wanted: Requests, left: IntArray)
     return np.concatenate([here, elsewhere[: max(_LINKS - len(here), 0)]])
 
 
-def _numbered(request: IntArray, rows: IntArray) -> IntArray:
-    """Rows among all requests from rows among the remaining ones; -1 stays."""
-    return np.where(request >= 0, rows[np.maximum(request, 0)], request)
-
-
 def _in_other_clamping(
     standard: Standard,
     chain: Chain,
@@ -142,10 +132,10 @@ def _in_other_clamping(
     poses = np.unique(requests.rotary, axis=0)
     rotary, found = requests.rotary.copy(), np.zeros(len(requests), dtype=bool)
     for probe in probes:
-        reach = ProbeReach(
-            chain, clamping.setup, probe.shape, probe.length, workshop=clamping.workshop
-        )
-        lean, best = _by_lean(reach, requests, poses)
+        place = clamping.setup, probe.shape, probe.length
+        reach = ProbeReach(chain, *place, workshop=clamping.workshop)
+        lean = reach.everywhere(requests.point, requests.normal, poses)[1]  # (N, K)
+        best = np.argsort(lean, axis=1, kind="stable")
         # attempt -1 is the pose of the first clamping
         for attempt in range(-1, min(_POSES_TRIED, len(poses))):
             rows = np.flatnonzero(~found)
@@ -161,9 +151,3 @@ def _in_other_clamping(
             f"set-up {clamping.setup.name}: none of {len(requests)} touches can be made there"
         )
     return replace(requests, rotary=rotary)[found]
-
-
-def _by_lean(reach: ProbeReach, requests: Requests, poses: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Angle between normal and tool at every pose (N, K), and the poses in increasing order."""
-    _, lean = reach.everywhere(requests.point, requests.normal, poses)
-    return lean, np.argsort(lean, axis=1, kind="stable")

@@ -26,8 +26,8 @@ class LawCurve:
     """A law over one of its variables, and what every touch shows of it.
 
     A touch feels the carrier by a lever: its residual with the law put back, over the lever, is
-    what it says of the curve. Of a product of two shapes the lever holds what the other shape is
-    at the touch.
+    what it says of the curve. Of a law over two variables the lever holds what the shape of the
+    other one is at the touch.
     """
 
     title: str  # `EBY`
@@ -43,18 +43,19 @@ class LawCurve:
     put_back: Array  # residual with the law put back over the lever, in `unit`, (N,)
 
 
-def law_curve(learning: Learning, law: Law, k: int) -> LawCurve:
-    """The curve of a law over the variable of its k-th factor."""
-    fit, driver = learning.after, law.factors[k].driver
+def law_curve(learning: Learning, law: Law, driver: Driver) -> LawCurve:
+    """The curve of a law over one of its variables."""
+    fit = learning.after
     x = driver.values(fit.run.touches)
     used = x[fit.used]
     label, per = axis_label(driver, used)
-    beyond = BEYOND * float(np.ptp(used)) if law.factors[k].shape.word == "curve" else 0.0
+    is_curve = any(f.shape.word == "curve" and f.driver == driver for f in law.factors)
+    beyond = BEYOND * float(np.ptp(used)) if is_curve else 0.0
     grid = np.linspace(float(used.min()) - beyond, float(used.max()) + beyond, CURVE_POINTS)
     if driver.nature == "sign":
         grid = np.array([-1.0, 1.0])
-    value, u = curve_of(learning, law, k, grid)
-    at_touches, _ = curve_of(learning, law, k, x)
+    value, u = curve_of(learning, law, driver, grid)
+    at_touches, _ = curve_of(learning, law, driver, x)
     lever = _levers(learning, law, at_touches)
     both, _ = partial_residual(learning, law)
     scale = URAD if law.carrier.is_angular else UM
@@ -81,8 +82,8 @@ def _levers(learning: Learning, law: Law, value: Array) -> Array:
     size = float(np.abs(value).max()) or 1.0
     way = int(np.argmax(np.abs(theta.reshape(law.carrier.count, -1)).sum(axis=1)))
     lever = law.carrier.columns(fit.run.touches)[:, way]
-    if len(law.factors) > 1 or law.carrier.count > 1:
-        # what the touch shows of the drawn value holds the other factor and the other ways, too
+    if len(law.drivers) > 1 or law.carrier.count > 1:
+        # what the touch shows of the drawn value holds the other variable and the other ways, too
         lever = np.divide(felt, value, out=np.zeros_like(felt), where=np.abs(value) > 0.05 * size)
     seen = np.abs(lever) > MIN_LEVER * float(np.abs(lever).max(initial=1e-300))
     return np.where(seen, lever, np.nan)

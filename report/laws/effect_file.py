@@ -1,12 +1,15 @@
 """`effect.py`: a law as an effect of the user's own, in thirty lines to be renamed and refined."""
 
+import keyword
+import math
+import re
 from collections.abc import Sequence
 
 import numpy as np
 
-from matstd.diagnosis.laws import Estimate, Learning, amplitudes, places
+from matstd.diagnosis.laws import Estimate, Learning, amplitudes, curve_of, places
 from matstd.report.laws.law_words import amplitude_words, formula_words, place_words
-from matstd.twin.laws import Law
+from matstd.twin.laws import Driver, Law
 from matstd.twin.units import UM, URAD
 
 HEAD = '''"""{title}
@@ -30,7 +33,7 @@ class {name}(Declared):
     """{summary}"""
 {fields}
     kind{acts} = "{kind}"{entry}
-    parameters = ({parameters},)
+    parameters = {parameters}
 
     def {method}(self, touches):
 {body}
@@ -53,17 +56,18 @@ goes beyond the domain: there it has died away."""
 def effect_text(learning: Learning, run: str) -> str:
     """Text of `effect.py`."""
     names = learning.effect_names
-    blocks = [
+    body = "".join(
         _class(learning, one.law, name, run) for one, name in zip(learning.laws, names, strict=True)
+    )
+    used = [
+        ("matstd.twin.laws", ("SHAPES", "carrier_of", "driver_of", "play"), r"\b{}[([]"),
+        ("matstd.twin.model", ("Declared", "Kind", "Parameter", "scanned"), r"\b{}\b"),
+        ("matstd.twin.units", ("UM", "URAD"), r" {}\b"),
     ]
-    body = "".join(blocks)
-    laws = [law for law in ("SHAPES", "carrier_of", "driver_of", "play") if f"{law}(" in body]
-    model = ["Declared", "Kind", "Parameter"]
-    model += [word for word in ("Term", "scanned") if f"{word}(" in body]
-    units = [word for word in ("DEG", "HOUR", "MINUTE", "UM", "URAD") if f" {word}" in body]
-    imports = [f"from matstd.twin.laws import {', '.join(laws)}"] if laws else []
-    imports.append(f"from matstd.twin.model import {', '.join(model)}")
-    imports += [f"from matstd.twin.units import {', '.join(units)}"] if units else []
+    imports = []
+    for module, words, pattern in used:
+        found = [word for word in words if re.search(pattern.format(word), body)]
+        imports += [f"from {module} import {', '.join(found)}"] if found else []
     titles = "; ".join(formula_words(one.law) for one in learning.laws)
     title = f"{titles}." if len(titles) < 95 else "Laws that matstd learn found."
     head = HEAD.format(title=title, first=names[0], run=run, imports="\n".join(imports))
@@ -74,18 +78,18 @@ def _class(learning: Learning, law: Law, kind: str, run: str) -> str:
     """The class of one law with its card."""
     name = "".join(word.capitalize() for word in kind.split("-"))
     estimates = places(learning, law)
+    fields = [_field(law, i, e) for i, e in enumerate(estimates) if i in _free(law)]
     is_entry = law.carrier.symbol is not None or law.carrier.name == "bias"
     entry = f', "{law.carrier.name}"' if is_entry else ""
     typical = "; ".join(amplitude_words(a) for a in amplitudes(learning, law)[:3])
     return CLASS.format(
         name=name,
         summary=f"{formula_words(law)}.",
-        fields="".join(_field(law, i, e) for i, e in enumerate(estimates) if i in law.free)
-        + ("\n" if law.free else ""),
+        fields="".join(fields) + ("\n" if fields else ""),
         acts=", acts_on" if is_entry else "",
         kind=kind,
         entry=entry,
-        parameters=", ".join(_parameter(p) for p in _parameters(learning, law)),
+        parameters=_tuple([_parameter(p) for p in _parameters(learning, law)], 4),
         method="amounts" if is_entry else "terms",
         body=_body(learning, law, estimates, is_entry),
         constant=kind.upper().replace("-", "_"),
@@ -101,7 +105,21 @@ _UNITS = {"mm": "µm", "rad": "µrad"}
 
 def _units(law: Law) -> list[str]:
     """`x0: mm` of every parameter that the run determines."""
-    return [f"{law.place_names[i]}: {law.units[i]}" for i in law.free]
+    return [f"{law.place_names[i]}: {law.units[i]}" for i in _free(law)]
+
+
+def _free(law: Law) -> tuple[int, ...]:
+    """Parameters that stand in the file: of a curve over a single variable the table holds all."""
+    return () if law.is_curve_alone and len(law.drivers) == 1 else law.free
+
+
+def _tuple(parts: Sequence[str], indent: int) -> str:
+    """A tuple on one line, or on a line each."""
+    line = f"({', '.join(parts)},)" if len(parts) == 1 else f"({', '.join(parts)})"
+    if len(line) < 80:
+        return line
+    inner = "".join(f"{' ' * (indent + 4)}{part},\n" for part in parts)
+    return f"(\n{inner}{' ' * indent})"
 
 
 def _field_name(name: str) -> str:
@@ -117,9 +135,11 @@ def _field(law: Law, index: int, one: Estimate) -> str:
     if one.name.split("-")[0] in ("w", "wa", "wb", "period", "p"):
         half = min(half, 0.5 * abs(one.value))
     acts = ', acts="at an instant"' if jumps and is_time else ""
-    found = f"{one.value:.6g}"
+    decimals = 2 - math.floor(math.log10(half))
+    found = f"{round(one.value, decimals + 2):.12g}"
     note = f"  # found {place_words(one)}" if one.u else ""
-    grid = f"np.linspace({one.value - half:.6g}, {one.value + half:.6g}, 9)"
+    low, high = (round(one.value + sign * half, decimals) for sign in (-1.0, 1.0))
+    grid = f"np.linspace({low:.12g}, {high:.12g}, 9)"
     line = f'    {_field_name(one.name)}: float = scanned("{unit}", {grid}, {found}{acts})'
     return f"\n{line}" if len(line) + len(note) > 99 else f"\n{line}{note}"
 
@@ -144,46 +164,64 @@ def _parameter(one: Estimate) -> str:
 
 
 def _body(learning: Learning, law: Law, estimates: Sequence[Estimate], is_entry: bool) -> str:
-    """Lines of the method: the variable, the shape, and what it moves."""
-    lines, start, products = [], 0, [""]
-    for k, factor in enumerate(law.factors):
-        x = "x" if len(law.factors) == 1 else f"x{k + 1}"
-        lines.append(f"{x} = {_variable(factor.driver.name)}")
-        count = len(factor.shape.places)
-        if factor.shape.word == "curve":
-            found = [_table(learning, law, k)]
-        else:
-            values = {}
-            for i, name in enumerate(factor.shape.places):
-                is_field = (start + i) in law.free
-                own = estimates[start + i]
-                values[name] = f"self.{_field_name(own.name)}" if is_field else f"{own.value:.6g}"
-            found = [_with(code, x).format(**values) for code in factor.shape.code]
-        products = [f"{a} * {_bracketed(b)}" if a else b for a in products for b in found]
-        start += count
-    if is_entry:
-        lines.append(f"return ({', '.join(products)},)")
+    """Lines of the method: the variables, the shapes, and what they move."""
+    names = {driver: _identifier(driver.name) for driver in law.drivers}
+    lines = [f"{names[driver]} = {_variable(driver.name)}" for driver in law.drivers]
+    shapes = _shapes(learning, law, estimates, names)
+    if len(shapes) == 1:
+        products = _tuple(shapes[0], 8)
     else:
-        lines.append(f"amounts = ({', '.join(products)},)")
-        lines.append(f'entries = carrier_of("{law.carrier.name}", touches.chain).entries(touches)')
-        m = len(products)
-        lines.append("return tuple(")
-        lines.append(f"    Term({m} * way + k, where, factor * amount)")
-        lines.append("    for way, where, factor in entries")
-        lines.append("    for k, amount in enumerate(amounts)")
-        lines.append(")")
+        one, other = (_identifier(f.shape.word) for f in law.factors)
+        other = f"{other}_2" if one == other else other
+        for name, code in zip((one, other), shapes, strict=True):
+            lines.append(f"{name} = {code[0] if len(code) == 1 else _tuple(code, 8)}")
+        several = [(n, n[0]) for n, code in zip((one, other), shapes, strict=True) if len(code) > 1]
+        loops = " ".join(f"for {letter} in {name}" for name, letter in several)
+        parts = dict(several)
+        product = f"{parts.get(one, one)} * {parts.get(other, other)}"
+        products = f"tuple({product} {loops})" if several else f"({product},)"
+    if not is_entry:
+        lines.append(f'carrier = carrier_of("{law.carrier.name}", touches.chain)')
+        products = f"carrier.terms(touches, {products})"
+    lines.append(f"return {products}")
     return "\n".join(f"        {line}" for line in lines)
+
+
+def _shapes(
+    learning: Learning, law: Law, estimates: Sequence[Estimate], names: dict[Driver, str]
+) -> list[list[str]]:
+    """Code of every coefficient of every shape; of a curve over a single variable one table."""
+    if law.is_curve_alone and len(law.drivers) == 1:
+        curve = next(k for k, f in enumerate(law.factors) if f.shape.word == "curve")
+        return [[_table(learning, law, curve, names[law.drivers[0]])]]
+    written = [
+        f"self.{_field_name(one.name)}" if i in law.free else f"{one.value:.6g}"
+        for i, one in enumerate(estimates)
+    ]
+    out = []
+    for k, (factor, own) in enumerate(law.parts):
+        values, x = dict(zip(factor.shape.places, written[own], strict=True)), names[factor.driver]
+        code = [_with(c, x).format(**values) for c in _from_zero(factor.shape.code, values)]
+        out.append(code or [_table(learning, law, k, x)])
+    return out
+
+
+def _from_zero(code: Sequence[str], values: dict[str, str]) -> Sequence[str]:
+    """Expressions without a zero that is 0."""
+    if values.get("zero") != "0":
+        return code
+    return [c.replace("(x - {zero})", "x").replace("x - {zero}", "x") for c in code]
 
 
 def _with(code: str, x: str) -> str:
     """The expression with its own variable; `x0`, `np.exp` and the like stay."""
-    import re
-
     return re.sub(r"(?<![\w{.])x(?![\w}])", x, code)
 
 
-def _bracketed(code: str) -> str:
-    return code if code.startswith("np.") and code.count("(") == 1 else f"({code})"
+def _identifier(name: str) -> str:
+    """A name for Python: `y` of Y, `spindle` of T-spindle, `bump_after` of bump-after."""
+    word = name.removeprefix("T-").removeprefix("V-").replace("-", "_").lower()
+    return f"{word}_" if keyword.iskeyword(word) or word in ("np", "self", "touches") else word
 
 
 def _variable(name: str) -> str:
@@ -203,16 +241,15 @@ def _variable(name: str) -> str:
     return f'driver_of("{name}", touches.chain).values(touches)'
 
 
-def _table(learning: Learning, law: Law, factor: int) -> str:
-    """A curve without a formula as a table between which is interpolated, its largest value 1."""
-    from matstd.diagnosis.laws import curve_of
-
-    start = 0 if factor == 0 else len(law.factors[0].shape.places)
-    low, high, length, _ = law.places[start : start + 4]
+def _table(learning: Learning, law: Law, k: int, x: str) -> str:
+    """A curve without a formula as a table to be interpolated in, its largest value 1."""
+    low, high, length, _ = law.places[law.parts[k][1]]
     flank = CURVE_FLANKS * length * (high - low)
     low, high = low - flank, high + flank
-    x = np.linspace(low, high, CURVE_KNOTS)
-    y, _ = curve_of(learning, law, factor, x)
+    y, _ = curve_of(learning, law, law.factors[k].driver, np.linspace(low, high, CURVE_KNOTS))
     y = y / max(float(np.abs(y).max()), 1e-300)
     knots = f"np.linspace({low:.6g}, {high:.6g}, {CURVE_KNOTS})"
-    return f"np.interp(x, {knots}, [{', '.join(f'{v:.3f}' for v in y)}])"
+    values = [f"{v:.3f}" for v in y]
+    rows = [", ".join(values[i : i + 10]) for i in range(0, len(values), 10)]
+    table = ",\n".join(f"{' ' * 12}{row}" for row in rows)
+    return f"np.interp({x}, {knots}, [\n{table},\n        ])"

@@ -183,7 +183,7 @@ def _rivals(learning: Learning, one: LearntLaw) -> Section:
         [
             formula_words(law),
             carrier_words(law.carrier),
-            ", ".join(dict.fromkeys(variable_words(f.driver) for f in law.factors)),
+            ", ".join(variable_words(driver) for driver in law.drivers),
             "–" if i == 0 else odds_words(odds),
             f"{100 * members[law.name]:.0f} %" if law.name in members else "",
         ]

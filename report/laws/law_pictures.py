@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 
 from matstd.diagnosis.laws import Learning
-from matstd.report.laws.curves import axis_label, law_curve
+from matstd.diagnosis.regression import BoolArray
+from matstd.report.laws.curves import LawCurve, axis_label, law_curve
 from matstd.report.style import (
     BLUE,
     FAINT,
@@ -24,24 +25,21 @@ from matstd.twin.units import UM
 def draw_law(learning: Learning, law: Law) -> Figure:
     """The law over each of its variables, with ± 2 u, and the touches with the law put back.
 
-    A touch feels the carrier by a lever: its residual with the law put back is divided by it. Of a
-    product of two shapes touches are drawn by what the other shape is at them.
+    A touch feels the carrier by a lever: its residual with the law put back is divided by it.
     """
-    count = len(law.factors)
     drawn = figure(3.4)
-    every = np.atleast_1d(drawn.subplots(1, count))
-    for k, ax in enumerate(every):
-        _panel(ax, learning, law, k)
+    every = np.atleast_1d(drawn.subplots(1, len(law.drivers)))
+    for ax, driver in zip(every, law.drivers, strict=True):
+        _panel(ax, law_curve(learning, law, driver), learning.after.used)
     unit = "µrad" if law.carrier.is_angular else "µm"
     every[0].set_ylabel(f"{law.carrier.name} in {unit}")
     every[0].legend(fontsize=8, frameon=False)
     return drawn
 
 
-def _panel(ax: Any, learning: Learning, law: Law, k: int) -> None:
-    """One variable of a law."""
-    curve = law_curve(learning, law, k)
-    seen = learning.after.used & np.isfinite(curve.put_back)
+def _panel(ax: Any, curve: LawCurve, used: BoolArray) -> None:
+    """A law over one of its variables."""
+    seen = used & np.isfinite(curve.put_back)
     points = curve.put_back[seen]
     ax.plot(curve.touch_x[seen], points, ".", ms=2.5, color=FAINT, label="touches")
     low, high = curve.value - 2.0 * curve.u, curve.value + 2.0 * curve.u
@@ -56,7 +54,7 @@ def _panel(ax: Any, learning: Learning, law: Law, k: int) -> None:
 
 def draw_before_after(learning: Learning) -> Figure:
     """Residual over every variable of the laws, without and with them, on one scale."""
-    drivers = list(dict.fromkeys(f.driver for one in learning.laws for f in one.law.factors))[:3]
+    drivers = list(dict.fromkeys(d for one in learning.laws for d in one.law.drivers))[:3]
     drawn = figure(4.2)
     axes = drawn.subplots(2, len(drivers), sharey=True, squeeze=False)
     limit = robust_limit(learning.before.residual[learning.before.used] / UM, 0.995)

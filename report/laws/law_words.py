@@ -17,7 +17,7 @@ from matstd.diagnosis.laws import (
 )
 from matstd.report.numbers import digits, microns, with_uncertainty
 from matstd.twin.laws import Carrier, Driver, Factor, Law, drivers
-from matstd.twin.units import DEG, MINUTE, UM, URAD
+from matstd.twin.units import DEG, HOUR, MINUTE, UM, URAD
 from matstd.twin.words import listed
 
 _VARIABLES = {
@@ -49,7 +49,7 @@ _SHAPES = {
     "bump-after": "a bump that begins at its top",
     "pulse": "a pulse that dies away",
     "step": "a step",
-    "window": "a sector within which it acts",
+    "window": "a window",
     "ramp": "a ramp",
     "plateau": "a plateau with flanks",
     "kink": "a kink",
@@ -61,12 +61,13 @@ _SHAPES = {
     "two-exp": "two exponentials",
     "log": "a logarithm",
     "sine": "a sine",
-    "harmonic": "waves of a turn",
+    "harmonic": "waves a turn",
     "square": "a square wave",
     "saw": "a saw-tooth",
     "half-wave": "a half-wave",
     "hysteresis": "a hysteresis loop",
     "play": "a play that follows",
+    "beyond": "what is not known beyond the probed range",
     "curve": "a smooth curve without a formula",
 }
 _COURSE = (
@@ -122,21 +123,33 @@ def carrier_words(carrier: Carrier) -> str:
 
 
 def formula_words(law: Law) -> str:
-    """`EZX = a exp(-((Y - x0)/w)^2)`."""
+    """`EZX = a exp(-((Y - x0)/w)^2)`, with the numbers that no run determines."""
     parts = []
-    for factor in law.factors:
+    for factor, own in law.parts:
         text, _, u = factor.shape.formula.partition(", u = ")
-        x = factor.driver.name
-        if u:
-            text = text.replace("u", f"({_replaced(u, x)})", 1) if "u" in text else text
-        text = _replaced(text, x)
+        text = re.sub(r"\bu\b", f"({u})", text)
+        for place, name, value in zip(
+            factor.shape.places, law.place_names[own], law.places[own], strict=True
+        ):
+            if place == "zero" and value == 0.0:
+                text = text.replace("(x - zero)", "x").replace("x - zero", "x")
+            is_number = place in ("zero", "unit", "k")
+            word = _fixed_words(value, "" if place == "k" else factor.driver.unit)
+            text = re.sub(rf"\b{place}\b", word if is_number else name, text)
+        text = re.sub(r"\bx\b", factor.driver.name, text)
         parts.append(f"[{text}]" if len(law.factors) > 1 else text)
     lead = "" if any(len(f.shape.coefficients) > 1 for f in law.factors) else "a "
     return f"{law.carrier.name} = {lead}{' '.join(parts)}"
 
 
-def _replaced(text: str, x: str) -> str:
-    return re.sub(r"\bx\b", x, text)
+def _fixed_words(value: float, unit: str) -> str:
+    """`20 °C`, `300 mm`, `h`: a number of a formula that follows from the machine."""
+    if unit == "s":
+        value, unit = value / HOUR, "h"
+    if unit == "1/min":
+        return f"({value:g}/min)"
+    unit = unit.replace("degC", "°C")
+    return unit if unit and value == 1.0 else f"{value:g} {unit}".strip()
 
 
 def amplitude_words(one: Estimate) -> str:
@@ -161,22 +174,19 @@ def place_words(one: Estimate) -> str:
 
 def law_sentence(learning: Learning, one: LearntLaw) -> str:
     """What was learnt: where it moves the tool, what carries it, its shape with all numbers."""
-    law, left, shapes = one.law, places(learning, one.law), []
-    for factor in law.factors:
-        count = len(factor.shape.places)
-        shapes.append((factor, [p for p in left[:count] if p.u is not None]))
-        left = left[count:]
-    size = _size(learning, law)
-    if len(shapes) > 1 or law.is_curve_alone:
-        what = f"{' times '.join(_shape_words(*s) for s in shapes)}, {size}"
-    else:
-        what = _shape_words(*shapes[0], size)
+    law, numbers, size = one.law, places(learning, one.law), _size(learning, one.law)
+    is_plain = len(law.factors) == 1 and not law.is_curve_alone
+    what = " times ".join(
+        _shape_words(factor, numbers[own], size if is_plain else "") for factor, own in law.parts
+    )
+    what += "" if is_plain else f", {size}"
     return f"{_carried_words(law.carrier, one.alike)}: {what}".replace("  ", " ") + "."
 
 
 def short_words(law: Law) -> str:
     """A law without its numbers: `EBY as a parabola over the temperature spindle`."""
-    shapes = " times ".join(_shape_words(factor, ()) for factor in law.factors)
+    fixed = [Estimate(n, v, None, "1") for n, v in law.tuning.items()]
+    shapes = " times ".join(_shape_words(factor, fixed[own]) for factor, own in law.parts)
     return f"{carrier_words(law.carrier)} as {shapes}"
 
 
@@ -193,11 +203,18 @@ def _carried_words(carrier: Carrier, alike: Sequence[Carrier]) -> str:
 
 
 def _shape_words(factor: Factor, numbers: Sequence[Estimate], size: str = "") -> str:
-    """`a bump of -10.3 ± 0.3 µm over Y at 7.7 ± 0.6 mm (w 48.0 ± 1.4 mm)`."""
-    plain = [p._replace(name=p.name.removesuffix("-2")) for p in numbers]
+    """`a bump of -10.3 ± 0.3 µm over Y at 7.7 ± 0.6 mm (w 48.0 ± 1.4 mm)`.
+
+    Args:
+        numbers: Parameters of the shape; those with an uncertainty are stated.
+    """
+    plain = [p._replace(name=p.name.removesuffix("-2")) for p in numbers if p.u is not None]
     edges = [place_words(p).split(maxsplit=1)[1] for p in plain if p.name in _EDGES]
     others = [place_words(p) for p in plain if p.name not in _EDGES]
-    words = _SHAPES[factor.shape.word] + (f" of {size}" if size else "")
+    words = _SHAPES[factor.shape.word]
+    if factor.shape.word == "harmonic":
+        words = f"{numbers[0].value:.0f} {words}" if numbers[0].value > 1 else "one wave a turn"
+    words += f" of {size}" if size else ""
     words += f" over {variable_words(factor.driver)}"
     if edges:
         words += f" from {edges[0]} to {edges[1]}" if len(edges) > 1 else f" at {edges[0]}"

@@ -108,9 +108,7 @@ def _law_sizes(learning: Learning) -> dict[str, str]:
 def _curves(learning: Learning) -> dict[str, list[LawCurve]]:
     """Of every law, over each of its variables."""
     laws = [one.law for one in learning.laws]
-    return {
-        law.name: [law_curve(learning, law, k) for k in range(len(law.factors))] for law in laws
-    }
+    return {law.name: [law_curve(learning, law, driver) for driver in law.drivers] for law in laws}
 
 
 def comparison_view(found: Comparison, title: str, body: Array | None = None) -> LiveView:

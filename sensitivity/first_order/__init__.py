@@ -11,17 +11,7 @@ from matstd.sensitivity.first_order.normal_lengths import NormalLength, normal_l
 from matstd.sensitivity.first_order.workspace import Box, Workspace, latin_hypercube, section
 
 __all__ = [
-    "Box",
-    "NormalLength",
-    "Workspace",
-    "covariance",
-    "jacobian",
-    "jacobian_by_parameter",
-    "latin_hypercube",
-    "normal_length",
-    "rms",
-    "section",
-    "sensitivity",
-    "variance_parts",
+    "Box", "NormalLength", "Workspace", "covariance", "jacobian", "jacobian_by_parameter",
+    "latin_hypercube", "normal_length", "rms", "section", "sensitivity", "variance_parts",
     "variance_shares",
-]
+]  # fmt: skip

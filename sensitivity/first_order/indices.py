@@ -14,17 +14,11 @@ _PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))  # entries of a symmet
 
 
 def mean_squares(population: Population, q: Array) -> Array:
-    """Expected square of every error at the readings of every pose, in closed form.
+    """Expected square of every error at the readings of every pose, (N, P), in closed form.
 
     ``E[e^2] = E[a^2] mean(f^2)`` over the shapes that may be drawn, each with its chance and with
     ``f^2 = 1/2`` for a sine of random phase. The errors have mean zero, because their signs are
     drawn evenly.
-
-    Args:
-        q: Readings, shape (N, A).
-
-    Returns:
-        Shape (N, P) over the symbols of the chain, mm^2 and rad^2.
     """
     chain = population.chain
     q = checked_readings(chain, q)
@@ -53,17 +47,11 @@ def _mean_square(population: Population, q: Array, axis: str, mix: Mix) -> Array
 
 
 def mixed_moments(population: Population, q: Array) -> Iterator[tuple[int, int, Array]]:
-    """Expected product of every two errors that depend on each other, at every pose.
+    """Places of every two errors that depend on each other, and their expected products, (N,).
 
     ``E[a b] mean(f g)``. Shapes that are drawn apart have ``mean(f) mean(g)``, in which a sine of
     random phase has mean zero; shapes drawn together ``mean(f g)``, with ``cos(x - y)/2`` for two
     sines of the same phase at the arguments x and y.
-
-    Args:
-        q: Readings, shape (N, A).
-
-    Yields:
-        Places of both errors among the symbols of the chain, and the products (N,).
     """
     dependence, factor, some = population.dependence, population.score_factor, population.dependent
     if dependence is None or factor is None:

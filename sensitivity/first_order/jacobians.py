@@ -46,12 +46,14 @@ class _Run(NamedTuple):
     directions: slice  # as many of x, y, z
 
 
-def jacobian_by_parameter(
+def jacobian(
     chain: Chain, q: Array, length: Array | float, symbols: Sequence[Symbol] | None = None
 ) -> Array:
-    """First-order deviation of the tool point per unit of every error parameter, parameter first.
+    """First-order deviation of the tool point per unit of every error parameter.
 
-    As `matstd.sensitivity.first_order.jacobians.jacobian`, in the fastest order of memory.
+    ``dp/dE`` in closed form: a component error by the twist of its axis, a location or set-up
+    error by the displacement of its link. A component error counts with the value it has at the
+    reading of the pose, whatever its distribution.
 
     Args:
         q: Readings, shape (N, A), mm and rad.
@@ -59,11 +61,18 @@ def jacobian_by_parameter(
         symbols: P parameters; None for all of `chain.symbols`, in that order.
 
     Returns:
-        Shape (P, 3, N), table frame, mm/mm and mm/rad.
+        Shape (N, P, 3), table frame, mm/mm and mm/rad.
 
     Reference:
         D-MT paper, eq. (3); the influence matrix of Bringmann and Knapp.
     """
+    return np.moveaxis(jacobian_by_parameter(chain, q, length, symbols), -1, 0)
+
+
+def jacobian_by_parameter(
+    chain: Chain, q: Array, length: Array | float, symbols: Sequence[Symbol] | None = None
+) -> Array:
+    """As `jacobian`, (P, 3, N): in the fastest order of memory."""
     q = checked_readings(chain, q)
     symbols = chain.symbols if symbols is None else symbols
     length = np.broadcast_to(np.asarray(length, dtype=float), (len(q),))
@@ -99,10 +108,8 @@ def _runs(chain: Chain, symbols: Sequence[Symbol]) -> list[_Run]:
         run = _Run(chain.link_index(symbol.link), *kind, slice(p, p + 1), slice(i, i + 1))
         last = runs[-1] if runs else None
         if last and last[:3] == run[:3] and last.directions.stop == i:
-            columns, directions = (
-                slice(last.columns.start, p + 1),
-                slice(last.directions.start, i + 1),
-            )
+            columns = slice(last.columns.start, p + 1)
+            directions = slice(last.directions.start, i + 1)
             runs[-1] = run._replace(columns=columns, directions=directions)
         else:
             runs.append(run)
@@ -135,7 +142,7 @@ def _walk(chain: Chain, q: Array, length: Array) -> list[PoseCache]:
     """Every link as seen from the table, in chain order."""
     axes: Array = np.eye(3)[:, _XYZXY, None]
     t = -chain.table_origin[_XYZXY, None]
-    passed: list[tuple[Array, Array, Array, Array]] = []
+    passed: list[PoseCache] = []
     for link in chain.links:
         before = axes
         if link.carries_workpiece:  # the point stays with the body on the table's side
@@ -150,18 +157,12 @@ def _walk(chain: Chain, q: Array, length: Array) -> list[PoseCache]:
             t = _lever(t, axes, -link.point)
         if not link.carries_workpiece:  # the point is carried by the axis's own body
             lever = _lever(t, axes, link.point)
-        passed.append((before, axes, lever, reading))
-    tip = t - axes[2] * length
-    return [
-        PoseCache(
-            before=before,
-            after=after,
-            carrier=after if link.carries_workpiece else before,
-            arm=tip - lever,
-            reading=reading,
+        carrier = axes if link.carries_workpiece else before
+        passed.append(
+            PoseCache(before=before, after=axes, carrier=carrier, arm=-lever, reading=reading)
         )
-        for link, (before, after, lever, reading) in zip(chain.links, passed, strict=True)
-    ]
+    tip = t - axes[2] * length
+    return [link._replace(arm=tip + link.arm) for link in passed]
 
 
 def _along(axes: Array, v: Array) -> Array:
@@ -182,8 +183,7 @@ def _turned(axes: Array, direction: Array, angle: Array) -> Array:
     main = int(np.argmax(np.abs(direction)))
     if np.count_nonzero(direction) > 1 or direction[main] < 0.0:
         turning = np.moveaxis(rotation(angle[:, None] * direction), 0, -1)
-        out: Array = np.sum(axes[:, None] * turning[:, :, None], axis=0)
-        return out
+        return np.asarray(np.sum(axes[:, None] * turning[:, :, None], axis=0))
     c, s = np.cos(angle), np.sin(angle)
     i, j = (main + 1) % 3, (main + 2) % 3
     out = np.empty((3, 5, len(angle)))
@@ -211,48 +211,13 @@ def _displaced(link: Link, stand: PoseCache, directions: slice, is_angular: bool
     return _along(stand.carrier, link.direction)[None]
 
 
-def jacobian(
-    chain: Chain, q: Array, length: Array | float, symbols: Sequence[Symbol] | None = None
-) -> Array:
-    """First-order deviation of the tool point per unit of every error parameter.
-
-    ``dp/dE`` in closed form: a component error by the twist of its axis, a location or set-up
-    error by the displacement of its link (`matstd.sensitivity.first_order.jacobians`). A
-    component error counts with the value it has at the reading of the pose, whatever its
-    distribution.
-
-    Args:
-        q: Readings, shape (N, A), mm and rad.
-        length: Tool length, scalar or (N,), mm.
-        symbols: P parameters; None for all of `chain.symbols`, in that order.
-
-    Returns:
-        Shape (N, P, 3), table frame, mm/mm and mm/rad.
-
-    Reference:
-        D-MT paper, eq. (3); the influence matrix of Bringmann and Knapp.
-    """
-    return np.moveaxis(jacobian_by_parameter(chain, q, length, symbols), -1, 0)
-
-
 def sensitivity(
     chain: Chain, q: Array, length: Array | float, symbols: Sequence[Symbol] | None = None
 ) -> Array:
-    """``S = |dp/dE|`` of every error parameter at every pose.
+    """``S = |dp/dE|`` of every error parameter at every pose, (N, P), mm/mm and mm/rad.
 
     It is one for every translational component error, and the distance from the axis of rotation
     for an angular one. What a touch can determine follows from the signed ``n . dp/dE``
-    (`matstd.information.criteria.posterior`).
-
-    Args:
-        q: Readings, shape (N, A), mm and rad.
-        length: Tool length, scalar or (N,), mm.
-        symbols: P parameters; None for all of `chain.symbols`.
-
-    Returns:
-        Shape (N, P), mm/mm (the same in µm/µm) and mm/rad.
-
-    Reference:
-        D-MT paper, eq. (3).
+    (`matstd.information.criteria.posterior`). Arguments and reference are those of `jacobian`.
     """
     return np.linalg.norm(jacobian(chain, q, length, symbols), axis=-1)

@@ -14,15 +14,16 @@ few of them make the deviation, Monte Carlo is right and this is the check besid
 
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from matstd.twin.frames import Array
+from matstd.twin.sampling import grid_points
 
 LEVELS = (0.5, 0.95, 0.99)
 _START = (0.67, 1.6, 1.94)  # below every quantile of a length with root mean square one
-_KNOTS = 17  # of the integrated table, in each ratio
-_FINE = 241  # of the table that is read linearly, made of the other by splines
+_KNOTS = 17  # of the splines, in each ratio
 _NODES = 32  # of the quadrature, in each of two angles
 
 
@@ -47,77 +48,36 @@ class NormalLength:
 
 
 def normal_length(C: Array) -> NormalLength:
-    """Mean and quantiles of |d| for d ~ N(0, C).
-
-    Args:
-        C: Covariances, shape (N, 3, 3), mm^2.
-    """
-    first, second, third = np.sqrt(principal(C))
+    """Mean and quantiles of |d| for d ~ N(0, C), covariances of shape (N, 3, 3), mm^2."""
+    third, second, first = np.sqrt(np.maximum(np.linalg.eigvalsh(C), 0.0)).T
     rms = np.sqrt(first**2 + second**2 + third**2)
-    table = _table()
-    whole = [np.divide(a, b, out=np.zeros_like(a), where=b > 0.0) for a, b in
-             ((second, first), (third, second))]  # fmt: skip
-    at = [np.clip(w, 0.0, 1.0) * (_FINE - 1) for w in whole]
-    (i, j) = (np.minimum(a.astype(np.intp), _FINE - 2) for a in at)
-    u, v = at[0] - i, at[1] - j
-    corner = i * _FINE + j
-    low = table[corner] * (1.0 - v)[:, None] + table[corner + 1] * v[:, None]
-    high = table[corner + _FINE] * (1.0 - v)[:, None] + table[corner + _FINE + 1] * v[:, None]
-    each = (low * (1.0 - u)[:, None] + high * u[:, None]).T * rms
-    return NormalLength(rms, each[0], LEVELS, each[1:])
-
-
-def principal(C: Array) -> Array:
-    """Eigenvalues of symmetric, positive semidefinite matrices, largest first, (3, N).
-
-    Args:
-        C: Shape (N, 3, 3).
-
-    Reference:
-        Smith, Comm. ACM 4 (1961) 168: the characteristic equation by a cosine.
-    """
-    a, b, c = C[:, 0, 0], C[:, 1, 1], C[:, 2, 2]
-    d, e, f = C[:, 0, 1], C[:, 1, 2], C[:, 0, 2]
-    middle = (a + b + c) / 3.0
-    a, b, c = a - middle, b - middle, c - middle
-    spread = np.sqrt((a * a + b * b + c * c + 2.0 * (d * d + e * e + f * f)) / 6.0)
-    half = 0.5 * (a * (b * c - e * e) - d * (d * c - e * f) + f * (d * e - b * f))
-    cube = spread**3
-    ratio = np.divide(half, cube, out=np.ones_like(half), where=cube > 0.0)
-    angle = np.arccos(np.clip(ratio, -1.0, 1.0)) / 3.0
-    largest = middle + 2.0 * spread * np.cos(angle)
-    smallest = middle + 2.0 * spread * np.cos(angle + 2.0 * np.pi / 3.0)
-    values = np.stack([largest, 3.0 * middle - largest - smallest, smallest])
-    return np.maximum(values, 0.0)
+    # not more than one where eigenvalues are equal but for rounding
+    ratios = [
+        np.minimum(np.divide(a, b, out=np.zeros_like(a), where=b > 0.0), 1.0)
+        for a, b in ((second, first), (third, second))
+    ]
+    mean, *quantile = (spline.ev(*ratios) * rms for spline in _splines())
+    return NormalLength(rms, mean, LEVELS, np.stack(quantile))
 
 
 @lru_cache(maxsize=1)
-def _table() -> Array:
-    """Mean and quantiles for a root mean square of one, (_FINE^2, 1 + Q).
+def _splines() -> list[Any]:
+    """Mean and quantiles for a root mean square of one.
 
-    Rows over the square roots of the second to the first and of the third to the second eigenvalue,
-    the latter fastest.
+    Over the square roots of the second to the first and of the third to the second eigenvalue.
     """
     from scipy.interpolate import RectBivariateSpline
 
-    knots, fine = np.linspace(0.0, 1.0, _KNOTS), np.linspace(0.0, 1.0, _FINE)
-    first, second = (m.ravel() for m in np.meshgrid(knots, knots, indexing="ij"))
+    knots = np.linspace(0.0, 1.0, _KNOTS)
+    first, second = grid_points(knots, knots).T
     values = integrated(np.stack([np.ones_like(first), first, first * second], axis=1))
-    smooth = [
-        RectBivariateSpline(knots, knots, v.reshape(_KNOTS, _KNOTS), s=0)(fine, fine)
-        for v in values
-    ]
-    return np.stack([s.ravel() for s in smooth], axis=1)
+    return [RectBivariateSpline(knots, knots, v.reshape(_KNOTS, _KNOTS), s=0) for v in values]
 
 
 def integrated(sd: Array) -> Array:
-    """Mean and quantiles of |d| over its root mean square, by quadrature over the sphere.
+    """Mean and quantiles of |d| over its root mean square, by quadrature on the sphere, (1 + Q, M).
 
-    Args:
-        sd: Standard deviations along the principal directions, largest first, (M, 3).
-
-    Returns:
-        Shape (1 + Q, M).
+    For standard deviations along the principal directions, largest first, (M, 3).
     """
     from scipy.special import erf
 

@@ -87,7 +87,7 @@ def grid(workspace: Workspace, counts: Mapping[str, int] | int) -> Array:
             one value, the middle.
 
     Returns:
-        Shape (N, A); the axes run in chain order, the last one fastest.
+        Shape (N, A); the last axis of the chain runs fastest.
     """
     chain = workspace.chain
     each = []

@@ -14,7 +14,6 @@ from matstd.twin.record import at_poses
 
 MACHINES_A_BATCH = 20 * DRAWS_A_CHILD
 """10 240: as many as JCGM 101, 7.9.4 b) wants for a coverage of up to 99 %."""
-
 _SPAN = 5.0
 """The histogram of |d| at a pose reaches to this multiple of its root mean square. A sum of many
 independent errors exceeds it in less than one case of a million, and then sits in the last bin."""
@@ -38,22 +37,6 @@ class SharedArrays(NamedTuple):
     # number of first poses among which the worst are searched, and how many count as worst
     worst: tuple[int, int]
     threads: int | None  # of one batch; None for one a core
-
-
-def shared_arrays(
-    population: Population,
-    q: Array,
-    length: Array | float,
-    width: Array,
-    tolerance: float,
-    worst: tuple[int, int],
-    threads: int | None,
-) -> SharedArrays:
-    """Columns of all poses, and what else the batches share."""
-    G = first_order(population.model, q, length)
-    return SharedArrays(
-        population=population, G=G, width=width, tolerance=tolerance, worst=worst, threads=threads
-    )
 
 
 def bin_width(rms: Array) -> Array:

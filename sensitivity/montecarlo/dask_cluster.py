@@ -9,7 +9,6 @@ from typing import Any
 from matstd.twin.errors import DesignError, MissingLibrary
 
 ANSWER_TIME = 5.0  # seconds in which a scheduler has to answer and to have a worker
-
 _POLL_INTERVAL = 1.0  # s between checks that workers are alive
 _NO_WORKER_TIMEOUT = 20.0  # s without any worker after which the work is given up
 

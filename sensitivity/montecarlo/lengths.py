@@ -6,26 +6,27 @@ would spin. With numba installed (the extra `fast`) the counting is compiled; nu
 reference.
 """
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import lru_cache
 from os import cpu_count
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from matstd.sensitivity.montecarlo.kernels import MACHINES_A_BLOCK, Kernels, compiled
-from matstd.twin.compute import blocks, one_blas_thread
+from matstd.twin.compute import blocks, compiled_loop, one_blas_thread
 from matstd.twin.frames import Array
 
 BINS = 2048  # a quantile is then read to 0.05 % of the longest length
 _POSES_A_BLOCK = 256  # lengths of a block stay in a core's second cache
 _DRAWS_A_BLOCK = 512  # with 256 poses the packing of both factors is small beside the product
 _KEPT = 2**25  # lengths held at once for the worst poses: 128 MiB
-_FEWEST_KEPT = 512
+_MACHINES_A_PART = 64  # whose worst poses one thread looks for
 
-Sizes = NDArray[np.float32]
-"""Lengths kept for the worst poses, (blocks, N, 64): the machines of a block side by side."""
+Sizes = NDArray[np.float32]  # lengths kept for the worst poses, (N, S); no column where none are
+Count = Callable[..., None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,22 +75,18 @@ def count_lengths(
         histogram=np.zeros((n, BINS), dtype=counter),
         worst=np.zeros(n, dtype=np.int64),
     )
-    kernels = (compiled() if use_compiled else None) or Kernels(_count, _worst)
-    reference = worst[0]
-    lot = _DRAWS_A_BLOCK * max(1, _KEPT // n // _DRAWS_A_BLOCK) if reference else draws
+    count = (compiled_count() if use_compiled else None) or _count
+    lot = _DRAWS_A_BLOCK * max(1, _KEPT // n // _DRAWS_A_BLOCK) if worst[0] else draws
     # our threads fill the cores; those of BLAS on top would only wait for each other
     with one_blas_thread(), ThreadPoolExecutor(threads or cpu_count() or 1) as pool:
-        for machines in blocks(draws, max(lot, _FEWEST_KEPT)):
+        for machines in blocks(draws, lot):
             part = theta[:, machines]
-            size = _room(n, part.shape[1] if reference else 0)
-            _count_all(G, part, width, tolerance, found, size, kernels, pool)
-            if reference:
-                _find_worst(size, part.shape[1], worst, found.worst, kernels, pool)
+            size = np.empty((n, part.shape[1] if worst[0] else 0), dtype=np.float32)
+            _count_all(G, part, width, tolerance, found, size, count, pool)
+            parts = (size[:, some] for some in blocks(size.shape[1], _MACHINES_A_PART))
+            for among in pool.map(lambda some: _among_worst(some, *worst), parts):
+                found.worst[:] += among
     return found
-
-
-def _room(n: int, draws: int) -> Sizes:
-    return np.empty((-(-draws // MACHINES_A_BLOCK), n, MACHINES_A_BLOCK), dtype=np.float32)
 
 
 def _count_all(
@@ -99,14 +96,11 @@ def _count_all(
     tolerance: float,
     found: Lengths,
     size: Sizes,
-    kernels: Kernels,
+    count: Count,
     pool: ThreadPoolExecutor,
 ) -> None:
     """Add some machines at all poses to what was found, and keep their lengths if there is room."""
-    lots = [
-        (np.ascontiguousarray(theta[:, lot]), slice(lot.start // 64, -(-lot.stop // 64)))
-        for lot in blocks(theta.shape[1], _DRAWS_A_BLOCK)
-    ]
+    lots = [(np.ascontiguousarray(theta[:, s]), s) for s in blocks(theta.shape[1], _DRAWS_A_BLOCK)]
 
     def work(rows: slice) -> None:
         columns = G[rows].reshape(-1, G.shape[2])
@@ -114,33 +108,26 @@ def _count_all(
         sums = np.stack([found.sum[rows], found.squares[rows], found.above[rows]])
         room = np.empty(len(columns) * _DRAWS_A_BLOCK)  # fresh pages for every lot cost a tenth
         line, index = np.empty(_DRAWS_A_BLOCK, np.float32), np.empty(_DRAWS_A_BLOCK, np.uint16)
-        for lot, kept in lots:
+        for lot, some in lots:
             product = room[: len(columns) * lot.shape[1]].reshape(len(columns), -1)
             d = np.matmul(columns, lot, out=product).reshape(-1, 3, lot.shape[1])
-            kernels.tally(d, width[rows], tolerance, line, index, sums, mine, size[kept, rows])
+            count(d, width[rows], tolerance, line, index, sums, mine, size[rows, some])
         found.sum[rows], found.squares[rows], found.above[rows] = sums
 
     for done in pool.map(work, blocks(len(G), _POSES_A_BLOCK)):
         assert done is None
 
 
-def _find_worst(
-    size: Sizes,
-    draws: int,
-    worst: tuple[int, int],
-    into: NDArray[np.int64],
-    kernels: Kernels,
-    pool: ThreadPoolExecutor,
-) -> None:
-    """Add the machines for which each pose is among the worst."""
+def _among_worst(size: Sizes, reference: int, allowed: int) -> NDArray[np.int64]:
+    """Machines of size (N, m) for which each pose is among the worst `allowed`, (N,).
 
-    def work(block: int) -> NDArray[np.int64]:
-        mine = np.zeros(size.shape[1], dtype=np.int64)
-        kernels.worst(size[block][:, : draws - block * MACHINES_A_BLOCK], *worst, mine)
-        return mine
-
-    for mine in pool.map(work, range(len(size))):
-        into += mine
+    The limit of every machine is the largest length that so many of the first `reference` poses
+    reach.
+    """
+    by_machine = np.ascontiguousarray(size.T)
+    place = reference - allowed
+    limit = np.partition(by_machine[:, :reference], place, axis=1)[:, place]
+    return np.asarray((by_machine >= limit[:, None]).sum(axis=0))
 
 
 def _count(
@@ -158,8 +145,8 @@ def _count(
     sums[0] += length.sum(axis=1)
     sums[1] += np.einsum("ns,ns->n", length, length)
     sums[2] += (length > limit).sum(axis=1)
-    for b, lot in zip(range(len(size)), blocks(d.shape[2], MACHINES_A_BLOCK), strict=False):
-        size[b, :, : lot.stop - lot.start] = length[:, lot]
+    if size.shape[1]:
+        size[:] = length
     length *= (1.0 / width)[:, None]
     bins = np.minimum(length, BINS - 1, out=length).astype(np.int64)
     bins += BINS * np.arange(len(bins))[:, None]
@@ -167,9 +154,35 @@ def _count(
     histogram += counted.reshape(histogram.shape).astype(histogram.dtype)
 
 
-def _worst(size: Sizes, reference: int, allowed: int, worst: NDArray[np.int64]) -> None:
-    """The worst poses of some machines in numpy, size (n, m)."""
-    by_machine = np.ascontiguousarray(size.T)
-    place = reference - allowed
-    limit = np.partition(by_machine[:, :reference], place, axis=1)[:, place]
-    worst += (by_machine >= limit[:, None]).sum(axis=0)
+@lru_cache(maxsize=1)
+def compiled_count() -> Count | None:
+    """What `_count` does, compiled; None without numba."""
+    return compiled_loop(_count_in_loops, fastmath={"reassoc", "contract", "nsz"})
+
+
+def _count_in_loops(d, width, limit, line, index, sums, histogram, size):  # type: ignore[no-untyped-def]
+    """Count lengths of deviations d (n, 3, s); add to sums (3, n) and histogram (n, bins).
+
+    The square and its sum are double; root, mean and bin are single: a bin is wider by far. Indices
+    without a sign spare a comparison each. Lengths are kept in size (n, s) if it has room.
+    """
+    draws, top = d.shape[2], np.float32(histogram.shape[1] - 1)
+    for n in range(d.shape[0]):
+        x, y, z, row = d[n, 0], d[n, 1], d[n, 2], histogram[n]
+        per_bin, tolerance = np.float32(1.0 / width[n]), limit * limit
+        total, square, above = np.float32(0.0), 0.0, 0
+        for s in range(draws):
+            q = x[s] * x[s] + y[s] * y[s] + z[s] * z[s]
+            square += q
+            above += q > tolerance
+            length = np.sqrt(np.float32(q))
+            total += length
+            line[s] = length
+            index[s] = np.uint16(np.int32(min(length * per_bin, top)))
+        for s in range(draws):
+            row[index[s]] += 1
+        if size.shape[1]:
+            size[n, :] = line[:draws]
+        sums[0, n] += total
+        sums[1, n] += square
+        sums[2, n] += above

@@ -1,26 +1,29 @@
-"""Volumetric error of many random machines at many poses."""
+"""Volumetric error of many random machines at many poses, and how exact first order is."""
 
-from functools import partial
+from dataclasses import dataclass
 
 import numpy as np
 
 from matstd.sensitivity.first_order import rms
 from matstd.sensitivity.montecarlo.batches import (
     MACHINES_A_BATCH,
+    SharedArrays,
     batches,
     bin_width,
     count_batch,
+    first_order,
     seed_words,
-    shared_arrays,
 )
 from matstd.sensitivity.montecarlo.lengths import Lengths
 from matstd.sensitivity.montecarlo.stability import Stabiliser
 from matstd.sensitivity.montecarlo.tally import QUANTILES, Tally, Volumetric, moments, quantiles
 from matstd.sensitivity.montecarlo.workers import Workers, in_order
-from matstd.sensitivity.population import Population
+from matstd.sensitivity.population import Population, coefficients, draw
 from matstd.twin.compute import Progress, silent
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms_length
+from matstd.twin.record import at_poses
 
 WORST = 0.05  # share of the poses that counts as the worst ones of a machine
 
@@ -82,9 +85,18 @@ def volumetric(
     width = bin_width(rms(population, q, length))
     reference = reference or len(q)
     worst = (reference, max(1, round(WORST * reference))) if recurrence else (0, 0)
-    threads = None if workers is None else 1
     seed = seed_words(rng)
-    prepare = partial(shared_arrays, population, q, length, width, tolerance, worst, threads)
+
+    def prepare() -> SharedArrays:
+        return SharedArrays(
+            population=population,
+            G=first_order(population.model, q, length),
+            width=width,
+            tolerance=tolerance,
+            worst=worst,
+            threads=None if workers is None else 1,
+        )
+
     tally, stabiliser = Tally(width, tolerance), Stabiliser(digits) if digits else None
     for found in in_order(workers, prepare, count_batch, batches(draws, rng)):
         tally.add(found)
@@ -104,3 +116,33 @@ def _statistics(found: Lengths, width: Array) -> Array:
     """Mean, standard deviation and quantiles of one batch, (2 + Q, N), mm."""
     mean, sd = moments(found.draws, found.sum, found.squares)
     return np.concatenate([[mean, sd], quantiles(found.histogram, width, QUANTILES)])
+
+
+@dataclass(frozen=True, eq=False)
+class ExactCheck:
+    """Differences of first order from the exact product, for some machines and poses."""
+
+    machines: int
+    poses: int
+    rms: float  # root mean square of the difference between the deviation vectors, mm
+    worst: float  # largest difference, mm
+    rms_deviation: float  # root mean square of the deviations themselves, mm
+
+
+def exact_check(
+    population: Population, q: Array, length: float, machines: int, rng: np.random.Generator
+) -> ExactCheck:
+    """Compare first-order deviations of a few random machines with the exact product."""
+    model = population.model
+    touches = at_poses(population.chain, q, length)
+    G = model.tip_columns(touches)
+    drawn = coefficients(population, draw(population, machines, rng))
+    exact = np.stack([model.tip_deviation(touches, theta) for theta in drawn])  # (S, N, 3)
+    off = exact - np.einsum("nik,sk->sni", G, drawn)
+    return ExactCheck(
+        machines=machines,
+        poses=len(q),
+        rms=rms_length(off.reshape(-1, 3)),
+        worst=float(np.linalg.norm(off, axis=2).max()),
+        rms_deviation=rms_length(exact.reshape(-1, 3)),
+    )

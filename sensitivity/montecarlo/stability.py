@@ -72,11 +72,7 @@ class Stabiliser:
         self._spread += off * (statistics - self._mean)
 
     def stability(self, u: Array) -> Stability:
-        """State after the batches so far.
-
-        Args:
-            u: Standard deviation of |d| from all machines so far, (N,), mm.
-        """
+        """State after the batches so far, for the standard deviation of |d| over all, (N,), mm."""
         if self.batches < 2:
             return Stability(self.digits, self.batches, np.inf)
         h = self.batches

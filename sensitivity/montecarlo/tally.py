@@ -1,6 +1,7 @@
 """Statistics of the volumetric error over random machines, from counted lengths."""
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,12 +37,9 @@ class Volumetric:
 
     def __getitem__(self, rows: slice) -> "Volumetric":
         """The statistics of some poses."""
-        each = {
-            f.name: getattr(self, f.name)[..., rows]
-            for f in fields(self)
-            if isinstance(getattr(self, f.name), np.ndarray)
-        }
-        return replace(self, **each)
+        arrays = ((n, v) for n, v in vars(self).items() if isinstance(v, np.ndarray))
+        cut: dict[str, Any] = {name: values[..., rows] for name, values in arrays}
+        return replace(self, **cut)
 
     @property
     def p95(self) -> Array:
@@ -85,17 +83,11 @@ class Tally:
         """Statistics of all that was counted."""
         s = self.count
         mean, sd = moments(s, self.sum, self.squares)
-        quantile, spread = [], []
-        levels = []
-        for level in QUANTILES:
-            # a quantile is as unsure as the count below it: binomial, read back over the histogram
-            half = np.sqrt(level * (1.0 - level) / s)
-            levels += list(np.clip([level - half, level, level + half], 0.5 / s, 1.0 - 0.5 / s))
-        for low, middle, high in quantiles(self.histogram, self.width, levels).reshape(
-            len(QUANTILES), 3, -1
-        ):
-            quantile.append(middle)
-            spread.append(0.5 * (high - low))
+        # a quantile is as unsure as the count below it: binomial, read back over the histogram
+        level = np.array(QUANTILES)
+        half = np.sqrt(level * (1.0 - level) / s)
+        levels = np.clip([level - half, level, level + half], 0.5 / s, 1.0 - 0.5 / s)
+        low, middle, high = np.split(quantiles(self.histogram, self.width, levels.ravel()), 3)
         recurrence = self.worst / s if recurrence_known else np.full(len(mean), np.nan)
         exceedance = self.above / s
         return Volumetric(
@@ -104,10 +96,10 @@ class Tally:
             mean=mean,
             sd=sd,
             levels=QUANTILES,
-            quantile=np.stack(quantile),
+            quantile=middle,
             recurrence=recurrence,
             mean_u=sd / np.sqrt(s),
-            quantile_u=np.stack(spread),
+            quantile_u=0.5 * (high - low),
             recurrence_u=np.sqrt(recurrence * (1.0 - recurrence) / s),
             tolerance=self.tolerance,
             exceedance=exceedance,
@@ -124,13 +116,11 @@ def moments(count: int, total: Array, squares: Array) -> tuple[Array, Array]:
 
 
 def quantiles(
-    histogram: NDArray[np.integer], width: Array, levels: list[float] | tuple[float, ...]
+    histogram: NDArray[np.integer], width: Array, levels: Array | tuple[float, ...]
 ) -> Array:
-    """Quantiles of every row of a histogram, linear within their bin, (Q, N), mm.
+    """Quantiles (Q, N), mm, of counts from zero up, (N, BINS), in bins of a width (N,), mm.
 
-    Args:
-        histogram: Counts from zero up, (N, BINS).
-        width: Width of a bin in each row, (N,), mm.
+    They are linear within their bin.
     """
     out = np.empty((len(levels), len(histogram)))
     for rows in blocks(len(histogram), _ROWS):

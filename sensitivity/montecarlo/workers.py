@@ -64,7 +64,12 @@ def _by_executor(
 ) -> Iterator[Result]:
     most = 2 * (getattr(workers, "_max_workers", None) or cpu_count() or 1)
     try:
-        yield from _window(lambda job: workers.submit(work, shared, job), jobs, most, _plain_result)
+        yield from _window(
+            lambda job: workers.submit(work, shared, job),
+            jobs,
+            most,
+            lambda future: future.result(),
+        )
     except BrokenExecutor as error:
         raise DesignError(f"a worker process ended before its work was done ({error})") from error
 
@@ -83,10 +88,6 @@ def _by_cluster(
         most,
         lambda future: awaited(workers, future),
     )
-
-
-def _plain_result(future: Any) -> Any:
-    return future.result()
 
 
 def _window(

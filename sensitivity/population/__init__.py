@@ -18,20 +18,7 @@ from matstd.sensitivity.population.sampling import (
 )
 
 __all__ = [
-    "CLASSES",
-    "CONSTANT",
-    "DRAWS_A_CHILD",
-    "Dependence",
-    "Distributions",
-    "Group",
-    "Mix",
-    "Population",
-    "coefficients",
-    "draw",
-    "drawn_errors",
-    "drawn_in_chunks",
-    "drawn_scales",
-    "grouped",
-    "product_moment",
-    "shape_columns",
-]
+    "CLASSES", "CONSTANT", "DRAWS_A_CHILD", "Dependence", "Distributions", "Group", "Mix",
+    "Population", "coefficients", "draw", "drawn_errors", "drawn_in_chunks", "drawn_scales",
+    "grouped", "product_moment", "shape_columns",
+]  # fmt: skip

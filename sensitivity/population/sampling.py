@@ -12,13 +12,12 @@ from matstd.sensitivity.population.distributions import CONSTANT, Distributions,
 from matstd.twin.effects import ComponentError, LocationError
 from matstd.twin.errors import DesignError
 from matstd.twin.frames import Array
-from matstd.twin.machine import Chain, Family, Ranges, ShapeName, Symbol
+from matstd.twin.machine import Chain, Family, Ranges, Symbol
 from matstd.twin.machine import shape as shape_function
 from matstd.twin.model import Effect, Model, traits
 
 DRAWS_A_CHILD = 512
 """Machines drawn from one child of a generator: fixed, so that blocks do not change the draws."""
-
 _QUARTER = 0.5 * np.pi
 
 
@@ -80,10 +79,6 @@ class Population:
         """Shapes that an error may have."""
         return self._mixes[symbol]
 
-    def shapes_of(self, symbol: Symbol) -> tuple[ShapeName, ...]:
-        """Names of the shapes that an error may have."""
-        return self.mix_of(symbol).shapes
-
     @property
     def model(self) -> Model:
         """Effects whose linear combinations are all machines of the population.
@@ -111,23 +106,14 @@ class Population:
         return Model(self.chain, tuple(effects))
 
     def expected(self, free: str = "") -> Model:
-        """The same without errors that are stated to be zero.
+        """The same without errors stated to be zero, but for the set-up of links in `free`."""
 
-        Args:
-            free: Letters of the links whose set-up is kept in any case: "w", "t" or both.
-        """
-        return Model(
-            self.chain,
-            tuple(
-                effect
-                for effect in self.model.effects
-                if (symbol := traits(effect).symbol)
-                and (
-                    effect.parameters[0].sd > 0.0
-                    or (symbol.family is Family.SETUP and symbol.link in free)
-                )
-            ),
-        )
+        def is_kept(effect: Effect) -> bool:
+            symbol = traits(effect).symbol
+            is_free = symbol is not None and symbol.family is Family.SETUP and symbol.link in free
+            return is_free or effect.parameters[0].sd > 0.0
+
+        return Model(self.chain, tuple(filter(is_kept, self.model.effects)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,9 +198,6 @@ def shape_columns(population: Population, q: Array) -> list[Array]:
     """Shape functions of each error at every pose, (N, K_p) each.
 
     The value of error p at a pose is its row here times its part of `coefficients`.
-
-    Args:
-        q: Readings, shape (N, A).
     """
     chain, out = population.chain, []
     for symbol in chain.symbols:
@@ -243,7 +226,7 @@ def drawn_errors(population: Population, rng: np.random.Generator) -> list[tuple
         if symbol.family is not Family.COMPONENT:
             out.append((LocationError(symbol), amplitude))
             continue
-        shape = population.shapes_of(symbol)[draws.shape[0, p]]
+        shape = population.mix_of(symbol).shapes[draws.shape[0, p]]
         if shape == "sinusoidal":
             n, phase = float(draws.periods[0, p]), float(draws.phase[0, p])
             out.append((ComponentError(symbol, shape, n, phase), amplitude))
@@ -259,14 +242,11 @@ SMALLEST_SCALE = 1e-3
 def drawn_scales(
     population: Population, count: int, rng: np.random.Generator, model: Model | None = None
 ) -> Array:
-    """Size of every parameter of drawn machines over its expected size, (S, P).
+    """Size of every parameter, of `Population.model` or another, of drawn machines, (S, P).
 
-    All distributions of one error of one machine share its drawn amplitude, so a machine whose EXX
-    is large has it large as prior, whichever shape it will turn out to have. The mean of the
-    squares over many machines is one.
-
-    Args:
-        model: Whose parameters the columns are; None for those of `Population.model`.
+    Over its expected size. All distributions of one error of one machine share its drawn amplitude,
+    so a machine whose EXX is large has it large as prior, whichever shape it will turn out to have.
+    The mean of the squares over many machines is one.
     """
     chain = population.chain
     place = {symbol: p for p, symbol in enumerate(chain.symbols)}

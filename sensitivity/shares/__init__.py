@@ -15,13 +15,6 @@ from matstd.sensitivity.shares.workspace_regions import (
 )
 
 __all__ = [
-    "Part",
-    "Place",
-    "Region",
-    "RegionTotals",
-    "TotalEffects",
-    "norm_shares",
-    "region_totals",
-    "regions",
-    "total_effects",
-]
+    "Part", "Place", "Region", "RegionTotals", "TotalEffects", "norm_shares", "region_totals",
+    "regions", "total_effects",
+]  # fmt: skip

@@ -73,10 +73,6 @@ def norm_shares(
 
     An error changes as a whole: amplitude, sign, shape, periods and phase.
 
-    Args:
-        q: Readings, shape (N, A).
-        length: Tool length, scalar or (N,), mm.
-
     Raises:
         DesignError: The errors depend on each other, so changing one alone is meaningless.
     """
@@ -102,12 +98,7 @@ def norm_shares(
 
 
 def _estimated(J: Array, values: Values, machines: int, compiled: bool) -> TotalEffects:
-    """Jansen's estimator.
-
-    Args:
-        J: Shape (P, 3, N).
-        values: Errors of some poses and their changes, (n or 1, P, S) each.
-    """
+    """Jansen's estimator, from errors of some poses and their changes, (n or 1, P, S) each."""
     kernel: Kernel = (_compiled() if compiled else None) or _squares
     kind = np.float64 if kernel is _squares else np.float32
     total, u = np.zeros((len(J), J.shape[2])), np.zeros((len(J), J.shape[2]))

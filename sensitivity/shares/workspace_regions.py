@@ -20,7 +20,6 @@ from matstd.twin.sampling import even_points
 from matstd.twin.units import DEG
 
 POSES_OF_REGION = 256  # poses that stand for a region
-
 _TOTAL_POSES = 16  # of a region, for random machines
 _OUTER = 1.0 / 6.0  # of a travel at either end that counts as its end
 _MIDDLE = (1.0 / 3.0, 2.0 / 3.0)  # of a travel that counts as its middle
@@ -136,7 +135,10 @@ def _places(workspace: Workspace) -> list[tuple[Place, dict[str, Squeeze]]]:
     linear = tuple(sorted(a for a in free if a in chain.linear_axes))
     out: list[tuple[Place, dict[str, Squeeze]]] = [(Place(Part.WHOLE), {})]
     if linear:
-        middle = {a: _between(workspace, a, *_MIDDLE) for a in linear}
+        middle = {}
+        for axis in linear:
+            low, high = workspace.limit(axis)
+            middle[axis] = _interval(*(low + share * (high - low) for share in _MIDDLE))
         ends = {a: _outer(workspace, a) for a in linear}
         out += [(Place(Part.MIDDLE, linear), middle), (Place(Part.CORNERS, linear), ends)]
     for axis in sorted(a for a in free if a in chain.rotary_axes):
@@ -160,11 +162,6 @@ def _of_rotary(workspace: Workspace, axis: str) -> list[tuple[Place, dict[str, S
             a, b = max(place.limits[0], low), min(place.limits[1], high)
             out.append((place, {axis: _interval(a, b)}))
     return out
-
-
-def _between(workspace: Workspace, axis: str, first: float, last: float) -> Squeeze:
-    low, high = workspace.limit(axis)
-    return _interval(low + first * (high - low), low + last * (high - low))
 
 
 def _interval(low: float, high: float) -> Squeeze:

@@ -10,17 +10,6 @@ from matstd.sensitivity.study.trajectory import AlongPath, Trajectory, along_pat
 from matstd.sensitivity.study.volume_map import Volume, has_volume, volume
 
 __all__ = [
-    "AlongPath",
-    "PointOverRotary",
-    "Study",
-    "Trajectory",
-    "Volume",
-    "along_path",
-    "has_volume",
-    "level",
-    "paper_trajectory",
-    "points_over_rotary",
-    "run_study",
-    "volume",
-    "write_study",
-]
+    "AlongPath", "PointOverRotary", "Study", "Trajectory", "Volume", "along_path", "has_volume",
+    "level", "paper_trajectory", "points_over_rotary", "run_study", "volume", "write_study",
+]  # fmt: skip

@@ -21,15 +21,15 @@ from matstd.sensitivity.first_order import (
 from matstd.sensitivity.montecarlo import ExactCheck, Volumetric, Workers, exact_check, volumetric
 from matstd.sensitivity.population import Population
 from matstd.sensitivity.shares import TotalEffects, norm_shares
-from matstd.sensitivity.study.study_table import pose_columns, statistics_columns
 from matstd.sensitivity.study.trajectory import AlongPath, Trajectory, axis_effect, paper_trajectory
 from matstd.twin.compute import Progress, silent
 from matstd.twin.display import Tabular
+from matstd.twin.files import reading_columns
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain
+from matstd.twin.units import UM
 
 SECTION = 25  # values of each of the two readings of a section
-
 _TOTAL_POSES = 300  # at which total effects are taken: their mean over a workspace needs no more
 _CHECKED = (20, 60)  # machines and poses on which first order is compared with the exact product
 
@@ -216,3 +216,26 @@ def section_pairs(workspace: Workspace) -> list[tuple[str, str]]:
     if len(rotary) == 1:
         pairs += [(a, rotary[0]) for a in linear[:3]]
     return pairs[:6]
+
+
+def pose_columns(chain: Chain, q: Array) -> dict[str, Array]:
+    """Readings (N, A) of the programmed axes."""
+    return {
+        column: q[:, chain.axis_index(axis)] / factor
+        for axis, (column, factor) in reading_columns(chain).items()
+        if chain.link(axis).programmed
+    }
+
+
+def statistics_columns(v: Volumetric, closed: NormalLength) -> dict[str, Array]:
+    """Statistics of the volumetric error with their standard errors by sampling."""
+    each = {"mean": v.mean, "mean_u": v.mean_u, "sd": v.sd, "rms": closed.rms}
+    each["p95_normal"] = closed.p95
+    for i, level in enumerate(v.levels):
+        each[f"p{100 * level:g}"] = v.quantile[i]
+        each[f"p{100 * level:g}_u"] = v.quantile_u[i]
+    table = {f"{name}_um": value / UM for name, value in each.items()}
+    table |= {"recurrence": v.recurrence, "recurrence_u": v.recurrence_u}
+    if np.isfinite(v.tolerance):
+        table |= {"exceedance": v.exceedance, "exceedance_u": v.exceedance_u}
+    return table

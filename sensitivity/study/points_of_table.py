@@ -43,10 +43,8 @@ def level(workspace: Workspace) -> dict[str, float]:
 def points_over_rotary(workspace: Workspace) -> tuple[PointOverRotary, ...]:
     """Four points of the workpiece over the one or two rotary axes that move: middle, top, corners.
 
-    Args:
-        workspace: Limits; the points are those of its linear readings with the table level.
-
-    Returns: Empty where no rotary axis moves, or fewer than three linear axes can move.
+    They are those of the linear readings with the table level. None where no rotary axis moves, or
+    fewer than three linear axes can move.
     """
     chain = workspace.chain
     turning = sorted(a for a in workspace.open_axes if a in chain.rotary_axes)[:2]

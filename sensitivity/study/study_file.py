@@ -5,9 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from matstd.sensitivity.montecarlo import Volumetric
-from matstd.sensitivity.study.machine_study import Study
-from matstd.sensitivity.study.study_table import pose_columns, statistics_columns
+from matstd.sensitivity.study.machine_study import Study, pose_columns, statistics_columns
 from matstd.twin.files import write_whole, written_whole
 from matstd.twin.files.whole import write_json
 from matstd.twin.frames import Array
@@ -54,15 +52,21 @@ def write_study(study: Study, folder: str | Path, statement: str) -> None:
 
 def _summary(study: Study, statement: str) -> dict[str, Any]:
     """Draws, seed, precision, and the figures over the workspace."""
-    v = study.volumetric
+    v, s = study.volumetric, study.volumetric.stability
     worst = pose_columns(study.chain, study.worst_pose[None])
+    stability = s and {
+        "digits": s.digits,
+        "is_stable": s.is_stable,
+        "batches": s.batches,
+        "over_tolerance": s.ratio,
+    }
     out: dict[str, Any] = {
         "format": "montecarlo/1",
         "statement": statement,
         "draws": v.draws,
         "seed": v.seed,
         "achieved_um": v.achieved / UM,
-        "stability": _stability(v),
+        "stability": stability,
         "poses": len(study.q),
         "worst_pose": {column: float(values[0]) for column, values in worst.items()},
         "mean_um": _over(v.mean / UM),
@@ -93,17 +97,6 @@ def _summary(study: Study, statement: str) -> dict[str, Any]:
 def _over(values: Array) -> dict[str, float]:
     """A statistic over the poses."""
     return {"mean": float(values.mean()), "worst": float(values.max())}
-
-
-def _stability(v: Volumetric) -> dict[str, Any] | None:
-    if v.stability is None:
-        return None
-    return {
-        "digits": v.stability.digits,
-        "is_stable": v.stability.is_stable,
-        "batches": v.stability.batches,
-        "over_tolerance": v.stability.ratio,
-    }
 
 
 def _write_sections(study: Study, path: Path) -> None:

@@ -45,48 +45,37 @@ class Trajectory:
 
 
 def paper_trajectory(
-    workspace: Workspace,
-    linear: Sequence[str] | None = None,
-    swinging: str | None = None,
-    periods: float = 2.0,
-    count: int = TRAJECTORY_POSES,
-    held: Mapping[str, float] | None = None,
+    workspace: Workspace, count: int = TRAJECTORY_POSES, held: Mapping[str, float] | None = None
 ) -> Trajectory:
     """The path of the D-MT paper: some axes run linearly over their limits, another one swings.
 
-    ``q = low + s (high - low)`` and ``q = middle + half sin(2 pi n s)`` with s from 0 to 1.
+    ``q = low + s (high - low)``, and twice to and fro ``q = middle + half sin(4 pi s)``, s from 0
+    to 1. Linearly run the first linear axis and the rotary axis with the widest limits, X and C on
+    the machine of the paper; the other rotary axis swings, B there, or else a second linear one.
 
     Args:
-        linear: Axes that run linearly; None for the first linear axis and the rotary axis with the
-            widest limits, X and C on the machine of the paper.
-        swinging: Axis that swings; None for the other rotary axis, B there, or else a second
-            linear one.
         held: Readings of other axes; those left out stay in the middle of their limits.
 
     Raises:
         UnknownAxis: An axis that the machine does not have, or that is not programmed.
         OutsideTravel: A held reading beyond the travel.
-        DesignError: Contradictory wishes, fewer than two poses, or a path on which nothing moves.
+        DesignError: A held axis that moves, fewer than two poses, or a path on which nothing moves.
 
     Reference:
         D-MT paper, figures 2 and 3.
     """
     chain, held = workspace.chain, held or {}
-    chosen, swing = _roles(workspace)
-    linear = chosen if linear is None else tuple(linear)
-    swinging = swing if swinging is None else swinging
-    named = [*linear, *([swinging] if swinging else []), *held]
-    for name in named:
-        if name not in chain.programmed_axes:
-            raise UnknownAxis(name, chain.programmed_axes)
-    if len(set(named)) < len(named):
-        raise DesignError(f"a path of {', '.join(named)}: expected every axis in one role")
+    linear, swinging = _roles(workspace)
     if count < 2:
         raise DesignError(f"a path of {count} poses: expected two at least")
     # equal steps of s, not of time: no feed is implied
     s = np.linspace(0.0, 1.0, count)
     q = np.tile(workspace.centre, (count, 1))
     for name, value in held.items():
+        if name not in chain.programmed_axes:
+            raise UnknownAxis(name, chain.programmed_axes)
+        if name in (*linear, swinging):
+            raise DesignError(f"{name} held: expected an axis that does not move on this path")
         low, high = chain.link(name).range
         if not low <= value <= high:
             raise OutsideTravel(f"{name} held at {value:g}: beyond its travel {low:g} to {high:g}")
@@ -96,26 +85,22 @@ def paper_trajectory(
         q[:, chain.axis_index(name)] = low + s * (high - low)
     if swinging:
         low, high = workspace.limit(swinging)
-        wave = np.sin(2.0 * np.pi * periods * s)
+        wave = np.sin(4.0 * np.pi * s)
         q[:, chain.axis_index(swinging)] = 0.5 * (low + high) + 0.5 * (high - low) * wave
-    made = Trajectory(chain, q, workspace.length, _name(linear, swinging))
-    if not made.moving:
-        raise DesignError(f"{made.name}: no axis has room to move within its limits")
-    return made
-
-
-def _name(linear: Sequence[str], swinging: str | None) -> str:
     words = [f"{' and '.join(linear)} linear"] if linear else []
-    return ", ".join(words + ([f"{swinging} sinusoidal"] if swinging else []))
+    words += [f"{swinging} sinusoidal"] if swinging else []
+    made = Trajectory(chain, q, workspace.length, ", ".join(words))
+    if not made.moving:
+        raise DesignError("the path: no axis has room to move within its limits")
+    return made
 
 
 def _roles(workspace: Workspace) -> tuple[tuple[str, ...], str | None]:
     """Default axes that run, and the one that swings."""
     chain = workspace.chain
-    moves = [a for a in chain.programmed_axes if np.ptp(workspace.limit(a)) > 0.0]
-    linear = sorted(a for a in moves if a in chain.linear_axes)
+    linear = sorted(a for a in workspace.open_axes if a in chain.linear_axes)
     rotary = sorted(
-        (a for a in moves if a not in chain.linear_axes),
+        (a for a in workspace.open_axes if a in chain.rotary_axes),
         key=lambda a: -float(np.ptp(workspace.limit(a))),
     )
     spare = rotary[1:] or rotary or linear[1:]
@@ -148,8 +133,7 @@ class AlongPath:
 def along_path(trajectory: Trajectory, errors: Sequence[tuple[Effect, Array]]) -> AlongPath:
     """Deviation of the tool point along a trajectory, all errors together and each alone.
 
-    Args:
-        errors: Effects with their amplitudes, as an error file holds them.
+    Errors are effects with their amplitudes, as an error file holds them.
     """
     chain = trajectory.chain
     poses = at_poses(chain, trajectory.q, trajectory.length)

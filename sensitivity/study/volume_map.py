@@ -91,11 +91,9 @@ def has_volume(workspace: Workspace) -> bool:
 def volume(
     workspace: Workspace, rotary: Mapping[str, float], points: tuple[int, int, int] = SECTION_POINTS
 ) -> Volume:
-    """Poses that fill the box of the linear readings; raises NotReachable.
+    """Poses that fill the box of the linear readings, `points` along each; raises NotReachable.
 
-    Args:
-        rotary: Readings of the rotary axes, rad; an axis left out stands in the middle.
-        points: Values of each linear reading.
+    A rotary axis that is left out, rad, stands in the middle.
     """
     chain = workspace.chain
     if not has_volume(workspace):

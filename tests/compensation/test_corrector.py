@@ -15,7 +15,7 @@ import pytest
 from bench import LENGTH
 
 from matstd.compensation.linuxcnc import control_files
-from matstd.compensation.linuxcnc.control_files import Control, hal_text, write_control_files
+from matstd.compensation.linuxcnc.control_files import SCALE, Control, hal_text, write_control_files
 from matstd.compensation.linuxcnc.link import serve_linuxcnc
 from matstd.compensation.service.output import OutputLimits
 from matstd.compensation.service.service import Service
@@ -47,7 +47,7 @@ class Axes:
     def period(self, counts):
         for k, (new, old) in enumerate(zip(counts, self.old, strict=True)):
             if self.on:
-                self.requested[k] += (new - old) * corrector.SCALE
+                self.requested[k] += (new - old) * SCALE
         self.old = list(counts)
 
     def switch(self, on):
@@ -58,7 +58,7 @@ class Run:
     """A giver and a control, period by period."""
 
     def __init__(self, hold=1.0):
-        self.giver = corrector.Giver(2, 0.1, RATE, 0.3, hold)
+        self.giver = corrector.Giver(2, SCALE, 0.1, RATE, 0.3, hold)
         self.axes, self.now = Axes(), 0.0
 
     def pass_by(self, seconds, wanted=None, room=FREE):
@@ -76,7 +76,7 @@ class Run:
 def test_offsets_go_at_a_rate_to_what_is_wanted_and_no_farther_than_the_limit():
     run = Run()
     x = run.pass_by(0.1, [30 * UM, -500 * UM])
-    assert np.abs(np.diff(x)).max() <= RATE * PERIOD + corrector.SCALE
+    assert np.abs(np.diff(x)).max() <= RATE * PERIOD + SCALE
     assert x[round(0.034 / PERIOD)] == pytest.approx(30 * UM)
     run.pass_by(0.1, [30 * UM, -500 * UM])
     assert run.axes.requested[1] == pytest.approx(-100 * UM)
@@ -89,7 +89,7 @@ def test_off_and_on_begins_at_zero_where_the_axes_are():
     run.pass_by(0.5, [30 * UM, 0.0])
     run.axes.switch(True)
     x = run.pass_by(0.1, [30 * UM, 0.0])
-    assert x[0] <= RATE * PERIOD + corrector.SCALE
+    assert x[0] <= RATE * PERIOD + SCALE
     assert x[-1] == pytest.approx(30 * UM)
 
 
@@ -105,7 +105,7 @@ def test_counts_that_were_lost_are_given_again():
     run.axes.on = True
     x = run.pass_by(0.3, [30 * UM, 0.0])
     assert x[-1] == pytest.approx(30 * UM)
-    assert np.abs(np.diff(x)).max() <= RATE * PERIOD + corrector.SCALE
+    assert np.abs(np.diff(x)).max() <= RATE * PERIOD + SCALE
 
 
 def test_without_answers_it_holds_then_fades():
@@ -116,8 +116,18 @@ def test_without_answers_it_holds_then_fades():
     assert not run.giver.is_valid(run.now)
     fading = run.pass_by(0.3)
     assert fading[-1] == pytest.approx(0.0, abs=1e-9)
-    assert np.abs(np.diff(fading)).max() <= RATE * PERIOD + corrector.SCALE
+    assert np.abs(np.diff(fading)).max() <= RATE * PERIOD + SCALE
     assert run.pass_by(0.1, [30 * UM, 0.0])[-1] == pytest.approx(30 * UM)
+
+
+def test_an_answer_that_is_no_number_is_none():
+    """As without answers: the last correction is held, then fades, and the component lives on."""
+    run = Run()
+    run.pass_by(0.2, [30 * UM, 0.0])
+    held = run.pass_by(0.9, [float("nan"), 0.0])
+    assert np.ptp(held) == 0.0
+    assert not run.giver.is_valid(run.now)
+    assert run.pass_by(0.3, [0.0, float("inf")])[-1] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_room_before_the_end_of_the_travel():
@@ -172,6 +182,7 @@ def answering(known, datum, tmp_path):
 def test_pins_are_answered_by_the_inverse(hal, answering, bench_chain, poses):
     service, path = answering
     words = ["--socket", str(path), "--axes", "XYZBC", "--linear", "XYZ", "--rate", "50"]
+    words += ["--scale", str(SCALE)]
     pins = Pins()
     one = corrector.Corrector(corrector.arguments([*words, "--sensors", "bed"]), pins)
     pins["machine-on"] = pins["homed"] = True
@@ -183,12 +194,12 @@ def test_pins_are_answered_by_the_inverse(hal, answering, bench_chain, poses):
     for _ in range(500):
         one.look(time.monotonic())
         time.sleep(0.001)
-        given = [pins[f"counts-{x}"] * corrector.SCALE for x in "xyz"]
+        given = [pins[f"counts-{x}"] * SCALE for x in "xyz"]
         for x, v in zip("xyz", given, strict=True):
             pins[f"requested-{x}"] = v
-        if pins["valid"] and np.allclose(given, expected, atol=0.6 * corrector.SCALE, rtol=0.0):
+        if pins["valid"] and np.allclose(given, expected, atol=0.6 * SCALE, rtol=0.0):
             break
-    np.testing.assert_allclose(given, expected, atol=0.6 * corrector.SCALE)
+    np.testing.assert_allclose(given, expected, atol=0.6 * SCALE)
     assert pins["enable"] is True
     assert pins["age"] < 1.0
     one.link.close()
@@ -261,11 +272,12 @@ def test_files_for_the_control(ini, known, datum):
     assert "net xpos axis.x.pos-cmd => corrector.position-x" in text
     assert "net corrector-at-y axis.y.pos-cmd => corrector.position-y" in text
     assert "--ends X:-400:400,Y:-300:300,Z:-500:0" in text
-    assert f"setp axis.z.eoffset-scale {corrector.SCALE:g}" in text
     words = next(s for s in text.splitlines() if s.startswith("loadusr")).split()[4:]
     args = corrector.arguments([w.strip("'") for w in words])
     assert isinstance(args, argparse.Namespace)
     assert (args.axes, args.linear, args.most) == ("XYZBC", "XYZ", limits.most)
+    for x in "xyz":  # a count is as large for the component as for the control
+        assert f"setp axis.{x}.eoffset-scale {args.scale!r}" in text
     assert script.stat().st_mode & 0o111
     write_control_files(control, service, limits)  # ours may be replaced
     hal.write_text("# mine\n")

@@ -10,8 +10,7 @@ from matstd.compensation.field.inverse import datum_of
 from matstd.compensation.field.machine_errors import MachineErrors, deviation
 from matstd.compensation.field.state import State
 from matstd.compensation.part_programs.frame import Frame
-from matstd.compensation.part_programs.loads import Load, read_loads
-from matstd.compensation.part_programs.program import read_part_program
+from matstd.compensation.part_programs.program import Load, read_loads, read_part_program
 from matstd.compensation.programs.compensation import compensated, passed
 from matstd.compensation.tables.header import header_of
 from matstd.twin.errors import BadFile

@@ -142,11 +142,7 @@ def test_slow_and_fast(corrected, tmp_path, feed):
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
-        (
-            "a.ngc",
-            "G1 X30.02 C90 F720",
-            r"line 2: .* while X, Y, Z go 0.02 mm, .*G93",
-        ),
+        ("a.ngc", "G1 X30.02 C90 F720", r"line 2: .* while X, Y, Z go 0.02 mm, .*G93"),
         (
             "a.ngc",
             "G43.4 H1\nG1 C90 F720",
@@ -165,6 +161,29 @@ def test_what_cannot_keep_its_time_is_refused_with_its_line(corrected, name, tex
     start = {"a.ngc": "G0 X30 Y20 Z-20\n", "a.H": "BEGIN PGM A MM\nL X+30 Y+20 Z-20 FMAX\n"}
     with pytest.raises(BadFile, match=said):
         corrected(f"{start[name]}{text}\n", name)
+
+
+@pytest.mark.parametrize(
+    ("mode", "turned", "said"),
+    [
+        ("M126", 200, "line 4: found C turning by 200 degrees with M126, expected at most 180"),
+        ("M126", 170, ""),
+        ("M127", 200, ""),
+        ("M126\nL X+31 FMAX M127", 200, ""),
+    ],
+)
+def test_a_turn_the_shorter_way_is_not_divided_into_the_longer(corrected, mode, turned, said):
+    """Manual: M126, modal, takes rotary axes the shorter way; +200 degrees is then -160.
+
+    Divided for its correction the block would have pieces that go +200 degrees.
+    """
+    text = f"BEGIN PGM A MM\nL X+30 Y+20 Z-20 FMAX\n{mode}\nL X+130 C+{turned} F900\n"
+    if said:
+        with pytest.raises(BadFile, match=said):
+            corrected(text, "a.H")
+    else:
+        corrected(text, "a.H")
+    corrected(text.replace("F900", "FMAX"), "a.H")  # is not divided
 
 
 def test_what_is_rapid_or_long_stays_in_feed_per_minute(corrected):

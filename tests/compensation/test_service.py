@@ -13,11 +13,10 @@ from bench import LENGTH
 from matstd.compensation.field.inverse import correction
 from matstd.compensation.field.machine_errors import MachineErrors
 from matstd.compensation.field.state import State
-from matstd.compensation.service.history import MAX_MOMENTS, History
-from matstd.compensation.service.latency import prompt
-from matstd.compensation.service.opcua_server import NAMESPACE, serve
+from matstd.compensation.service.opcua_server import NAMESPACE, prompt, serve
 from matstd.compensation.service.output import Output, OutputLimits, Quality
 from matstd.compensation.service.service import Service
+from matstd.compensation.service.tabulated import MAX_MOMENTS, History
 from matstd.twin.errors import BadValue, DesignError
 from matstd.twin.library.catalogue import parse_effect
 from matstd.twin.thermal.thermal_lag import ThermalLag
@@ -133,6 +132,24 @@ def test_a_warming_machine_is_followed_as_its_lag_says(bench_chain, datum):
     z = service.tick(0.0).k0[service.correction.linear_axes.index("Z")]
     warmth = 10.0 * (1.0 - np.exp(-10.0 * MINUTE / 300.0))
     assert z == pytest.approx(-2.0 * UM * warmth, rel=0.01)
+
+
+def test_what_drives_the_machine_is_a_number(bench_chain, datum):
+    """A gateway that has lost a value hands NaN over: the tables stay as they were."""
+    growth = parse_effect("thermal-lag(EZZ,spindle_rpm)", bench_chain)
+    begin = State(temperature={"frame": 20.0}, spindle_rpm=1000.0)
+    theta = np.full(len(growth.parameters), 10.0 * UM)
+    errors = MachineErrors.of_errors(bench_chain, [(growth, theta)], begin)
+    service = Service(errors, LENGTH, datum, OutputLimits(most=1.0))
+    before = service.correction.at(datum.q.tolist())
+    for warm, speed, said in (
+        (np.nan, 1000.0, "temperature frame: nan, expected a number"),
+        (20.0, np.nan, "spindle speed: nan, expected a number"),
+        (20.0, np.inf, "spindle speed: inf, expected a number"),
+    ):
+        with pytest.raises(DesignError, match=said):
+            service.drive(1.0, {"frame": warm}, speed)
+    assert service.correction.at(datum.q.tolist()) == before
 
 
 def test_a_history_goes_forward_with_its_sensors():

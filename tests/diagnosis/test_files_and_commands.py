@@ -8,17 +8,18 @@ import pytest
 from simulator_case import simulate_case
 
 from matstd.cli import main
-from matstd.diagnosis.files.model_file import read_model
-from matstd.diagnosis.files.model_writer import model_text
-from matstd.diagnosis.fit.identification import fit_run
-from matstd.diagnosis.fit.unit_mistakes import unit_mistake
-from matstd.diagnosis.remarks.run_remarks import remarks
-from matstd.report.words.remark_words import remark_sentence
-from matstd.twin.library.ordinary import ordinary_model
-from matstd.twin.record.copies import without_copies
+from matstd.diagnosis.files import model_text, read_model
+from matstd.diagnosis.fit import fit_run, unit_mistake
+from matstd.diagnosis.remarks import remarks
+from matstd.report.words import remark_sentence
+from matstd.twin.library import ordinary_model
+from matstd.twin.record import without_copies
 from matstd.twin.units import NM
 
 NUMBER = (int, float)
+QUICK = ["--no-report", "--no-learn"]
+"""Neither a page nor a law of what remains, which have tests of their own."""
+
 DIGITS = 2e-6
 """Numbers in json files have six significant digits."""
 
@@ -91,7 +92,7 @@ def warmed(tmp_path_factory):
     )
     (place / "run.csv").write_text(run, encoding="utf-8")
     (place / "machine.toml").write_text(machine, encoding="utf-8")
-    words = ["diagnose", str(place / "run.csv"), "-o", str(place / "out"), "--no-report"]
+    words = ["diagnose", str(place / "run.csv"), "-o", str(place / "out"), *QUICK]
     assert main(words) == 0
     return place
 
@@ -258,7 +259,7 @@ def test_compare_with_a_model_of_the_same_machine(folder, tmp_path) -> None:
     (tmp_path / "machine.toml").write_text((folder / "machine.toml").read_text())
     a, b, m, c = (str(tmp_path / n) for n in ("a.csv", "b.csv", "m", "c"))
     add = ["--add", "backlash(Y)", "--only", "backlash"]
-    assert main(["diagnose", a, *add, "-o", m, "--no-report"]) == 0
+    assert main(["diagnose", a, *add, "-o", m, *QUICK]) == 0
     assert main(["compare", b, "--model", f"{m}/model.toml", "-o", c, "--no-report"]) == 0
     stated = json.loads((tmp_path / "c" / "comparison.json").read_text(encoding="utf-8"))
     # 1 within 4 deviations of 390 squares, which share the errors of the model: twice that
@@ -271,14 +272,15 @@ def test_compare_with_a_model_of_the_same_machine(folder, tmp_path) -> None:
 def test_auto_finds_puts_in_and_goes_on_from_its_own_model(folder, tmp_path, capsys) -> None:
     """What was found goes into model.toml; begun with that, nothing is missing any more."""
     run, out, again = str(folder / "run.csv"), tmp_path / "out", tmp_path / "again"
-    assert main(["diagnose", run, "--auto", "-o", str(out), "--no-report"]) == 0
+    narrow = ["--only", "backlash", "thermal-lag", *QUICK]
+    assert main(["diagnose", run, "--auto", "-o", str(out), *narrow]) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "The model lacks one effect: reversal of Y (amplitude " in printed
     stated = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
     assert [s["effect"] for s in stated["steps"]] == [None, "backlash(Y)"]
     model = out / "model.toml"
     assert 'name = "backlash(Y)"' in model.read_text(encoding="utf-8")
-    assert main(["diagnose", run, "--model", str(model), "-o", str(again), "--no-report"]) == 0
+    assert main(["diagnose", run, "--model", str(model), "-o", str(again), *narrow]) == 0
     stated = json.loads((again / "diagnosis.json").read_text(encoding="utf-8"))
     assert stated["verdict"] == "no missing effect"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["again", "out"]  # nothing half-written
@@ -301,7 +303,7 @@ def test_named_effects_and_effects_of_ones_own(folder, tmp_path, capsys) -> None
     (tmp_path / "mine.py").write_text(HOSE, encoding="utf-8")
     out = tmp_path / "out"
     own = ["--effects", str(tmp_path / "mine.py"), "--add", "tested-hose", "backlash(Y)"]
-    command = ["diagnose", str(folder / "run.csv"), *own, "-o", str(out), "--no-report"]
+    command = ["diagnose", str(folder / "run.csv"), *own, "-o", str(out), *QUICK]
     assert main(command) == 0
     stated = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
     assert [s["effect"] for s in stated["steps"]] == [None, "tested-hose", "backlash(Y)"]
@@ -371,10 +373,7 @@ def test_bad_rows_are_one_clear_line(changed, tmp_path, capsys, change, phrases)
 
 @pytest.mark.parametrize(
     ("arguments", "phrase"),
-    [
-        (["--model", "nowhere.toml"], "nowhere.toml"),
-        (["--effects", "nowhere.py"], "nowhere.py"),
-    ],
+    [(["--model", "nowhere.toml"], "nowhere.toml"), (["--effects", "nowhere.py"], "nowhere.py")],
 )
 def test_bad_arguments_are_one_clear_line(changed, tmp_path, capsys, arguments, phrase) -> None:
     path = changed(lambda rows: rows[:100])

@@ -22,6 +22,8 @@ from matstd.diagnosis.files import diagnosis_table, model_of, model_text, read_m
 from matstd.diagnosis.fit import fit_run
 from matstd.diagnosis.laws import (
     POLICY,
+    Learning,
+    LearntLaw,
     Refusal,
     amplitudes,
     learn_laws,
@@ -29,6 +31,7 @@ from matstd.diagnosis.laws import (
     places,
     second_run,
 )
+from matstd.diagnosis.laws.beginning import Beginning
 from matstd.diagnosis.laws.learn import _by_rival as weighed
 from matstd.diagnosis.laws.library import LibraryEffect
 from matstd.diagnosis.laws.remainder import _determined
@@ -268,6 +271,32 @@ def test_effects_that_explain_nothing_give_way_to_the_law(stylus) -> None:
     assert len(found.after.model.effects) == len(model.effects) + 1
 
 
+def test_a_saved_law_is_less_sure_beyond_the_values_it_was_learnt_from(stylus) -> None:
+    _, (run, *_), _ = stylus
+    q = run.touches.reading("Y")
+    near = run[q < np.quantile(q, 0.6)]
+    law = parse_effect("law(EZY,bump Y)", run.touches.chain).tuned(float(q.min()), 40.0)
+    start = Beginning.of_run(near)
+    after = start.fitted([law])
+    one = LearntLaw(law, (), 0.0, 0.0, 0.0, ())
+    found = Learning(start, after, after, (one,), None, None, (), POLICY)
+    (beyond,) = found.saved.model.effects[-1:]
+    count = len(after.model.parameters)
+    np.testing.assert_allclose(found.saved.theta[:count], after.theta[:count], atol=1e-9)
+    np.testing.assert_allclose(found.saved.theta[found.saved.of_effect(beyond.name)], 0, atol=1e-9)
+    # by hand: far beyond the touches the variance that comes back is the square of the law's size
+    edge = float(near.touches.reading("Y").max())
+    (amplitude,) = after.theta[after.of_effect(law.name)]
+    size = abs(amplitude) * np.exp(-(((near.touches.reading("Y") - q.min()) / 40.0) ** 2))
+    far = 10.0 * (edge - q.min())
+    (_, above) = beyond.factors[0].shape.values(np.array([edge, edge + far]), *beyond.places)
+    assert above[0] == 0.0
+    assert above[1] == pytest.approx(size.max(), rel=1e-6)
+    u = [compare(run, model_of(fit)).u for fit in (found.saved, after)]
+    wider = u[0] / u[1]
+    assert np.median(wider[q > edge + 0.2 * (edge - q.min())]) > 1.2 * np.median(wider[q < edge])
+
+
 def test_a_curve_is_saved_and_is_uncertain_where_it_has_not_been(stylus, tmp_path) -> None:
     run = stylus[1][0]
     q = run.touches.reading("Y")
@@ -308,7 +337,13 @@ def test_a_curve_is_saved_and_is_uncertain_where_it_has_not_been(stylus, tmp_pat
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("seed", "label", "family"),
-    [(1, "hsm600u", "gate"), (2, "hsm600u", "harmonic_by_direction"), (3, "fork", "worn_zone")],
+    [
+        (1, "hsm600u", "gate"),
+        (2, "hsm600u", "harmonic_by_direction"),
+        (3, "fork", "worn_zone"),
+        (4, "fork", "loop"),
+        (5, "hsm600u", "cogging"),
+    ],
 )
 def test_products_and_plateaus_are_found(seed, label, family) -> None:
     *texts, truth = law_case(np.random.default_rng(seed), label, family, (30.0, 40.0))

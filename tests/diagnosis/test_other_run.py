@@ -62,7 +62,7 @@ def visits(tmp_path_factory):
     out = Visits(folder)
     for name, added in (("slipped", ["artefact-slip"]), ("calm", [])):
         words = ["diagnose", out.path(f"{name}.csv"), "--add", "backlash(X)", *added]
-        words += ["--only", "backlash", "--no-report", "-o", out.path(f"of_{name}")]
+        words += ["--only", "backlash", "--no-report", "--no-learn", "-o", out.path(f"of_{name}")]
         assert main(words) == 0
     return out
 
@@ -122,7 +122,7 @@ def test_a_file_of_before_is_read_by_the_kind_of_its_effects(visits, tmp_path):
 
 def test_a_second_run_learns_without_the_slip_of_the_first(visits, tmp_path, capsys):
     words = ["diagnose", visits.path("second.csv"), "--model", visits.path("of_slipped/model.toml")]
-    words += ["--only", "backlash", "--no-report", "-o", str(tmp_path / "out")]
+    words += ["--only", "backlash", "--no-report", "--no-learn", "-o", str(tmp_path / "out")]
     assert main(words) == 0
     assert "belongs to slipped.csv" in " ".join(capsys.readouterr().out.split())
     second = read_model(tmp_path / "out" / "model.toml", runs=[read_run(visits.path("second.csv"))])

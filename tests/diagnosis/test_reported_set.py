@@ -173,7 +173,7 @@ def folder(tmp_path_factory):
 def test_every_figure_can_be_had_again_from_the_model(folder, tmp_path, capsys, option) -> None:
     run = str(folder / "run.csv")
     narrow = ["--only", "thermal-lag(EXC)", "backlash"]
-    arguments = [run, *option, *narrow, "--no-report", "-o", str(tmp_path / "d")]
+    arguments = [run, *option, *narrow, "--no-report", "--no-learn", "-o", str(tmp_path / "d")]
     assert main(["diagnose", *arguments]) == 0
     capsys.readouterr()
     model = str(tmp_path / "d" / "model.toml")

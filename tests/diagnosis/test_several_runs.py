@@ -237,7 +237,8 @@ def test_the_command_reports_what_changed_and_saves_the_machine_as_it_is_now(
     rendered_alone("trend")
     files = [str(folder / f"{n}.csv") for n in ("spring", "autumn")]
     out = tmp_path / "out"
-    assert main(["diagnose", *files, "--only", "backlash", "-o", str(out)]) == 0
+    words = ["diagnose", *files, "--only", "backlash", "--no-learn", "-o", str(out)]
+    assert main(words) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "from spring to autumn squareness of Y to X (EC0Y) changed from" in printed
     table = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
@@ -262,7 +263,7 @@ def test_the_command_reports_what_changed_and_saves_the_machine_as_it_is_now(
 def test_a_run_is_held_out_by_its_name(folder, tmp_path, capsys) -> None:
     files = [str(folder / f"{n}.csv") for n in ("spring", "autumn")]
     out = tmp_path / "out"
-    command = ["diagnose", *files, "--hold-out", "autumn", "--only", "backlash"]
+    command = ["diagnose", *files, "--hold-out", "autumn", "--only", "backlash", "--no-learn"]
     assert main([*command, "-o", str(out), "--no-report"]) == 0
     capsys.readouterr()
     table = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))

@@ -8,7 +8,7 @@ from scipy.optimize import LinearConstraint, minimize
 
 from matstd.information.criteria.design_criterion import DesignCriterion
 from matstd.information.criteria.measures import Determinant, MeanVariance
-from matstd.information.selection.certificate import certificate, rounded
+from matstd.information.selection.certificate import Certificate, rounded
 from matstd.information.selection.relaxation import _candidates_to_search, relaxed, slope
 from matstd.information.selection.shares import largest_sum
 from matstd.information.selection.touch_selection import Selection, exchange, fill
@@ -81,13 +81,13 @@ def test_certified_efficiency_of_a_good_and_of_a_bad_choice(is_determinant):
     selection = Selection(criterion, W)
     fill(selection, 40)
     exchange(selection)
-    good = certificate(criterion, W, selection.chosen)
-    assert 0.97 < good.efficiency <= 1.0
-    assert good.value == pytest.approx(value_of(criterion, W, selection.chosen), rel=1e-6)
-    bad = certificate(criterion, W, np.arange(2000) < 40)
-    assert bad.efficiency < 0.6
-    assert bad.bound == pytest.approx(good.bound, rel=5e-3)  # the same bound from another start
     best = relaxed(criterion, W, 40, selection.chosen)
+    good = Certificate(2000, 40, value_of(criterion, W, selection.chosen), best.bound)
+    assert 0.97 < good.efficiency <= 1.0
+    other = np.arange(2000) < 40
+    again = relaxed(criterion, W, 40, other)
+    assert again.bound == pytest.approx(best.bound, rel=5e-3)  # the same bound from another start
+    assert Certificate(2000, 40, value_of(criterion, W, other), again.bound).efficiency < 0.6
     whole = rounded(criterion, W, best.weight, 40)
     assert int(whole.chosen.sum()) == 40
     assert best.bound / whole.value > 0.97

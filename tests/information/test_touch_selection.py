@@ -84,12 +84,8 @@ def test_exchange_mends_a_bad_start(case):
     start[:12] = True
     selection = Selection(criterion, W, start)
     before = selection.value
-    kept = np.zeros(60, dtype=bool)
-    kept[:2] = True
-    made = exchange(selection, kept=kept)
-    assert made > 0
+    assert exchange(selection) > 0
     assert selection.value < before
-    assert selection.chosen[:2].all()
     assert selection.chosen.sum() == 12
 
 

@@ -24,7 +24,7 @@ BAD = 2
 SAME_U = 0.1
 """Touches that count twice would make an uncertainty smaller by 30 %."""
 
-NARROW = ["--only", "backlash", "--no-report"]
+NARROW = ["--only", "backlash", "--no-report", "--no-learn"]
 """Where it does not matter what else might be found: half the time of a diagnosis."""
 
 

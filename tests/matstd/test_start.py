@@ -33,6 +33,7 @@ def result_of(folder, command, *words):
     out = folder / "out"
     name = {"diagnose": "diagnosis.json", "compare": "comparison.json"}[command]
     run = [command, str(folder / "run.csv"), "--no-report", "-o", str(out), "--force"]
+    run += ["--no-learn"] if command == "diagnose" else []
     assert main([*run, *words]) == 0
     return json.loads((out / name).read_text())
 

@@ -5,7 +5,7 @@ readings together, quicker and slower waves of one law, and drivers that no colu
 """
 
 import numpy as np
-from simulator_laws import Family, component, played
+from simulator_laws import Family, component, played, since_first
 
 OUTSIDE = (
     "two_zones", "chirp", "staircase", "radius", "diagonal", "rectified", "wander",
@@ -15,7 +15,7 @@ OUTSIDE = (
 
 FURTHER = (
     "dead_band", "parabola_about", "scale_joint", "room_cycle", "lubrication", "wiper",
-    "half_wave", "worn_window", "cold_oil", "ring_down", *OUTSIDE,
+    "half_wave", "worn_window", "cold_oil", "ring_down", *OUTSIDE, "loop", "cogging", "overshoot",
 )  # fmt: skip
 """Every further family by its word."""
 
@@ -53,6 +53,15 @@ def further_families(rng, machine) -> dict[str, Family]:
     def y(s):
         return s.q[B] - at[B]
 
+    def since_pose(s):
+        turned = np.sum(
+            [np.abs(np.diff(s.q[a], prepend=s.q[a][0])) for a in machine.rotary], axis=0
+        )
+        return since_first(s, np.cumsum(turned > 1e-6))
+
+    def ringing(s):
+        return np.exp(-since_pose(s) / 150.0) * np.cos(2.0 * np.pi * since_pose(s) / 170.0)
+
     def everywhere(formula):
         def act(s, a):
             return {"shift": (a * 1.0e-3 * formula(s))[:, None] * towards}
@@ -63,6 +72,11 @@ def further_families(rng, machine) -> dict[str, Family]:
         return Family("shift", ("time",), (shape,) if shape else (), everywhere(formula))
 
     inside = {
+        "loop": component(
+            aside, (A,), ("hysteresis", "play"), lambda s: (s.q[A] - played(s.q[A], 35.0)) / 35.0
+        ),
+        "cogging": component(own, (A,), ("sine*window", "sine*plateau"),
+            lambda s: np.sin(0.2 * np.pi * s.q[A] * 50.0 / period) * (np.abs(x(s)) < 45.0)),
         "dead_band": component(
             aside, (A,), ("dead-band",),
             lambda s: np.sign(x(s)) * np.maximum(np.abs(x(s)) - 30.0, 0.0) / 50.0,
@@ -103,6 +117,9 @@ def further_families(rng, machine) -> dict[str, Family]:
             lambda s: (played(s.temperature["scaleZ"], 0.5) - 20.0) ** 2),
     }  # fmt: skip
     if machine.rotary:
+        inside["overshoot"] = Family(
+            "shift", ("since-pose",), ("exp*sine", "settling*sine"), everywhere(ringing)
+        )
         inside["half_wave"] = component("EZC", ("C",), ("half-wave",),
             lambda s: np.maximum(np.sin(s.q["C"] + phase), 0.0))  # fmt: skip
     return inside | outside

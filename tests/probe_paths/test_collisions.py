@@ -15,8 +15,7 @@ from matstd.probe_paths.campaign.virtual_run import run_programs
 from matstd.probe_paths.control.interpreter import interpret
 from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.control.steps import Move
-from matstd.probe_paths.plan.clearance import ToolClearance
-from matstd.probe_paths.plan.strokes import Stage
+from matstd.probe_paths.plan.clearance import Stage, ToolClearance
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import apply, inverse
 from matstd.twin.machine.kinematics import tip

@@ -19,8 +19,8 @@ from matstd.probe_paths.control.log import read_log
 from matstd.probe_paths.control.steps import Move
 from matstd.probe_paths.emit.program import make_ball, make_programs
 from matstd.probe_paths.linuxcnc.replanned import shortened
-from matstd.probe_paths.locate.again import planned_again
 from matstd.probe_paths.locate.beside import plan_ball
+from matstd.probe_paths.locate.planned_visit import planned_again
 from matstd.report.words.probe_words import ball_lines
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.frames import pose, rotation
@@ -135,10 +135,7 @@ def test_a_tilted_standard_has_no_such_ball():
     ("keys", "reason"),
     [
         ("at_mm = [9.0, 0.0, 70.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 30.0", "less than the"),
-        (
-            "at_mm = [9.0, 0.0, 10.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 9.0",
-            "than 12.5 in z",
-        ),
+        ("at_mm = [9.0, 0.0, 10.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 9.0", "than 12.5 in z"),
         ("at_mm = [9.0, 0.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 9.0", "workshop.ball.at_mm"),
     ],
 )

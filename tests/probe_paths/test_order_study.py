@@ -8,8 +8,13 @@ import pytest
 
 from matstd.artefact.reach.touchable import Requests
 from matstd.artefact.tool.probe import Probe
-from matstd.probe_paths.campaign.duration import probing_time
-from matstd.probe_paths.campaign.order_study import _sd_beside, _short_way, _shortest, orders
+from matstd.probe_paths.campaign.order_study import (
+    _sd_beside,
+    _shortest,
+    orders,
+    probing_time,
+)
+from matstd.probe_paths.plan.order import short_order
 from matstd.probe_paths.plan.touch_plan import PlanOptions
 from matstd.twin.library.ordinary import ordinary_model
 from matstd.twin.record.touches import Setup
@@ -66,7 +71,7 @@ def test_short_way_against_all_ways():
             return np.abs(np.diff(path, axis=0)).max(axis=1).sum()
 
         shortest = min(turned(way) for way in permutations(range(6)))
-        way = _short_way(poses, home)
+        way = short_order(poses, home)
         assert sorted(way) == list(range(6))
         assert turned(way) <= 1.1 * shortest
 

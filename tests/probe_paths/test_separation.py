@@ -3,14 +3,7 @@
 import numpy as np
 import pytest
 
-from matstd.probe_paths.plan.separation import (
-    EXACT,
-    Hulls,
-    Sweeps,
-    balls_apart,
-    gaps,
-    least_gaps,
-)
+from matstd.probe_paths.plan.separation import EXACT, Hulls, Sweeps, balls_apart, gaps, least_gaps
 
 SIGNS = np.array([[a, b, c] for a in (-1, 1) for b in (-1, 1) for c in (-1, 1)])
 SHORT = 1e-6

@@ -58,7 +58,7 @@ def test_effects_found_before_are_switches_beside_the_law(learning):
 def test_a_step_of_the_probe_stands_at_the_touches_themselves(learning):
     """The lever on the reading of the probe is 1: dots are residuals plus the step by hand."""
     (one,) = learning.laws
-    curve = law_curve(learning, one.law, 0)
+    curve = law_curve(learning, one.law, one.law.drivers[0])
     (size,) = amplitudes(learning, one.law)
     (instant,) = one.law.places
     t = learning.after.run.touches.time
@@ -86,7 +86,7 @@ def test_a_diagnosis_shows_what_it_found_and_the_law_of_what_remains(learning):
     assert last["fitted"] == pytest.approx(found.laws.after.rms / UM)
     # the model has the law; of the geometry it states what console and page do
     saved = SavedDiagnosis(**{f.name: getattr(found, f.name) for f in fields(found)}, auto=True)
-    assert saved.learnt is found.laws.after
+    assert saved.learnt is found.laws.saved
     stated = {one.symbol: one.estimate.value for one in saved.model.determined}
     rows = {row.symbol: row.estimate.value for row in found.geometry.rows if row.is_determined}
     assert stated == pytest.approx(rows, rel=1e-5)
@@ -102,7 +102,7 @@ def test_the_page_shows_curve_and_touches_and_takes_the_law_away(browser, learni
         return JSON.stringify({ y: [...plot.y], curve: plot.curve && [...plot.curve.y],
           half: plot.curve && [...plot.curve.half], label: plot.frame.yLabel,
           fitted: now.fitted, heldOut: now.heldOut });"""
-    curve = law_curve(learning, learning.laws[0].law, 0)
+    curve = law_curve(learning, learning.laws[0].law, learning.laws[0].law.drivers[0])
     shown = json.loads(run(browser, state))
     assert shown["label"] == "bias in µm"
     assert shown["curve"] == pytest.approx(curve.value.tolist(), abs=1e-3)

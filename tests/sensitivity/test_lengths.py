@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from matstd.sensitivity.first_order.workspace import latin_hypercube
-from matstd.sensitivity.montecarlo.kernels import compiled
-from matstd.sensitivity.montecarlo.lengths import BINS, count_lengths
+from matstd.sensitivity.montecarlo.lengths import BINS, compiled_count, count_lengths
 from matstd.sensitivity.montecarlo.random_machines import volumetric
 from matstd.sensitivity.population.sampling import Population
 from matstd.twin.units import UM
@@ -23,10 +22,11 @@ def task():
     return G, theta, np.full(70, 0.01), size
 
 
+@pytest.mark.usefixtures("compiled_loops")
 @pytest.mark.parametrize("use_compiled", [False, True])
 @pytest.mark.parametrize("threads", [1, 3])
 def test_counts_are_those_of_plain_numpy(task, use_compiled, threads):
-    assert compiled() is not None  # numba belongs to the test extra
+    assert compiled_count() is not None  # numba belongs to the test extra
     G, theta, width, size = task
     found = count_lengths(
         G, theta, width, 4.0, worst=(50, 3), use_compiled=use_compiled, threads=threads
@@ -43,6 +43,7 @@ def test_counts_are_those_of_plain_numpy(task, use_compiled, threads):
     np.testing.assert_array_equal(found.worst, (size >= limit).sum(axis=1))
 
 
+@pytest.mark.usefixtures("compiled_loops")
 @pytest.mark.parametrize("use_compiled", [False, True])
 def test_poses_that_are_equally_bad_all_count(use_compiled):
     # machines along one direction: poses are equal, or differ by whole factors

@@ -5,8 +5,7 @@ import pytest
 
 from matstd.sensitivity.first_order.indices import covariance, rms, variance_shares
 from matstd.sensitivity.first_order.workspace import latin_hypercube
-from matstd.sensitivity.montecarlo.exact import exact_check
-from matstd.sensitivity.montecarlo.random_machines import volumetric
+from matstd.sensitivity.montecarlo.random_machines import exact_check, volumetric
 from matstd.sensitivity.population.distributions import Distributions
 from matstd.sensitivity.population.sampling import Population, coefficients, drawn_in_chunks
 from matstd.twin.errors import DesignError

@@ -43,16 +43,16 @@ def test_amplitudes_signs_and_shapes_are_drawn_evenly(chain):
 
 def test_constants_stay_constants(chain):
     population = Population(chain)
-    assert population.shapes_of(chain.symbol("EC0Y")) == ("constant",)
-    assert population.shapes_of(chain.symbol("EXC1")) == ("constant",)
-    assert population.shapes_of(chain.symbol("EXX")) == ("linear", "parabolic", "sinusoidal")
+    assert population.mix_of(chain.symbol("EC0Y")).shapes == ("constant",)
+    assert population.mix_of(chain.symbol("EXC1")).shapes == ("constant",)
+    assert population.mix_of(chain.symbol("EXX")).shapes == ("linear", "parabolic", "sinusoidal")
 
 
 def test_a_rotary_axis_repeats_every_turn(chain):
-    assert Population(chain).shapes_of(chain.symbol("EXC")) == ("sinusoidal",)
+    assert Population(chain).mix_of(chain.symbol("EXC")).shapes == ("sinusoidal",)
     asked = Distributions(rotary_shapes=("linear", "sinusoidal"))
     population = Population(chain, distributions=asked)
-    assert population.shapes_of(chain.symbol("EXC")) == ("linear", "sinusoidal")
+    assert population.mix_of(chain.symbol("EXC")).shapes == ("linear", "sinusoidal")
 
 
 def test_a_drawn_machine_is_the_same_as_effects_and_as_vector(chain, workspace):
@@ -117,9 +117,9 @@ def test_mixes_by_name_and_class_have_their_chances(chain):
         by_name={"EXX": Mix(("parabolic",)), "EBB": Mix(("constant",))},
     )
     population = Population(chain, distributions=mixes)
-    assert population.shapes_of(chain.symbol("EXX")) == ("parabolic",)
-    assert population.shapes_of(chain.symbol("EYX")) == ("linear", "parabolic", "sinusoidal")
-    assert population.shapes_of(chain.symbol("EBB")) == ("constant",)
+    assert population.mix_of(chain.symbol("EXX")).shapes == ("parabolic",)
+    assert population.mix_of(chain.symbol("EYX")).shapes == ("linear", "parabolic", "sinusoidal")
+    assert population.mix_of(chain.symbol("EBB")).shapes == ("constant",)
     draws = draw(population, 8000, np.random.default_rng(3))
     p = next(p for p, s in enumerate(chain.symbols) if s.name == "EAC")
     # standard errors of a share over 8000 draws: 0.006 and less

@@ -24,7 +24,7 @@ from matstd.twin.effects.location import LocationError
 from matstd.twin.errors import DesignError, OutsideTravel, UnknownAxis
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.machine.chain import Axis, make_chain
-from matstd.twin.units import DEG, NM, UM, URAD
+from matstd.twin.units import NM, UM, URAD
 
 LENGTH = 160.0
 SECOND_ORDER = 5e-6
@@ -60,15 +60,10 @@ def test_x_and_c_run_linearly_and_b_swings(path, own):
     np.testing.assert_array_equal(reading(path, "Y"), np.mean(own.link("Y").range))
 
 
-def test_wishes_are_kept(own):
-    work = Workspace(own, {"C": (0.0, 1.0)}, LENGTH)
-    path = paper_trajectory(work, ("Y",), "C", 1.0, 41, {"B": -20 * DEG})
-    assert path.name == "Y linear, C sinusoidal"
-    assert set(path.moving) == {"Y", "C"}
-    np.testing.assert_array_equal(reading(path, "B"), -20 * DEG)
-    np.testing.assert_allclose(
-        reading(path, "C"), 0.5 + 0.5 * np.sin(2 * np.pi * path.along), atol=1e-12
-    )
+def test_held_axes_stay_where_they_are_wished(own):
+    path = paper_trajectory(Workspace(own, {}, LENGTH), held={"Y": 20.0})
+    np.testing.assert_array_equal(reading(path, "Y"), 20.0)
+    assert "Y" not in path.moving
 
 
 def test_machines_without_rotary_axes_have_a_path_too():
@@ -144,9 +139,8 @@ def test_random_machines_along_a_path(own, path):
 @pytest.mark.parametrize(
     ("wish", "kind", "words"),
     [
-        ({"linear": ("Q",)}, UnknownAxis, "Q"),
-        ({"linear": ("X",), "swinging": "X"}, DesignError, "every axis in one role"),
-        ({"linear": ("X",), "held": {"X": 0.0}}, DesignError, "every axis in one role"),
+        ({"held": {"Q": 0.0}}, UnknownAxis, "Q"),
+        ({"held": {"X": 0.0}}, DesignError, "X held: expected an axis that does not move"),
         ({"held": {"Y": 900.0}}, OutsideTravel, "Y held at 900"),
         ({"count": 1}, DesignError, "two at least"),
     ],

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from typing import Annotated
 
 import numpy as np
+from numpy.polynomial.legendre import legvander
 
-from matstd.twin.fields import Argument, read_text
+from matstd.twin.fields import Argument
 from matstd.twin.frames import Array
 from matstd.twin.model import Declared, Kind, Parameter, Term, Where
 from matstd.twin.record import Touches
@@ -31,7 +32,7 @@ class ArtefactForm(Declared):
     its points on the patch give the rectangle.
     """
 
-    patch: Annotated[str, Argument("patch", read_text)]
+    patch: Annotated[str, Argument("patch")]
 
     kind, called, carrier = "artefact-form", "form of {patch}", "standard"
     parameters = tuple(
@@ -40,11 +41,12 @@ class ArtefactForm(Declared):
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         rows = np.flatnonzero(touches.feature == self.patch)
-        v, w = _legendre(_local(touches.point[rows]))
+        unit = np.sqrt(2.0 * np.arange(FORM_DEGREE + 1) + 1.0)
+        v, w = (legvander(x, FORM_DEGREE) * unit for x in _local(touches.point[rows]).T)
         out = []
         for k, (i, j) in enumerate(DEGREES):
             amount = np.zeros(len(touches))
-            amount[rows] = 0.5 * v[i] * w[j]
+            amount[rows] = 0.5 * v[:, i] * w[:, j]
             out.append(Term(k, Where("bias"), amount))
         return tuple(out)
 
@@ -59,17 +61,6 @@ def _local(point: Array) -> Array:
     place = point @ axes.T
     low, high = place.min(axis=0), place.max(axis=0)
     return (2.0 * place - low - high) / np.maximum(high - low, 1e-9)
-
-
-def _legendre(place: Array) -> tuple[list[Array], list[Array]]:
-    """Legendre polynomials of unit mean square up to `FORM_DEGREE`, of both columns of (M, 2)."""
-    out = []
-    for x in (place[:, 0], place[:, 1]):
-        p = [np.ones_like(x), x]
-        for k in range(1, FORM_DEGREE):
-            p.append(((2 * k + 1) * x * p[-1] - k * p[-2]) / (k + 1))
-        out.append([np.sqrt(2.0 * k + 1.0) * p_k for k, p_k in enumerate(p)])
-    return out[0], out[1]
 
 
 def propose(touches: Touches) -> Iterable[ArtefactForm]:

@@ -56,46 +56,28 @@ class Coupling(Declared):
             raise refuse(f"another axis than {self.other} itself")
         return self
 
-    @property
-    def _words(self) -> list[str]:
-        """Name of every joint term; an axis whose letter turns gives a cosine and a sine."""
-        axes = (self.symbol.link, self.other)
-        if self.degree > 1:
-            higher = [_higher_names(axis, self.degree) for axis in axes]
-            return [f"{f} {g}" for f in higher[0] for g in higher[1]]
-        own, other = (_factor_names(axis) for axis in axes)
-        words = [" ".join(w for w in (f, g) if w) for f in own for g in other]
-        return ["amplitude"] if len(words) == 1 else words
-
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
+        own, other = (_functions(a, self.degree) for a in (self.symbol.link, self.other))
         # guides are smooth: a shape of order j k is expected that much smaller
-        own, other = (_orders(a, self.degree) for a in (self.symbol.link, self.other))
-        shares = [1.0 / (j * k) for j in own for k in other]
-        return tuple(self.sized(w, share) for w, share in zip(self._words, shares, strict=True))
+        return tuple(
+            self.sized(f"{f} {g}".strip() or "amplitude", 1.0 / (j * k))
+            for f, j in own
+            for g, k in other
+        )
 
     def amounts(self, touches: Touches) -> Amounts:
         own, other = (_factors(touches, a, self.degree) for a in (self.symbol.link, self.other))
         return [f * g for f in own for g in other]
 
 
-def _factor_names(axis: str) -> tuple[str, ...]:
-    return ("",) if axis[0] in "XYZUVW" else (f"cos {axis}", f"sin {axis}")
-
-
-def _turns(axis: str) -> bool:
-    return axis[0] not in "XYZUVW"
-
-
-def _orders(axis: str, degree: int) -> list[int]:
-    """Order of every function of one reading."""
-    return [k for k in range(1, degree + 1) for _ in range(2 if _turns(axis) else 1)]
-
-
-def _higher_names(axis: str, degree: int) -> list[str]:
-    if not _turns(axis):
-        return [f"P{k}{axis}" for k in range(1, degree + 1)]
-    return [f"{f} {k}{axis}" for k in range(1, degree + 1) for f in ("cos", "sin")]
+def _functions(axis: str, degree: int) -> list[tuple[str, int]]:
+    """Name and order of every function of one reading; of an axis that turns cosine and sine."""
+    orders = range(1, degree + 1)
+    if axis[0] in "XYZUVW":
+        return [(f"P{k}{axis}" if degree > 1 else "", k) for k in orders]
+    number = "{}" if degree > 1 else ""
+    return [(f"{f} {number.format(k)}{axis}", k) for k in orders for f in ("cos", "sin")]
 
 
 def _factors(touches: Touches, axis: str, degree: int) -> tuple[Array, ...]:

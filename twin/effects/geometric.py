@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebvander
 
 from matstd.twin.fields import check_count, component_symbol, components_of, moving_axes, refusal
 from matstd.twin.machine import SHAPES, Chain, Ranges, ShapeName, Symbol, shape
@@ -105,10 +106,7 @@ class HigherOrder(Declared):
         if self.rotary:
             return [f(k * q) for k in self.degrees for f in (np.sin, np.cos)]
         u = touches.chain.link(self.symbol.link).scaled(q)
-        basis = [np.ones_like(u), u]
-        for _ in range(1, self.degree):
-            basis.append(2.0 * u * basis[-1] - basis[-2])
-        return [basis[k] for k in self.degrees]
+        return list(chebvander(u, self.degree).T[self.lowest :])
 
 
 def higher_order(chain: Chain, symbol: Symbol, degree: int, lowest: int = 1) -> HigherOrder:

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
-from matstd.twin.errors import UnknownEffect
 from matstd.twin.fields import (
     AxisName,
     ComponentSymbol,
@@ -90,10 +90,7 @@ def make(chain: Chain, arguments: Sequence[str]) -> Effect:
     rotary = chain.link(symbol.link).kind == "rotary"
     if len(arguments) == 1:
         return TiltSag(symbol) if rotary else RamSag(symbol)
-
-    def refuse(expected: str) -> UnknownEffect:
-        return refusal(KIND.usage, arguments, expected)
-
+    refuse = partial(refusal, KIND.usage, arguments)
     table = read_axis(arguments[1], chain, refuse)
     if not rotary or table not in chain.rotary_axes or table == symbol.link:
         raise refuse("a rotary axis that tilts and another that turns the load")

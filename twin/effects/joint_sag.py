@@ -21,9 +21,7 @@ from matstd.twin.record import Touches
 from matstd.twin.units import URAD
 
 SAME_POINT = 1e-6  # points closer than this (mm) with every axis at zero are equal
-
 FLANGE = "flange"  # name of the gauge point among the places of weights
-
 DOWN = np.array([0.0, 0.0, -1.0])
 """Direction of weights in the machine frame, whose Z stands upright (ISO 841)."""
 

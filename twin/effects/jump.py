@@ -30,10 +30,6 @@ def between(times: Array, on_each_side: int) -> Array:
     return inside
 
 
-def _instants(effect: "Jump", touches: Touches) -> Array:
-    return thinned(between(np.unique(touches.time), ON_EACH_SIDE), INSTANTS)
-
-
 @dataclass(frozen=True)
 class Jump(Declared):
     """The positioning of an axis is another one from an unknown instant on.
@@ -42,7 +38,11 @@ class Jump(Declared):
     """
 
     symbol: ComponentSymbol
-    instant: float = scanned("s", _instants, acts="at an instant")
+    instant: float = scanned(
+        "s",
+        lambda _, touches: thinned(between(np.unique(touches.time), ON_EACH_SIDE), INSTANTS),
+        acts="at an instant",
+    )
 
     kind, called = "jump", "jump of {symbol.link}, as of lost counts"
     usual = (10 * UM, 30 * URAD)

@@ -185,15 +185,11 @@ class Harmonic(_Repeating):
 
 
 def scanned_periods(q: Array, pitch: float | None = None) -> Array:
-    """Periods that some readings can show, ascending, (G,), mm.
+    """Periods that some readings (N,) can show, mm, ascending, (G,), mm; a pitch may be stated.
 
     From half the travel (at most `LONGEST`, on a long axis `LONGEST_PINION`) down to `SHORTEST`, or
     to twice the distance of denser readings, for uneven ones further (`PERIODS_PER_READING`); and
     around whole fractions of a stated pitch beyond that. Frequencies 1/p are evenly spaced.
-
-    Args:
-        q: Readings of the axis, (N,), mm.
-        pitch: Stated pitch, mm, or None.
     """
     travel = float(np.ptp(q))
     shortest = min(SHORTEST, _resolved(q)) if travel > 0.0 else SHORTEST
@@ -214,10 +210,8 @@ def scanned_periods(q: Array, pitch: float | None = None) -> Array:
 def finest_harmonic(q: Array) -> int:
     """Highest harmonic without an alias among lower ones, at most `FINEST_HARMONIC`.
 
-    Readings that stand on a grid of n to the turn show harmonic n as a constant, and n - k as k.
-
-    Args:
-        q: Distinct readings of a rotary axis, (N,), rad.
+    Distinct readings (N,), rad, that stand on a grid of n to the turn show harmonic n as a
+    constant, and n - k as k.
 
     Example:
         >>> finest_harmonic(np.radians(np.arange(0.0, 360.0, 15.0)))
@@ -246,12 +240,9 @@ def _resolved(q: Array) -> float:
 
 
 def _grid_distance(places: Array) -> float:
-    """Distance of the even grid on which readings stand, 0 where there is none, mm.
+    """Distance of the even grid on which ascending readings (N,) stand, 0 where there is none, mm.
 
     A choice of an even log has gaps of one, two and more distances, few of them of one.
-
-    Args:
-        places: Distinct readings, ascending, (N,), mm.
     """
     gaps = np.diff(places)
     for distance in np.unique(np.quantile(gaps, GAP_QUANTILES, method="nearest"))[::-1]:

@@ -21,18 +21,13 @@ from matstd.twin.record import Touches
 from matstd.twin.units import UM, URAD
 
 ORDER = 20  # half waves over the travel: the resolution of 20 targets; faster ones are `periodic`
-
 CORRELATION_LENGTHS = (0.04, 0.1, 0.3)
 """Tried correlation lengths, as shares of the travel: 0.04 is the distance of 25 targets; smoother
 curves than 0.3 are polynomials of low degree."""
-
 BY_DIRECTION = "directions"  # argument for separate curves of the two directions
-
 MIN_TARGETS = 5  # fewest targets of a positioning test of one metre (ISO 230-2)
-
 MIN_REVISITED_SHARE = 0.5
 """From this share of rows at readings approached before, readings are targets."""
-
 WHOLE_TURN = 2.0 * np.pi - 0.02
 """From this travel of a rotary axis, rad, its curve is closed; a degree less leaves no gap."""
 
@@ -41,10 +36,6 @@ def _directions(text: str, chain: Chain, refuse: Refuse) -> bool:
     if text != BY_DIRECTION:
         raise refuse(f"nothing or '{BY_DIRECTION}' after the comma")
     return True
-
-
-def _no_or_each(by_direction: bool) -> str:
-    return BY_DIRECTION if by_direction else ""
 
 
 @dataclass(frozen=True)
@@ -63,7 +54,9 @@ class PositionTable(Declared):
 
     symbol: ComponentSymbol
     # whether each direction has its own curve; a reversal that is alike everywhere is `backlash`
-    by_direction: Annotated[bool, Argument("directions", _directions, _no_or_each)] = False
+    by_direction: Annotated[
+        bool, Argument("directions", _directions, lambda by: BY_DIRECTION if by else "")
+    ] = False
     is_round: bool = False  # whether the travel of a rotary axis closes in itself
     # l, as a share of the travel
     length: float = scanned("1", CORRELATION_LENGTHS, continuous=False)

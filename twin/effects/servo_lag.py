@@ -12,11 +12,9 @@ from matstd.twin.record import IntArray, Labels, Touches
 
 SPEED_COLUMN = "v{axis}_mm_s"
 """Column of the user's own (`V_vX_mm_s`) that states the speed of an axis, mm/s."""
-
 MAX_STEP_SHARE = 0.02
 """Readings were taken in motion if they differ by less than this share of the travel: 120 points a
 circle; targets of a positioning test stand ten times farther apart."""
-
 PAUSE_RATIO = 3.0  # a pause of more than this many median time steps separates two motions
 
 

@@ -3,12 +3,13 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import attrgetter
 from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
-from matstd.twin.fields import Argument, read_text
+from matstd.twin.fields import Argument
 from matstd.twin.frames import Array
 from matstd.twin.model import Declared, Parameter, Term, Where
 from matstd.twin.record import Body, Touches
@@ -18,11 +19,9 @@ SHIFT_SD = 1000.0 * UM
 TURN_SD = 5e-3
 """Prior standard deviations of a set-up, mm and rad: wide, since no clamping repeats to a
 micrometre and the calibration of a machine must not depend on it."""
-
 STYLUS_SD = 100.0 * UM
 """Prior standard deviation of place and radius of a further stylus against the first, mm: also
 wide."""
-
 _MAX_STYLI = 10  # largest number of further styli; more lengths belong to a target that is moved
 
 
@@ -33,11 +32,21 @@ def rigid_shift(here: Array, arm: Array) -> list[Term]:
         here: 1 at the touches that are moved, (N,).
         arm: From the centre of the rotation to the touched points, 0 at other touches, (N, 3), mm.
     """
-    terms = [Term(i, Where("shift", 0, i), here) for i in range(3)]
-    for turn in range(3):  # moves the two directions across
+    return [*(Term(i, Where("shift", 0, i), here) for i in range(3)), *turned_shift(arm, first=3)]
+
+
+def turned_shift(arm: Array, first: int = 0) -> list[Term]:
+    """Shifts of a standard that turns: three rotations, of which each moves two directions.
+
+    Args:
+        arm: As of `rigid_shift`.
+        first: Index of the first rotation among the parameters.
+    """
+    terms = []
+    for turn in range(3):
         a, b = (turn + 1) % 3, (turn + 2) % 3
-        terms.append(Term(3 + turn, Where("shift", 0, b), arm[:, a]))
-        terms.append(Term(3 + turn, Where("shift", 0, a), -arm[:, b]))
+        terms.append(Term(first + turn, Where("shift", 0, b), arm[:, a]))
+        terms.append(Term(first + turn, Where("shift", 0, a), -arm[:, b]))
     return terms
 
 
@@ -49,7 +58,7 @@ class SetupError(Declared):
     parameters, mm and rad.
     """
 
-    setup: Annotated[str, Argument("setup", read_text)]
+    setup: Annotated[str, Argument("setup")]
     # c, table frame, mm: the middle of the touched points, so that displacement and rotation are
     # estimated nearly independently
     centre: tuple[float, float, float]
@@ -101,8 +110,7 @@ class StylusError(Declared):
 
     def here(self, touches: Touches) -> NDArray[np.bool_]:
         """Touches of this stylus, (N,)."""
-        is_it: NDArray[np.bool_] = (touches.length == self.length) & (touches.radius == self.radius)
-        return is_it
+        return np.asarray((touches.length == self.length) & (touches.radius == self.radius))
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         here, tool = self.here(touches).astype(float), touches.chain.link_index("t")
@@ -164,11 +172,7 @@ class BodyExpansion(Declared):
 
     def here(self, touches: Touches) -> NDArray[np.bool_]:
         """Touches of a standard of this expansion, (N,)."""
-        stated = (self.body.alpha, self.body.u_alpha)
-        own = [
-            s.body is not None and (s.body.alpha, s.body.u_alpha) == stated for s in touches.setups
-        ]
-        return np.asarray(np.array(own)[touches.setup])
+        return _of_body(touches, self.body, "alpha", "u_alpha")
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         return _grown(touches, self.here(touches) * (touches.body_temperature - T_REF))
@@ -195,11 +199,14 @@ class BodyScale(Declared):
         return (Parameter("scale", "mm/mm", self.body.u_scale),)
 
     def terms(self, touches: Touches) -> Sequence[Term]:
-        stated = (self.body.alpha, self.body.u_scale)
-        own = [
-            s.body is not None and (s.body.alpha, s.body.u_scale) == stated for s in touches.setups
-        ]
-        return _grown(touches, np.array(own)[touches.setup].astype(float))
+        return _grown(touches, _of_body(touches, self.body, "alpha", "u_scale").astype(float))
+
+
+def _of_body(touches: Touches, body: Body, *names: str) -> NDArray[np.bool_]:
+    """Touches of a standard whose stated figures of these names are those of a body, (N,)."""
+    of = attrgetter(*names)
+    own = [s.body is not None and of(s.body) == of(body) for s in touches.setups]
+    return np.asarray(np.array(own)[touches.setup])
 
 
 def _grown(touches: Touches, strain: Array) -> Sequence[Term]:
@@ -226,9 +233,8 @@ def placing_errors(touches: Touches) -> tuple[SetupError | StylusError, ...]:
     for index, setup in enumerate(touches.setups):
         rows = touches.setup == index
         if rows.any():
-            x, y, z = touches.point_table[rows].mean(axis=0)
-            turns_only = touches.instrument.reads_angle
-            out.append(SetupError(setup.name, (float(x), float(y), float(z)), turns_only))
+            x, y, z = touches.point_table[rows].mean(axis=0).tolist()
+            out.append(SetupError(setup.name, (x, y, z), touches.instrument.reads_angle))
     return (*out, *further_styli(touches))
 
 

@@ -8,9 +8,5 @@ from matstd.twin.elastic.body import Body, short_beams
 from matstd.twin.elastic.materials import Material, material, material_names
 
 __all__ = [
-    "Body",
-    "Material",
-    "material",
-    "material_names",
-    "short_beams",
-]
+    "Body", "Material", "material", "material_names", "short_beams",
+]  # fmt: skip

@@ -174,8 +174,7 @@ def _side(length: Array, EI: float, GA: float, held: bool, sign: float) -> tuple
 def along(support: Support, x: Array, span: Array, stiffness: float) -> Array:
     """Motion along the beam per force, or rotation about it per moment, at the point, (N,).
 
-    Args:
-        stiffness: EA in N, or GJ in N mm2. Supported ends hold both.
+    The stiffness is EA in N, or GJ in N mm2; supported ends hold both.
     """
     if support == "cantilever":
         return x / stiffness

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 
 import numpy as np
 
@@ -17,11 +17,9 @@ from matstd.twin.model import Declared, Effect, Kind, Parameter, Term, Where
 from matstd.twin.record import Touches
 
 GRAVITY = 9.80665  # standard acceleration, m/s2, N/kg
-
 SLENDER = 3.0
 """Below this ratio of length to depth the supports of a beam yield as much as the beam; a warning
 is given."""
-
 KEYS = ("at", "sense", "span", "mass", "offset", "material", "down")
 DIRECTIONS = {s + a: i for i, (s, a) in enumerate((s, a) for a in "XYZ" for s in "+-")}
 
@@ -33,33 +31,19 @@ class Body(Declared):
     The point stands ``x = at + sense q`` from the root, q the reading. Loads on it are its mass at
     its offset, the beam's own weight, and the load on the tool with its moment. A cantilever
     without a span is a ram: only what has left its guide bends.
-
-    Attributes:
-        axis: Linear axis whose frame it carries.
-        support: How the beam is held.
-        shape: Shape of the section as the file writes it.
-        at: Distance of the point from the root at reading zero, mm.
-        sense: 1 where the point goes away from the root with the reading, -1 the other way.
-        span: Length of the beam, mm; 0 of a ram.
-        mass: Mass that it carries, kg, or a column of the user's own, `V_name_kg`.
-        offset: From the point to the mass, machine frame, mm.
-        stuff: Word of the material.
-        down: Direction of the weight, `-Z`.
-        outward: From root to point along X, Y or Z of the machine, (index, sign).
-        shares_tool: Whether it is on the tool side.
     """
 
-    axis: str
-    support: Support
-    shape: str
-    at: float
-    sense: int
-    span: float
-    mass: float | str
-    offset: tuple[float, float, float]
-    stuff: str
-    down: str
-    outward: tuple[int, int]
+    axis: str  # linear axis whose frame it carries
+    support: Support  # how the beam is held
+    shape: str  # of the section as the file writes it
+    at: float  # distance of the point from the root at reading zero, mm
+    sense: int  # 1 where the point goes away from the root with the reading, -1 the other way
+    span: float  # length of the beam, mm; 0 of a ram
+    mass: float | str  # that it carries, kg, or a column of the user's own, `V_name_kg`
+    offset: tuple[float, float, float]  # from the point to the mass, machine frame, mm
+    stuff: str  # word of the material
+    down: str  # direction of the weight, `-Z`
+    outward: tuple[int, int]  # from root to point along X, Y or Z of the machine: index, sign
     on_tool_side: bool
 
     kind, called = "beam", "bending of the body of {axis} under weight and load"
@@ -175,10 +159,7 @@ def _unit(direction: str) -> Array:
 
 def make(chain: Chain, arguments: Sequence[str]) -> Body:
     """From axis, support, section and `key:value` words."""
-
-    def refuse(expected: str) -> UnknownEffect:
-        return refusal(KIND.usage, arguments, expected)
-
+    refuse = partial(refusal, KIND.usage, arguments)
     if len(arguments) < 4:
         raise refuse("an axis, a support, a section and where the frame stands")
     axis = read_linear_axis(arguments[0], chain, refuse)

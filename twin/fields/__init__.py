@@ -18,28 +18,11 @@ from matstd.twin.record import Touches
 from matstd.twin.words import did_you_mean
 
 __all__ = [
-    "AnySymbol",
-    "Argument",
-    "AxisName",
-    "ComponentSymbol",
-    "LinearAxisName",
-    "Refuse",
-    "SensorName",
-    "check_count",
-    "component_symbol",
-    "components_of",
-    "moved_components",
-    "moving_axes",
-    "moving_linear_axes",
-    "no_values",
-    "read_axis",
-    "read_linear_axis",
-    "read_text",
-    "refusal",
-    "sensor_record",
-    "sensors",
-    "varies",
-]
+    "AnySymbol", "Argument", "AxisName", "ComponentSymbol", "LinearAxisName", "Refuse",
+    "SensorName", "check_count", "component_symbol", "components_of", "moved_components",
+    "moving_axes", "moving_linear_axes", "no_values", "read_axis", "read_linear_axis", "refusal",
+    "sensor_record", "sensors", "varies",
+]  # fmt: skip
 
 
 def moving_axes(touches: Touches) -> list[str]:
@@ -98,24 +81,24 @@ def no_values(touches: Touches) -> Iterable[Any]:
     return ()
 
 
+def _as_it_is(text: str, chain: Chain, refuse: Refuse) -> str:
+    return text
+
+
 @dataclass(frozen=True)
 class Argument:
     """What may stand at one place between the brackets of an effect's name."""
 
     word: str  # what it is, for the usage
     # value of a text on a machine; raises what `Refuse` makes, or another DesignError
-    read: Callable[[str, Chain, Refuse], Any]
+    read: Callable[[str, Chain, Refuse], Any] = _as_it_is
     write: Callable[[Any], str] = str  # text of a value
     # values that make sense for some touches
     offered: Callable[[Touches], Iterable[Any]] = no_values
 
 
 def refusal(usage: str, found: Sequence[str], expected: str) -> UnknownEffect:
-    """Exception for arguments that an effect does not take.
-
-    Args:
-        expected: What should stand there, with what is available.
-    """
+    """Exception for arguments that an effect does not take; expected is what is available."""
     word = usage.partition("(")[0]
     given = f"{word}({','.join(found)})" if found else word
     return UnknownEffect(f"effect '{given}': expected {usage}, {expected}")
@@ -153,34 +136,27 @@ def read_linear_axis(text: str, chain: Chain, refuse: Refuse) -> str:
     return text
 
 
-def read_component(text: str, chain: Chain, refuse: Refuse) -> Symbol:
-    """A component error of an axis."""
-    return component_symbol(chain, text)
-
-
-def read_text(text: str, chain: Chain, refuse: Refuse) -> str:
-    """Any text: what it names is known with the run."""
-    return text
-
-
-def symbol_name(symbol: Symbol) -> str:
-    """`EXX`."""
+def _name_of(symbol: Symbol) -> str:
     return symbol.name
 
 
-def _read_symbol(text: str, chain: Chain, refuse: Refuse) -> Symbol:
-    return chain.symbol(text)
-
-
-AnySymbol = Annotated[Symbol, Argument("symbol", _read_symbol, symbol_name)]
+AnySymbol = Annotated[
+    Symbol, Argument("symbol", lambda text, chain, refuse: chain.symbol(text), _name_of)
+]
 """Any error parameter: `EXX`, `EC0Y`, `EX0w`."""
 AxisName = Annotated[str, Argument("axis", read_axis, offered=moving_axes)]
 """A programmed axis; offered are those that moved."""
 LinearAxisName = Annotated[str, Argument("axis", read_linear_axis, offered=moving_linear_axes)]
 """A programmed linear axis; offered are those that moved."""
 ComponentSymbol = Annotated[
-    Symbol, Argument("symbol", read_component, symbol_name, moved_components)
+    Symbol,
+    Argument(
+        "symbol",
+        lambda text, chain, refuse: component_symbol(chain, text),
+        _name_of,
+        moved_components,
+    ),
 ]
 """A component error of an axis; offered are those of the axes that moved."""
-SensorName = Annotated[str, Argument("sensor", read_text, offered=sensors)]
+SensorName = Annotated[str, Argument("sensor", offered=sensors)]
 """A temperature sensor; offered are those whose record varies."""

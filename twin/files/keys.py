@@ -14,7 +14,17 @@ from functools import cache
 from pathlib import Path
 from textwrap import dedent
 from types import UnionType
-from typing import Annotated, Any, Literal, NamedTuple, TypeVar, Union, get_args, get_origin
+from typing import (
+    Annotated,
+    Any,
+    Literal,
+    NamedTuple,
+    TypeGuard,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+)
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
@@ -42,7 +52,6 @@ UNITS = {
 """Units by the end of a key; the longer ends stand before those that they contain."""
 
 LONG = 90  # characters of a clause from which on what stands in brackets is left out of a refusal
-
 T = TypeVar("T", bound=BaseModel)
 
 
@@ -183,7 +192,7 @@ def _collection(kind: Any, limits: Sequence[Any], unit: str) -> _Kind:
     if origin is dict:
         inside = _holds(args[1], (), unit).several if args[1] not in (object, Any) else "values"
         return _Kind(f"a table of {inside} by name", "tables")
-    if isinstance(kind, type) and issubclass(kind, BaseModel):
+    if _is_table(kind):
         names = ", ".join(field.alias or name for name, field in kind.model_fields.items())
         return _Kind(f"a table with the keys {names}", f"tables with the keys {names}")
     return _Kind("a value", "values")
@@ -209,9 +218,7 @@ def _bounds(limits: Sequence[Any], unit: str = "") -> str:
 def checked(model: type[T], data: object, path: str | Path, within: str = "") -> T:
     """A table checked against its model; raises BadFile with all of its faults.
 
-    Args:
-        model: Pydantic model with the units in its field names.
-        within: Key under which the data stood.
+    The data stood under the key `within` of the file, or were all of it.
     """
     try:
         return model.model_validate(data)
@@ -288,9 +295,9 @@ def _whole(model: type[BaseModel], steps: Sequence[str]) -> tuple[list[str], Key
     at: list[str] = []
     key: Key | None = None
     for step in steps:
-        kinds = [k for k in _bare(kind) if k is not type(None)]
+        kinds = _bare(kind)
         kind = kinds[0] if len(kinds) == 1 else None
-        if isinstance(kind, type) and issubclass(kind, BaseModel):
+        if _is_table(kind):
             if step not in keys_of(kind):
                 break
             key, kind = keys_of(kind)[step], _annotations(kind)[step]
@@ -305,17 +312,21 @@ def _whole(model: type[BaseModel], steps: Sequence[str]) -> tuple[list[str], Key
 
 
 def _bare(kind: Any) -> list[Any]:
-    """An annotation without what is annotated, each of its alternatives by itself."""
+    """Every alternative of an annotation, None apart, without what is annotated."""
     if get_origin(kind) is Annotated:
         return _bare(get_args(kind)[0])
     if get_origin(kind) in (Union, UnionType):
         return [bare for inner in get_args(kind) for bare in _bare(inner)]
-    return [kind]
+    return [] if kind is type(None) else [kind]
 
 
 def _has_tables(kind: Any) -> bool:
     """Whether the items of a list are tables, so that a fault has a key of its own."""
-    return any(isinstance(k, type) and issubclass(k, BaseModel) for k in _bare(get_args(kind)[0]))
+    return any(map(_is_table, _bare(get_args(kind)[0])))
+
+
+def _is_table(kind: Any) -> TypeGuard[type[BaseModel]]:
+    return isinstance(kind, type) and issubclass(kind, BaseModel)
 
 
 def _annotations(model: type[BaseModel]) -> dict[str, Any]:
@@ -326,12 +337,8 @@ def _table(model: type[BaseModel], steps: Sequence[str]) -> type[BaseModel] | No
     """The table within a table to which some steps lead, None for anything else."""
     kind: Any = model
     for step in steps:
-        kinds = [k for k in _bare(kind) if k is not type(None)]
-        is_table = isinstance(kinds[0], type) and issubclass(kinds[0], BaseModel)
-        if is_table:
-            kind = _annotations(kinds[0]).get(step)
-        else:
-            kind = next(reversed(get_args(kinds[0])), None)
-    kinds = [k for k in _bare(kind) if k is not type(None)] or [None]
-    last = kinds[0]
-    return last if isinstance(last, type) and issubclass(last, BaseModel) else None
+        first = _bare(kind)[0]
+        tables = _annotations(first) if _is_table(first) else {}
+        kind = tables.get(step) if tables else next(reversed(get_args(first)), None)
+    last = next(iter(_bare(kind)), None)
+    return last if _is_table(last) else None

@@ -18,9 +18,7 @@ from matstd.twin.errors import DesignError
 
 _LOCK = "matstd.lock"
 _MARK = "matstd works here; this folder goes when it is done\n"
-
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP)  # a file system that knows no locks
-
 PATIENCE, _PAUSE = 60.0, 0.02
 """Longest wait for a lock, which is held for milliseconds, and pause between tries, s."""
 
@@ -49,13 +47,8 @@ def is_abandoned(folder: Path) -> bool:
 def in_turn(path: Path, patience: float = PATIENCE) -> Iterator[None]:
     """Keep every other process from this block for the same name, which need not exist.
 
-    Where the file system knows no locks, the block runs without.
-
-    Args:
-        patience: Longest wait for another process, s.
-
-    Raises:
-        DesignError: Another process has held the lock for longer.
+    Where the file system knows no locks, the block runs without. Raises DesignError if another
+    process has held the lock for longer than `patience`, s.
     """
     # of the name, which may itself be as long as names can be; a shared lock does no harm
     lock = path.with_name(f".matstd-{zlib.crc32(path.name.casefold().encode()):08x}.lock")
@@ -86,11 +79,7 @@ def in_turn(path: Path, patience: float = PATIENCE) -> Iterator[None]:
 
 
 def _is_free(file: IO[str], without: bool = False) -> bool:
-    """Take the lock; it is given back when the file is closed.
-
-    Args:
-        without: The answer where the file system knows no locks.
-    """
+    """Take the lock until the file is closed; `without` is the answer where there are no locks."""
     try:
         if sys.platform == "win32":
             import msvcrt

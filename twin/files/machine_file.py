@@ -18,23 +18,16 @@ from matstd.twin.units import DEG, meant_in_radians
 SHORTEST_TRAVEL = 5.0
 """A linear axis travels farther, mm; the smallest machining centres travel 20 mm. A travel in
 metres is at most 5 or so."""
-
-LONGEST_TRAVEL = 1e5
-"""No linear axis travels farther, mm; a travel of 300 mm in micrometres does."""
-
+LONGEST_TRAVEL = 1e5  # no linear axis travels farther, mm; a travel of 300 mm in micrometres does
 ROTARY_LETTERS, ALONG_ITS_LETTER = "ABC", 0.1
 """Rotary axes about X, Y and Z, and the least part of their lines along these (ISO 841); that of
 inclined axes is half or more."""
-
 ROOM = 500.0
 """A pivot lies at most so far beyond the box of all travels and the table, and their width, mm."""
-
 NEAREST_PIVOT, FARTHEST_PIVOT = 0.05, 5.0
 """A coordinate of a pivot between these, mm, may be one in metres: 0.42 for 420 mm. Measured
 centres of rotation differ from zero by hundredths of a millimetre."""
-
 LONGEST_IN_METRES = 5e3  # in mm: no pivot lies farther
-
 NEARER = 4.0
 """Times that a pivot in metres is nearer to the table, or farther from the spindle, once read so;
 only then is it one."""
@@ -198,11 +191,7 @@ class MachineTables(Table):
     """the table `[workpiece]`"""
 
     def made(self, path: str | Path, within: str = "") -> Chain:
-        """The machine in base units; raises BadFile.
-
-        Args:
-            within: Key of the table that the machine stands in.
-        """
+        """The machine in base units; raises BadFile, with the key `within` of these tables."""
         axes = {name: table.axis(name) for name, table in self.axis.items()}
         try:
             return make_chain(self.name, self.chain, axes, self.workpiece.origin)

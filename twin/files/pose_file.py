@@ -15,7 +15,6 @@ from matstd.twin.record import IntArray
 
 FARTHEST = 1e5
 """A length (mm) or an angle (degrees) beyond this is a slip, not a reading or a place."""
-
 READING_ROUNDING = 1e-6  # share of the travel by which the rounding of a reading may exceed it
 
 

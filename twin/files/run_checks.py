@@ -9,6 +9,7 @@ from matstd.twin.errors import BadFile
 from matstd.twin.files.pose_file import beyond_travel
 from matstd.twin.files.table import CsvTable
 from matstd.twin.frames import Array
+from matstd.twin.numbers import rms
 from matstd.twin.record import Instrument, IntArray, Run, computed_deviation, without_copies
 from matstd.twin.units import UM
 
@@ -16,48 +17,35 @@ Mask = NDArray[np.bool_]
 
 LARGEST_DEVIATION = 10.0
 """Deviations beyond this (mm) are refused: units are mixed up, or set-up or probe are wrong."""
-
 LARGEST_OF_INSTRUMENT = 100.0
 """The same of a distance that an instrument beside the machine measured, mm: arms that were never
 calibrated are off by centimetres, and no ball has to touch."""
-
 LARGEST_ANGLE = 0.35
 """The same for an instrument that reads angles, rad; cheap encoders are off by some degrees."""
-
 MAX_OVERTRAVEL = 0.1
 """Readings beyond the travel by more than this share of it are faults, not a touch at the limit."""
-
 TRIGGER_OVERTRAVEL = 1e-3
 """Share of the travel by which a trigger may lie beyond it without a remark."""
-
 MAX_SLIP_SHARE = 0.05
 """Up to this share of rows may be faults of single rows; with more the whole file is wrong."""
-
 NOISE_LIMIT = 5.0
 """Standard uncertainties, plus 1 µm of rounding, by which stated deviations may differ from those
 of the readings without a remark."""
-
 MAX_LISTED_LINES = 10  # lines of a file that are listed one by one
-
 SAME_READINGS = 0.999
 """From this squared correlation, stated deviations are those of the readings in another unit."""
-
 LARGEST_OFFSET = 0.5
 """A larger deviation (mm), equal on every side of the standard, is refused: neither set-up nor
 machine causes it, but a wrong ball radius or normals that point inwards do."""
-
 LARGEST_GAP = 1.0
 """A stated deviation farther (mm) from that of the readings belongs to another touch. Set-ups are
 moved to their touches from 0.3 mm and 1 mrad on, so at most half of it remains."""
-
 ODD_GAP_RATIO = 20.0
 """Multiple of the median gap between stated and computed deviations beyond which a row is a
 fault."""
-
 LARGEST_ARM = 5.0
 """Distance (mm) of points from the tool, across the measured direction, that is reported: 50 µrad
 on that arm are 0.25 µm."""
-
 LONGEST_PAUSE = 86400.0  # a pause (s) shorter than a day is not reported
 
 _OTHER_UNITS = {
@@ -270,13 +258,18 @@ def _check_offset(run: Run, table: CsvTable) -> None:
     """
     touches = run.touches
     sides = [touches.normal * (touches.setup == i)[:, None] for i in range(len(touches.setups))]
-    A = np.column_stack([np.ones(len(run)), *sides])
+    shifts, one = np.column_stack(sides), np.ones(len(run))
+
+    def beside_shifts(values: Array) -> Array:
+        """What shifts of the set-ups leave of some deviations."""
+        return np.asarray(values - shifts @ np.linalg.lstsq(shifts, values, rcond=None)[0])
+
+    A = np.column_stack([one, shifts])
     offset = float(np.linalg.lstsq(A, run.deviation, rcond=None)[0][0])
-    if abs(offset) < LARGEST_OFFSET or not _is_offset_determined(A):
+    # an offset differs from shifts of the set-ups only where normals point to several sides
+    if abs(offset) < LARGEST_OFFSET or rms(beside_shifts(one)) <= 0.1:
         return
-    rest = run.deviation - offset
-    rest = rest - A[:, 1:] @ np.linalg.lstsq(A[:, 1:], rest, rcond=None)[0]
-    if np.sqrt(np.mean(rest**2)) > 0.2 * abs(offset):
+    if rms(beside_shifts(run.deviation - offset)) > 0.2 * abs(offset):
         return
     radius = float(np.median(touches.radius))
     inwards = abs(offset / (2.0 * radius) + 1.0) < 0.1 if radius else False
@@ -289,9 +282,3 @@ def _check_offset(run: Run, table: CsvTable) -> None:
         if inwards
         else "the radius of the ball, or deviations of some µm",
     )
-
-
-def _is_offset_determined(A: Array) -> bool:
-    """Whether an offset differs from shifts of the set-ups: normals point to several sides."""
-    rest = A[:, 0] - A[:, 1:] @ np.linalg.lstsq(A[:, 1:], A[:, 0], rcond=None)[0]
-    return bool(np.sqrt(np.mean(rest**2)) > 0.1)

@@ -25,27 +25,19 @@ TARGET = ("tx_mm", "ty_mm", "tz_mm")
 RADIUS = "radius_mm"
 PROGRAM = ("program", "touch", "program_line")
 FORCE = ("Fx_N", "Fy_N", "Fz_N")
-
 MAX_GAP_SHARE = 0.5  # a sensor with gaps in a larger share of its rows is left out
-
 MIN_SHUFFLED_SHARE = 0.25
 """Rows are shuffled if time goes back before at least this share of them (one half if fully
 random)."""
-
 MAX_RESTARTS = 3  # restarts of a clock; rows sorted by features or poses go back more often
-
 LATEST = 1e11  # times (s) beyond this, three thousand years, are in another unit
-
 MAX_STANDSTILL_SHARE = 0.05
 """Largest share of rows with direction 0 that counts as a momentary standstill, as at a quadrant of
 a circle; with more, the direction is unknown."""
-
 FINEST, COARSEST = 1e-6, 1e4
 """Standard uncertainties of a touch (µm) lie between: a picometre, and the largest deviation that
 is a measurement."""
-
 MAX_LENGTH_ERROR = 0.01  # a normal whose length is off by more is refused
-
 ROUNDING_ERROR = 1e-5  # a normal whose length is off by less is rounded; this is not reported
 
 
@@ -55,10 +47,9 @@ def points(table: CsvTable) -> Array:
 
 
 def targets(table: CsvTable, common: Sequence[float]) -> Array:
-    """Ball centre or reflector of every row in the tool frame, (N, 3), mm: its own or that of all.
+    """Ball centre or reflector of every row in the tool frame, (N, 3), mm.
 
-    Args:
-        common: Place in the head of the file, which a column or cell that is not there means.
+    A column or cell that is not there means the place `common` in the head of the file.
     """
     cells = [
         table.numbers(c, empty=v, largest=FARTHEST) if c in table else np.full(len(table), v)
@@ -135,11 +126,7 @@ def _is_one_clock(at: Array, back: IntArray, order: IntArray) -> bool:
 
 
 def temperatures(table: CsvTable, at: Array, remarks: list[str]) -> dict[str, Array]:
-    """Temperature of every sensor, (N,) each; missing and impossible values are filled.
-
-    Args:
-        at: Time of every row, (N,), s.
-    """
+    """Temperature of every sensor at times (N,); missing and impossible values are filled."""
     out = {}
     for column in table.columns:
         match = SENSOR.match(column)
@@ -213,7 +200,7 @@ def _filled(values: Array, gaps: BoolArray, at: Array) -> Array:
 def _record_fault(table: CsvTable, column: str, values: Array, gaps: BoolArray) -> str:
     """Description of the fault of a record at its gaps."""
     first = int(np.argmax(gaps))
-    rows = _rows(int(gaps.sum()))
+    rows = f"{gaps.sum()} row{'s' if gaps.sum() > 1 else ''}"
     if not np.isfinite(values[gaps]).any():
         return f"line {table.lines[first]}: {column} has no number in {rows}"
     first = int(np.argmax(gaps & np.isfinite(values)))
@@ -223,10 +210,6 @@ def _record_fault(table: CsvTable, column: str, values: Array, gaps: BoolArray) 
         f"line {table.lines[first]}: {column} reads {values[first]:g} degC, as no machine does"
         f"{why} ({rows})"
     )
-
-
-def _rows(count: int) -> str:
-    return f"{count} row{'s' if count > 1 else ''}"
 
 
 def force(table: CsvTable) -> Array | None:

@@ -138,13 +138,10 @@ class HeadTable(Table):
 
 
 def read_run(path: str | Path, chain: Chain | None = None) -> Run:
-    """Measurements from a run file; raises BadFile.
+    """Measurements from a run file, on the machine that its head names or another; raises BadFile.
 
     Faults that can be corrected without guessing are corrected and reported in `Run.remarks`;
     others are refused.
-
-    Args:
-        chain: The machine; None reads the machine file that the head names.
     """
     text = read_text(path)
     head_text, body, first = _split_head(text, path)

@@ -12,7 +12,7 @@ from matstd.twin.files.run_columns import FORCE, NORMAL, POINT, PROGRAM, RADIUS,
 from matstd.twin.files.whole import write_whole
 from matstd.twin.frames import Array, fixed_xyz_angles
 from matstd.twin.record import BODY, Instrument, Run, Touches, implied_approach
-from matstd.twin.text import csv_text
+from matstd.twin.text import csv_text, toml_value
 from matstd.twin.units import DEG, UM
 
 
@@ -38,7 +38,7 @@ def run_text(run: Run, machine: str) -> str:
         f"radius_mm = {float(t.radius[0])!r}, length_mm = {max(float(t.length[0]), 0.0) + 0.0!r}"
     )
     if t.offset[0].any() and not _has_targets(run):
-        probe += f", offset_mm = [{', '.join(repr(float(v)) for v in t.offset[0])}]"
+        probe += f", offset_mm = {toml_value(t.offset[0].tolist())}"
     out.write(f"# probe = {{ {probe} }}\n")
     if t.instrument is not Instrument.TOUCH_PROBE:
         out.write(f'# instrument = "{t.instrument.value}"\n')

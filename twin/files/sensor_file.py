@@ -7,14 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from matstd.twin.errors import BadFile
-from matstd.twin.files.run_columns import temperatures
+from matstd.twin.files.run_columns import SENSOR, temperatures
 from matstd.twin.files.table import CsvTable
 from matstd.twin.files.toml import read_text
 from matstd.twin.frames import Array
 from matstd.twin.record import Run, Touches
 
 EPOCH = datetime(2000, 1, 1)
-
 MAX_OUTSIDE_RECORD = 300.0
 """Longest time of a touch outside the record, s; the first or last reading then holds."""
 
@@ -31,11 +30,7 @@ class SensorRecord:
     remarks: tuple[str, ...]  # on sensors that were left out, or are constant
 
     def joined(self, run: Run, begin: datetime) -> Run:
-        """A run with the temperatures and the spindle speed at its touches; raises BadFile.
-
-        Args:
-            begin: What the clock said at the run's time zero.
-        """
+        """A run with temperatures and spindle speed at its touches, as of `at_touches`."""
         touches = self.at_touches(run.touches, begin)
         return replace(run, touches=touches, remarks=(*run.remarks, *self.remarks))
 
@@ -50,13 +45,9 @@ class SensorRecord:
         return times
 
     def at_touches(self, touches: Touches, begin: datetime) -> Touches:
-        """Touches with what the sensors read at their times; raises BadFile.
+        """Touches with what the sensors read at their times since `begin`; raises BadFile.
 
         Temperatures are linear in time between readings, the speed stays until the next one.
-
-        Args:
-            touches: Their times count from `begin`.
-            begin: What the clock said at time zero.
         """
         at = _seconds(begin) + touches.time
         first, last = self.clock[0], self.clock[-1]
@@ -99,7 +90,8 @@ def read_sensors(path: str | Path) -> SensorRecord:
             raise table.bad(i, "clock", cell, "a later reading in every row")
     remarks: list[str] = []
     found = temperatures(table, clock, remarks)
-    others = [c for c in table.columns if c not in ("clock", "spindle_rpm") and not _is_sensor(c)]
+    used = ("clock", "spindle_rpm")
+    others = [c for c in table.columns if c not in used and not SENSOR.match(c)]
     if others:
         remarks.append(
             f"column {', '.join(map(repr, others))} is not used: no T_<sensor>_degC and no "
@@ -116,10 +108,6 @@ def read_sensors(path: str | Path) -> SensorRecord:
         spindle_rpm=speed,
         remarks=tuple(f"{path}: {r}" for r in remarks),
     )
-
-
-def _is_sensor(column: str) -> bool:
-    return column.startswith("T_") and column.endswith("_degC")
 
 
 def _seconds(moment: datetime) -> float:

@@ -17,19 +17,14 @@ from matstd.twin.frames import Array
 from matstd.twin.words import did_you_mean
 
 LARGEST_CELL = 1e12  # largest number of any column; larger ones are refused
-
 COLDEST, HOTTEST, HOTTEST_HEATED = -60.0, 200.0, 500.0
 """Temperatures (degC) of a machine lie between the first two; a logger writes -9999 for none. A
 sensor of what is heated, such as the nozzle of a printer, may go up to the third."""
-
 MIN_HEATED_SHARE = 0.1
 """Share of the readings above `HOTTEST` from which it is hot there, unless the sensor is stuck."""
-
 KELVIN = (240.0, 350.0)  # readings that all lie between are those of a room in kelvin
-
 _BYTES_A_BLOCK = 1 << 15
 """Bytes that are converted at once: more of them leave the cache (2^20: 1.5 times as long)."""
-
 _PLAIN = b"0123456789+-.eE, \t\n"
 _OTHERS = {"semicolons": ";", "tabs": "\t"}
 _EXPECTED = "a cell a column, commas between them, and a point in decimal numbers"

@@ -18,10 +18,8 @@ _NO_TEXT = {
 """First bytes of files that users take for text, and what they are."""
 
 LARGEST_NUMBER = 1e18  # largest number in our files; the product of two such does not overflow
-
 _MANY_DIGITS = re.compile(r"[\d_]{4300,}")
 _TWICE = re.compile(r"Cannot declare \((.+?),?\) twice")
-
 _STATEMENT = "one key = value, or one [table], on a line"
 _GRAMMAR = {
     "Cannot overwrite": "every key once in its table",
@@ -101,8 +99,7 @@ def _one_line_end(text: str) -> str:
 def parse_toml(text: str, path: str | Path, twice: str = "it once") -> dict[str, Any]:
     """Tables of a TOML text; raises BadFile.
 
-    Args:
-        twice: What is expected of a table that stands in two places; `{name}` is its name.
+    `twice` is expected of a table that stands in two places; `{name}` in it is its name.
     """
     try:
         return tomllib.loads(text, parse_float=_moderate)
@@ -149,10 +146,6 @@ def check_format(data: dict[str, Any], wanted: str, path: str | Path) -> None:
     """Raise BadFile unless `format` says what the reader understands."""
     if data.get("format") != wanted:
         found = repr(data["format"]) if "format" in data else "nothing"
-        older = "; files of other versions are not read" if _is_version(data, wanted) else ""
+        is_version = str(data.get("format", "")).partition("/")[0] == wanted.partition("/")[0]
+        older = "; files of other versions are not read" if is_version else ""
         raise BadFile(path, "format", found, f'"{wanted}"{older}')
-
-
-def _is_version(data: dict[str, Any], wanted: str) -> bool:
-    """Whether a file is of the wanted kind in another version."""
-    return str(data.get("format", "")).partition("/")[0] == wanted.partition("/")[0]

@@ -29,9 +29,7 @@ NOT_WRITABLE = (
 """Errors that a user can correct: a full disk, no permission to write."""
 
 AT_ONCE = 0.1  # wait for a folder that another run holds for its whole duration, s
-
 UNFINISHED: set[Path] = set()  # unfinished files of this process; they are removed when it is ended
-
 _ASKED: dict[Path, bool] = {}
 """Outputs of this process that are not written yet, and whether they may be overwritten."""
 
@@ -114,9 +112,8 @@ def _not_written(path: Path, error: OSError) -> DesignError:
 def write_whole(path: str | Path, text: str, newline: str = "\n") -> None:
     """Write a text file (UTF-8) whole or not at all.
 
-    Args:
-        text: Its text, lines ended by a line feed.
-        newline: How lines end in the file: a control wants carriage return and line feed.
+    Lines of the text end with a line feed, those of the file with `newline`: a control wants
+    carriage return and line feed.
     """
     with written_whole(path) as part:
         part.write_bytes(text.replace("\n", newline).encode("utf-8"))
@@ -130,15 +127,10 @@ def write_json(path: str | Path, table: Mapping[str, Any], sort_keys: bool = Fal
 def write_into(
     folder: str | Path, texts: Mapping[str, str], force: bool = False, newline: str = "\n"
 ) -> list[Path]:
-    """Write several text files into a folder that may hold others; none is overwritten unasked.
+    """Write texts by file name into a folder that may hold others; none is overwritten unasked.
 
-    If one of them exists when they are written, all are kept in a free folder beside it.
-
-    Args:
-        texts: By file name.
-
-    Raises:
-        DesignError: A file of the same name exists, or the folder cannot be written to.
+    If one of them exists when they are written, all are kept in a free folder beside it, and
+    DesignError is raised; so it is where the folder cannot be written to.
     """
     folder = Path(os.path.realpath(folder))
     with in_turn(folder):
@@ -154,10 +146,7 @@ def write_into(
 
 
 def copy_into(folder: str | Path, data: Mapping[str, bytes], force: bool = False) -> list[Path]:
-    """Write files, as they are, into a folder; none is overwritten unasked.
-
-    Args:
-        data: By path within the folder.
+    """Write files, by their paths within a folder and as they are; none is overwritten unasked.
 
     Raises:
         DesignError: A file of the same name exists; nothing is written then.
@@ -177,10 +166,8 @@ def copy_into(folder: str | Path, data: Mapping[str, bytes], force: bool = False
 def claimed(folder: str | Path, force: bool = False) -> Iterator[Path]:
     """A folder, made if need be, into which no other run writes while the block lasts.
 
-    For results that are kept whatever happens; those that appear whole have `results_folder`.
-
-    Args:
-        force: Whether it may hold files.
+    For results that are kept whatever happens; those that appear whole have `results_folder`. With
+    `force` it may hold files.
 
     Raises:
         DesignError: It holds files, another run is writing into it, or it cannot be made.

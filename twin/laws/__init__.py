@@ -5,14 +5,16 @@ without a cause. `driver` gives variables of touches by name, `shape` the gramma
 where their parameters are scanned.
 """
 
-from matstd.twin.laws.driver import Driver, driver_of, drivers
-from matstd.twin.laws.grids import grid, shapes_of
+from matstd.twin.laws.driver import ON_BALL, Driver, driver_of, drivers
+from matstd.twin.laws.grids import WORDS, grid, shapes_of
 from matstd.twin.laws.law import KIND, Carrier, Factor, Law, carrier_of
 from matstd.twin.laws.shape import SHAPES, Shape, curve_columns, play
 
 __all__ = [
     "KIND",
+    "ON_BALL",
     "SHAPES",
+    "WORDS",
     "Carrier",
     "Driver",
     "Factor",

@@ -25,7 +25,8 @@ Nature = Literal["linear", "rotary", "time", "level", "sign"]
 
 SENSOR, OWN, LAST, TREND = "T-", "V-", "last-", "trend-"
 TIMES = ("time", "since-setup", "since-pose", "since-switch")
-OTHERS = ("rpm", "load", "azimuth", "latitude")
+ON_BALL = ("azimuth", "latitude")
+OTHERS = ("rpm", "load", *ON_BALL)
 
 TREND_TOUCHES = 9
 """Touches over which a temperature rises or falls: its last digit is a millikelvin."""
@@ -52,7 +53,7 @@ class Driver:
             return _trend(_recorded(touches, name.removeprefix(TREND)))
         if name in TIMES:
             return _elapsed(touches, name)
-        if name in ("azimuth", "latitude"):
+        if name in ON_BALL:
             return _on_ball(touches)[name == "latitude"]
         return _recorded(touches, name)
 
@@ -97,7 +98,7 @@ def drivers(touches: Touches) -> list[Driver]:
     names += [OWN + column for column in touches.value]
     names += ["rpm"] if touches.spindle_rpm is not None else []
     names += ["load"] if touches.force is not None else []
-    names += ["azimuth", "latitude"] if touches.instrument.is_ball_on_standard else []
+    names += [*ON_BALL] if touches.instrument.is_ball_on_standard else []
     every = [driver_of(name, chain) for name in names]
     out: list[Driver] = []
     seen: list[Array] = []

@@ -7,6 +7,7 @@ amplitude times one or two shapes, each a function of one variable:
     law(EXY,lin T-scaleX,quad Y)    EXY = a u_T u_Y^2
     law(shift,exp since-setup)      the standard moves by (a, b, c) exp(-t/tau)
     law(EBY,curve Y)           a smooth curve without a formula
+    law(EZX,beyond Y)          what a law may do beyond the Y that were probed: zero ± its size
 
 The library has effects with a cause; a law has none. It is learnt from what a model leaves, and
 predicts as any effect does.
@@ -32,6 +33,9 @@ from matstd.twin.units import DEG, HOUR, T_REF, UM, URAD
 FREE_LENGTH, FREE_ANGLE = 1000.0 * UM, 10000.0 * URAD
 """Prior standard deviation of an amplitude: what is learnt is not drawn towards zero. Of a curve
 its own `size` is the prior."""
+
+BEYOND_LENGTH = 0.3
+"""Share of its domain within which a law has lost its force beyond it."""
 
 SHIFT, BIAS, GROWTH, TILT = "shift", "bias", "growth", "tilt"
 PARTS = {SHIFT: 3, BIAS: 1, GROWTH: 1, TILT: 3, "shift-x": 1, "shift-y": 1, "shift-z": 1}
@@ -85,6 +89,15 @@ class Carrier:
             turned += [(turn, Where("shift", 0, b), arm[:, a])]
             turned += [(turn, Where("shift", 0, a), -arm[:, b])]
         return turned
+
+    def terms(self, touches: Touches, amounts: Sequence[Array]) -> Sequence[Term]:
+        """Every amount, (N,), at all that it moves: amplitudes of one entry after another."""
+        m = len(amounts)
+        return tuple(
+            Term(way * m + k, where, factor * amount)
+            for way, where, factor in self.entries(touches)
+            for k, amount in enumerate(amounts)
+        )
 
     def columns(self, touches: Touches) -> Array:
         """Deviation along the normal per unit of every amplitude, (N, count)."""
@@ -143,6 +156,26 @@ class Law:
         return Title(f"{self.carrier.name}: {text}", _bearer(self.carrier))
 
     @property
+    def drivers(self) -> tuple[Driver, ...]:
+        """Its variables: one where both shapes are of the same."""
+        return tuple(dict.fromkeys(f.driver for f in self.factors))
+
+    @cached_property
+    def parts(self) -> tuple[tuple[Factor, slice], ...]:
+        """Every factor with the range of its parameters in `places`."""
+        out, start = [], 0
+        for factor in self.factors:
+            end = start + len(factor.shape.places)
+            out.append((factor, slice(start, end)))
+            start = end
+        return tuple(out)
+
+    @property
+    def explanation(self) -> tuple[str, ...]:
+        """Carrier and variables: other shapes of the same are no other explanation."""
+        return (self.carrier.name, *sorted(driver.name for driver in self.drivers))
+
+    @property
     def symbol(self) -> Symbol | None:
         """Component error that it acts on."""
         return self.carrier.symbol
@@ -151,6 +184,11 @@ class Law:
     def is_curve_alone(self) -> bool:
         """Whether it has no formula."""
         return any(f.shape.word == "curve" for f in self.factors)
+
+    @property
+    def is_margin(self) -> bool:
+        """Whether it is what another law may do beyond its domain."""
+        return self.factors[0].shape.word == "beyond"
 
     @property
     def belongs_to(self) -> str:
@@ -167,6 +205,25 @@ class Law:
         """Reported by the rms that it explains where coefficients have no meaning."""
         return self.is_curve_alone
 
+    def beyond(self, theta: Array, touches: Touches) -> tuple["Law", ...]:
+        """What it may do beyond the values that its variables had: of its own size, either way.
+
+        Args:
+            theta: Its amplitudes, base units.
+            touches: From which it was learnt.
+        """
+        ways = theta.reshape(self.carrier.count, -1)
+        size = float(np.abs(np.stack(self.amounts(touches), axis=1) @ ways.T).max())
+        out = []
+        for driver in self.drivers:
+            x = driver.values(touches)
+            low, high = float(x.min()), float(x.max())
+            is_whole = driver.nature == "sign" or (driver.unit == "rad" and high - low > np.pi)
+            if not is_whole:
+                places = (low, high, BEYOND_LENGTH, size)
+                out.append(Law(self.carrier, (Factor(SHAPES["beyond"], driver),), places))
+        return tuple(out)
+
     @property
     def needs_history(self) -> bool:
         """Whether the order of touches matters."""
@@ -175,9 +232,10 @@ class Law:
     @cached_property
     def parameters(self) -> Sequence[Parameter]:
         """Amplitudes: of every direction of the carrier, for every coefficient of the shapes."""
-        unit = "1" if self.is_curve_alone else self.carrier.unit
+        is_sized = self.is_curve_alone or self.is_margin
+        unit = "1" if is_sized else self.carrier.unit
         free = FREE_ANGLE if unit == "rad" else FREE_LENGTH
-        sd = 1.0 if self.is_curve_alone else free
+        sd = 1.0 if is_sized else free
         return tuple(
             Parameter(" ".join(w for w in (way, word) if w) or "amplitude", unit, sd)
             for way in self.carrier.words
@@ -193,24 +251,15 @@ class Law:
 
     def amounts(self, touches: Touches) -> list[Array]:
         """What the carrier does per unit of every coefficient, (N,) each."""
-        out, start = [np.ones(len(touches))], 0
-        for factor in self.factors:
-            count = len(factor.shape.places)
-            x = factor.driver.values(touches)
-            found = factor.shape.values(x, *self.places[start : start + count])
+        out = [np.ones(len(touches))]
+        for factor, own in self.parts:
+            found = factor.shape.values(factor.driver.values(touches), *self.places[own])
             out = [a * b for a in out for b in found]
-            start += count
         return out
 
     def terms(self, touches: Touches) -> Sequence[Term]:
         """Amounts at the entries of the carrier."""
-        amounts = self.amounts(touches)
-        m = len(amounts)
-        return tuple(
-            Term(way * m + k, where, factor * amount)
-            for way, where, factor in self.carrier.entries(touches)
-            for k, amount in enumerate(amounts)
-        )
+        return self.carrier.terms(touches, self.amounts(touches))
 
     @cached_property
     def place_names(self) -> tuple[str, ...]:
@@ -263,11 +312,7 @@ class Law:
     @property
     def free(self) -> tuple[int, ...]:
         """Which of the parameters of the shapes a run determines."""
-        out, start = [], 0
-        for factor in self.factors:
-            out += [start + k for k in factor.shape.free]
-            start += len(factor.shape.places)
-        return tuple(out)
+        return tuple(own.start + k for factor, own in self.parts for k in factor.shape.free)
 
 
 def _is_number(name: str, driver: Driver) -> bool:

@@ -88,11 +88,20 @@ def _curve(x: Array, low: float, high: float, length: float, size: float) -> Seq
     of its value there (the correlation of the same process), and two coefficients of their own,
     which no touch within the domain determines, add the variance that is lost: ``1 - k^2``.
     """
-    z = np.sqrt(3.0) * np.maximum(np.maximum(low - x, x - high), 0.0) / ((high - low) * length)
-    kept = (1.0 + z) * np.exp(-z)
-    new = size * np.sqrt(np.maximum(1.0 - kept**2, 0.0))
+    kept = _kept(x, low, high, length)
     waves = size * kept[:, None] * curve_columns(x, low, high, length)
-    return [*waves.T, new * (x < low), new * (x > high)]
+    return [*waves.T, *_beyond(x, low, high, length, size)]
+
+
+def _kept(x: Array, low: float, high: float, length: float) -> Array:
+    z = np.sqrt(3.0) * np.maximum(np.maximum(low - x, x - high), 0.0) / ((high - low) * length)
+    return np.asarray((1.0 + z) * np.exp(-z))
+
+
+def _beyond(x: Array, low: float, high: float, length: float, size: float) -> Sequence[Array]:
+    """Two coefficients of order one that act beyond the domain alone, on either side."""
+    new = size * np.sqrt(np.maximum(1.0 - _kept(x, low, high, length) ** 2, 0.0))
+    return new * (x < low), new * (x > high)
 
 
 def _gauss(x: Array, x0: float, width: float) -> Array:
@@ -210,7 +219,7 @@ SHAPES: dict[str, Shape] = {
                lambda x, zero, w: np.exp(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w"),
         _shape("settling", "1 - exp(-(x - zero)/w)", "1.0 - np.exp(-(x - {zero}) / {w})",
                lambda x, zero, w: -np.expm1(np.clip(-(x - zero) / w, -60.0, 60.0)), "zero", "w"),
-        _several("two-exp", "a exp(-(x - zero)/w1) + b exp(-(x - zero)/w2)",
+        _several("two-exp", "a exp(-(x - zero)/wa) + b exp(-(x - zero)/wb)",
               ("np.exp(-(x - {zero}) / {wa})", "np.exp(-(x - {zero}) / {wb})"),
               lambda x, zero, wa, wb: (np.exp(-(x - zero) / wa), np.exp(-(x - zero) / wb)),
               ("zero", "wa", "wb"), ("fast", "slow")),
@@ -241,6 +250,8 @@ SHAPES: dict[str, Shape] = {
         _several("curve", "smooth curve without a formula, dying away beyond its domain", (),
               _curve, ("low", "high", "length", "size"),
               (*(f"c{k}" for k in range(WAVES)), "below", "above")),
+        _several("beyond", "what is not known beyond the domain of a law", (), _beyond,
+              ("low", "high", "length", "size"), ("below", "above")),
     )
 }  # fmt: skip
 """Every shape by its word; a new one is a line here and its grid in `matstd.twin.laws.grids`."""

@@ -22,22 +22,7 @@ from matstd.twin.library.sized_effect import parse_sized_effect, parse_sizes
 from matstd.twin.library.trial import try_effect, try_kind, users_fault, users_lines
 
 __all__ = [
-    "find_kinds",
-    "is_visible",
-    "kinds",
-    "load_installed_effects",
-    "load_user_effects",
-    "ordinary_model",
-    "owner_of",
-    "parse_effect",
-    "parse_sized_effect",
-    "parse_sizes",
-    "proposals",
-    "register",
-    "title_of",
-    "try_effect",
-    "try_kind",
-    "users_fault",
-    "users_files",
-    "users_lines",
-]
+    "find_kinds", "is_visible", "kinds", "load_installed_effects", "load_user_effects",
+    "ordinary_model", "owner_of", "parse_effect", "parse_sized_effect", "parse_sizes", "proposals",
+    "register", "title_of", "try_effect", "try_kind", "users_fault", "users_files", "users_lines",
+]  # fmt: skip

@@ -51,13 +51,9 @@ from matstd.twin.units import NM
 from matstd.twin.words import listed, nearest
 
 ENTRY_POINT_GROUP = "material_standard.effects"
-
 SIZE_ROUNDING = 1e-3 * NM  # deviations below this are those of floating-point numbers, mm
-
 _NAME = re.compile(r"\s*([A-Za-z][\w-]*)\s*(?:\((.*)\))?\s*\Z")
-
 _REGISTER: dict[str, Kind] = {}
-
 _FILES: dict[str, Path] = {}
 """The users' files that kinds come from, so that a file can be read again when it has changed."""
 
@@ -184,14 +180,10 @@ def _is_taken(kind: Kind, chain: Chain, symbol: str) -> bool:
 
 
 def proposals(touches: Touches, only: Sequence[str] | None = None) -> list[Effect]:
-    """Every effect of the library that makes sense for some touches, each name once.
+    """Every effect of the library, or of some of its words, that makes sense for a whole run.
 
     One that moves nothing at these touches, such as the roll of a spindle ram about the axis on
     which the ball hangs, is left out.
-
-    Args:
-        touches: The touches, all of the run.
-        only: Words of the kinds to propose; None for all.
     """
     wanted = [k for k in kinds() if only is None or k.word in only]
     by_name = {effect.name: effect for kind in wanted for effect in kind.propose(touches)}
@@ -209,10 +201,7 @@ def is_visible(effect: Effect, touches: Touches) -> bool:
 
 
 def load_user_effects(path: Path) -> tuple[Kind, ...]:
-    """Register every `Kind` that stands at the top level of a user's Python file.
-
-    Args:
-        path: The file. It is run: load only what you trust.
+    """Register every `Kind` at the top level of a user's Python file, which is run: trust it first.
 
     Raises:
         BadFile: It is no Python file, fails when run, or has no `Kind` in it.

@@ -31,19 +31,15 @@ def component_errors(chain: Chain, symbol: Symbol, sd: float) -> list[Effect]:
     ]
 
 
-def ordinary_model(chain: Chain, ranges: Ranges | None = None) -> Model:
+def ordinary_model(chain: Chain) -> Model:
     """Every component error in its ordinary distributions and every location error.
 
     Set-ups of the standard are not in it: they belong to a run (`diagnosis`). The prior standard
-    deviations are those of amplitudes drawn from the ranges with random sign.
-
-    Args:
-        ranges: Expected amplitudes; None for the default ones.
+    deviations are those of amplitudes drawn from the default ranges with random sign.
     """
-    ranges = ranges or Ranges()
     effects: list[Effect] = []
     for symbol in chain.symbols:
-        sd = ranges.sd(chain, symbol)
+        sd = Ranges().sd(chain, symbol)
         if symbol.family is Family.COMPONENT:
             effects += component_errors(chain, symbol, sd)
         else:

@@ -23,10 +23,8 @@ from matstd.twin.record import Touches
 
 _PARTS = {"twist": 6, "place": 6, "shift": 3, "bias": 1}
 """Parts of a contribution with the number of their components."""
-
 _HAS = ("name", "kind", "parameters", "terms")
 _TUNABLE_HAS = ("inner", "tuned", "tuning")
-
 MAX_COMBINATIONS = 512
 """Combinations of inner parameters that are tried before an effect is reported to move nothing."""
 

@@ -19,17 +19,13 @@ from matstd.twin.numbers import significant
 from matstd.twin.units import DEG
 
 _SAME = 1e-6  # machines whose numbers differ by less (mm, rad) are equal
-
 SHORTEST = 1e-6  # directions shorter than this are refused
-
 FLATTEST = 0.01
 """Smallest singular value of the directions of linear axes: below, two of three axes stand within
 about a degree of one another."""
-
 OPEN_CHAIN = 4
 """From this many rotary axes in series on the tool side, they are joints of an arm; heads of
 machine tools have two or three."""
-
 SPINDLE_RANGE = (-360.0 * DEG, 360.0 * DEG)
 """Range of a bracketed spindle without an entry in the machine file, rad."""
 
@@ -245,8 +241,7 @@ def make_chain(
     """Machine from its notation and what is known of each axis.
 
     Args:
-        axes: Range, point and direction by axis name, mm and rad; a bracketed spindle may be left
-            out.
+        axes: By name, mm and rad; a bracketed spindle may be left out.
         table_origin: Origin of the table frame, machine frame with every axis at zero, mm.
 
     Raises:

@@ -85,9 +85,6 @@ def _sides(chain: Chain) -> tuple[list[int], list[int]]:
 def carriers(chain: Chain, q: Array) -> tuple[Array, Array, Array]:
     """Nominal poses of the body that each link sits on, of the table and of the tool.
 
-    Args:
-        q: Readings, shape (N, A), mm and rad.
-
     Returns:
         T_machine_carrier (N, L, 4, 4), T_machine_table (N, 4, 4), T_machine_tool (N, 4, 4).
     """
@@ -107,11 +104,7 @@ def carriers(chain: Chain, q: Array) -> tuple[Array, Array, Array]:
 
 
 def table_to_tool(chain: Chain, q: Array) -> Array:
-    """Nominal pose T_table_tool (N, 4, 4): takes tool coordinates to table coordinates.
-
-    Args:
-        q: Readings, shape (N, A), mm and rad.
-    """
+    """Nominal pose T_table_tool (N, 4, 4): takes tool coordinates to table coordinates."""
     _, T_machine_table, T_machine_tool = carriers(chain, q)
     return inverse(T_machine_table) @ T_machine_tool
 
@@ -135,9 +128,6 @@ def place_as_twist(chain: Chain, q: Array) -> Array:
     components across its letter, and for its zero position ``r' = d r_k``, which adds to the
     reading whatever the direction; the tool ``(e, r)``; the workpiece ``-(e, r)``, since the twist
     is tool minus workpiece.
-
-    Args:
-        q: Readings, shape (N, A).
 
     Returns:
         Shape (N, L, 6, 6): [..., i, j] is component j of the twist per unit of component i of the
@@ -163,19 +153,12 @@ def place_as_twist(chain: Chain, q: Array) -> Array:
 
 
 def reach(chain: Chain, q: Array, length: Array | float) -> Reach:
-    """First-order deviation of the tool point per unit of every error, in closed form.
+    """First-order deviation of the tool point per unit of every error, table frame, in closed form.
 
     A component error (e, r) of link k moves the tip, relative to the table, by
     ``R_table_carrier (e + r x (x - c))``, with x the tip and c the lever point of the link, both
     in the frame of the body that the link sits on. The sign is the same on both sides of the
-    foundation because a component error is tool side minus workpiece side.
-
-    Args:
-        q: Readings, shape (N, A), mm and rad.
-        length: Tool length, scalar or (N,), or the tool point in the tool frame, (N, 3), mm.
-
-    Returns:
-        `Reach`, table frame, mm/mm and mm/rad.
+    foundation because a component error is tool side minus workpiece side. Lengths are as of `tip`.
 
     Reference:
         ISO 230-1:2012 for the parameters; J is the influence matrix of Bringmann and Knapp.
@@ -198,31 +181,17 @@ def reach(chain: Chain, q: Array, length: Array | float) -> Reach:
 
 
 def exact_tip(chain: Chain, q: Array, length: Array | float, contribution: Contribution) -> Array:
-    """Actual tool point in the table frame with every error in it; no angle is taken for small.
+    """Actual tool point in the table frame with every error in it, (N, 3), mm; lengths as of `tip`.
 
     Each link moves the point by its component error, a rotation by the vector r about the lever
-    point followed by the shift e, and by its motion about, or along, its displaced line.
-
-    Args:
-        q: Readings, shape (N, A), mm and rad.
-        length: Tool length, scalar or (N,), or the tool point in the tool frame, (N, 3), mm.
-        contribution: What all effects add at these readings.
-
-    Returns:
-        Shape (N, 3), mm; minus `tip` it is the volumetric deviation.
+    point followed by the shift e, and by its motion about, or along, its displaced line; no angle
+    is taken for small. Minus `tip` it is the volumetric deviation.
     """
     return moved_tip(chain, checked_readings(chain, q), length, contribution)
 
 
 def linear_directions(chain: Chain, q: Array) -> Array:
-    """Motion of the tip in the table frame per unit of each linear axis.
-
-    Args:
-        q: Readings, shape (N, A).
-
-    Returns:
-        Shape (N, 3, M), M the number of linear axes in chain order.
-    """
+    """Motion of the tip in the table frame per unit of each linear axis of the chain, (N, 3, M)."""
     T_machine_carrier, T_machine_table, _ = carriers(chain, q)
     columns = []
     for name in chain.linear_axes:
@@ -233,19 +202,16 @@ def linear_directions(chain: Chain, q: Array) -> Array:
 
 
 def inverse_linear(chain: Chain, target: Array, q: Array, length: Array | float) -> Array:
-    """Readings of the linear axes that bring the tip to a point at given rotary readings.
+    """Readings of the linear axes that bring the tip to a point at given rotary readings, (N, A).
 
     At fixed rotary readings the tip is an affine function of the linear readings, so one solution
-    of three equations is exact.
+    of three equations is exact. Travels are not checked here.
 
     Args:
         chain: The machine; exactly three linear axes.
         target: Wanted tip (ball centre), table frame, shape (N, 3), mm.
         q: Readings whose rotary columns are kept, shape (N, A); linear columns are ignored.
-        length: Tool length, scalar or (N,), or the tool point in the tool frame, (N, 3), mm.
-
-    Returns:
-        Readings, shape (N, A). Travels are not checked here.
+        length: As of `tip`.
 
     Raises:
         NotReachable: The machine has not three independent linear axes in some pose.

@@ -13,20 +13,16 @@ from matstd.twin.machine.link import Link
 _POSES_A_BLOCK = 5000
 """Poses moved at once: the vectors of a block stay in the first caches (8192 take 1.3 times as long
 a pose), and a call of numpy is spread over many of them (256: 1.5 times)."""
-
 _SMALL = 1e-4
 """Square of an angle, rad^2, below which three terms of a series are exact to a double."""
-
 _XYZXY = np.array([0, 1, 2, 0, 1])
 
 
 def tip_in_tool(length: Array | float, n: int) -> Array:
-    """Tool point, or ball centre of a probe, in the tool frame, shape (N, 3), mm.
+    """Tool point, or ball centre of a probe, of n poses in the tool frame, shape (N, 3), mm.
 
-    Args:
-        length: L of a point on the tool axis at (0, 0, -L), scalar or (N,); or the point itself,
-            (N, 3), for a target beside the axis.
-        n: Number of poses.
+    The length is L of a point on the tool axis at (0, 0, -L), scalar or (N,); or the point itself,
+    (N, 3), for a target beside the axis.
     """
     length = np.asarray(length, dtype=float)
     if length.ndim == 2:
@@ -43,12 +39,8 @@ def moved_tip(
 
     From the tool to the foundation every link moves the point by its motion and then by its
     component error; from there to the workpiece by its error and then back along its motion, which
-    are the products ``G M`` and their inverses without one matrix. No angle is taken for small.
-
-    Args:
-        q: Readings, shape (N, A), mm and rad.
-        length: As of `tip_in_tool`.
-        contribution: What all effects add at these readings; None for the nominal machine.
+    are the products ``G M`` and their inverses without one matrix. No angle is taken for small. The
+    length is as of `tip_in_tool`; without a contribution the machine is the nominal one.
     """
     start = tip_in_tool(length, len(q)).T
     tool = [i for i, link in enumerate(chain.links) if not link.carries_workpiece]

@@ -12,11 +12,9 @@ from enum import Enum
 
 LETTERS = "XYZABC"
 """Second letter of a name -> index of the component."""
-
 ALONG = {**{k: k for k in "XYZ"}, **dict(zip("ABCUVW", "XYZXYZ", strict=True)), "S": "Z"}
 """Letter of an axis -> direction of the machine frame that it moves along or turns about (ISO 841).
 """
-
 _PATTERN = re.compile(r"E([XYZABC])(0?)([XYZUVWABCS]\d?|w|t)\Z")
 
 

@@ -25,28 +25,7 @@ from matstd.twin.model.kind import Kind
 from matstd.twin.model.model import Model, columns
 
 __all__ = [
-    "Amounts",
-    "Declared",
-    "Effect",
-    "Inner",
-    "Kind",
-    "Model",
-    "Parameter",
-    "Term",
-    "Title",
-    "Traits",
-    "Tunable",
-    "Wave",
-    "Where",
-    "columns",
-    "contribution",
-    "inner_values",
-    "is_tunable",
-    "moving_axes",
-    "original_of",
-    "own_title",
-    "refusal",
-    "scanned",
-    "sensors",
-    "traits",
-]
+    "Amounts", "Declared", "Effect", "Inner", "Kind", "Model", "Parameter", "Term", "Title",
+    "Traits", "Tunable", "Wave", "Where", "columns", "contribution", "inner_values", "is_tunable",
+    "moving_axes", "original_of", "own_title", "refusal", "scanned", "sensors", "traits",
+]  # fmt: skip

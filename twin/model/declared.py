@@ -38,17 +38,6 @@ Grid = Sequence[float] | Array | Callable[[Any, Touches], Array]
 _SCANNED = "scanned"
 
 
-@dataclass(frozen=True)
-class _Scanned:
-    """How a field is scanned; see `Inner`."""
-
-    unit: str
-    grid: Grid
-    continuous: bool
-    acts: Acts
-    over: str
-
-
 def scanned(
     unit: str,
     grid: Grid,
@@ -69,9 +58,8 @@ def scanned(
     """
     if default is None:
         default = 0.0 if callable(grid) else float(grid[len(grid) // 2])
-    return field(
-        default=default, metadata={_SCANNED: _Scanned(unit, grid, continuous, acts, over=over)}
-    )
+    plain = Inner("", unit, np.zeros(0), continuous, acts=acts, over=over)
+    return field(default=default, metadata={_SCANNED: (plain, grid)})
 
 
 @dataclass(frozen=True)
@@ -163,9 +151,9 @@ class Declared:
         """The scanned fields, with the grids that these touches can support."""
         out = []
         for name in self.searched:
-            one = layout_of(type(self)).scanned[name]
-            grid = one.grid(self, touches) if callable(one.grid) else np.asarray(one.grid)
-            out.append(Inner(name, one.unit, grid, one.continuous, acts=one.acts, over=one.over))
+            plain, grid = layout_of(type(self)).scanned[name]
+            made = grid(self, touches) if callable(grid) else np.asarray(grid)
+            out.append(plain._replace(name=name, grid=made))
         return tuple(out)
 
     def tuned(self, *values: float) -> Self:
@@ -196,7 +184,8 @@ class Layout(NamedTuple):
 
     arguments: Mapping[str, Argument]  # those that stand in the brackets of a name, in their order
     usual: Mapping[str, Any]  # values of arguments that may be left out
-    scanned: Mapping[str, _Scanned]  # those that are searched
+    # those that are searched: their inner parameters without name and grid, and the grids
+    scanned: Mapping[str, tuple[Inner, Grid]]
 
 
 _LAYOUTS: dict[type, Layout] = {}
@@ -205,15 +194,11 @@ _LAYOUTS: dict[type, Layout] = {}
 def layout_of(cls: type[Declared]) -> Layout:
     """The layout of a class, worked out once: names are asked for in every turn of a search."""
     if cls not in _LAYOUTS:
-        arguments: dict[str, Argument] = {}
         types = get_type_hints(cls, include_extras=True)
-        for one in fields(cls):
-            for note in getattr(types[one.name], "__metadata__", ()):
-                if isinstance(note, Argument):
-                    arguments[one.name] = note
-        named = [one for one in fields(cls) if one.name in arguments]
-        usual = {one.name: one.default for one in named if one.default is not MISSING}
-        searched = [one for one in fields(cls) if _SCANNED in one.metadata]
-        scans = {one.name: one.metadata[_SCANNED] for one in searched}
-        _LAYOUTS[cls] = Layout(arguments, usual, scans)
+        notes = {f.name: getattr(types[f.name], "__metadata__", ()) for f in fields(cls)}
+        arguments = {n: a for n, every in notes.items() for a in every if isinstance(a, Argument)}
+        named = [f for f in fields(cls) if f.name in arguments]
+        usual = {f.name: f.default for f in named if f.default is not MISSING}
+        scanned = {f.name: f.metadata[_SCANNED] for f in fields(cls) if _SCANNED in f.metadata}
+        _LAYOUTS[cls] = Layout(arguments, usual, scanned)
     return _LAYOUTS[cls]

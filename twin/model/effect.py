@@ -1,6 +1,6 @@
 """Effects: where in the machine they act, and how much per unit of their parameters."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import Literal, NamedTuple, Protocol, TypeGuard
 
@@ -60,14 +60,19 @@ class Effect(Protocol):
         ...
 
 
+def numbered_terms(effects: Iterable[Effect], touches: Touches) -> Iterator[tuple[int, Term]]:
+    """Terms of effects with the place of their parameter in the vector of all parameters."""
+    start = 0
+    for effect in effects:
+        for term in effect.terms(touches):
+            yield start + term.parameter, term
+        start += len(effect.parameters)
+
+
 def contribution(
     effects: Mapping[Effect, Array] | Sequence[tuple[Effect, Array]], touches: Touches
 ) -> Contribution:
-    """Sum of what effects with known parameters add at every touch.
-
-    Args:
-        effects: Pairs of an effect and its parameters (P,), base units.
-    """
+    """Sum of what effects with known parameters (P,), base units, add at every touch."""
     total = Contribution.zeros(len(touches), len(touches.chain.links))
     pairs = effects.items() if isinstance(effects, Mapping) else effects
     for effect, theta in pairs:

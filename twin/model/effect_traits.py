@@ -54,6 +54,8 @@ class Traits:
     # whether it could imitate most other effects; it is chosen only where it predicts clearly
     # better than effects with a cause
     is_table: bool = False
+    # whether it is what another effect may do beyond the domain from which it was learnt
+    is_margin: bool = False
     # for a curve by direction: forward minus backward at every touch, per unit of every parameter,
     # (N, P)
     reversal: Callable[[Touches], Array] | None = None

@@ -1,13 +1,14 @@
 """`Kind`: one word of the library of effects, with all that a user reads about it."""
 
 import inspect
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from typing import ClassVar
 
 from matstd.twin.errors import UnknownEffect
-from matstd.twin.fields import Argument, check_count, refusal
+from matstd.twin.fields import Refuse, check_count, refusal
 from matstd.twin.machine import Chain
 from matstd.twin.model.declared import Declared, layout_of
 from matstd.twin.model.effect import Effect
@@ -61,26 +62,44 @@ class Kind:
                 that its fields are offered, and the usual values of those that may be left out.
             when: Whether it is proposed for some touches at all; None for always.
         """
-        signature = _Signature.of(effect)
+        declared = effect if isinstance(effect, type) and issubclass(effect, Declared) else None
+        word = effect().kind if declared is None else declared.kind
+        arguments, usual, _ = ({}, {}, {}) if declared is None else layout_of(declared)
+        least = len(arguments) - len(usual)
+        words = [a.word for a in arguments.values()]
 
-        def offered(touches: Touches) -> Iterable[Effect]:
-            is_wanted = when is None or when(touches)
-            return (propose or signature.proposed)(touches) if is_wanted else ()
+        def make(chain: Chain, found: Sequence[str]) -> Effect:
+            """Effect from the texts in the brackets."""
+            check_count(kind.usage, found, least, len(arguments))
+            refuse = partial(refusal, kind.usage, found)
+            given = zip(arguments.items(), found, strict=False)
+            values = {name: a.read(text, chain, refuse) for (name, a), text in given}
+            return _on_machine(effect(**values), chain, refuse)
 
-        return cls(
-            word=signature.word,
-            arguments=signature.usage,
+        def every(touches: Touches) -> Iterable[Effect]:
+            """One with every combination of what its required fields are offered."""
+            names = list(arguments)[:least]
+            for values in product(*(list(arguments[name].offered(touches)) for name in names)):
+                made = effect(**dict(zip(names, values, strict=True)))
+                yield _on_machine(made, touches.chain, _refused)
+
+        kind = cls(
+            word=word,
+            arguments=",".join(words[:least]) + "".join(f"[,{w}]" for w in words[least:]),
             formula=formula,
             units=units,
             typical=typical,
             source=source,
-            make=signature.make,
-            propose=offered,
+            make=make,
+            propose=lambda touches: (
+                (propose or every)(touches) if when is None or when(touches) else ()
+            ),
             classes=(effect,) if isinstance(effect, type) else (),
             title=title,
             synonyms=synonyms,
             belongs_to=belongs_to,
         )
+        return kind
 
     def matches(self, query: str) -> bool:
         """Whether every word of a query stands in the name, title, synonyms, formula or summary."""
@@ -104,48 +123,5 @@ def _refused(expected: str) -> UnknownEffect:
     return UnknownEffect(f"an effect that was proposed: expected {expected}")
 
 
-@dataclass(frozen=True)
-class _Signature:
-    """How an effect is written, from the fields of its class."""
-
-    word: str  # first word of its name
-    effect: Callable[..., Effect]  # makes it from the values of its arguments by name
-    arguments: Mapping[str, Argument]  # what stands in the brackets, by the name of the field
-    required: int  # how many of them cannot be left out
-
-    @classmethod
-    def of(cls, effect: Callable[..., Effect]) -> "_Signature":
-        """The kind of a class with declared fields, or of a class made without arguments."""
-        declared = effect if isinstance(effect, type) and issubclass(effect, Declared) else None
-        if declared is None:
-            return cls(effect().kind, effect, {}, 0)
-        layout = layout_of(declared)
-        required = len(layout.arguments) - len(layout.usual)
-        return cls(declared.kind, effect, layout.arguments, required)
-
-    @property
-    def usage(self) -> str:
-        """`symbol,axis[,degree]`."""
-        words = [a.word for a in self.arguments.values()]
-        left_out = "".join(f"[,{word}]" for word in words[self.required :])
-        return ",".join(words[: self.required]) + left_out
-
-    def make(self, chain: Chain, found: Sequence[str]) -> Effect:
-        """Effect from the texts in the brackets."""
-        usage = f"{self.word}({self.usage})" if self.arguments else self.word
-        check_count(usage, found, self.required, len(self.arguments))
-
-        def refuse(expected: str) -> UnknownEffect:
-            return refusal(usage, found, expected)
-
-        given = zip(self.arguments.items(), found, strict=False)
-        effect = self.effect(**{name: a.read(text, chain, refuse) for (name, a), text in given})
-        return effect.on(chain, refuse) if isinstance(effect, Declared) else effect
-
-    def proposed(self, touches: Touches) -> Iterable[Effect]:
-        """One with every combination of what its required fields are offered."""
-        wanted = list(self.arguments.items())[: self.required]
-        names = [name for name, _ in wanted]
-        for values in product(*(list(a.offered(touches)) for _, a in wanted)):
-            effect = self.effect(**dict(zip(names, values, strict=True)))
-            yield effect.on(touches.chain, _refused) if isinstance(effect, Declared) else effect
+def _on_machine(effect: Effect, chain: Chain, refuse: Refuse) -> Effect:
+    return effect.on(chain, refuse) if isinstance(effect, Declared) else effect

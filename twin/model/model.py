@@ -9,7 +9,7 @@ import numpy as np
 from matstd.twin.display import Displayed
 from matstd.twin.frames import Array, apply, inverse
 from matstd.twin.machine import Chain, Contribution, exact_tip, tip
-from matstd.twin.model.effect import Effect, Parameter, contribution
+from matstd.twin.model.effect import Effect, Parameter, numbered_terms
 from matstd.twin.record import Touches
 
 
@@ -61,24 +61,17 @@ class Model(Displayed):
 
     def _displacements(self, touches: Touches, with_standard: bool) -> Array:
         out = np.zeros((len(touches), 3, len(self.parameters)))
-        start = 0
-        for effect in self.effects:
-            for term in effect.terms(touches):
-                if with_standard or term.where.moves_tip:
-                    per_unit = touches.reach.of(term.where)
-                    out[:, :, start + term.parameter] += term.amount[:, None] * per_unit
-            start += len(effect.parameters)
+        for k, term in numbered_terms(self.effects, touches):
+            if with_standard or term.where.moves_tip:
+                out[:, :, k] += term.amount[:, None] * touches.reach.of(term.where)
         return out
 
     def contribution(self, touches: Touches, theta: Array) -> Contribution:
         """What all effects add at every touch for a parameter vector (P,)."""
-        pairs: list[tuple[Effect, Array]] = []
-        start = 0
-        for effect in self.effects:
-            count = len(effect.parameters)
-            pairs.append((effect, theta[start : start + count]))
-            start += count
-        return contribution(pairs, touches)
+        total = Contribution.zeros(len(touches), len(touches.chain.links))
+        for k, term in numbered_terms(self.effects, touches):
+            total.add(term.where, theta[k] * term.amount)
+        return total
 
     def tip_deviation(self, touches: Touches, theta: Array) -> Array:
         """Exact deviation of the tip in the table frame, actual minus nominal, (N, 3), mm."""
@@ -113,16 +106,9 @@ class Model(Displayed):
 
 
 def columns(effects: Sequence[Effect], touches: Touches) -> Array:
-    """Deviation along the normal per unit of every parameter of some effects, first order.
-
-    Returns:
-        Shape (N, P), mm per base unit of each parameter.
-    """
+    """Deviation along the normal per base unit of every parameter of some effects, (N, P), mm."""
     out = np.zeros((len(touches), sum(len(e.parameters) for e in effects)), order="F")
     signature = touches.signature
-    start = 0
-    for effect in effects:
-        for term in effect.terms(touches):
-            out[:, start + term.parameter] += term.amount * signature.of(term.where)
-        start += len(effect.parameters)
+    for k, term in numbered_terms(effects, touches):
+        out[:, k] += term.amount * signature.of(term.where)
     return out

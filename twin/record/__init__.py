@@ -24,27 +24,8 @@ from matstd.twin.record.touches import (
 )
 
 __all__ = [
-    "BODY",
-    "U_SHARE",
-    "Body",
-    "Instrument",
-    "IntArray",
-    "Labels",
-    "Moved",
-    "Run",
-    "Setup",
-    "StatedBody",
-    "Touches",
-    "aligned",
-    "at_poses",
-    "computed_deviation",
-    "implied_approach",
-    "joined",
-    "linear_approach",
-    "rigid_motion",
-    "stacked",
-    "turn_of",
-    "with_body",
-    "with_commanded",
-    "without_copies",
-]
+    "BODY", "U_SHARE", "Body", "Instrument", "IntArray", "Labels", "Moved", "Run", "Setup",
+    "StatedBody", "Touches", "aligned", "at_poses", "computed_deviation", "implied_approach",
+    "joined", "linear_approach", "rigid_motion", "stacked", "turn_of", "with_body",
+    "with_commanded", "without_copies",
+]  # fmt: skip

@@ -21,17 +21,13 @@ from matstd.twin.record.touches import Touches, computed_deviation
 SHIFT = 0.3
 """Displacement (mm) from which a set-up is moved: lever arms off by so much turn 50 µrad of a
 rotary axis into 0.015 µm, which no touch notices."""
-
 TURN = 1e-3
 """Rotation (rad) from which it is moved: half its square times 200 mm is 0.1 µm, what a linear fit
 of the set-up would get wrong."""
-
 MIN_ALIGNED_TOUCHES = 6
 """Touches of a set-up, one for each degree of freedom; with fewer the set-up stays as stated."""
-
 MISALIGNED_RATIO = 10.0
 """Touches farther off than this multiple of the median are outliers and not used."""
-
 MIN_SPREAD = 1.0
 """Touches that spread less (mm) in a direction do not determine a rotation; it stays as stated."""
 
@@ -48,10 +44,8 @@ class Moved:
 def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
     """A run with its set-ups moved to where the touches show them, and the list of moved ones.
 
-    Deviations are recomputed from the readings; call it only for runs that compute them so.
-
-    Args:
-        run: Measurements of a touching ball, or of any instrument that states points.
+    Deviations are recomputed from the readings; call it only for runs that compute them so: of a
+    touching ball, or of any instrument that states points.
     """
     t = run.touches
     centre = t.point + t.radius[:, None] * t.normal
@@ -70,7 +64,7 @@ def aligned(run: Run) -> tuple[Run, tuple[Moved, ...]]:
         change = apply(T, middle) - apply(setup.T_table_artefact, middle)
         R = T[:3, :3] @ setup.T_table_artefact[:3, :3].T
         shift = float(np.linalg.norm(change))
-        turn = turn_of(R)
+        turn = float(turn_of(R))
         if shift > SHIFT or turn > TURN:
             setups[i] = replace(setup, T_table_artefact=T)
             moved.append(Moved(setup.name, shift, turn))
@@ -110,6 +104,7 @@ def rigid_motion(
     return T
 
 
-def turn_of(R: Array) -> float:
-    """Angle of a rotation, rad."""
-    return float(np.arccos(np.clip(0.5 * (np.trace(R) - 1.0), -1.0, 1.0)))
+def turn_of(R: Array) -> Array:
+    """Angles of rotations (..., 3, 3), rad."""
+    trace = np.trace(R, axis1=-2, axis2=-1)
+    return np.asarray(np.arccos(np.clip(0.5 * (trace - 1.0), -1.0, 1.0)))

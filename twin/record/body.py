@@ -18,30 +18,21 @@ from matstd.twin.units import T_REF
 
 BODY = "body"
 """Name of the sensor that sits on the standard: column `T_body_degC`."""
-
 U_SHARE = 0.1
 """Relative standard uncertainty of an expansion stated without one. JCGM 100:2008, H.1.3.3: steel
 within 2e-6 of 11.5e-6 1/K, rectangular, u = 1.2e-6."""
-
 U_KNOWN = 0.3
 """Standard uncertainty of a temperature stated without one, K: a resistance thermometer of class B
 is within 0.4 K (IEC 60751), rectangular 0.23, and it sits on the standard, not in it."""
-
 U_UNKNOWN = 2.0
 """Standard uncertainty, about 20 degC, of a temperature that is not stated, K: rooms of machine
 tools keep within 3 or 4 K of it, and a standard that comes from elsewhere takes hours."""
-
 COLDEST, HOTTEST = 0.0, 50.0
 """Range of temperatures of a standard, degC; others are of another body, or in kelvin."""
-
 KELVIN = 270.0  # higher temperatures are in kelvin
-
 LARGEST_EXPANSION = 1e-3  # largest expansion, 1/K; rubber has 2e-4, steel 11.5e-6
-
 LARGEST_U = 20.0  # largest standard uncertainty of a temperature, K
-
 LARGEST_SCALE = 1000.0  # largest relative standard uncertainty of calibrated lengths, ppm
-
 MAX_DISAGREEMENT = 2.0
 """Standard uncertainties by which two statements of one temperature may differ."""
 
@@ -61,29 +52,29 @@ class StatedBody:
     scale_u_ppm: float | None = None
 
     def __post_init__(self) -> None:
-        for key in ("expansion_1_K", "expansion_u_1_K"):
+        expansion = f"0 to {LARGEST_EXPANSION:g} 1/K: of steel 11.5e-6"
+        for key, largest, expected in (
+            ("expansion_1_K", LARGEST_EXPANSION, expansion),
+            ("expansion_u_1_K", LARGEST_EXPANSION, expansion),
+            ("body_u_K", LARGEST_U, f"a standard uncertainty from 0 to {LARGEST_U:g} K"),
+            (
+                "scale_u_ppm",
+                LARGEST_SCALE,
+                f"the standard uncertainty of calibrated lengths, 0 to {LARGEST_SCALE:g} ppm",
+            ),
+        ):
             value = getattr(self, key)
-            if value is not None and not 0.0 <= value < LARGEST_EXPANSION:
-                expected = f"0 to {LARGEST_EXPANSION:g} 1/K: of steel 11.5e-6"
+            if value is not None and not 0.0 <= value <= largest:
                 raise BadValue(key, f"{value:g}", expected)
         if self.body_degC is not None:
             _check_temperature("body_degC", self.body_degC)
-        if self.body_u_K is not None and not 0.0 <= self.body_u_K <= LARGEST_U:
-            expected = f"a standard uncertainty from 0 to {LARGEST_U:g} K"
-            raise BadValue("body_u_K", f"{self.body_u_K:g}", expected)
-        if self.scale_u_ppm is not None and not 0.0 <= self.scale_u_ppm <= LARGEST_SCALE:
-            expected = f"the standard uncertainty of calibrated lengths, 0 to {LARGEST_SCALE:g} ppm"
-            raise BadValue("scale_u_ppm", f"{self.scale_u_ppm:g}", expected)
 
 
 def with_body(run: Run, stated: StatedBody) -> Run:
-    """A run with deviations from its standard at the temperature of that standard.
+    """A run with deviations from its standard, calibrated at 20 degC, at the temperature of it.
 
-    Only here the growth of a standard is subtracted; `raw_deviation` adds it back.
-
-    Args:
-        run: Run on points calibrated at 20 degC, sensors included.
-        stated: Body of its standard; readings of the sensor `body` replace the one temperature.
+    Only here the growth of a standard is subtracted; `raw_deviation` adds it back. Readings of the
+    sensor `body` replace the one temperature that is stated.
 
     Raises:
         BadValue: An instrument without a standard, or temperatures that cannot be.

@@ -21,13 +21,10 @@ MIN_RANGE_RATIO = 2000.0
 small against every period searched for. Errors are functions of the true reading; an error of 0.4
 mm shifts the argument of its own wave, which over commanded readings looks like an overtone.
 """
-
 LARGEST_DEVIATION = 0.05  # from this median deviation (mm) readings are kept, whatever the range
-
 MAX_LEVEL_SHARE = 1 / 8
 """Up to this ratio of levels to touches an axis moved by little more than the measured
 deviation."""
-
 OUTLIER_RATIO = 10.0  # deviations beyond this multiple of the median are not used to place a set-up
 
 
@@ -58,14 +55,10 @@ def with_commanded(run: Run) -> Run:
         usual = float(np.median(np.abs(by)))
         at = touches.q[:, column] - by
         is_near = usual < LARGEST_DEVIATION and np.ptp(at) < MIN_RANGE_RATIO * usual
-        if is_near or _levels(at, 2.0 * usual) < MAX_LEVEL_SHARE * len(at):
+        places = len(np.unique(np.round(at / (2.0 * usual)))) if usual > 0.0 else len(at)
+        if is_near or places < MAX_LEVEL_SHARE * len(at):
             commanded[:, column] = at
     return replace(run, touches=replace(touches, commanded=commanded))
-
-
-def _levels(values: Array, apart: float) -> int:
-    """Number of places that values apart by so much stand at."""
-    return len(np.unique(np.round(values / apart))) if apart > 0.0 else len(values)
 
 
 def _less_setups(touches: Touches, deviation: Array) -> Array:

@@ -11,11 +11,9 @@ from matstd.twin.units import NM
 BoolArray = NDArray[np.bool_]
 
 MIN_COPIES = 8  # fewer rows that agree with an earlier one to the last digit may be chance
-
 MIN_COPIED_SHARE = 0.6
 """Share of the repeated touches that must agree exactly: real ones rarely do, unless readings are
 much coarser than the noise."""
-
 SAME_PLACE = 0.05
 """Touches whose readings lie within this (mm, or mrad) at one calibrated point are repeated."""
 
@@ -43,8 +41,12 @@ def without_copies(run: Run) -> Run:
         out = out[~same]
         remarks.append(_words(run, same, "stand twice" if same.sum() > 1 else "stands twice"))
     again = _copies(out, with_time=False)
-    is_odd = again.sum() >= MIN_COPIES and again.sum() > MIN_COPIED_SHARE * _repeated(out)
-    if is_odd and not _coarse(out):
+    # touches that were made before at nearly the same readings
+    repeated = int(_later(_places(out)).sum())
+    is_odd = again.sum() >= MIN_COPIES and again.sum() > MIN_COPIED_SHARE * repeated
+    # deviations may be read in steps so large that equal ones mean nothing
+    is_coarse = len(np.unique(out.deviation)) * ROWS_PER_VALUE < len(out)
+    if is_odd and not is_coarse:
         remarks.append(
             _words(out, again, "repeat the readings and the deviation of earlier rows exactly")
         )
@@ -66,13 +68,9 @@ def _copies(run: Run, with_time: bool) -> BoolArray:
 def _places(run: Run) -> NDArray[np.float64]:
     """Equal rows for touches at one point with nearly the same readings, (N, K)."""
     t = run.touches
-    scale = np.array([1.0 if link == "linear" else 1e-3 for link in _kinds(run)]) * SAME_PLACE
+    kinds = [t.chain.link(axis).kind for axis in t.chain.axes]
+    scale = SAME_PLACE * np.array([1.0 if kind == "linear" else 1e-3 for kind in kinds])
     return np.column_stack([np.round(t.q / scale), np.round(t.point / NM), t.setup])
-
-
-def _repeated(run: Run) -> int:
-    """Number of touches that were made before at nearly the same readings."""
-    return int(_later(_places(run)).sum())
 
 
 def _by_chance(run: Run) -> float:
@@ -88,16 +86,6 @@ def _by_chance(run: Run) -> float:
     n = max(2.0 * np.sqrt(np.pi) * float(np.median(run.u)) / step, 1.0)
     m = np.unique(_places(run), axis=0, return_counts=True)[1]
     return float(np.sum(m - n * (1.0 - (1.0 - 1.0 / n) ** m)))
-
-
-def _coarse(run: Run) -> bool:
-    """Whether deviations are read in steps so large that equal ones mean nothing."""
-    return len(np.unique(run.deviation)) * ROWS_PER_VALUE < len(run)
-
-
-def _kinds(run: Run) -> list[str]:
-    chain = run.touches.chain
-    return [chain.link(axis).kind for axis in chain.axes]
 
 
 def _later(key: NDArray[np.float64]) -> BoolArray:

@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 
 from matstd.twin.errors import DesignError
-from matstd.twin.frames import Array
 from matstd.twin.record.copies import without_copies
 from matstd.twin.record.run import PER_ROW, Run
 from matstd.twin.record.touches import MAPS, PER_TOUCH, Setup, Touches
@@ -18,13 +17,10 @@ its own time (`Touches.since_start`)."""
 
 
 def joined(runs: Mapping[str, Run]) -> Run:
-    """One run of several, in their order; set-ups bear the name of their run.
+    """One run of several by their names, in their order; set-ups bear the name of their run.
 
     Every run keeps its set-ups, its time and its poses. Of sensors and of columns of the user's own
     those are kept that all runs have, and a remark says which are not.
-
-    Args:
-        runs: By name, such as that of the file.
 
     Raises:
         DesignError: No run, another machine, another instrument, or the same measurements twice.
@@ -54,17 +50,11 @@ def joined(runs: Mapping[str, Run]) -> Run:
     ]
     touches = stacked(moved, tuple(setups))
     stamps = {part.standard for part in parts}
+    of_parts = (f"{n}: {text}" for n, p in zip(names, parts, strict=True) for text in p.remarks)
     return Run(
         touches=touches,
         **{name: _all_of([getattr(part, name) for part in parts]) for name in PER_ROW},
-        remarks=(
-            *_dropped(names, every),
-            *(
-                f"{name}: {text}"
-                for name, p in zip(names, parts, strict=True)
-                for text in p.remarks
-            ),
-        ),
+        remarks=(*_dropped(names, every), *of_parts),
         standard=stamps.pop() if len(stamps) == 1 else "",
     )
 
@@ -106,24 +96,19 @@ def _starts(every: Sequence[Touches]) -> list[float]:
 def stacked(every: Sequence[Touches], setups: tuple[Setup, ...]) -> Touches:
     """Touches of one machine, one record after the other; a column is kept that all have.
 
-    Args:
-        setups: Set-ups of all of them; `Touches.setup` of every record already counts in these.
+    `Touches.setup` of every record already counts in the set-ups of all of them.
     """
     columns = {name: _all_of([getattr(t, name) for t in every]) for name in PER_TOUCH}
     for kind in MAPS:
         records = [getattr(t, kind) for t in every]
-        columns[kind] = {n: np.concatenate([r[n] for r in records]) for n in _common(records)}
+        common = [name for name in records[0] if all(name in r for r in records)]
+        columns[kind] = {name: np.concatenate([r[name] for r in records]) for name in common}
     return replace(every[0], setups=setups, **columns)
 
 
 def _all_of(values: Sequence[Any]) -> Any:
     """One column of all runs; None where one of them has none."""
     return None if any(v is None for v in values) else np.concatenate(values)
-
-
-def _common(records: Sequence[Mapping[str, Array]]) -> list[str]:
-    """Names that all records have, in the order of the first."""
-    return [name for name in records[0] if all(name in r for r in records)]
 
 
 def _recorded(touches: Touches) -> list[str]:

@@ -1,8 +1,9 @@
 """`Touches`: all that is known about N contacts; the record that every room takes."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,6 +55,29 @@ class Setup:
     fixing: tuple[float, float, float] | None = None
 
 
+def no_labels() -> Labels:
+    """Labels that are not stated: a record gives as many empty ones as it has touches."""
+    return np.zeros(0, dtype="U1")
+
+
+def no_numbers() -> IntArray:
+    """The same of whole numbers."""
+    return np.zeros(0, dtype=np.int64)
+
+
+def check_rows(
+    record: object, n: int, defaults: Mapping[str, NDArray[Any]], names: Iterable[str], like: str
+) -> None:
+    """Fill the empty fields of a record; refuse columns of other than n rows."""
+    for name, default in defaults.items():
+        if len(getattr(record, name)) == 0:
+            object.__setattr__(record, name, default)
+    for name in names:
+        value = getattr(record, name)
+        if value is not None and len(value) != n:
+            raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n} as {like}")
+
+
 class Signature:
     """Deviation along the normal per unit of every entry of a contribution, first order.
 
@@ -97,10 +121,8 @@ class Touches:
     temperature: Mapping[str, Array] = field(default_factory=dict)  # degC by sensor name, each (N,)
     spindle_rpm: Array | None = None  # (N,), or None where it was not recorded
     force: Array | None = None  # load on the tool in table-frame directions, (N, 3), N
-    # label of the touched feature, (N,)
-    feature: Labels = field(default_factory=lambda: np.zeros(0, dtype="U1"))
-    # label of the table pose, (N,)
-    pose: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    feature: Labels = field(default_factory=no_labels)  # label of the touched feature, (N,)
+    pose: IntArray = field(default_factory=no_numbers)  # label of the table pose, (N,)
     instrument: Instrument = Instrument.TOUCH_PROBE  # what measured them all
     # columns of the user's own by name and unit (`coolant_l_min`), each (N,)
     value: Mapping[str, Array] = field(default_factory=dict)
@@ -110,30 +132,23 @@ class Touches:
     # the same without what was measured, (N, A), which is what errors are functions of; None where
     # `q` is that already (`with_commanded`)
     commanded: Array | None = None
-    # temperature of the standard where stated, else 20, (N,), degC
+    # of the standard where stated, else 20, (N,), degC
     body_temperature: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         n = len(checked_readings(self.chain, self.q))
-        unstated = {
+        defaults = {
             "feature": np.full(n, "", dtype="U1"),
             "offset": np.zeros((n, 2)),
             "pose": np.zeros(n, dtype=np.int64),
             "body_temperature": np.full(n, T_REF),
         }
-        for name, default in unstated.items():
-            if len(getattr(self, name)) == 0:
-                object.__setattr__(self, name, default)
-        for name in PER_TOUCH:
-            value = getattr(self, name)
-            if value is not None and len(value) != n:
-                raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n} as in q")
-        for sensor, value in self.temperature.items():
+        check_rows(self, n, defaults, PER_TOUCH, "in q")
+        own = {f"temperature {name}": v for name, v in self.temperature.items()}
+        own |= {f"column {name}": v for name, v in self.value.items()}
+        for name, value in own.items():
             if len(value) != n:
-                raise ShapeMismatch(f"temperature {sensor} has {len(value)} rows, expected {n}")
-        for name, value in self.value.items():
-            if len(value) != n:
-                raise ShapeMismatch(f"column {name} has {len(value)} rows, expected {n}")
+                raise ShapeMismatch(f"{name} has {len(value)} rows, expected {n}")
 
     def __len__(self) -> int:
         return len(self.q)
@@ -252,12 +267,7 @@ PER_TOUCH = [f.name for f in fields(Touches) if f.name not in _COMMON]
 
 
 def at_poses(chain: Chain, q: Array, length: Array | float) -> Touches:
-    """Poses without a standard, for maps over the workspace: normals are zero.
-
-    Args:
-        q: Readings, shape (N, A), mm and rad.
-        length: Tool length, scalar or (N,), mm.
-    """
+    """Poses without a standard, for maps over the workspace: normals are zero."""
     q = checked_readings(chain, q)
     n = len(q)
     return Touches(
@@ -275,14 +285,9 @@ def at_poses(chain: Chain, q: Array, length: Array | float) -> Touches:
 
 
 def linear_approach(chain: Chain, q: Array, normal_table: Array) -> Array:
-    """Signs of the last motion of the linear axes of a touch, which runs against the normal.
+    """Signs of the last motion of the linear axes of a touch against the normal, (N, A).
 
-    Args:
-        q: Readings, shape (N, A).
-        normal_table: Outward normals in the table frame, (N, 3).
-
-    Returns:
-        Shape (N, A): -1, 0 or 1 in the columns of the linear axes, 0 elsewhere.
+    With the outward normals in the table frame, (N, 3); 0 in the columns of other axes.
     """
     out = np.zeros(q.shape)
     columns = chain.linear_columns
@@ -307,11 +312,7 @@ def motion(q: Array, time: Array) -> Array:
     """Signs of the last motion of every axis in a log that was read on the way, (N, A).
 
     An axis that stands keeps its sign. In the last row before a reversal the axis may have turned
-    already, so the sign is 0.
-
-    Args:
-        q: Readings, (N, A).
-        time: Time of every row, (N,), s; rows of one time are in order.
+    already, so the sign is 0. Rows of one time, s, are in order.
 
     Example:
         >>> motion(np.array([0.0, 1.0, 2.0, 2.0, 1.5])[:, None], np.arange(5.0))[:, 0]

@@ -10,12 +10,5 @@ from matstd.twin.thermal.thermal_field import field
 from matstd.twin.thermal.thermal_lag import ThermalLag
 
 __all__ = [
-    "CYCLE",
-    "PROGRESS",
-    "SPINDLE",
-    "ThermalLag",
-    "drives",
-    "field",
-    "follower",
-    "is_speed",
-]
+    "CYCLE", "PROGRESS", "SPINDLE", "ThermalLag", "drives", "field", "follower", "is_speed",
+]  # fmt: skip

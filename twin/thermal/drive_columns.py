@@ -25,14 +25,12 @@ CYCLE = "cycle_1"
 PROGRESS = "cycles_done_1"
 """Own column beside it: cycles that were done when a reading was taken, parts of them included."""
 OWN = "V_"  # begins a drive that is a column of the user's own, as in the run file
-
 PER_KELVIN = 0.2
 """Usual size of an error per kelvin, over that at 10 000 rpm or after a step of an own column."""
 
 
 MAX_CACHED_RESPONSES = 64
 """Responses cached for one record: one drive with every time constant of a grid."""
-
 _RESPONSES: WeakKeyDictionary[Touches, dict[tuple[str, float, float], Array]] = WeakKeyDictionary()
 """Responses by drive, time constant and step. Every component error of every axis uses the same
 ones; without the cache a search spent a tenth of its time here."""

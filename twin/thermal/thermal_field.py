@@ -26,7 +26,6 @@ from matstd.twin.thermal.drive_columns import (
 from matstd.twin.units import MINUTE, UM, URAD
 
 USAGE = "thermal-field(axis,drive,...)"
-
 LAGS = (4.0 * MINUTE, 16.0 * MINUTE, 64.0 * MINUTE, 256.0 * MINUTE)
 """Time constants, s, over the range of `thermal-lag`. A lag between two neighbours is
 a weighted mean of both to 7 % of a step."""

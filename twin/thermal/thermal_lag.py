@@ -41,10 +41,6 @@ def _time_constants(effect: "ThermalLag", touches: Touches) -> Array:
     return np.geomspace(SHORTEST, high, STEPS)
 
 
-def _step(effect: "ThermalLag", touches: Touches) -> Array:
-    return np.array([step_of(touches, effect.drive)])
-
-
 @dataclass(frozen=True)
 class ThermalLag(Declared):
     """A component error that follows its cause with a time constant.
@@ -60,7 +56,12 @@ class ThermalLag(Declared):
     drive: Annotated[str, Argument("sensor, spindle_rpm or V_column", _drive)] = ""
     tau: float = scanned("s", _time_constants, default=20.0 * MINUTE)  # time constant, s
     # step of the user's own column, in its unit; the amplitude is that after such a step
-    step: float = scanned("1", _step, default=1.0, continuous=False)
+    step: float = scanned(
+        "1",
+        lambda self, touches: np.array([step_of(touches, self.drive)]),
+        default=1.0,
+        continuous=False,
+    )
 
     kind, usual = "thermal-lag", (30 * UM, 100 * URAD)
 

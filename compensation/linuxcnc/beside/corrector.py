@@ -5,29 +5,25 @@ Runs in the Python of the system. It sends positions and temperatures to the ser
 comes back to the control, by itself limited and never in a jump: also when the service is gone, the
 machine is switched off and on, or an axis comes near the end of its travel.
 
-    corrector.py --socket S --axes XYZBC --linear XYZ [--sensors a,b] [--ends X:-400:400,...]
-                 [--most MM] [--rate MM_S] [--patience S] [--hold S]
+    corrector.py --socket S --axes XYZBC --linear XYZ --scale MM [--sensors a,b]
+                 [--ends X:-400:400,...] [--most MM] [--rate MM_S] [--patience S] [--hold S]
 """
 
 import argparse
 import json
+import math
 import socket
 import time
 from typing import Any, Optional
 
-SCALE = 1e-5  # one count of an external offset, mm
-
 LOOK_PERIOD = 0.002  # between two looks at the pins, s
-
 STILL = 1e-6  # smallest change of a position that is a motion, mm or degrees
-
 LONGEST_STEP = 0.005  # longest time that one step may stand for, s: a pause is no licence to jump
 
 LOST = 25
 """Looks in a row at which the control has another offset than it was given, until that counts."""
 
 AHEAD = 0.01  # time in which an offset that is taken back has really gone, s
-
 AGAIN = 0.5  # between two tries to reach the service, s
 
 
@@ -38,9 +34,12 @@ class Giver:
     switching it on begins at zero again with the axes where they are.
     """
 
-    def __init__(self, axes: int, most: float, rate: float, patience: float, hold: float) -> None:
-        """So many axes, mm, mm/s and s."""
-        self.most, self.rate, self.patience, self.hold = most, rate, patience, hold
+    def __init__(
+        self, axes: int, scale: float, most: float, rate: float, patience: float, hold: float
+    ) -> None:
+        """So many axes, mm of a count, mm, mm/s and s."""
+        self.scale, self.most, self.rate = scale, most, rate
+        self.patience, self.hold = patience, hold
         self.given, self.wanted = [0.0] * axes, [0.0] * axes
         self.counts, self.base = [0] * axes, [0] * axes
         self.answered_at: Optional[float] = None
@@ -48,8 +47,9 @@ class Giver:
         self.astray = 0
 
     def answer(self, wanted: "list[float]", now: float) -> None:
-        """A correction of the service."""
-        self.wanted, self.answered_at = list(wanted), now
+        """A correction of the service; one that is no number is no answer, so the last one ages."""
+        if all(map(math.isfinite, wanted)):
+            self.wanted, self.answered_at = list(wanted), now
 
     def age(self, now: float) -> float:
         """Age of the last correction, s."""
@@ -60,11 +60,7 @@ class Giver:
         return self.age(now) <= self.patience
 
     def step(
-        self,
-        now: float,
-        is_on: bool,
-        requested: "list[float]",
-        room: "list[tuple[float, float]]",
+        self, now: float, is_on: bool, requested: "list[float]", room: "list[tuple[float, float]]"
     ) -> "list[int]":
         """Counts at this moment.
 
@@ -86,17 +82,17 @@ class Giver:
             aim = 0.0 if fades else min(max(self.wanted[k], -self.most), self.most)
             aim = min(max(aim, min(low, 0.0)), max(high, 0.0))
             self.given[k] += min(max(aim - self.given[k], -far), far)
-            self.counts[k] = self.base[k] + round(self.given[k] / SCALE)
+            self.counts[k] = self.base[k] + round(self.given[k] / self.scale)
         return self.counts
 
     def _agree(self, requested: "list[float]") -> None:
         """Where counts were lost for good, go on from what the control has."""
-        theirs = [round(v / SCALE) for v in requested]
+        theirs = [round(v / self.scale) for v in requested]
         ours = [c - b for c, b in zip(self.counts, self.base)]
         self.astray = self.astray + 1 if any(abs(a - b) > 1 for a, b in zip(theirs, ours)) else 0
         if self.astray > LOST:
             self.base = [c - v for c, v in zip(self.counts, theirs)]
-            self.given, self.astray = [v * SCALE for v in theirs], 0
+            self.given, self.astray = [v * self.scale for v in theirs], 0
 
 
 def room_of(
@@ -211,7 +207,8 @@ class Corrector:
         for name in ("enable", "valid"):
             component.newpin(name, hal.HAL_BIT, hal.HAL_OUT)
         component.newpin("age", hal.HAL_FLOAT, hal.HAL_OUT)
-        self.giver = Giver(len(self.linear), args.most, args.rate, args.patience, args.hold)
+        limits = (args.most, args.rate, args.patience, args.hold)
+        self.giver = Giver(len(self.linear), args.scale, *limits)
         self.link = Link(args.socket, args.patience)
         self.ends = dict(_ends(part) for part in args.ends.split(",") if part)
         self.at: dict[str, float] = {}
@@ -272,6 +269,7 @@ def arguments(words: Optional["list[str]"] = None) -> argparse.Namespace:
     parser.add_argument("--name", default="corrector")
     for name in ("--socket", "--axes", "--linear"):
         parser.add_argument(name, required=True)
+    parser.add_argument("--scale", type=float, required=True)
     for name in ("--sensors", "--ends"):
         parser.add_argument(name, default="")
     for name, value in (("--most", 0.2), ("--rate", 1.0), ("--patience", 0.5), ("--hold", 5.0)):

@@ -19,7 +19,6 @@ from typing import Any, TextIO
 import hal
 
 PROBING = 5  # type of motion of a G38 move
-
 ENOUGH = 0.05  # way after which the direction of a stroke is known to eleven digits, mm
 
 NEVER = 1e9
