@@ -328,7 +328,7 @@ def test_examples_and_benchmarks_enter_by_faces(folder: str) -> None:
                     assert name in VOCABULARY or alias.name in listed, f"{file}: {alias.name}"
 
 
-EFFECTS = ("twin.effects", "twin.thermal", "twin.elastic")
+EFFECTS = ("twin.effects", "twin.thermal", "twin.elastic", "twin.laws")
 """Parts that define effects."""
 
 
