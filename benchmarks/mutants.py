@@ -1,9 +1,8 @@
 """Would the tests notice?   python benchmarks/mutants.py     (make mutants)
 
-Makes 200 random lines of the production code wrong, one at a time, and runs the tests that execute
-the line until one fails. Prints the share of wrong lines that a test noticed and every line that
-none did. A first run of all tests, with probes at these lines alone and so at its usual speed,
-records which test executes which line; a test that fails in it is not used.
+Makes 200 random lines of the production code wrong, one at a time, and runs the test files that
+import the module of the line most directly, those of its room and short ones first, until one test
+fails. Prints the share of wrong lines that a test noticed and every line that none did.
 
 A wrong line has one change: a comparison or condition turned round, + for -, * for /, a sign, `and`
 for `or`, a number (n + 1, or twice a fraction), True for False, a call left out. Each is drawn from
@@ -12,7 +11,6 @@ all such places with equal chance; the seed fixes the draw.
 
 import argparse
 import ast
-import json
 import os
 import random
 import re
@@ -159,45 +157,13 @@ def drawn(count: int, seed: int, rooms: list[str]) -> list[Mutant]:
     return [rng.choice(by_line[line]) for line in lines]
 
 
-class Trace(NamedTuple):
-    """What a run of all tests recorded.
-
-    Attributes:
-        tests: Tests that execute a wrong line, by the number of the line in the draw.
-        seconds: How long each test takes by itself.
-        shared: The fixtures that it shares with others, and the seconds of each.
-    """
-
-    tests: dict[int, set[str]]
-    seconds: dict[str, float]
-    shared: dict[str, dict[str, float]]
-
-    def chosen(self, number: int, mutant: Mutant) -> list[str]:
-        """Tests for a wrong line: its room first, short ones first, until `MOST_SECONDS`.
-
-        Those of its room where none is recorded: what only an import executes.
-        """
-        room = f"tests/{mutant.file.split('/')[0]}/"
-        possible = self.tests.get(number) or {t for t in self.seconds if t.startswith(room)}
-        cost = {t: self.seconds[t] + sum(self.shared[t].values()) for t in possible}
-        order = sorted(possible, key=lambda t: (not t.startswith(room), cost[t], t))
-        out, ready, spent = [], set(), 0.0
-        for test in order[:MOST_TESTS]:
-            shared = self.shared[test]
-            spent += self.seconds[test] + sum(v for k, v in shared.items() if k not in ready)
-            if out and spent > MOST_SECONDS:
-                break
-            out.append(test)
-            ready |= set(shared)
-        return out
-
-
 class Imports:
-    """Tests for a wrong line by what they import, where no run records what they execute."""
+    """Tests for a wrong line by what they import: no traced run of all tests is needed."""
 
     def __init__(self) -> None:
         folders = {name.removeprefix("matstd."): place for name, place in ROOMS.items()}
         self.modules: dict[str, Path] = {}
+        self.faces: dict[Path, list[ast.ImportFrom]] = {}
         for name, place in {**folders, "": "matstd"}.items():
             for file in (ROOT / place).rglob("*.py"):
                 parts = ("matstd", name, *file.relative_to(ROOT / place).with_suffix("").parts)
@@ -225,13 +191,15 @@ class Imports:
         file = self.modules.get(module)
         if file is None or file.name != "__init__.py":
             return module
-        for node in ast.parse(file.read_text(encoding="utf-8")).body:
-            is_offered = isinstance(node, ast.ImportFrom) and node.module not in (None, module)
-            if is_offered and any(alias.name == name for alias in node.names):
-                return self.defining(node.module, name)
+        if file not in self.faces:
+            body = ast.parse(file.read_text(encoding="utf-8")).body
+            self.faces[file] = [n for n in body if isinstance(n, ast.ImportFrom)]
+        for node in self.faces[file]:
+            if node.module not in (None, module) and name in [a.name for a in node.names]:
+                return self.defining(str(node.module), name)
         return module
 
-    def chosen(self, number: int, mutant: Mutant) -> list[str]:
+    def chosen(self, mutant: Mutant) -> list[str]:
         """Test files for a wrong line: those that import its module most directly, short first."""
         (module,) = [n for n, file in self.modules.items() if file == ROOT / mutant.file]
         far, users = {module: 0}, {module}
@@ -253,131 +221,12 @@ class Imports:
         return order[:MOST_FILES]
 
 
-class Probes(ast.NodeTransformer):
-    """Reports which lines of a draw are executed: `seen(7) or x` in the place of `x`.
-
-    A default and a constant of a module are executed when they are imported: the functions that
-    have the one or read the other report them.
-    """
-
-    def __init__(self, numbers: dict[tuple[int, int, int], int]) -> None:
-        self.numbers = numbers  # by line, start and end in the line
-
-    def visit(self, node: ast.AST) -> ast.AST:
-        """The node with the probes in it."""
-        self.generic_visit(node)
-        number = self.number(node)
-        if number is not None and isinstance(node, ast.expr):
-            return ast.BoolOp(ast.Or(), [probe(number), node])
-        if isinstance(node, ast.FunctionDef):
-            has_text = ast.get_docstring(node) is not None
-            node.body[has_text:has_text] = [ast.Expr(probe(n)) for n in self.imported_by(node)]
-        return node
-
-    def number(self, node: ast.AST) -> int | None:
-        """The number of a node in the draw."""
-        place = (getattr(node, name, -1) for name in ("lineno", "col_offset", "end_col_offset"))
-        return self.numbers.get(tuple(place))  # type: ignore[arg-type]
-
-    def constants(self, tree: ast.Module) -> "Probes":
-        """Remembers the names of the module whose values are in the draw."""
-        self.names: dict[str, list[int]] = defaultdict(list)
-        for node in tree.body:
-            if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
-                found = self.within(node.value)
-                targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-                for name in (n.id for t in targets for n in ast.walk(t) if isinstance(n, ast.Name)):
-                    self.names[name] += found
-        return self
-
-    def within(self, tree: ast.AST) -> list[int]:
-        """The numbers of all nodes of a tree that are in the draw."""
-        return [n for node in ast.walk(tree) if (n := self.number(node)) is not None]
-
-    def imported_by(self, function: ast.FunctionDef) -> set[int]:
-        """Lines of the draw that the import executes for a function."""
-        out = set(self.within(function.args))
-        for node in ast.walk(function):
-            if isinstance(node, ast.Name):
-                out |= set(self.names.get(node.id, ()))
-        return out
-
-
-def probe(number: int) -> ast.Call:
-    """Reports that a line is executed; returns None."""
-    return ast.Call(ast.Name("_seen", ast.Load()), [ast.Constant(number)], [])
-
-
-def probed(source: str, mutants: dict[int, Mutant]) -> str:
-    """The source with probes at its lines of the draw; as it is where a loop is compiled."""
-    tree = ast.parse(source)
-    if any(isinstance(n, ast.Name) and n.id == "compiled_loop" for n in ast.walk(tree)):
-        return source
-    patterns = {id(p) for n in ast.walk(tree) if isinstance(n, ast.pattern) for p in ast.walk(n)}
-    places = {
-        (n.lineno, n.col_offset, n.end_col_offset or 0)
-        for n in ast.walk(tree)
-        if isinstance(n, ast.expr) and one_line(n) and id(n) not in patterns
-    }
-    numbers = {(m.line, m.start, m.end): k for k, m in mutants.items()}
-    probes = Probes({place: k for place, k in numbers.items() if place in places})
-    # other processes, which record nothing, run the same sources
-    head = ast.parse("import builtins as _b\n_seen = getattr(_b, '_seen', lambda number: None)")
-    made = probes.constants(tree).visit(tree)
-    assert isinstance(made, ast.Module)
-    first = next(
-        (k for k, n in enumerate(made.body)
-         if not (isinstance(n, ast.Expr) and isinstance(n.value, ast.Constant))
-         and not (isinstance(n, ast.ImportFrom) and n.module == "__future__")), 0,
-    )  # fmt: skip
-    made.body[first:first] = head.body
-    return ast.unparse(ast.fix_missing_locations(made)) + "\n"
-
-
-def traced(folder: Path, mutants: list[Mutant], jobs: int) -> Trace:
-    """Runs all tests once with probes at the lines, or reads what an earlier run left."""
-    if not list(folder.glob("*.json")):
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory() as place:
-            record(Copy(Path(place)), mutants, folder, jobs)
-    seconds: dict[str, float] = {}
-    shared: dict[str, dict[str, float]] = {}
-    tests: dict[int, set[str]] = defaultdict(set)
-    for file in folder.glob("*.json"):
-        part = json.loads(file.read_text())
-        passed = [t for t in part["seconds"] if t not in part["failed"]]
-        for test in passed:
-            seconds[test] = part["seconds"][test]
-            made = [f for f in part["uses"][test] if f in part["fixture_seconds"]]
-            shared[test] = {f: part["fixture_seconds"][f] for f in made}
-            for number in {*part["seen"][test], *(n for f in made for n in part["fixtures"][f])}:
-                tests[number].add(test)
-    if not seconds:
-        sys.exit(f"no test passed: remove {folder} and see what the tests report")
-    return Trace(tests, seconds, shared)
-
-
-def record(copy: "Copy", mutants: list[Mutant], folder: Path, jobs: int) -> None:
-    """Runs all tests of a copy of the project, with probes."""
-    by_file: dict[str, dict[int, Mutant]] = defaultdict(dict)
-    for number, mutant in enumerate(mutants):
-        by_file[mutant.file][number] = mutant
-    for name, some in by_file.items():
-        copy.write(name, probed((copy.root / name).read_text(encoding="utf-8"), some))
-    # tests that read the sources fail here; those that fail are shown no wrong line
-    subprocess.run(
-        [sys.executable, "-m", "pytest", "-q", "-p", "traced_tests", "-n", str(jobs), "tests"],
-        cwd=copy.root,
-        env=copy.environment(TRACED=str(folder)),
-        check=False,
-    )
-
-
 class Copy:
     """A copy of the project in which one line at a time is wrong."""
 
     def __init__(self, place: Path) -> None:
         self.root, self.writes = place / "project", 1_000_000_000
+        self.path = os.pathsep.join([str(self.root), os.environ.get("PYTHONPATH", "")])
         self.passed: set[str] = set()
         listed = subprocess.run(
             ["git", "ls-files", "-z"], cwd=ROOT, capture_output=True, check=True
@@ -397,11 +246,6 @@ class Copy:
         self.writes += 1
         (self.root / name).write_text(text, encoding="utf-8")
         os.utime(self.root / name, (self.writes, self.writes))
-
-    def environment(self, **more: str) -> dict[str, str]:
-        """The environment in which the copy is found before the checkout."""
-        path = [str(self.root), str(ROOT / "benchmarks"), os.environ.get("PYTHONPATH", "")]
-        return os.environ | {"PYTHONPATH": os.pathsep.join(path)} | more
 
     def notices(self, mutant: Mutant, tests: list[str]) -> bool:
         """Whether a test fails with a wrong line and passes without it."""
@@ -424,9 +268,9 @@ class Copy:
         if not tests:
             return ""
         done = subprocess.run(
-            [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", "-p", "traced_tests", *tests],
+            [sys.executable, "-m", "pytest", "-x", "-q", "-n", "0", *tests],
             cwd=self.root,
-            env=self.environment(),
+            env=os.environ | {"PYTHONPATH": self.path},
             capture_output=True,
             text=True,
             timeout=TIMEOUT,
@@ -453,26 +297,19 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--rooms", nargs="+", help="draw from these alone; all without it")
     parser.add_argument("--most", type=int, help="try the first of the lines alone")
-    parser.add_argument(
-        "--by-import", action="store_true", help="choose tests by what they import: no first run"
-    )
-    parser.add_argument("--trace", type=Path, help="folder of what the first run records")
     options = parser.parse_args()
     rooms = options.rooms or [*ROOMS.values(), "matstd"]
     mutants = drawn(options.n, options.seed, rooms)
-    name = "-".join(["traced", str(options.seed), str(options.n), *(options.rooms or [])])
-    folder = options.trace or ROOT / "build" / name
-    trace = Imports() if options.by_import else traced(folder, mutants, options.jobs)
-    tried_ones = list(enumerate(mutants))[: options.most]
+    imports = Imports()
     noticed: dict[Mutant, bool] = {}
     copies: Queue[Copy] = Queue()
     with tempfile.TemporaryDirectory() as place:
         for k in range(options.jobs):
             copies.put(Copy(Path(place) / str(k)))
 
-        def tried(one: tuple[int, Mutant]) -> None:
-            mutant, copy = one[1], copies.get()
-            noticed[mutant] = copy.notices(mutant, trace.chosen(*one))
+        def tried(mutant: Mutant) -> None:
+            copy = copies.get()
+            noticed[mutant] = copy.notices(mutant, imports.chosen(mutant))
             copies.put(copy)
             word = "noticed" if noticed[mutant] else "MISSED"
             print(f"{len(noticed):4} {word:8} {mutant.file}:{mutant.line}", flush=True)
@@ -482,7 +319,7 @@ def main() -> None:
                     print(f"     {sign} {text.splitlines()[mutant.line - 1].strip()}", flush=True)
 
         with ThreadPoolExecutor(options.jobs) as pool:
-            list(pool.map(tried, tried_ones))
+            list(pool.map(tried, mutants[: options.most]))
     killed = sum(noticed.values())
     low, high = interval(killed, len(noticed))
     print(f"\nseed {options.seed}: {killed} of {len(noticed)} wrong lines are noticed, "

@@ -79,8 +79,10 @@ def pytest_report_header() -> str:
     return "pages are driven in Chromium" if is_here() else MISSING
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """The longest files first, the others in their order."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """For several workers the longest files first, the others in their order."""
+    if not hasattr(config, "workerinput"):
+        return
     rank = {Path(__file__).parent / name: k for k, name in enumerate(LONGEST)}
     assert all(path.exists() for path in rank), "LONGEST names a file that is gone"
     items.sort(key=lambda item: rank.get(item.path, len(rank)))
@@ -92,13 +94,25 @@ def _as_in_a_test():
 
     A slow machine prints its progress every ten seconds: nothing a test can count on. The workers
     share the cores: nothing is done in a further process, where what a test has patched would not
-    be. Pictures have a third of the dots, which is a quarter of their time.
+    be. Pictures have a third of the dots, which is a quarter of their time. The Monte Carlo counts
+    in numpy: its loops take numba half a minute to compile, and `compiled_loops` brings them back
+    for the tests that compare the two.
     """
+    from matstd.sensitivity.montecarlo import lengths
+
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("matstd.progress.PERIOD", 1e6)
         patch.setattr("matstd.twin.beside.CORES", 1)
         patch.setattr("matstd.report.style.DPI", 80)
-        yield
+        compiled_count = lengths.compiled_count
+        patch.setattr(lengths, "compiled_count", lambda: None)
+        yield compiled_count
+
+
+@pytest.fixture
+def compiled_loops(_as_in_a_test: Callable[[], Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    """The loops of the Monte Carlo as numba compiles them."""
+    monkeypatch.setattr("matstd.sensitivity.montecarlo.lengths.compiled_count", _as_in_a_test)
 
 
 @pytest.fixture(scope="session")

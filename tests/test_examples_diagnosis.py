@@ -14,9 +14,8 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from matstd.diagnosis.answer.run_diagnosis import diagnose
-from matstd.twin.files.run_file import read_run
-from matstd.twin.files.run_writer import write_run
+from matstd.diagnosis.answer import diagnose
+from matstd.twin.files import read_run, write_run
 from matstd.twin.units import NM, UM
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -117,10 +116,9 @@ def test_the_hose_is_unexplained_and_seen_where_it_is(tmp_path):
 
 
 def test_the_users_own_effect_explains_the_hose(tmp_path):
-    own = ["--effects", EXAMPLES / "my_effects.py"]
-    matstd(
-        "diagnose", "hose.csv", *own, "--auto", "--no-report", "--no-learn", "-o", tmp_path / "out"
-    )
+    own = ["--effects", EXAMPLES / "my_effects.py", "--only", "hose", "backlash", "thermal-lag"]
+    words = ["--auto", "--no-report", "--no-learn", "-o", tmp_path / "out"]
+    matstd("diagnose", "hose.csv", *own, *words)
     found = result(tmp_path / "out")
     (hidden,) = truth("hose")["hidden"]
     assert found["verdict"] == "missing effect"

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from matstd.cli import main
-from matstd.twin.files.run_file import read_run
+from matstd.twin.files import read_run
 from matstd.twin.units import NM
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -138,11 +138,18 @@ def test_an_axis_the_other_way_is_refused_with_the_line_to_write(tmp_path, capsy
     assert not out.exists()
 
 
-def test_the_machine_of_1995_gives_its_errors_back(tmp_path):
+@pytest.mark.parametrize(
+    "only",
+    [
+        pytest.param(["--only", "thermal-lag", "thermal-expansion"], id="both"),
+        pytest.param([], id="the library", marks=pytest.mark.slow),
+    ],
+)
+def test_the_machine_of_1995_gives_its_errors_back(only, tmp_path):
     planted = module(OLD / "make_run.py")
     out = tmp_path / "out"
     words = ["diagnose", str(OLD / "run.csv"), "--auto", "--no-report", "--no-learn"]
-    assert main([*words, "-o", str(out)]) == 0
+    assert main([*words, *only, "-o", str(out)]) == 0
     found = result(out)
     drift, screw = (s for s in found["steps"] if s["effect"])
     assert "thermal-lag(EZZ)" in [drift["effect"], *drift["cannot_be_told_from"]]

@@ -2,13 +2,17 @@
 
 import math
 
-UM = 1e-3  # one micrometre in mm
+UM = 1e-3
+"""One micrometre in mm."""
 NM = 1e-6  # one nanometre in mm
-URAD = 1e-6  # one microradian in rad
-DEG = math.pi / 180.0  # one degree in rad
+URAD = 1e-6
+"""One microradian in rad."""
+DEG = math.pi / 180.0
+"""One degree in rad."""
 KG_M3 = 1e-9  # one kilogram per cubic metre in kg/mm^3
 GPA = 1e3  # one gigapascal in N/mm^2
-MINUTE, HOUR, DAY = 60.0, 3600.0, 86400.0  # in s
+MINUTE, HOUR, DAY = 60.0, 3600.0, 86400.0
+"""In s."""
 T_REF = 20.0  # reference temperature of geometrical specifications, degC (ISO 1)
 WHOLE_DEGREES, ROUNDING = 5.0, 0.1
 """Ends of a travel are whole multiples of the first; in radians they are still such multiples

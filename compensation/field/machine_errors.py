@@ -3,6 +3,7 @@
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import compress
 from typing import Literal, Protocol
 
 import numpy as np
@@ -110,14 +111,15 @@ class MachineErrors:
         ]
         own, tool = (root[np.repeat(rows, counts).astype(bool)] for rows in (is_kept, is_tool))
         shared = _row_space(tool)
+        kept = list(compress(known, is_kept))
         return cls(
             chain=chain,
-            effects=tuple(e for (e, _), kept in zip(known, is_kept, strict=True) if kept),
-            theta=tuple(t for (_, t), kept in zip(known, is_kept, strict=True) if kept),
+            effects=tuple(effect for effect, _ in kept),
+            theta=tuple(theta for _, theta in kept),
             root=own - own @ shared @ shared.T,
             tool_root=own @ shared,
             state=state,
-            left_out=tuple(e.name for (e, _), kept in zip(known, is_kept, strict=True) if not kept),
+            left_out=tuple(e.name for (e, _), own in zip(known, is_kept, strict=True) if not own),
         )
 
     def with_known(
@@ -148,14 +150,12 @@ class MachineErrors:
         end = sum(len(t) for t in self.theta[: number + 1])
         before, behind = self.root[:end], self.root[end:]
         wide = np.vstack([block_diag(before, root), np.pad(behind, ((0, 0), (0, root.shape[1])))])
+        effects, values = list(self.effects), list(self.theta)
+        effects[number], values[number] = effect, np.append(values[number], theta)
         return replace(
             self,
-            effects=(*self.effects[:number], effect, *self.effects[number + 1 :]),
-            theta=(
-                *self.theta[:number],
-                np.append(self.theta[number], theta),
-                *self.theta[number + 1 :],
-            ),
+            effects=tuple(effects),
+            theta=tuple(values),
             root=wide,
             tool_root=np.insert(self.tool_root, [end] * len(theta), 0.0, axis=0),
         )
@@ -180,11 +180,16 @@ class MachineErrors:
         total.shift[:], total.bias[:] = 0.0, 0.0
         return total
 
-    def columns(self, touches: Touches) -> Array:
-        """Deviation of the tool point per unit of every parameter, first order, (N, 3, P)."""
+    def columns(self, touches: Touches, links: Collection[int] | None = None) -> Array:
+        """Deviation of the tool point per unit of every parameter, first order, (N, 3, P).
+
+        Args:
+            links: Those that count; None for all.
+        """
         out = np.zeros((len(touches), 3, len(self.root)))
         for row, where, amount in self._entries(touches):
-            out[:, :, row] += amount[:, None] * touches.reach.of(where)
+            if links is None or where.link in links:
+                out[:, :, row] += amount[:, None] * touches.reach.of(where)
         return out
 
     def amounts(
@@ -254,19 +259,14 @@ class MachineErrors:
             if word not in known:
                 listed = ", ".join(sorted(known, key=len)[:24])
                 raise BadValue("switch", f"'{word}'{did_you_mean(word, known)}", f"one of {listed}")
-        theta = []
-        scale = np.ones(len(self.root))
-        start = 0
-        for effect, own in zip(self.effects, self.theta, strict=True):
+        last_first, found = list(factors.items())[::-1], []
+        for effect in self.effects:
             words = words_of(self.chain, effect)
-            factor = next((f for w, f in reversed(list(factors.items())) if w in words), 1.0)
-            theta.append(factor * own)
-            scale[start : start + len(own)] = factor
-            start += len(own)
-        scale = scale[:, None]
+            found.append(next((f for w, f in last_first if w in words), 1.0))
+        scale = np.repeat(found, [len(own) for own in self.theta])[:, None]
         return replace(
             self,
-            theta=tuple(theta),
+            theta=tuple(f * own for f, own in zip(found, self.theta, strict=True)),
             root=scale * self.root,
             tool_root=scale * self.tool_root,
             determined={},

@@ -144,8 +144,7 @@ def _uncorrected(
             slope = np.einsum("ni,nik->k", field, spread) / (size * len(field))
             u = float(np.linalg.norm(slope))
         before = rms_length(columns[:, :, rows] @ theta[rows])
-        left = UncorrectedError(name=name, before=before, rms=size, u=u)
-        out.append(_as_determined(left, errors, rows))
+        out.append(_as_determined(UncorrectedError(name, before, size, u), errors, rows))
     return tuple(sorted(out, key=lambda item: -item.rms))
 
 
@@ -162,7 +161,7 @@ def _as_determined(left: UncorrectedError, errors: MachineErrors, rows: Array) -
     theta = float(np.concatenate(errors.theta)[rows[0]])
     share, per = left.rms / left.before, left.before / abs(theta)
     size = per * abs(known.value)
-    return UncorrectedError(name=left.name, before=size, rms=share * size, u=share * per * known.u)
+    return UncorrectedError(left.name, size, share * size, share * per * known.u)
 
 
 MAX_U_POSES = 100  # poses at which the uncertainty of a share is taken: it varies slowly over them

@@ -12,21 +12,14 @@ from matstd.twin.record import Touches, at_poses
 
 @dataclass(frozen=True, slots=True)
 class State:
-    """Everything but the readings that drives the effects of a model; constant but for the time.
+    """Everything but the readings that drives the effects of a model; constant but for the time."""
 
-    Attributes:
-        time: Since the machine was switched on, s.
-        temperature: degC by sensor name; bodies that lag behind one have settled at it.
-        spindle_rpm: Speed since the machine was switched on, 1/min; None where unknown.
-        value: Columns of the user's own by name and unit.
-        force: Load on the tool in table-frame directions, N.
-    """
-
-    time: float = 0.0
+    time: float = 0.0  # since the machine was switched on, s
+    # degC by sensor name; bodies that lag behind one have settled at it
     temperature: Mapping[str, float] = field(default_factory=dict)
-    spindle_rpm: float | None = None
-    value: Mapping[str, float] = field(default_factory=dict)
-    force: tuple[float, float, float] | None = None
+    spindle_rpm: float | None = None  # since the machine was switched on, 1/min; None where unknown
+    value: Mapping[str, float] = field(default_factory=dict)  # user's columns, by name and unit
+    force: tuple[float, float, float] | None = None  # on the tool, table-frame directions, N
 
     def touches(
         self,

@@ -97,11 +97,8 @@ def hal_text(control: Control, service: Service, limits: OutputLimits) -> str:
         lines.append(f"setp axis.{low}.eoffset-scale {SCALE:g}")
         connect(f"corrector-counts-{low}", f"corrector.counts-{low}", f"axis.{low}.eoffset-counts")
         connect(f"corrector-has-{low}", f"axis.{low}.eoffset-request", f"corrector.requested-{low}")
-    connect(
-        "corrector-enable",
-        "corrector.enable",
-        *(f"axis.{a.lower()}.eoffset-enable" for a in linear),
-    )
+    enabled = (f"axis.{a.lower()}.eoffset-enable" for a in linear)
+    connect("corrector-enable", "corrector.enable", *enabled)
     connect("corrector-on", "motion.motion-enabled", "corrector.machine-on")
     connect("corrector-homed", "motion.is-all-homed", "corrector.homed")
     lines += [f"setp corrector.temperature-{n} {v:g}" for n, v in state.temperature.items()]

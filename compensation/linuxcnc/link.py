@@ -90,20 +90,14 @@ class _QuestionHandler:
             at, ways = question["readings"], question["directions"]
             readings = [float(at.get(a.lower(), 0.0)) for a in chain.axes]
             directions = [int(ways.get(a.lower(), 0)) for a in chain.axes]
-            self.driven = question
-            self.service.move(int(question["number"]), readings, now, directions)
-            number = int(question["number"])
+            self.driven, number = question, int(question["number"])
+            self.service.move(number, readings, now, directions)
         except (ValueError, KeyError, TypeError, AttributeError):
             number = 0
         answer = self.service.tick(now)
         refused = "; ".join(filter(None, (answer.refused, self.undriven)))
-        reply = {
-            "number": number,
-            "correction": answer.sent.values,
-            "quality": str(answer.sent.quality),
-            "refused": refused,
-        }
-        return json.dumps(reply) + "\n"
+        reply = {"number": number, "correction": answer.sent.values, "refused": refused}
+        return json.dumps(reply | {"quality": str(answer.sent.quality)}) + "\n"
 
     async def follow(self, until: asyncio.Event) -> None:
         """Temperatures and speed every two seconds."""

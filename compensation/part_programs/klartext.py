@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from matstd.compensation.part_programs import klartext_cycles
+from matstd.compensation.part_programs.klartext_words import is_hole
 from matstd.compensation.part_programs.motion import Digits, Motion, axis_words
 
 ENDING = ".H"
@@ -43,7 +43,7 @@ def _defined_once(blocks: list[str]) -> Iterator[str]:
     """Blocks without definitions of a cycle that is defined so already."""
     last = ""
     for block in blocks:
-        if klartext_cycles.is_hole(block):
+        if is_hole(block):
             if block == last:
                 continue
             last = block

@@ -4,8 +4,7 @@ import re
 
 import numpy as np
 
-from matstd.compensation.part_programs.klartext_cycles import Hole, defined, way
-from matstd.compensation.part_programs.klartext_words import AXIS, Modes, Words
+from matstd.compensation.part_programs.klartext_words import AXIS, Hole, Modes, Words, defined, way
 from matstd.compensation.part_programs.language import Reading, centre_by_radius, checked_arc
 from matstd.compensation.part_programs.motion import Arc, Corner, Cycle
 from matstd.nc.grammar import NUMBER, Block, klartext_blocks, run_order

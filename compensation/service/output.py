@@ -41,9 +41,8 @@ class OutputLimits:
             if not 0.0 < value < float("inf"):
                 raise BadValue(name, f"{value:g}", "a number above zero")
         if self.hold < self.patience:
-            raise BadValue(
-                "hold", f"{self.hold:g} s", f"the patience, {self.patience:g} s, or more"
-            )
+            expected = f"the patience, {self.patience:g} s, or more"
+            raise BadValue("hold", f"{self.hold:g} s", expected)
 
 
 @dataclass(frozen=True)

@@ -93,10 +93,8 @@ class PointCorrection:
         """
         chain = errors.chain
         if len(chain.linear_axes) != 3:
-            raise DesignError(
-                f"machine {chain.name} has {len(chain.linear_axes)} linear axes, three are needed "
-                "to correct while it moves"
-            )
+            found = f"machine {chain.name} has {len(chain.linear_axes)} linear axes"
+            raise DesignError(f"{found}, three are needed to correct while it moves")
         self._chain, self.linear_axes = chain, tuple(chain.linear_axes)
         self._tables = error_tables(errors, length, close)
         self.interpolation = float(sum(t.left for t in self._tables))
@@ -158,10 +156,9 @@ class PointCorrection:
             low, high = link.range
             if not low - _BESIDE <= value <= high + _BESIDE:
                 word = "degrees" if link.kind == "rotary" else "mm"
-                raise OutsideTravel(
-                    f"{link.name} {value / link.unit:g} {word}, beyond its travel "
-                    f"{low / link.unit:g} to {high / link.unit:g}"
-                )
+                travel = f"{low / link.unit:g} to {high / link.unit:g}"
+                found = f"{link.name} {value / link.unit:g} {word}"
+                raise OutsideTravel(f"{found}, beyond its travel {travel}")
 
     def _nominal(self, q: Sequence[float], columns: Columns) -> Point:
         """Tool point without errors, and how it moves with each linear axis, from the table."""

@@ -129,9 +129,11 @@ class ErrorTable:
                 return replace(table, left=float(left.sum()))
             if counts.max() >= _MOST[len(counts)]:
                 named = ", ".join(effect.name for effect, _ in self.terms[:3])
+                found = (
+                    f"{named}: {counts.max()} points leave {left.sum() / NM:.3g} nm between them"
+                )
                 raise DesignError(
-                    f"{named}: {counts.max()} points leave {left.sum() / NM:.3g} nm between them "
-                    f"and {close / NM:g} nm are wanted: too steep for a table"
+                    f"{found} and {close / NM:g} nm are wanted: too steep for a table"
                 )
             counts = np.where(left > 0.5 * close / len(counts), 2 * counts - 1, counts)
 
@@ -146,13 +148,17 @@ class ErrorTable:
         if learnt:
             terms = [(effect, learnt.get(effect.name, theta)) for effect, theta in self.terms]
             return replace(self, terms=terms).following(history)
-        lines = [np.linspace(a, b, n) for (a, b), n in zip(self.ends, self.counts, strict=True)]
-        rows = self._at(lines, history)
+        rows = self._at(self._lines, history)
         return replace(self, rows=rows.reshape(*self.counts, *rows.shape[1:]))
+
+    @property
+    def _lines(self) -> list[Array]:
+        """Points along each reading."""
+        return [np.linspace(a, b, n) for (a, b), n in zip(self.ends, self.counts, strict=True)]
 
     def _at_middles(self, along: int) -> float:
         """Largest difference to straight lines at the middles along one reading, mm at the tip."""
-        lines = [np.linspace(a, b, n) for (a, b), n in zip(self.ends, self.counts, strict=True)]
+        lines = self._lines
         lines[along] = 0.5 * (lines[along][1:] + lines[along][:-1])
         exact, rows = self._at(lines, None), np.moveaxis(self.rows, along, 0)
         middle = np.moveaxis(0.5 * (rows[1:] + rows[:-1]), 0, along).reshape(exact.shape)

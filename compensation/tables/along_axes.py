@@ -299,9 +299,7 @@ def _unit_zero(errors: MachineErrors, datum: Datum) -> Array:
     """Zeros of the linear axes per unit of every parameter, (A, P)."""
     chain, there = errors.chain, errors.touches(datum.q[None, :], datum.length)
     links = [i for i, link in enumerate(chain.links) if link.kind == "linear"]
-    twist, place = (errors.amounts(there, part, links)[0] for part in ("twist", "place"))
-    moved = np.einsum("lcx,lcp->xp", there.reach.twist[0], twist)
-    moved += np.einsum("lcx,lcp->xp", there.reach.place[0], place)
+    moved = errors.columns(there, links)[0]
     out = np.zeros((len(chain.axes), moved.shape[1]))
     linear = chain.linear_columns
     out[linear] = -np.linalg.pinv(linear_directions(chain, there.q)[0]) @ moved

@@ -14,7 +14,8 @@ from scipy.sparse.csgraph import connected_components
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array
 
-STRONG_CORRELATION = 0.9  # absolute correlation from which two parameters count as tied
+STRONG_CORRELATION = 0.9
+"""Absolute correlation from which two parameters count as tied."""
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,8 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"  # a number as programs of any origin write it
+NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)"
+"""A number as programs of any origin write it."""
 SIGNED = r"[+-]\d{1,5}(?:\.\d{0,7})?"
 """A coordinate as our own programs write it and controls save it: always with its sign."""
 _WORD = re.compile(rf"([A-Z])({NUMBER})")

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from matstd.twin.errors import BadFile
 
-MAX_DEPTH = 8  # nesting of subprograms on Heidenhain's controls
+MAX_DEPTH = 8
+"""Nesting of subprograms on Heidenhain's controls."""
 
 
 def label_places(found: Iterable[tuple[int, int, str]], path: Path) -> dict[str, int]:

@@ -3,7 +3,7 @@
 import math
 import operator
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 Read = Callable[[str], float]  # gives the value of a word: a number, or a parameter with its sign
 
@@ -75,6 +75,14 @@ FUNCTIONS: dict[str, Callable[[float], float]] = {
 """Functions of a formula."""
 
 
+_SIGNS: tuple[dict[str, Callable[[float, float], float]], ...] = (
+    {"+": operator.add, "-": operator.sub},
+    {"*": operator.mul, "/": operator.truediv},
+    {"^": math.pow},
+)
+"""Signs between two values; those of a later level go first."""
+
+
 class NotAFormulaError(Exception):
     """The text at which a formula is invalid."""
 
@@ -97,31 +105,21 @@ class Formula:
 
     def value(self) -> float:
         """Its value; raises NotAFormulaError."""
-        out = self._sum()
+        out = self._joined()
         if self.tokens:
             raise NotAFormulaError(self.tokens[0])
         return out
 
-    def _take(self, *wanted: str) -> str:
+    def _take(self, wanted: Iterable[str]) -> str:
         return self.tokens.pop(0) if self.tokens and self.tokens[0] in wanted else ""
 
-    def _sum(self) -> float:
-        out = self._product()
-        while sign := self._take("+", "-"):
-            out += self._product() if sign == "+" else -self._product()
-        return out
-
-    def _product(self) -> float:
-        out = self._power()
-        while sign := self._take("*", "/"):
-            other = self._power()
-            out = out * other if sign == "*" else out / other
-        return out
-
-    def _power(self) -> float:
-        out = self._single()
-        while self._take("^"):
-            out = math.pow(out, self._single())
+    def _joined(self, level: int = 0) -> float:
+        """Values that signs of a level of `_SIGNS` join, from left to right."""
+        if level == len(_SIGNS):
+            return self._single()
+        out = self._joined(level + 1)
+        while sign := self._take(_SIGNS[level]):
+            out = _SIGNS[level][sign](out, self._joined(level + 1))
         return out
 
     def _single(self) -> float:
@@ -131,7 +129,7 @@ class Formula:
         if token in ("+", "-"):
             return self._single() if token == "+" else -self._single()
         if token == "(":
-            out = self._sum()
+            out = self._joined()
             if not self._take(")"):
                 raise NotAFormulaError("( without )")
             return out

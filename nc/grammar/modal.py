@@ -28,7 +28,8 @@ _SETS: dict[float, tuple[str, float | str | bool]] = {
     **{g: ("datum", g) for g in DATUMS},
 }
 
-MODAL = frozenset({*MOVES, *CYCLES, 80.0, *_SETS})  # words that `Modal` takes
+MODAL = frozenset({*MOVES, *CYCLES, 80.0, *_SETS})
+"""Words that `Modal` takes."""
 
 
 @dataclass

@@ -4,15 +4,9 @@ import numpy as np
 
 from matstd.artefact.body import Meeting, Standard, contact
 from matstd.artefact.reach import Mask
+from matstd.artefact.tool import solid_hull, swing_height, top_height
 from matstd.probe_paths.control import Move, ProbeStep, ReadProgram
-from matstd.probe_paths.plan import (
-    SMALLEST_GAP,
-    ToolClearance,
-    solid_hull,
-    stroke_gaps,
-    swing_height,
-    top_height,
-)
+from matstd.probe_paths.plan import SMALLEST_GAP, ToolClearance, stroke_gaps
 from matstd.twin.errors import BadFile
 from matstd.twin.frames import Array, apply, inverse, turn
 from matstd.twin.machine import Chain, linear_directions, tip

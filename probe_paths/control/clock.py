@@ -32,8 +32,7 @@ class Clock:
             steps: Change of the readings, shape (M, A), mm and rad; nan counts as no motion.
             feed: mm/s or rad/s, shape (M,); nan is rapid.
         """
-        linear = chain.linear_columns
-        rotary = chain.rotary_columns
+        linear, rotary = chain.linear_columns, chain.rotary_columns
         travel = np.abs(np.nan_to_num(steps))
         fastest = np.maximum(
             _rapid(travel[:, linear], self.rapid, self.acceleration),

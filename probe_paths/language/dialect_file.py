@@ -70,9 +70,9 @@ def _check(table: DialectTable, path: Path) -> None:
         if not table.folder:
             raise BadFile(path, "folder", "nothing", "a folder of the control such as TNC:\\MATSTD")
         return
-    for key, most in (("preset", 6), ("log_decimals", 6)):
-        if getattr(table, key) > most:
-            raise BadFile(path, key, getattr(table, key), f"{most} at most")
+    for key in ("preset", "log_decimals"):
+        if getattr(table, key) > 6:
+            raise BadFile(path, key, getattr(table, key), "6 at most")
     if table.folder:
         raise BadFile(path, "folder", table.folder, "nothing: LinuxCNC logs where it was started")
     if not (table.slow_feed >= 1.0 and table.step_back >= 0.1):

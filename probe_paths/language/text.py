@@ -18,10 +18,8 @@ _SPINDLE = re.compile(r"(?<![A-Z0-9])(M0?[34]|M1[34])(?!\d)|TOOL CALL.*\bS\s?\d"
 def checked_name(name: str) -> str:
     """Program name that every software generation takes; raises DesignError."""
     if not _NAME.match(name) or len(name) > MAX_NAME:
-        raise DesignError(
-            f"program name '{name}': expected a letter, then letters A-Z, digits or _, "
-            f"at most {MAX_NAME} characters"
-        )
+        expected = f"a letter, then letters A-Z, digits or _, at most {MAX_NAME} characters"
+        raise DesignError(f"program name '{name}': expected {expected}")
     return name
 
 
@@ -52,9 +50,8 @@ def checked_line(physical: str, longest: int = MAX_LINE) -> str:
     if not physical.isascii():
         raise DesignError(f"block '{physical}' has characters outside ASCII")
     if len(physical) > longest:
-        raise DesignError(
-            f"block '{physical}' has {len(physical)} characters, at most {longest} are emitted"
-        )
+        found = f"block '{physical}' has {len(physical)} characters"
+        raise DesignError(f"{found}, at most {longest} are emitted")
     if _SPINDLE.search(physical.split(";")[0]):
         raise DesignError(f"block '{physical}' would start the spindle with a probe in it")
     return physical

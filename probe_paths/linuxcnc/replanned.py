@@ -64,15 +64,13 @@ def _plan(
     ball = tip(chain, contact, heading.probe.length)
     ball = apply(inverse(heading.setup.T_table_artefact), ball)
     point, normal = foot_points(standard, feature, ball)
-    top = chain.link("Z").range[1]
-    z = chain.axis_index("Z")
     # programs retract to their highest Z
-    heights = [float(step.q[z]) for step in program.steps if isinstance(step, Move)]
-    retracted = max(height for height in heights if np.isfinite(height))
+    z = chain.axis_index("Z")
+    retracted = np.nanmax([step.q[z] for step in program.steps if isinstance(step, Move)])
     options = PlanOptions(
         standoff=first.back,
         search=first.distance - first.back,
-        retract=top - retracted,
+        retract=chain.link("Z").range[1] - float(retracted),
         workshop=heading.workshop,
     )
     return TouchPlan(
@@ -95,8 +93,7 @@ def _plan(
 
 def _stops(program: ReadProgram, chain: Chain) -> list[tuple[Visit, list[ProbeStep]]]:
     """Visits of a program in order, each with its touches."""
-    rotary = chain.rotary_columns
-    z = chain.axis_index("Z")
+    rotary, z = chain.rotary_columns, chain.axis_index("Z")
     found: list[tuple[Visit, list[ProbeStep]]] = []
     here: Array | None = None
     before, is_new = np.zeros(len(rotary)), True

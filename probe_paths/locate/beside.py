@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from matstd.artefact.body import DatumSphere, Standard
-from matstd.artefact.reach import Requests, joined
+from matstd.artefact.reach import Requests
 from matstd.probe_paths.emit import (
     Feeds,
     ProgramSet,
@@ -20,10 +20,16 @@ from matstd.probe_paths.emit import (
 from matstd.probe_paths.language import Dialect
 from matstd.probe_paths.locate.find import SPREADS, Spread
 from matstd.probe_paths.locate.search_plan import plan_search
-from matstd.probe_paths.plan import PlanOptions, TouchPlan, home_readings, plan_touches, readings_at
+from matstd.probe_paths.plan import (
+    PlanOptions,
+    TouchPlan,
+    home_readings,
+    plan_touches,
+    ring_normals,
+    ring_requests,
+)
 from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array
-from matstd.twin.machine import table_to_tool
 from matstd.twin.units import DEG
 
 _TILTS = (75.0 * DEG, 60.0 * DEG, 45.0 * DEG)
@@ -82,30 +88,15 @@ def _without_deep_collisions(
 ) -> Iterator[tuple[DatumSphere, Requests]]:
     """Rings that may be touched, pose by pose: exact gaps take half a second a ring."""
     reach = options.reach(plan.chain, plan.setup, plan.probe, _CERTAIN_COLLISION)
+    azimuth = np.arange(_RING) * 2.0 * np.pi / _RING
     for tilt, rotary in product(_TILTS, poses if balls else []):
         # one static check for the rings of all balls
-        rings = [_ring(plan, ball, rotary, tilt) for ball in balls]
-        every = joined(rings)
+        along = np.concatenate([[[0.0, 0.0, 1.0]], ring_normals(tilt, azimuth)])
+        every = ring_requests(plan.chain, plan.setup, balls, rotary, along)
         good = np.asarray(reach.is_reachable(every))
         good[good] = reach.is_clear(standard, every[good])
         for k in np.flatnonzero(good.reshape(len(balls), -1).all(axis=1)).tolist():
-            yield balls[k], rings[k]
-
-
-def _ring(plan: TouchPlan, ball: DatumSphere, rotary: Array, tilt: float) -> Requests:
-    """The pole under the tool and a ring round it."""
-    angle = np.arange(_RING) * 2.0 * np.pi / _RING
-    sin, cos = np.sin(tilt), np.cos(tilt)
-    ring = np.stack([sin * np.cos(angle), sin * np.sin(angle), np.full(_RING, cos)], axis=-1)
-    R_table_tool = table_to_tool(plan.chain, readings_at(plan.chain, rotary[None]))[0, :3, :3]
-    normal = np.concatenate([[[0.0, 0.0, 1.0]], ring]) @ R_table_tool.T
-    normal = normal @ plan.setup.T_table_artefact[:3, :3]
-    return Requests(
-        np.full(len(normal), ball.name),
-        ball.centre + ball.radius * normal,
-        normal,
-        np.repeat(rotary[None], len(normal), axis=0),
-    )
+            yield balls[k], every[k * len(along) + np.arange(len(along))]
 
 
 RAISED = 100.0

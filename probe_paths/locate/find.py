@@ -8,6 +8,7 @@ sides.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -93,12 +94,8 @@ def find_standard(
     limit = np.repeat([spread.distance, spread.angle], 3)
     relief = Relief.of(standard, radius)
 
-    def on_relief(theta: Array) -> Array:
-        return lifted(relief, ball, theta)
-
-    def on_surfaces(theta: Array) -> Array:
-        return _lifted_exactly(standard, ball, theta, radius)
-
+    on_relief = partial(lifted, relief, ball)
+    on_surfaces = partial(_lifted_exactly, standard, ball, radius)
     # fewer places for a smaller spread
     share = (spread.distance / Spread.distance) * (spread.angle / Spread.angle)
     count = max(int(min(share, 1.0) * _TRIED), _FEWEST_TRIED)
@@ -127,15 +124,11 @@ def find_standard(
 def _refuse_ambiguous_place(rms: Array, u: Array) -> None:
     """Refuse a place that does not fit, is not the only one, or is too uncertain to plan for."""
     if rms[0] > GOOD:
-        raise NotEnoughData(
-            f"no place within the spread fits the touches: the best leaves {rms[0]:.2f} mm; "
-            "another standard, farther away, or another probe?"
-        )
+        found = f"no place within the spread fits the touches: the best leaves {rms[0]:.2f} mm"
+        raise NotEnoughData(f"{found}; another standard, farther away, or another probe?")
     if len(rms) > 1 and rms[1] < _CLEAR * max(rms[0], _ROUGH):
-        raise NotEnoughData(
-            f"two places fit the touches ({rms[0]:.2f} and {rms[1]:.2f} mm): align the standard "
-            "better and search again"
-        )
+        found = f"two places fit the touches ({rms[0]:.2f} and {rms[1]:.2f} mm)"
+        raise NotEnoughData(f"{found}: align the standard better and search again")
     if u[:3].max() > KNOWN or u[3:].max() > KNOWN_ANGLE:
         raise NotEnoughData(
             f"the touches fix the position to {u[:3].max():.2f} mm and {u[3:].max() / DEG:.2f} "
@@ -169,7 +162,7 @@ def lifted(relief: Relief, ball: Array, theta: Array) -> Array:
     return np.concatenate(out)
 
 
-def _lifted_exactly(standard: Standard, ball: Array, theta: Array, radius: float) -> Array:
+def _lifted_exactly(standard: Standard, ball: Array, radius: float, theta: Array) -> Array:
     """The same on the exact surfaces, by first contacts."""
     above = 80.0  # mm; farther than any place of the few is from where it shall be
     back = inverse(_pose(theta))

@@ -28,29 +28,19 @@ OFF_THE_SURFACE = 0.1
 
 @dataclass(frozen=True, eq=False)
 class PlannedVisit:
-    """Touches of one set-up in the order in which they are wanted.
-
-    Attributes:
-        order: Visits of the poses, with their sides and the standstills between them.
-    """
+    """Touches of one set-up in the order in which they are wanted."""
 
     requests: Requests
-    order: StatedVisits
+    order: StatedVisits  # visits of the poses, with their sides and the standstills between them
 
 
 @dataclass(frozen=True)
 class VisitSchedule:
-    """What the operator does besides the programs.
+    """What the operator does besides the programs."""
 
-    Attributes:
-        warm_up: How long the machine has moved before the first touch, s.
-        pause: How long it stands still, s.
-        slowness: Time from touch to touch over that of the programs.
-    """
-
-    warm_up: float = 0.0
-    pause: float = 0.0
-    slowness: float = 1.0
+    warm_up: float = 0.0  # how long the machine has moved before the first touch, s
+    pause: float = 0.0  # how long it stands still, s
+    slowness: float = 1.0  # time from touch to touch over that of the programs
 
 
 def read_visit(
@@ -115,11 +105,8 @@ def _schedule(head: str) -> tuple[VisitSchedule, float]:
         found = re.search(pattern + r"([\d.]+)", head)
         return float(found[1]) if found else otherwise
 
-    schedule = VisitSchedule(
-        warm_up=number("warm_up_s = ", 0.0),
-        pause=number("pause_s = ", 0.0),
-        slowness=number("slowness = ", 1.0),
-    )
+    warm_up, pause = number("warm_up_s = ", 0.0), number("pause_s = ", 0.0)
+    schedule = VisitSchedule(warm_up, pause, number("slowness = ", 1.0))
     return schedule, number("after touch ", np.inf)
 
 
@@ -150,10 +137,9 @@ def planned_again(
     wanted = _touches_of(old, standard) if visit is None else visit.requests
     options = replace(old.options, tolerated=int(DROPPED * len(wanted)))
     if ball is not None:
-        room = options.workshop
-        known = Workshop(room.table, (), ball)
+        known = Workshop(options.workshop.table, (), ball)
         stated = {solid.name for solid in known.solids}
-        others = tuple(solid for solid in room.bodies if solid.name not in stated)
+        others = tuple(s for s in options.workshop.bodies if s.name not in stated)
         options = replace(options, workshop=replace(known, bodies=others))
     order = None if visit is None else visit.order
     return plan_touches(standard, chain, old.probe, setup, wanted, options, order)

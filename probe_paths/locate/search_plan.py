@@ -10,6 +10,7 @@ from scipy import ndimage
 
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import Workshop
+from matstd.artefact.tool import readings_at
 from matstd.probe_paths.locate.find import KNOWN, KNOWN_ANGLE, Spread, lifted
 from matstd.probe_paths.locate.relief import NOWHERE, PITCH, Relief
 from matstd.probe_paths.plan import (
@@ -19,7 +20,6 @@ from matstd.probe_paths.plan import (
     TouchPlan,
     Visit,
     home_readings,
-    readings_at,
 )
 from matstd.twin.errors import NotReachable
 from matstd.twin.frames import Array, apply

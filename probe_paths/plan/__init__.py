@@ -6,14 +6,7 @@ check alike (`ToolClearance`), heights in `matstd.artefact.tool`. A rule for the
 into `order`.
 """
 
-from matstd.artefact.tool import (
-    Probe,
-    home_readings,
-    readings_at,
-    solid_hull,
-    swing_height,
-    top_height,
-)
+from matstd.artefact.tool import Probe, home_readings
 from matstd.probe_paths.plan.clearance import SMALLEST_GAP, ToolClearance, stroke_gaps
 from matstd.probe_paths.plan.frame import LINEAR, ProgramFrame
 from matstd.probe_paths.plan.heading import (
@@ -25,7 +18,14 @@ from matstd.probe_paths.plan.heading import (
 )
 from matstd.probe_paths.plan.order import StatedVisits, Visit, short_order, waypoints
 from matstd.probe_paths.plan.planner import plan_touches
-from matstd.probe_paths.plan.touch_plan import PlanOptions, Refusal, TouchPlan, requests_at
+from matstd.probe_paths.plan.touch_plan import (
+    PlanOptions,
+    Refusal,
+    TouchPlan,
+    requests_at,
+    ring_normals,
+    ring_requests,
+)
 
 __all__ = [
     "LINEAR",
@@ -44,13 +44,11 @@ __all__ = [
     "home_readings",
     "parse_heading",
     "plan_touches",
-    "readings_at",
     "requests_at",
+    "ring_normals",
+    "ring_requests",
     "short_order",
-    "solid_hull",
     "stated_serial",
     "stroke_gaps",
-    "swing_height",
-    "top_height",
     "waypoints",
 ]

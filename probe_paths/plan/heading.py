@@ -102,10 +102,8 @@ class Heading:
         """What the log repeats, four at least; numbers with six decimals, mm and degrees."""
         for name in (self.standard, self.setup.name):
             if not _NAME.match(name):
-                raise DesignError(
-                    f"name '{name}' cannot stand in a program: expected 1 to 24 letters, digits, "
-                    "_ . + or -"
-                )
+                expected = "1 to 24 letters, digits, _ . + or -"
+                raise DesignError(f"name '{name}' cannot stand in a program: expected {expected}")
         T_table_artefact, probe = self.setup.T_table_artefact, self.probe
         angles = fixed_xyz_angles(T_table_artefact[:3, :3]) / DEG
         named = {
@@ -163,9 +161,8 @@ def _solid_lines(solid: Solid) -> Iterator[str]:
     """A body in two lines."""
     name = _TABLE_WORD if solid.name == TABLE else solid.name
     if not _SOLID_NAME.match(name):
-        raise DesignError(
-            f"body '{name}' cannot stand in a program: expected 1 to 16 letters, digits, _ . + or -"
-        )
+        expected = "1 to 16 letters, digits, _ . + or -"
+        raise DesignError(f"body '{name}' cannot stand in a program: expected {expected}")
     shape, (a, b) = "DISC" if solid.is_disc else "BOX", solid.half_size
     yield f"BODY {name} {shape} A{a:+.3f} B{b:+.3f} Z{solid.low:+.3f} TO{solid.high:+.3f}"
     place = _words("XYC", np.array([solid.x, solid.y, solid.turn / DEG]), 3)
@@ -305,12 +302,9 @@ def _with_workshop(
         raise BadFile(path, f"line {lines[count][0]}", found, f"BODY {_TABLE_WORD} and others")
     whole = replace(head, probe=probe, workshop=Workshop(solids[0], tuple(solids[1:])))
     if whole.workshop_hash != head.stated:
-        raise BadFile(
-            path,
-            f"line {first}",
-            f"a probe and bodies of hash {whole.workshop_hash}",
-            f"WORKSHOP {head.stated or '<hash>'}, as stated: emit the program again",
-        )
+        found = f"a probe and bodies of hash {whole.workshop_hash}"
+        expected = f"WORKSHOP {head.stated or '<hash>'}, as stated: emit the program again"
+        raise BadFile(path, f"line {first}", found, expected)
     return whole, count
 
 

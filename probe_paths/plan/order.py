@@ -96,17 +96,14 @@ def _visit(
     for i, name in enumerate(chain.rotary_axes):
         low, high = chain.link(name).range
         low, high = low - _ROUNDING, high + _ROUNDING
+        where = f"pose {name}{rotary[i] / DEG:+.4f}"
         if not low <= rotary[i] <= high:
-            raise NotReachable(
-                f"pose {name}{rotary[i] / DEG:+.4f}: outside the travel of {name}, "
-                f"{low / DEG:g} to {high / DEG:g} degrees"
-            )
+            travel = f"{low / DEG:g} to {high / DEG:g} degrees"
+            raise NotReachable(f"{where}: outside the travel of {name}, {travel}")
         if not low <= rotary[i] - side[i] * overshoot <= high:
             side[i] = -side[i]
         if not low <= rotary[i] - side[i] * overshoot <= high:
-            raise NotReachable(
-                f"pose {name}{rotary[i] / DEG:+.4f}: travel of {name} leaves no room to approach it"
-            )
+            raise NotReachable(f"{where}: travel of {name} leaves no room to approach it")
     return Visit(pose=pose, rotary=rotary, side=side, before=rotary - side * overshoot, rows=rows)
 
 

@@ -11,14 +11,7 @@ import numpy as np
 
 from matstd.artefact.body import Standard
 from matstd.artefact.reach import ProbeReach, Requests, joined
-from matstd.artefact.tool import (
-    Probe,
-    home_readings,
-    readings_at,
-    solid_hull,
-    swing_height,
-    top_height,
-)
+from matstd.artefact.tool import Probe, home_readings, solid_hull, swing_height, top_height
 from matstd.probe_paths.plan.approach import Approaches
 from matstd.probe_paths.plan.clearance import SMALLEST_GAP, Stage, ToolClearance, stroke_gaps
 from matstd.probe_paths.plan.frame import ProgramFrame
@@ -31,10 +24,17 @@ from matstd.probe_paths.plan.order import (
     stated_visits,
     visits,
 )
-from matstd.probe_paths.plan.touch_plan import GRID, PlanOptions, Refusal, TouchPlan
+from matstd.probe_paths.plan.touch_plan import (
+    GRID,
+    PlanOptions,
+    Refusal,
+    TouchPlan,
+    ring_normals,
+    ring_requests,
+)
 from matstd.twin.errors import DesignError, NotReachable, ShapeMismatch
 from matstd.twin.frames import Array
-from matstd.twin.machine import Chain, table_to_tool
+from matstd.twin.machine import Chain
 from matstd.twin.record import IntArray, Labels, Setup
 from matstd.twin.units import DEG
 
@@ -316,22 +316,13 @@ def _anchor_requests(task: _Task, stop: Visit) -> Requests:
     """Possible anchor touches of a pose, best first."""
     options = task.options
     spheres = sorted(task.standard.spheres, key=lambda s: s.name != options.anchor)
-    q = readings_at(task.chain, stop.rotary[None])
-    R_table_tool = table_to_tool(task.chain, q)[0, :3, :3]
     azimuth = 120.0 * DEG * stop.pose + 60.0 * DEG * np.arange(6)
-    sin, cos = np.sin(options.anchor_tilt), np.cos(options.anchor_tilt)
-    local = np.stack([sin * np.cos(azimuth), sin * np.sin(azimuth), np.full(6, cos)], axis=-1)
-    tilted = np.concatenate([local, [[0.0, 0.0, 1.0]]]) @ R_table_tool.T
-    normal = tilted @ task.setup.T_table_artefact[:3, :3]
-    wanted = Requests(
-        np.repeat([s.name for s in spheres], len(normal)),
-        np.concatenate([s.centre + s.radius * normal for s in spheres]),
-        np.tile(normal, (len(spheres), 1)),
-        np.repeat(stop.rotary[None], len(spheres) * len(normal), axis=0),
-    )
+    along = np.concatenate([ring_normals(options.anchor_tilt, azimuth), [[0.0, 0.0, 1.0]]])
+    wanted = ring_requests(task.chain, task.setup, spheres, stop.rotary, along)
+    normal = wanted.normal[: len(along)]
     # where the machine errs by some tenths of a millimetre the ball is met a few degrees lower
     lower = np.arcsin(np.clip(normal[:, 2], -1.0, 1.0)) - _ANCHOR_SPARE
-    around = np.column_stack([np.zeros(len(normal)), lower])
+    around = np.column_stack([np.zeros(len(along)), lower])
     return wanted[np.concatenate([s.contains(around) for s in spheres])]
 
 

@@ -5,17 +5,17 @@ time backwards, so that every pose has the same mean time and a linear drift dro
 On every visit a datum sphere is touched first, at the same point in both visits of a pose.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from matstd.artefact.body import Standard
+from matstd.artefact.body import DatumSphere, Standard
 from matstd.artefact.reach import DatumBall, ProbeReach, Requests, Workshop
-from matstd.artefact.tool import OVERSHOOT, Probe
+from matstd.artefact.tool import OVERSHOOT, Probe, readings_at
 from matstd.probe_paths.plan.order import Visit
 from matstd.twin.frames import Array
-from matstd.twin.machine import Chain
+from matstd.twin.machine import Chain, table_to_tool
 from matstd.twin.record import IntArray, Labels, Setup
 from matstd.twin.units import DEG
 
@@ -75,6 +75,27 @@ def requests_at(standard: Standard, feature: str, uv: Array, rotary: Array) -> R
     surface = standard.features[feature]
     rotary = np.broadcast_to(np.asarray(rotary, dtype=float), (len(uv), np.shape(rotary)[-1]))
     return Requests(np.full(len(uv), feature), surface.point(uv), surface.normal(uv), rotary)
+
+
+def ring_requests(
+    chain: Chain, setup: Setup, spheres: Sequence[DatumSphere], rotary: Array, along: Array
+) -> Requests:
+    """Touches on balls at rotary readings (R,), along normals (K, 3) in the tool frame."""
+    R_table_tool = table_to_tool(chain, readings_at(chain, rotary[None]))[0, :3, :3]
+    normal = along @ R_table_tool.T @ setup.T_table_artefact[:3, :3]
+    return Requests(
+        np.repeat([s.name for s in spheres], len(normal)),
+        np.concatenate([s.centre + s.radius * normal for s in spheres]),
+        np.tile(normal, (len(spheres), 1)),
+        np.repeat(rotary[None], len(spheres) * len(normal), axis=0),
+    )
+
+
+def ring_normals(angle: float, azimuth: Array) -> Array:
+    """Unit vectors at an angle to z, (K, 3), from their azimuths (K,), rad."""
+    sin, cos = np.sin(angle), np.cos(angle)
+    x, y = sin * np.cos(azimuth), sin * np.sin(azimuth)
+    return np.stack([x, y, np.full(len(azimuth), cos)], axis=-1)
 
 
 @dataclass(frozen=True)

@@ -170,10 +170,11 @@ def _averaged(points: ScanPoints, place: Array) -> tuple[ScanPoints, Array]:
 
     def mean(values: Array) -> Array:
         sums = np.add.reduceat(values, first, axis=0)
-        return np.asarray(sums / count.reshape(-1, *([1] * (values.ndim - 1))))
+        return sums / count.reshape(-1, *([1] * (values.ndim - 1)))
 
-    means = {name: mean(getattr(points, name)) for name in ("q", "deflection", "time")}
-    return replace(points[first], line=line[first], **means), mean(place)
+    q, deflection, time = mean(points.q), mean(points.deflection), mean(points.time)
+    some = replace(points[first], line=line[first], q=q, deflection=deflection, time=time)
+    return some, mean(place)
 
 
 def _fitted(

@@ -7,7 +7,7 @@ import pytest
 
 from matstd.artefact.body import Material
 from matstd.artefact.price import Construction, Estimate, construction_to_make, prices_of
-from matstd.artefact.price.rates import MILLING, SET_UP
+from matstd.artefact.price.rates import MILLING, PER_PART, SET_UP
 
 
 def test_a_range_has_the_uncertainty_of_a_rectangle():
@@ -45,6 +45,9 @@ def test_both_constructions_of_a_standard(upright):
         volume += np.pi * (ball.foot_radius + 1.0) ** 2 * bar
     assert parts.stock == pytest.approx(upright.material.density * volume)
     assert billet.hours["milling"].value > 3.0 * SET_UP.value
+    programs = len(upright.patches) + 1  # one turns all posts
+    more = parts.hours["programming"].value - billet.hours["programming"].value
+    assert more == pytest.approx(programs * PER_PART.value)
     for one in (billet, parts):
         assert one.total.value == pytest.approx(
             one.labour.value + sum(item.value for item in one.bought.values())

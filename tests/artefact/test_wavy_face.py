@@ -13,12 +13,7 @@ from matstd.artefact.hidden.scan_path import scan_path, write_scan_path
 from matstd.artefact.layout.blank import Blank
 from matstd.artefact.layout.upright import holes_on
 from matstd.artefact.layout.wavy import Wave, wavy_face
-from matstd.artefact.place.family import (
-    Family,
-    FamilyFigures,
-    chosen_family,
-    flat_pads,
-)
+from matstd.artefact.place.family import Family, FamilyFigures, chosen_family, flat_pads
 from matstd.twin.errors import NotBuildable
 from matstd.twin.units import DEG, UM
 

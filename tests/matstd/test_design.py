@@ -4,6 +4,7 @@ import csv
 import json
 import re
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +23,7 @@ from matstd.artefact.compare import comparison
 from matstd.artefact.worth import ball_choice
 from matstd.artefact.worth.touch_choice import TouchOptions
 from matstd.artefact.worth.touch_criterion import CRITERIA, CriterionOptions
+from matstd.artefact.worth.touch_curves import touch_curve
 from matstd.cad_out.verify.conformity import FACE_LIMIT
 from matstd.cli import main
 from matstd.probe_paths.control.interpreter import read_program
@@ -94,6 +96,7 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
         render_alone(patch, "drawing")  # `report/test_*` render the others
         patch.setattr(study_run, "draw_maps", lambda *_: [])
         patch.setattr(design_page, "draw_study_volumes", lambda *_: [])
+        patch.setattr(design_page, "touch_curve", partial(touch_curve, counts=(50, 150)))
         project = small_project(folder, touches=100, poses=8)
         assert main(["design", str(project), "-o", str(out)]) == 0
     return out

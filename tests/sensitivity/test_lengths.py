@@ -22,6 +22,7 @@ def task():
     return G, theta, np.full(70, 0.01), size
 
 
+@pytest.mark.usefixtures("compiled_loops")
 @pytest.mark.parametrize("use_compiled", [False, True])
 @pytest.mark.parametrize("threads", [1, 3])
 def test_counts_are_those_of_plain_numpy(task, use_compiled, threads):
@@ -42,7 +43,9 @@ def test_counts_are_those_of_plain_numpy(task, use_compiled, threads):
     np.testing.assert_array_equal(found.worst, (size >= limit).sum(axis=1))
 
 
-def test_poses_that_are_equally_bad_all_count():
+@pytest.mark.usefixtures("compiled_loops")
+@pytest.mark.parametrize("use_compiled", [False, True])
+def test_poses_that_are_equally_bad_all_count(use_compiled):
     # machines along one direction: poses are equal, or differ by whole factors
     rng = np.random.default_rng(2)
     G = np.zeros((400, 3, 1))
@@ -50,7 +53,7 @@ def test_poses_that_are_equally_bad_all_count():
     theta[0, 7] = 0.0
     for factor in (np.ones(400), np.round(3.0 * rng.normal(size=400))):
         G[:, 1, 0] = factor
-        found = count_lengths(G, theta, width, worst=(300, 15))
+        found = count_lengths(G, theta, width, worst=(300, 15), use_compiled=use_compiled)
         limit = np.sort(np.abs(factor[:300]))[-15]
         expected = np.where(np.abs(factor) >= limit, 130, 1)  # machine 7 has no error anywhere
         np.testing.assert_array_equal(found.worst, expected)

@@ -72,11 +72,7 @@ def test_machine_in_base_units(machine: Path) -> None:
         ("f Y Z", "f Y Q", "chain: found unknown axis 'Q'"),
         ("C' B' X' f Y Z (C1) t", "C' B' X' f Y Z (C1 t", r"chain: found unknown axis '\(C1'"),
         ("[-300.0, 300.0]", "[300.0, -300.0]", r"axis\.Y\.range.*smaller reading first"),
-        (
-            "[-300.0, 300.0]",
-            "[nan, 300.0]",
-            r"axis\.Y\.range: found \[nan, 300\.0\]",
-        ),
+        ("[-300.0, 300.0]", "[nan, 300.0]", r"axis\.Y\.range: found \[nan, 300\.0\]"),
         ("[-300.0, 300.0]", '["a", 300.0]', r"axis\.Y\.range"),
         ("[-300.0, 300.0]", "[-300.0]", r"axis\.Y\.range"),
         ("point", "pivot", r"axis\.B\.pivot: found an unknown key"),

@@ -31,33 +31,19 @@ class Body(Declared):
     The point stands ``x = at + sense q`` from the root, q the reading. Loads on it are its mass at
     its offset, the beam's own weight, and the load on the tool with its moment. A cantilever
     without a span is a ram: only what has left its guide bends.
-
-    Attributes:
-        axis: Linear axis whose frame it carries.
-        support: How the beam is held.
-        shape: Shape of the section as the file writes it.
-        at: Distance of the point from the root at reading zero, mm.
-        sense: 1 where the point goes away from the root with the reading, -1 the other way.
-        span: Length of the beam, mm; 0 of a ram.
-        mass: Mass that it carries, kg, or a column of the user's own, `V_name_kg`.
-        offset: From the point to the mass, machine frame, mm.
-        stuff: Word of the material.
-        down: Direction of the weight, `-Z`.
-        outward: From root to point along X, Y or Z of the machine, (index, sign).
-        shares_tool: Whether it is on the tool side.
     """
 
-    axis: str
-    support: Support
-    shape: str
-    at: float
-    sense: int
-    span: float
-    mass: float | str
-    offset: tuple[float, float, float]
-    stuff: str
-    down: str
-    outward: tuple[int, int]
+    axis: str  # linear axis whose frame it carries
+    support: Support  # how the beam is held
+    shape: str  # of the section as the file writes it
+    at: float  # distance of the point from the root at reading zero, mm
+    sense: int  # 1 where the point goes away from the root with the reading, -1 the other way
+    span: float  # length of the beam, mm; 0 of a ram
+    mass: float | str  # that it carries, kg, or a column of the user's own, `V_name_kg`
+    offset: tuple[float, float, float]  # from the point to the mass, machine frame, mm
+    stuff: str  # word of the material
+    down: str  # direction of the weight, `-Z`
+    outward: tuple[int, int]  # from root to point along X, Y or Z of the machine: index, sign
     on_tool_side: bool
 
     kind, called = "beam", "bending of the body of {axis} under weight and load"

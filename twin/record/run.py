@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from matstd.twin.display import Displayed
 from matstd.twin.frames import Array
-from matstd.twin.record.touches import IntArray, Labels, Touches, check_rows
+from matstd.twin.record.touches import IntArray, Labels, Touches, check_rows, no_labels, no_numbers
 
 PER_ROW = ("deviation", "u", "split", "repeat", "line", "program", "touch", "program_line")
 """Fields of `Run` with a value for each touch."""
@@ -18,46 +18,35 @@ PER_ROW = ("deviation", "u", "split", "repeat", "line", "program", "touch", "pro
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Run(Displayed):
-    """Measurements: touches with their deviations and standard uncertainties.
+    """Measurements: touches with their deviations and standard uncertainties."""
 
-    Attributes:
-        touches: Where, when and in which state.
-        deviation: Signed distance along the normal, the growth of the standard taken off, (N,), mm.
-        u: Standard uncertainty of each deviation as stated, (N,), mm.
-        split: "train", "test" or "" for each row, (N,).
-        repeat: Number of the repetition, equal points share everything else; None if not recorded.
-        line: Line of each row in its file, for messages, (N,).
-        program: Name of the probing program that made each touch, "" where not recorded, (N,).
-        touch: Its number in that program, 0 where not recorded, (N,).
-        program_line: Line of that program on which the touch begins, 0 where not recorded, (N,).
-        remarks: What the reader noticed and did about it, one clear line each.
-        date: When it began; None where it is not recorded.
-        standard: Name, serial number and digest of the probed standard; "" where not recorded.
-    """
-
-    touches: Touches
+    touches: Touches  # where, when and in which state
+    # signed distance along the normal, the growth of the standard taken off, (N,), mm
     deviation: Array
-    u: Array
-    split: Labels = field(default_factory=lambda: np.zeros(0, dtype="U5"))
+    u: Array  # standard uncertainty of each deviation as stated, (N,), mm
+    split: Labels = field(default_factory=no_labels)  # "train", "test" or "" for each row, (N,)
+    # number of the repetition, equal points share everything else; None if not recorded
     repeat: IntArray | None = None
-    line: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    remarks: tuple[str, ...] = ()
-    date: datetime | None = None
-    standard: str = ""
-    program: Labels = field(default_factory=lambda: np.zeros(0, dtype="U1"))
-    touch: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    program_line: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    line: IntArray = field(default_factory=no_numbers)  # of each row in its file, (N,)
+    remarks: tuple[str, ...] = ()  # what the reader noticed and did about it, one clear line each
+    date: datetime | None = None  # when it began; None where it is not recorded
+    standard: str = ""  # name, serial number and digest of the probed one; "" where not recorded
+    # name of the probing program that made each touch, its number there, and the line of the
+    # program on which it begins, (N,) each; "" and 0 where not recorded
+    program: Labels = field(default_factory=no_labels)
+    touch: IntArray = field(default_factory=no_numbers)
+    program_line: IntArray = field(default_factory=no_numbers)
 
     def __post_init__(self) -> None:
         n = len(self.touches)
-        unstated = {
+        defaults = {
             "split": np.full(n, "", dtype="U5"),
             "line": np.arange(1, n + 1),
             "program": np.full(n, "", dtype="U1"),
             "touch": np.zeros(n, dtype=np.int64),
             "program_line": np.zeros(n, dtype=np.int64),
         }
-        check_rows(self, n, unstated, PER_ROW, "the touches")
+        check_rows(self, n, defaults, PER_ROW, "the touches")
 
     def __len__(self) -> int:
         return len(self.touches)

@@ -55,11 +55,21 @@ class Setup:
     fixing: tuple[float, float, float] | None = None
 
 
+def no_labels() -> Labels:
+    """Labels that are not stated: a record gives as many empty ones as it has touches."""
+    return np.zeros(0, dtype="U1")
+
+
+def no_numbers() -> IntArray:
+    """The same of whole numbers."""
+    return np.zeros(0, dtype=np.int64)
+
+
 def check_rows(
-    record: object, n: int, unstated: Mapping[str, NDArray[Any]], names: Iterable[str], like: str
+    record: object, n: int, defaults: Mapping[str, NDArray[Any]], names: Iterable[str], like: str
 ) -> None:
     """Fill the empty fields of a record; refuse columns of other than n rows."""
-    for name, default in unstated.items():
+    for name, default in defaults.items():
         if len(getattr(record, name)) == 0:
             object.__setattr__(record, name, default)
     for name in names:
@@ -111,10 +121,8 @@ class Touches:
     temperature: Mapping[str, Array] = field(default_factory=dict)  # degC by sensor name, each (N,)
     spindle_rpm: Array | None = None  # (N,), or None where it was not recorded
     force: Array | None = None  # load on the tool in table-frame directions, (N, 3), N
-    # label of the touched feature, (N,)
-    feature: Labels = field(default_factory=lambda: np.zeros(0, dtype="U1"))
-    # label of the table pose, (N,)
-    pose: IntArray = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    feature: Labels = field(default_factory=no_labels)  # label of the touched feature, (N,)
+    pose: IntArray = field(default_factory=no_numbers)  # label of the table pose, (N,)
     instrument: Instrument = Instrument.TOUCH_PROBE  # what measured them all
     # columns of the user's own by name and unit (`coolant_l_min`), each (N,)
     value: Mapping[str, Array] = field(default_factory=dict)
@@ -124,18 +132,18 @@ class Touches:
     # the same without what was measured, (N, A), which is what errors are functions of; None where
     # `q` is that already (`with_commanded`)
     commanded: Array | None = None
-    # temperature of the standard where stated, else 20, (N,), degC
+    # of the standard where stated, else 20, (N,), degC
     body_temperature: Array = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         n = len(checked_readings(self.chain, self.q))
-        unstated = {
+        defaults = {
             "feature": np.full(n, "", dtype="U1"),
             "offset": np.zeros((n, 2)),
             "pose": np.zeros(n, dtype=np.int64),
             "body_temperature": np.full(n, T_REF),
         }
-        check_rows(self, n, unstated, PER_TOUCH, "in q")
+        check_rows(self, n, defaults, PER_TOUCH, "in q")
         own = {f"temperature {name}": v for name, v in self.temperature.items()}
         own |= {f"column {name}": v for name, v in self.value.items()}
         for name, value in own.items():
