@@ -25,10 +25,7 @@ BELOW = {
     "probe_paths": {"twin", "artefact", "nc"},
     "compensation": {"twin", "diagnosis", "nc"},
 }
-ALLOWED = BELOW | {
-    "report": set(BELOW),
-    "matstd": {*BELOW, "report"},
-}
+ALLOWED = BELOW | {"report": set(BELOW), "matstd": {*BELOW, "report"}}
 """Which rooms a room may import."""
 VOCABULARY = {
     "twin.units",

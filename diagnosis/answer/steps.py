@@ -25,11 +25,6 @@ from matstd.twin.model import Effect
 EXPANSION = "um_per_m_K"
 """Unit of a coefficient of expansion, as it is reported."""
 
-MAX_SIZED_PARAMETERS = 2
-"""Most parameters of an effect, a sine and a cosine, whose size tests the effect. The size of more
-parameters may be uncertain although the effect is not: the form of a face of 1.9 µm with a chance
-of 1e-8 is reported as 3.0 ± 1.6 µm."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Step:
@@ -72,7 +67,7 @@ class Step:
     @property
     def is_certain(self) -> bool:
         """Whether chance is so improbable that the uncertainty of the size says nothing."""
-        is_sized = self.effect is None or len(self.effect.parameters) <= MAX_SIZED_PARAMETERS
+        is_sized = self.effect is None or len(self.effect.parameters) <= POLICY.sized_parameters
         return self.p_value < (POLICY.certain_p if is_sized else POLICY.close_p)
 
 

@@ -13,7 +13,6 @@ import numpy as np
 
 from matstd.diagnosis.fit import Fit, Prior, fit_run
 from matstd.diagnosis.geometry import (
-    MIN_CLEAR_CHANGE,
     Estimate,
     GeometryRow,
     changed_runs,
@@ -136,7 +135,7 @@ def single_change(fit: Fit, run: int) -> SingleChange | None:
     # a slope of a straightness and a squareness are one thing: the user's word is the second
     is_place = np.array([original_of(tried[i]).kind == "location" for i in seen])
     best = int(np.argmax(clear + POLICY.location_lead * is_place))
-    if clear[best] <= MIN_CLEAR_CHANGE:
+    if clear[best] <= POLICY.clear_change:
         return None
     effect = original_of(tried[seen[best]])
     return SingleChange(

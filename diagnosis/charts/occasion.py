@@ -18,7 +18,8 @@ import numpy as np
 from matstd.diagnosis.accuracy import probed_volume
 from matstd.diagnosis.files import SavedModel
 from matstd.diagnosis.fit import Fit, Prior, fit_run
-from matstd.diagnosis.geometry import MIN_DETERMINED_RATIO, Estimate, Quantity, geometry_rows
+from matstd.diagnosis.geometry import Estimate, Quantity, geometry_rows
+from matstd.diagnosis.policy import POLICY
 from matstd.twin.compute import Progress, one_blas_thread, silent
 from matstd.twin.frames import Array
 from matstd.twin.library import is_visible, kinds, ordinary_model, parse_effect
@@ -178,7 +179,7 @@ def _sizes(fit: Fit, added: Sequence[str]) -> Iterator[tuple[Charted, Estimate]]
         is_named = effect.name in {parse_effect(n, fit.model.chain).name for n in added}
         if effect.kind != "backlash" and not is_named:
             continue
-        if u[k] * MIN_DETERMINED_RATIO < parameter.sd:
+        if u[k] * POLICY.determined_ratio < parameter.sd:
             yield _charted(effect, fit.names[k], parameter.unit), Estimate(fit.theta[k], u[k])
 
 
@@ -240,7 +241,7 @@ def _stated(saved: SavedModel) -> Iterator[tuple[Charted, Estimate]]:
     u = np.linalg.norm(saved.estimates.root, axis=1)
     names = saved.model.names
     for k, (effect, parameter) in enumerate(saved.model.parameters):
-        if effect.kind == "backlash" and u[k] * MIN_DETERMINED_RATIO < parameter.sd:
+        if effect.kind == "backlash" and u[k] * POLICY.determined_ratio < parameter.sd:
             value = float(saved.estimates.mean[k])
             yield _charted(effect, names[k], parameter.unit), Estimate(value, float(u[k]))
     if saved.source.promise is not None:

@@ -26,6 +26,7 @@ from matstd.diagnosis.faults.suspects import (
 )
 from matstd.diagnosis.fit import Fit, fit_run, unit_mistake
 from matstd.diagnosis.geometry import FoundNumber
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import PRIOR_DOF, solve
 from matstd.twin.effects import SHIFT_SD, TURN_SD, body_errors, placing_errors
 from matstd.twin.errors import NotEnoughData
@@ -41,27 +42,9 @@ seconds."""
 TRIMMED_SHARE = 0.05
 """Share of the touches, farthest from a first fit, that do not count."""
 
-MIN_LOG_ODDS = 15.0
-"""Log odds against a right description from which a mistake is named: five standard deviations of a
-number beside what its freedom costs."""
-
-MAX_LOG_ODDS_ALIKE = float(np.log(100.0))
-"""Log odds below which two mistakes are not distinguished."""
-
-MIN_IMPROVEMENT = 2.0
-"""Factor by which undoing a mistake must bring down the held-out error or the excess of the
-machine's errors over what is expected."""
-
-MAX_CREDIBLE_RATIO = 3.0
-"""Noise over the stated one, or errors over expected ones, from which axes are suspected."""
-
 SETUP_FACTOR = 20.0
 """Factor on the usual freedom of the set-ups (1 mm, 5 mrad). The place of the standard is no
 mistake in the description and must not pass for the zero of a table or the length of a tool."""
-
-MIN_NUMBER_RATIO = 5.0
-"""A number of the description is wrong beyond so many usual standard deviations of the equivalent
-error. A smaller one is an error of the machine or of the probe, and found as such."""
 
 MAX_SETUP_COST = 30.0
 """Most log odds that a set-up costs which stands elsewhere than stated by many times its freedom:
@@ -119,7 +102,7 @@ def description_faults(
     run = before.run
     named = [_clock(before)] if has_minutes_for_seconds(run) else []
     excess = max(before.widened, before.noise.factor)
-    is_absurd = excess > MAX_CREDIBLE_RATIO or unit_mistake(before) is not None
+    is_absurd = excess > POLICY.mistake_suspected or unit_mistake(before) is not None
     few = with_setups_placed(_few(run))
     right = _evidence(few, (), np.zeros(0), beside)[0] - _moved_setups(
         run.touches.setups, few.touches
@@ -133,7 +116,8 @@ def description_faults(
     close = [
         t
         for t in trials
-        if t.evidence > max(right + MIN_LOG_ODDS, trials[0].evidence - MAX_LOG_ODDS_ALIKE)
+        if t.evidence
+        > max(right + POLICY.log_odds_mistake, trials[0].evidence - POLICY.log_odds_alike)
     ]
     was = fit_run(run, _model(run, beside)) if beside and close else before
     faults = [_description_fault(was, t, right, is_absurd, beside) for t in close]
@@ -270,15 +254,15 @@ def _description_fault(
     """
     suspect = trial.suspect
     usual = [p.sd for e in _usual_size(suspect) for p in e.parameters]
-    if suspect.free and (np.abs(trial.theta) < MIN_NUMBER_RATIO * np.array(usual)).all():
+    if suspect.free and (np.abs(trial.theta) < POLICY.far_line * np.array(usual)).all():
         return None
     suspect = next(islice(suspects(before.run, is_absurd), trial.index, None))  # on all touches
     undone = corrected(suspect, trial.theta) if suspect.free else suspect
     chain = undone.run.touches.chain
     after = fit_run(undone.run, _model(undone.run, beside))
     falls = (
-        before.test_rms > MIN_IMPROVEMENT * after.test_rms
-        or before.widened > MIN_IMPROVEMENT * after.widened
+        before.test_rms > POLICY.mistake_improvement * after.test_rms
+        or before.widened > POLICY.mistake_improvement * after.widened
     )
     if not suspect.free and (not falls or unit_mistake(after) is not None):
         return None

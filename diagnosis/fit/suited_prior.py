@@ -25,6 +25,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve, solve_triangular
 
 from matstd.diagnosis.fit.prior import Prior
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression import PRIOR_DOF, Solution
 from matstd.twin.frames import Array
 from matstd.twin.machine import LETTERS, Chain, error_class
@@ -33,17 +34,6 @@ from matstd.twin.record import IntArray
 
 FACTORS = (1.0, 1.0 / 4.0, 1.0 / 16.0, 1.0 / 64.0)
 """On what is expected: from the class down to a machine of a laboratory."""
-
-PRIOR_EXCEEDED = 2.0
-"""Mean squared parameter over its prior variance from which the machine is called worse than its
-stated distributions, and the prior is widened."""
-
-MIN_GAIN_SUITED_PRIOR = 3.0
-"""Log evidence that a smaller factor must gain: odds of 20 : 1."""
-
-MIN_GAIN_RELEASED = 1.0
-"""Log evidence that one error must gain to keep the size of its class. Some of seventy errors gain
-less by chance and would absorb a weak effect."""
 
 
 def narrowed(prior: Prior, model: Model, X: Array, y: Array) -> Prior:
@@ -65,7 +55,7 @@ def narrowed(prior: Prior, model: Model, X: Array, y: Array) -> Prior:
         factor[: len(kinds)][kinds == "tilts"] = tilts
     evidence = [_evidence(G, g, square, len(y), factor) for factor in each]
     best = int(np.argmax(evidence))
-    if evidence[best] < evidence[0] + MIN_GAIN_SUITED_PRIOR:
+    if evidence[best] < evidence[0] + POLICY.log_evidence_gain:
         return prior
     chosen = _released(G, g, square, len(y), each[best], _errors_of(model, kinds))[: len(prior)]
     return Prior(prior.mean, chosen[:, None] * prior.root, chosen)
@@ -101,7 +91,7 @@ def _released(
         left = max(square - float(half[:, -1] @ half[:, -1]), 0.0) + PRIOR_DOF
         gains = [_gain(K, k, left, count, of, 1.0 - factor[of[0]] ** 2) for of in errors]
         best = int(np.argmax(gains)) if gains else 0
-        if not gains or gains[best] < MIN_GAIN_RELEASED:
+        if not gains or gains[best] < POLICY.log_evidence_released:
             return factor
         factor[errors[best]] = 1.0
 
@@ -149,4 +139,4 @@ def widened_by(solution: Solution, machine: int) -> float:
     """How much wider the prior of the machine must be for its own parameters to be likely."""
     decided = 1.0 - (solution.root[:machine] ** 2).sum(axis=1)
     ratio = float(solution.phi[:machine] @ solution.phi[:machine]) / max(float(decided.sum()), 1.0)
-    return float(np.sqrt(ratio)) if ratio > PRIOR_EXCEEDED else 1.0
+    return float(np.sqrt(ratio)) if ratio > POLICY.prior_exceeded else 1.0

@@ -24,17 +24,11 @@ from matstd.diagnosis.geometry.learnt import (
 from matstd.diagnosis.geometry.quantities import Quantity
 from matstd.diagnosis.geometry.rivals import FoundNumber
 from matstd.diagnosis.geometry.rows import (
-    MIN_CLEAR_CHANGE,
-    MIN_CLEAR_EXCESS,
-    MIN_DETERMINED_RATIO,
     Estimate,
     GeometryRow,
 )
 
 __all__ = [
-    "MIN_CLEAR_CHANGE",
-    "MIN_CLEAR_EXCESS",
-    "MIN_DETERMINED_RATIO",
     "Correction",
     "Estimate",
     "FoundNumber",

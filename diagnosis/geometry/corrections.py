@@ -8,7 +8,8 @@ import numpy as np
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.geometry.quantities import Quantity
 from matstd.diagnosis.geometry.rivals import Descriptions, FoundNumber
-from matstd.diagnosis.geometry.rows import MIN_CLEAR_EXCESS, Estimate, GeometryRow
+from matstd.diagnosis.geometry.rows import Estimate, GeometryRow
+from matstd.diagnosis.policy import POLICY
 from matstd.twin.machine import LETTERS, Link
 
 
@@ -48,7 +49,7 @@ def corrections(
         for r in rows
         if r.quantity in kinds
         and r.is_determined
-        and abs(r.estimate.value) > MIN_CLEAR_EXCESS * r.estimate.u
+        and abs(r.estimate.value) > POLICY.clear_excess * r.estimate.u
     ]
     if not clear:
         return (), ()

@@ -30,12 +30,11 @@ from matstd.diagnosis.geometry.model_choice import with_model_choice
 from matstd.diagnosis.geometry.quantities import Functional, Quantity
 from matstd.diagnosis.geometry.rivals import FoundNumber
 from matstd.diagnosis.geometry.rows import (
-    MIN_CLEAR_SIZE,
-    MIN_DETERMINED_RATIO,
     Estimate,
     GeometryRow,
     is_clear,
 )
+from matstd.diagnosis.policy import POLICY
 from matstd.twin.frames import Array
 from matstd.twin.model import Model
 
@@ -138,7 +137,7 @@ def changed_runs(fit: Fit) -> tuple[int, ...]:
 
 def _differs(fit: Fit, w: Array, one: Array, other: Array, prior: Array) -> bool:
     """Whether a quantity is determined in two states and differs between them."""
-    most = float(np.linalg.norm(w @ prior)) / MIN_DETERMINED_RATIO
+    most = float(np.linalg.norm(w @ prior)) / POLICY.determined_ratio
     is_known = max(_of(fit, w @ one).u, _of(fit, w @ other).u) < most
     return is_known and is_clear(_of(fit, w @ other - w @ one))
 
@@ -155,7 +154,7 @@ def _row(
     every = np.stack([one.weights @ L for L in states])
     sd = float(np.linalg.norm(one.weights @ fit.prior.root[:machine, :machine]))
     values = [_of(fit, w) for w in every]
-    is_known = [e.u * MIN_DETERMINED_RATIO < sd for e in values]
+    is_known = [e.u * POLICY.determined_ratio < sd for e in values]
     usual = _usual(fit, one) if one.quantity in LOCATIONS else None
     # what all errors may add up to at a line is no size that a line of such a machine has
     expected = usual or expected_size(fit, one.weights, stated)
@@ -195,8 +194,8 @@ def _row(
 
 def _is_size(estimate: Estimate, expected: float) -> bool:
     """Whether an estimate is sharper than what was expected of it, or clear by itself."""
-    is_clear = abs(estimate.value) > MIN_CLEAR_SIZE * estimate.u
-    return is_clear or estimate.u * MIN_DETERMINED_RATIO < expected
+    is_clear = abs(estimate.value) > POLICY.significant_ratio * estimate.u
+    return is_clear or estimate.u * POLICY.determined_ratio < expected
 
 
 def _usual(fit: Fit, one: Functional) -> float | None:

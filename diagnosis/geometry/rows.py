@@ -5,26 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from matstd.diagnosis.geometry.quantities import Quantity
-
-MIN_CLEAR_EXCESS = 3.0
-"""Standard uncertainties from which an excess over the expectation is not due to chance."""
-
-MIN_CLEAR_CHANGE = 4.0
-"""A change counts as real from this many standard uncertainties. Some fifty quantities are
-compared; chance makes one of them exceed this in one of three hundred such tables, and would in one
-of eight at 3."""
-
-MIN_DETERMINED_RATIO = 3.0
-"""Expected over remaining standard deviation from which a quantity is a result. With less the
-expectation contributes more than a tenth, ``1 / 3^2``, to the estimate."""
-
-MIN_CLEAR_SIZE = 2.0
-"""Standard uncertainties from which an estimate is a size, however uncertain it is."""
-
-MIN_FAR_LINE = 5.0
-"""Own standard uncertainties, and usual sizes of a location error, from which the line of a rotary
-axis is far from where the machine file has it, whatever other errors may add up to: of 64 lines of
-simulated machines of the class the farthest was 1.7 usual sizes away."""
+from matstd.diagnosis.policy import POLICY
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +60,7 @@ class GeometryRow:
         """Whether it is a line or zero of a rotary axis far from where the machine file has it."""
         if self.usual is None or not self.is_determined:
             return False
-        return abs(self.estimate.value) > MIN_FAR_LINE * max(self.usual, self.estimate.u)
+        return abs(self.estimate.value) > POLICY.far_line * max(self.usual, self.estimate.u)
 
     @property
     def times_usual(self) -> float:
@@ -94,7 +75,7 @@ class GeometryRow:
     @property
     def is_beyond_expected(self) -> bool:
         """Whether it exceeds what such a machine was expected to have by more than chance."""
-        bound = MIN_CLEAR_EXCESS * float(np.hypot(self.expected, self.estimate.u))
+        bound = POLICY.clear_excess * float(np.hypot(self.expected, self.estimate.u))
         return self.is_determined and abs(self.estimate.value) > bound
 
     @property
@@ -118,4 +99,4 @@ class GeometryRow:
 
 def is_clear(change: Estimate | None) -> bool:
     """Whether a change exceeds chance."""
-    return change is not None and abs(change.value) > MIN_CLEAR_CHANGE * change.u
+    return change is not None and abs(change.value) > POLICY.clear_change * change.u

@@ -10,25 +10,8 @@ from matstd.diagnosis.regression.linear import BoolArray, Solution, solve
 from matstd.twin.frames import Array
 from matstd.twin.record import IntArray, Touches
 
-MAX_ACCIDENT_SHARE = 0.05
-"""Share of touches up to which an outlier is an accident by itself; more must look like
-accidents."""
-
-MAX_GROSS_SHARE = 0.2
-"""Largest share of touches that may be gross errors, since the median must stay free of them."""
-
-MIN_VARIATION = 0.2
-"""Coefficient of variation from which sizes, or gaps, are those of accidents: one shift of many
-touches, or of every tenth, has a cause. Sizes beyond a limit have 0.4 and more, gaps nearly 1."""
-
 MIN_EVEN_SHOTS = 7
 """Least number of shots whose sizes and gaps can be called even; of four it happens by chance."""
-
-MIN_MEDIAN_SCORE = 1.25
-"""Median of the scores of many accidents over the limit; a tail of wide noise has 1.1 to 1.2."""
-
-MAX_P_NEIGHBOURS = 1e-2
-"""Probability of so many neighbours among accidents, below which they are a crowd."""
 
 MIN_CROWD_NEIGHBOURS = 3
 """Of a shot's four neighbours in the run, so many also apart make it part of a crowd, which has a
@@ -68,7 +51,7 @@ class GrossErrors:
     @property
     def are_many(self) -> bool:
         """Whether more than usual were taken out, so that both errors are reported."""
-        return float(self.rows.sum()) > MAX_ACCIDENT_SHARE * len(self.rows)
+        return float(self.rows.sum()) > POLICY.accident_share * len(self.rows)
 
 
 def robust_scale(values: Array) -> float:
@@ -143,11 +126,11 @@ def find_gross(
         if (wanted == used).all():
             break
         used = wanted
-        if n - int(wanted.sum()) > MAX_GROSS_SHARE * n:
+        if n - int(wanted.sum()) > POLICY.gross_share * n:
             break
         fit = solve(X[used], y[used])
     out = allowed & ~used
-    if out.sum() <= MAX_ACCIDENT_SHARE * n or _are_accidents(out, allowed, score / limit, shot):
+    if out.sum() <= POLICY.accident_share * n or _are_accidents(out, allowed, score / limit, shot):
         return fit, GrossErrors(rows=out, size=error, score=score, limit=limit)
     # too many, or with a common cause: then all touches stay in the fit
     nothing = np.zeros(len(y), dtype=bool)
@@ -170,15 +153,16 @@ def _are_accidents(out: BoolArray, allowed: BoolArray, score: Array, shot: IntAr
     np.maximum.at(size, place, np.abs(score[allowed]))
     bad = np.flatnonzero(np.isin(every, shot[out]))
     n, g = len(every), len(bad)
-    if g > MAX_GROSS_SHARE * n or np.median(size[bad]) < MIN_MEDIAN_SCORE:
+    if g > POLICY.gross_share * n or np.median(size[bad]) < POLICY.accident_score:
         return False
     gaps = np.diff(bad)
     pairs, mean = int((gaps == 1).sum()), g * (g - 1) / n
-    is_crowd = pairs > 0 and float(gammainc(pairs, mean)) < MAX_P_NEIGHBOURS
+    is_crowd = pairs > 0 and float(gammainc(pairs, mean)) < POLICY.accident_neighbours
     if is_crowd or g < MIN_EVEN_SHOTS:
         return not is_crowd
     return all(
-        float(np.std(v, ddof=1)) > MIN_VARIATION * float(np.mean(v)) for v in (size[bad], gaps)
+        float(np.std(v, ddof=1)) > POLICY.accident_variation * float(np.mean(v))
+        for v in (size[bad], gaps)
     )
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from matstd.diagnosis.policy import POLICY
 from matstd.diagnosis.regression.linear import BoolArray
 from matstd.twin.frames import Array
 from matstd.twin.record import Instrument, IntArray, Run
@@ -22,9 +23,6 @@ SAME_READING = 1e-6
 
 SAME_SIDE = 0.02
 """Their normals agree within this."""
-
-MAX_CREDIBLE_DIFFERENCE = 1.96
-"""Standard deviations between stated and found noise from which the statement is called wrong."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +45,7 @@ class Noise:
     def is_wrongly_stated(self) -> bool:
         """Whether the noise differs from the stated one by more than chance."""
         spread = (0.5 / max(self.dof, 1.0)) ** 0.5
-        return abs(self.factor - 1.0) > max(MAX_CREDIBLE_DIFFERENCE * spread * self.factor, 0.05)
+        return abs(self.factor - 1.0) > max(POLICY.noise_misstated * spread * self.factor, 0.05)
 
 
 def noise_factor(chi2: float, dof: float) -> float:

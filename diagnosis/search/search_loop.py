@@ -11,8 +11,8 @@ of them, and the evidence of a set, with what was believed before, charges it fo
 chance, evidence, the prediction of poses, of hours and of set-ups that were left out, and what a
 body can physically do (`members`).
 
-**Moves.** Add, exchange, remove, move inner parameters between the points of their grids, take two
-out for two others (`selection`). They end where none improves a set that stands.
+**Moves.** Add, exchange, remove, move inner parameters between the points of their grids
+(`selection`). They end where none improves a set that stands.
 
 **Turns.** A touch is a gross error only beside the right effects, and an effect is found only among
 touches that are none. So the model is fitted again with the set, and while that changes the gross

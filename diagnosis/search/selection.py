@@ -11,7 +11,7 @@ passes its tests (`members`) with the others in place.
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import combinations, count, islice
+from itertools import count, islice
 
 import numpy as np
 
@@ -57,11 +57,8 @@ MIN_CORRELATION_ALIKE = 0.95
 MAX_CARRIED_SETS = 4
 """Most sets that are carried from one size to the next."""
 
-MAX_REOPENED_SETS = 8
-"""Most pairs of members that are taken out for a new start."""
-
 MAX_TURNS = 3
-"""Most turns of growing a set, of refining it, and of taking two members out of it."""
+"""Most turns of growing a set and of refining it."""
 
 MAX_REFINED_DRIVERS = 4
 """Most laws of recorded drivers that are refined beside one that was not recorded."""
@@ -166,17 +163,6 @@ class Search:
         pool, taken = self.pool, chosen.names
         return [v for v in self._scored(chosen)[1] if pool.names[pool.owner[v]] not in taken]
 
-    def additions(self, chosen: EffectSubset) -> list[int]:
-        """The same without tables by direction whose plain table is a member."""
-        plain = {t.symbol for m in chosen.members if (t := traits(m.effect)).is_table}
-        ranked = self.ranking(chosen)
-        if not plain:
-            return ranked
-        own = ((v, traits(self.pool.variants[v])) for v in ranked)
-        return [
-            v for v, t in own if not (t.is_table and t.reversal is not None and t.symbol in plain)
-        ]
-
     @cached_property
     def _is_unrecorded(self) -> BoolArray:
         """Which variants follow a driver that was not recorded, (V,)."""
@@ -274,13 +260,8 @@ class Search:
         for _ in range(MAX_TURNS):
             grown = self.backward(self.against_refined_laws(self.grown(best)))
             best = self.backward(self.needed(self.refined(grown)))
-            other = self.reopened(best)
-            if other.evidence > best.evidence + POLICY.log_evidence_gain and self.stands(other):
-                best = self.refined(other)
-            elif (
-                best.names == grown.names
-                and not best.evidence > grown.evidence + POLICY.log_evidence_gain
-            ):
+            is_better = best.evidence > grown.evidence + POLICY.log_evidence_gain
+            if best.names == grown.names and not is_better:
                 break
         return best
 
@@ -305,7 +286,7 @@ class Search:
         out: list[EffectSubset] = []
         directions: list[Array] = []
         scores = self.scores(chosen)
-        for variant in self.additions(chosen)[: 12 * most]:
+        for variant in self.ranking(chosen)[: 12 * most]:
             if len(out) >= most or scores.evidence[variant] <= chosen.evidence:
                 break
             member = self.member(chosen, variant)
@@ -327,7 +308,7 @@ class Search:
             improved = False
             for i in range(len(chosen.members)):
                 others = self.evaluate(chosen.members[:i] + chosen.members[i + 1 :])
-                best = next(iter(self.additions(others)), None)
+                best = next(iter(self.ranking(others)), None)
                 if best is None or self.scores(others).evidence[best] - chosen.evidence <= 1e-6:
                     continue
                 members = list(chosen.members)
@@ -363,21 +344,6 @@ class Search:
                 other = self.evaluate((*others.members, self.placed(law)))
                 chosen = max(chosen, other, key=lambda s: s.evidence)
         return chosen
-
-    def reopened(self, chosen: EffectSubset) -> EffectSubset:
-        """The best set with two of its members out and two others in, or the set itself.
-
-        Two effects may replace two others, each the best beside the other; single exchanges
-        do not find that.
-        """
-        best = chosen
-        for pair in combinations(chosen.members, 2):
-            if self.budget.is_spent:
-                break
-            for first in self.extensions(self.evaluate(chosen.others(*pair)), MAX_REOPENED_SETS):
-                for second in self.extensions(first, 1):
-                    best = max(best, self.polished(second), key=lambda s: s.evidence)
-        return best
 
     def backward(self, chosen: EffectSubset) -> EffectSubset:
         """Take out members that a better one made superfluous, the weakest first."""

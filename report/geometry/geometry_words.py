@@ -6,7 +6,6 @@ from enum import Enum
 from typing import Protocol
 
 from matstd.diagnosis.geometry import (
-    MIN_CLEAR_EXCESS,
     Correction,
     Estimate,
     GeometryRow,
@@ -14,6 +13,7 @@ from matstd.diagnosis.geometry import (
     Quantity,
     Rung,
 )
+from matstd.diagnosis.policy import POLICY
 from matstd.report.numbers import digits, microns, with_uncertainty
 from matstd.twin.units import UM, URAD
 from matstd.twin.words import listed
@@ -262,7 +262,7 @@ def _is_of_arm(row: GeometryRow) -> bool:
 
     All of these are entered in the control of an arm, whatever their size.
     """
-    is_clear = abs(row.estimate.value) > MIN_CLEAR_EXCESS * row.estimate.u
+    is_clear = abs(row.estimate.value) > POLICY.clear_excess * row.estimate.u
     return row.quantity in ARM and row.is_determined and is_clear
 
 

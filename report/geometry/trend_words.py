@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 from matstd.diagnosis.answer import Trend
 from matstd.diagnosis.faults import DescriptionFault
-from matstd.diagnosis.geometry import MIN_CLEAR_CHANGE, Estimate, GeometryRow, LearntGeometry
+from matstd.diagnosis.geometry import Estimate, GeometryRow, LearntGeometry
+from matstd.diagnosis.policy import POLICY
 from matstd.report.effects import effect_title
 from matstd.report.geometry.copied_numbers import copy_lines
 from matstd.report.geometry.fault_words import fault_sentences
@@ -117,7 +118,7 @@ def _detectable(rows: Sequence[GeometryRow], run: int) -> str:
         step = row.steps[run - 1]
         if row.quantity in USUAL and step is not None:
             unit, factor = shown_unit(row.unit)
-            least = digits(MIN_CLEAR_CHANGE * step.u / factor, 2)
+            least = digits(POLICY.clear_change * step.u / factor, 2)
             seen.append(f"{quantity_name(row)} {least} {unit}")
     return f"; detection limits of these runs: {', '.join(seen)}" if seen else ""
 

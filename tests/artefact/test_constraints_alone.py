@@ -213,12 +213,7 @@ LIMITS_OF_USER = {
 @pytest.mark.parametrize(
     ("limits", "what", "kind", "line"),
     [
-        (
-            Limits(gap=60.0),
-            {},
-            NotBuildable,
-            r"only 5 of 6 patches fit .* probe need 66 mm",
-        ),
+        (Limits(gap=60.0), {}, NotBuildable, r"only 5 of 6 patches fit .* probe need 66 mm"),
         (
             Limits(),
             {"steepest": 1e-3},

@@ -20,9 +20,7 @@ from matstd.artefact.tool.probe import Probe
 from matstd.artefact.worth.touch_criterion import criterion_for, random_touches, setup_parameters
 from matstd.information.identifiability.estimable_combinations import combinations
 from matstd.information.identifiability.freedoms import Resolution
-from matstd.report.identifiability.identifiability_file import (
-    identifiability_table,
-)
+from matstd.report.identifiability.identifiability_file import identifiability_table
 from matstd.sensitivity.first_order.workspace import Workspace
 from matstd.sensitivity.population.sampling import Population
 from matstd.twin.files.whole import write_json

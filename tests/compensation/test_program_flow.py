@@ -90,10 +90,7 @@ def test_formulas(frame, tmp_path, formula, value):
 @pytest.mark.parametrize(
     ("blocks", "said"),
     [
-        (
-            "LBL 1\nLBL 1",
-            "line 6: found LBL 1 again, expected every label once; it is in line 5",
-        ),
+        ("LBL 1\nLBL 1", "line 6: found LBL 1 again, expected every label once; it is in line 5"),
         ("LBL 1\nCALL LBL 1", "LBL 1 without an end, expected LBL 0 behind it"),
         ("LBL 1\nCALL LBL 1\nLBL 0", "line 6: found subprograms 9 deep, expected 8 at most"),
         ("LBL 1\nFN 9: IF +1 EQU +1 GOTO LBL 1", "blocks, expected a program that ends"),

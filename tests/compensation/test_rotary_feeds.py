@@ -142,11 +142,7 @@ def test_slow_and_fast(corrected, tmp_path, feed):
 @pytest.mark.parametrize(
     ("name", "text", "said"),
     [
-        (
-            "a.ngc",
-            "G1 X30.02 C90 F720",
-            r"line 2: .* while X, Y, Z go 0.02 mm, .*G93",
-        ),
+        ("a.ngc", "G1 X30.02 C90 F720", r"line 2: .* while X, Y, Z go 0.02 mm, .*G93"),
         (
             "a.ngc",
             "G43.4 H1\nG1 C90 F720",

@@ -373,10 +373,7 @@ def test_bad_rows_are_one_clear_line(changed, tmp_path, capsys, change, phrases)
 
 @pytest.mark.parametrize(
     ("arguments", "phrase"),
-    [
-        (["--model", "nowhere.toml"], "nowhere.toml"),
-        (["--effects", "nowhere.py"], "nowhere.py"),
-    ],
+    [(["--model", "nowhere.toml"], "nowhere.toml"), (["--effects", "nowhere.py"], "nowhere.py")],
 )
 def test_bad_arguments_are_one_clear_line(changed, tmp_path, capsys, arguments, phrase) -> None:
     path = changed(lambda rows: rows[:100])

@@ -41,10 +41,7 @@ def run() -> Run:
         max_step=30.0,
         rtol=1e-8,
     ).y[0]
-    touches = gauge_touches(
-        time,
-        value={"coolant_bar": pressure},
-    )
+    touches = gauge_touches(time, value={"coolant_bar": pressure})
     # Z longer on the tool side: a surface that looks up seems to stand lower
     deviation = -PER_BAR * (y - 40.0) + rng.normal(0.0, 0.5, N)
     return Run(touches, deviation * UM, np.full(N, 0.5 * UM))

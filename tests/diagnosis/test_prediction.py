@@ -76,10 +76,7 @@ def record(seed: int = 3, wander: float = 0.0) -> Run:
     for i in range(1, N):
         slow[i] = 0.97 * slow[i - 1] + np.sqrt(1.0 - 0.97**2) * slow[i]
     z += wander * slow
-    touches = gauge_touches(
-        time,
-        temperature={"bed": bed, "frame": frame},
-    )
+    touches = gauge_touches(time, temperature={"bed": bed, "frame": frame})
     return Run(touches, z * UM, np.full(N, STATED))
 
 

@@ -7,11 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from matstd.cli import main
 from matstd.importers.arms import arm_from_dh, import_arm, read_arm, tracker_run
-from matstd.importers.arms.orientation import (
-    disagreement,
-    from_quaternions,
-    target_rotation,
-)
+from matstd.importers.arms.orientation import disagreement, from_quaternions, target_rotation
 from matstd.importers.sheets import read_sheet
 from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files.machine_file import read_machine

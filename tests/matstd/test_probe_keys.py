@@ -34,12 +34,7 @@ def test_without_keys_it_is_the_plain_probe(tmp_path):
 
 def test_the_keys_reach_planner_and_placement(tmp_path):
     found = project(tmp_path, WIDE)
-    expected = Probe(
-        radius=3.0,
-        length=160.0,
-        stack=((40.0, 1.5), (160.0, 31.0)),
-        nose_radius=50.0,
-    )
+    expected = Probe(radius=3.0, length=160.0, stack=((40.0, 1.5), (160.0, 31.0)), nose_radius=50.0)
     assert found.probe == expected
     assert found.reach.shape.cylinders == ((40.0, 1.5), (160.0, 31.0), (310.0, 50.0))
 

@@ -236,20 +236,14 @@ def test_a_pose_is_charged_with_the_way_beyond_it(tmp_path: Path) -> None:
     [
         ({"fitting": 9}, "standard.patches (to 9) or limits.gap_mm or probe.radius_mm (smaller)"),
         ({"fitting": 2}, "limits.gap_mm or probe.radius_mm (smaller) or blank.base_mm and"),
-        (
-            {"binding": ["mass"]},
-            "limits.max_mass_kg (larger) or blank.base_mm (smaller)",
-        ),
+        ({"binding": ["mass"]}, "limits.max_mass_kg (larger) or blank.base_mm (smaller)"),
         ({"exit_code": 1}, "seed: the fault is the tool's own, not the project's"),
         ({"binding": ["slots"]}, "limits.slot_pitch_mm (smaller, or 0) or blank.base_mm and"),
     ],
 )
 def test_what_cannot_be_built_says_which_keys_to_change(tmp_path, facts, change) -> None:
     project = read_project(MACHINES / "vertical.toml")
-    with (
-        pytest.raises(NotBuildable) as caught,
-        refusals(project, tmp_path, str(tmp_path / "out")),
-    ):
+    with pytest.raises(NotBuildable) as caught, refusals(project, tmp_path, str(tmp_path / "out")):
         raise NotBuildable("what binds", **facts)
     assert str(caught.value).startswith(f"{project.path}: what binds; change {change}")
     assert not (tmp_path / "out").exists()

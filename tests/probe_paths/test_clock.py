@@ -6,12 +6,7 @@ from matstd.probe_paths.control.clock import Clock, step_times
 from matstd.probe_paths.control.steps import Move, ProbeStep
 
 CLOCK = Clock(
-    rapid=300.0,
-    turning=1.0,
-    acceleration=3000.0,
-    turning_acceleration=5.0,
-    block=0.05,
-    probing=0.8,
+    rapid=300.0, turning=1.0, acceleration=3000.0, turning_acceleration=5.0, block=0.05, probing=0.8
 )
 ROUNDING = 1e-12
 

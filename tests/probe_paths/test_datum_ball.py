@@ -135,10 +135,7 @@ def test_a_tilted_standard_has_no_such_ball():
     ("keys", "reason"),
     [
         ("at_mm = [9.0, 0.0, 70.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 30.0", "less than the"),
-        (
-            "at_mm = [9.0, 0.0, 10.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 9.0",
-            "than 12.5 in z",
-        ),
+        ("at_mm = [9.0, 0.0, 10.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 9.0", "than 12.5 in z"),
         ("at_mm = [9.0, 0.0]\ndiameter_mm = 25.0\nstem_diameter_mm = 9.0", "workshop.ball.at_mm"),
     ],
 )

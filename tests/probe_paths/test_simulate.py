@@ -273,14 +273,8 @@ def _another_pose(lines):
             _rewritten("X", r"(-?\d+\.\d+)", lambda v: f"{float(v):.1f}"),
             "in steps of 0.01 mm or more",
         ),
-        (
-            _other_number("TOOL"),
-            "TOOL: found 31, expected 30, as MS_A",
-        ),
-        (
-            _other_number("PRESET"),
-            "PRESET: found 2, expected 1, as MS_A",
-        ),
+        (_other_number("TOOL"), "TOOL: found 31, expected 30, as MS_A"),
+        (_other_number("PRESET"), "PRESET: found 2, expected 1, as MS_A"),
         (_another_pose, "pose "),
     ],
 )

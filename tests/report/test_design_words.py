@@ -53,11 +53,7 @@ def placement(own: float, spheres: float, block: float = 9.0, scatter: float = 0
     [
         (1.0, 2.0, "would leave 2.00 µm, 2.0 times as much"),
         (1.0, 1.01, "the best other artefact, four spheres, is equal: 1.01 µm"),
-        (
-            2.0,
-            1.0,
-            "Another artefact is better there: four spheres would leave 1.00 µm, 2.0 times",
-        ),
+        (2.0, 1.0, "Another artefact is better there: four spheres would leave 1.00 µm, 2.0 times"),
     ],
 )
 def test_the_verdict_is_on_the_workspace(own: float, spheres: float, said: str) -> None:

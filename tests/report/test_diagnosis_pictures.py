@@ -17,21 +17,11 @@ from matstd.diagnosis.residual.ranked_variables import binned, rank_variables, s
 from matstd.report.numbers import p_value, with_uncertainty
 from matstd.report.pages.compare_page import write_compare_page
 from matstd.report.pages.diagnosis_page import write_diagnosis_page
-from matstd.report.plots.effect_pictures import (
-    draw_rivals,
-    shown_partial,
-)
+from matstd.report.plots.effect_pictures import draw_rivals, shown_partial
 from matstd.report.plots.pattern_pictures import draw_pattern
-from matstd.report.plots.spatial_pictures import (
-    draw_on_standard,
-    is_spread,
-)
+from matstd.report.plots.spatial_pictures import draw_on_standard, is_spread
 from matstd.report.style import save
-from matstd.report.words.diagnosis_words import (
-    named_value,
-    region_sentence,
-    structure_words,
-)
+from matstd.report.words.diagnosis_words import named_value, region_sentence, structure_words
 from matstd.report.words.verdict_words import verdict_sentence
 from matstd.twin.effects.backlash import KIND as BACKLASH
 from matstd.twin.effects.periodic import KIND as PERIODIC

@@ -319,11 +319,7 @@ def test_errors_are_switched_and_scaled(browser, page, machine, poses):
     opened(browser, page)
     size = "return Number(document.getElementById('size').textContent)"
     q = poses[0][0]
-    run(
-        browser,
-        "machinePage.state.q.set(arguments[0]); machinePage.show()",
-        q.tolist(),
-    )
+    run(browser, "machinePage.state.q.set(arguments[0]); machinePage.show()", q.tolist())
     before = run(browser, size)
     touches = machine.touches(q[None], LENGTH)
     actual = exact_tip(machine.chain, q[None], LENGTH, machine.contribution(touches))
@@ -341,8 +337,7 @@ def test_errors_are_switched_and_scaled(browser, page, machine, poses):
     actual = exact_tip(machine.chain, q[None], LENGTH, double.contribution(touches))
     assert run(browser, size) == pytest.approx(np.linalg.norm(actual - nominal) / UM, abs=0.006)
     shown = run(
-        browser,
-        "return [...document.querySelectorAll('#errors li')].filter(e => !e.hidden).length",
+        browser, "return [...document.querySelectorAll('#errors li')].filter(e => !e.hidden).length"
     )
     assert shown == sum("squareness" in machine.words(g) for g in machine.groups)
     # everything off

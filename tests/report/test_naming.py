@@ -74,10 +74,7 @@ def test_an_effect_alone_names_its_body_where_its_title_does_not() -> None:
         ("coupling(EBX,Z)", "tilt of X about Y, which changes with Z [coupling(EBX,Z)]"),
         ("stiffness(t)", "compliance of the tool [stiffness(t)]"),
         ("probe-lobing", "lobes of the probe [probe-lobing]"),
-        (
-            "gravity(EBB,C)",
-            "tilt under a load off the centre of C, carried by B [gravity(EBB,C)]",
-        ),
+        ("gravity(EBB,C)", "tilt under a load off the centre of C, carried by B [gravity(EBB,C)]"),
     ],
 )
 def test_names_in_words(name, words) -> None:

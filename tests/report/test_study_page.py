@@ -120,9 +120,7 @@ def test_without_opengl_the_page_is_written_with_a_remark(study, tmp_path, monke
 @pytest.mark.usefixtures("unrendered")
 def test_a_machine_without_a_volume_is_reported_so(tmp_path):
     lathe = make_chain(
-        "lathe",
-        "[w f X Z t]",
-        {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))},
+        "lathe", "[w f X Z t]", {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))}
     )
     small = SimpleNamespace(workspace=Workspace(lathe, {}, 50.0))
     remarks: list[str] = []

@@ -70,9 +70,7 @@ def test_shares_of_two_constants_by_hand():
     none = {name: (0.0, 0.0) for name in DEFAULT_RANGES}
     ranges = Ranges(none, {"EX0X": (3 * UM, 3 * UM), "EZ0Z": (4 * UM, 4 * UM)})
     lathe = make_chain(
-        "lathe",
-        "[w f X Z t]",
-        {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))},
+        "lathe", "[w f X Z t]", {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))}
     )
     names = [s.name for s in lathe.symbols]
     all_of_them = regions(Population(lathe, ranges), Workspace(lathe, {}, 50.0))
@@ -90,9 +88,7 @@ def test_the_only_error_makes_all_of_the_length():
     none = {name: (0.0, 0.0) for name in DEFAULT_RANGES}
     ranges = Ranges(none, {"EX0X": (1 * UM, 9 * UM)})
     lathe = make_chain(
-        "lathe",
-        "[w f X Z t]",
-        {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))},
+        "lathe", "[w f X Z t]", {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))}
     )
     area, population = Workspace(lathe, {}, 50.0), Population(lathe, ranges)
     found = regions(population, area)

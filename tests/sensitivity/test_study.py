@@ -96,9 +96,7 @@ def test_ranking_is_by_share(study):
 
 def test_a_machine_with_two_readings_is_studied_too(tmp_path):
     lathe = make_chain(
-        "lathe",
-        "[w f X Z t]",
-        {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))},
+        "lathe", "[w f X Z t]", {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))}
     )
     area = Workspace(lathe, {}, 50.0)
     assert section_pairs(area) == [("X", "Z")]

@@ -79,9 +79,7 @@ def test_points_outside_the_volume_of_the_workspace_have_no_value(chain, workspa
 
 def test_a_machine_without_three_linear_axes_has_no_volume():
     lathe = make_chain(
-        "lathe",
-        "[w f X Z t]",
-        {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))},
+        "lathe", "[w f X Z t]", {"X": Axis(range=(-100.0, 100.0)), "Z": Axis(range=(-300.0, 0.0))}
     )
     area = Workspace(lathe, {}, 50.0)
     assert not has_volume(area)
@@ -132,9 +130,7 @@ def test_maps_over_the_rotary_axes_are_labelled_and_hold_the_values(chain, works
 
 def test_without_a_rotary_axis_the_picture_says_so():
     mill = make_chain(
-        "mill",
-        "[w X' f Y Z t]",
-        {name: Axis(range=(-100.0, 100.0)) for name in "XYZ"},
+        "mill", "[w X' f Y Z t]", {name: Axis(range=(-100.0, 100.0)) for name in "XYZ"}
     )
     area = Workspace(mill, {}, 50.0)
     study = run_study(Population(mill), area, 40, 50, np.random.default_rng(1))

@@ -35,11 +35,7 @@ REFUSED = {
     "absent axis": ("thermal-lag(EAA)", UnknownSymbol, "unknown error parameter 'EAA'"),
     "constant": ("coupling(EC0Y,Z)", UnknownEffect, "'EC0Y' is a constant"),
     "component as location": ("location(EXX)", UnknownEffect, "one of EX0C"),
-    "degree": (
-        "geometric(EXX,13)",
-        UnknownEffect,
-        "two such as 3-4, or one of constant",
-    ),
+    "degree": ("geometric(EXX,13)", UnknownEffect, "two such as 3-4, or one of constant"),
     "shape": ("geometric(EXX,wavy)", UnknownEffect, "a degree of 1 to 12"),
     "itself": ("coupling(EBX,X)", UnknownEffect, "another axis than X itself"),
     "empty drive": ("thermal-lag(EZZ,)", UnknownEffect, "a sensor, spindle_rpm or an own column"),

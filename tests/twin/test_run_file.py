@@ -77,9 +77,7 @@ def test_what_is_written_is_read_back(tmp_path: Path) -> None:
     assert again.touches.spindle_rpm.tolist() == [600.0, 1200.0]
     assert again.touches.temperature["s"].tolist() == [20.5, 20.5]
     np.testing.assert_allclose(
-        again.touches.setups[0].T_table_artefact,
-        run.touches.setups[0].T_table_artefact,
-        atol=NM,
+        again.touches.setups[0].T_table_artefact, run.touches.setups[0].T_table_artefact, atol=NM
     )
 
 
