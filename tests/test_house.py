@@ -77,7 +77,6 @@ EXCUSED = {
     "importers/files/machine_draft.py": "comments of a machine file that is written",
     "probe_paths/plan/planner.py": "reason of a refusal, as the reach has it",
     "probe_paths/control/log_clock.py": "remarks of a reader on single lines, like its refusals",
-    "probe_paths/campaign/log_parts.py": "remarks of a reader on a log, like its refusals",
     "probe_paths/campaign/contact_points.py": "remark of the same reader on a feature out of place",
     "twin/files/machine_file.py": "slips of units in a machine file, put into one refusal",
     "artefact/compare/alternatives.py": "names of other set-ups, shown as they are",
