@@ -237,7 +237,7 @@ def main() -> None:
         bench.show(f"13 balls + {name}, touched", both, bench.some(both, args.touches))
         on_balls = bench.some(bare, half)
         scan = Scan(between=args.lines)
-        lines = scanned(one, scan, bench.poses, brief.reach)
+        lines = scanned(one, scan, bench.poses, brief.reach, both)
         words = f"{scan.points(one)} points, {scan.minutes(one):.0f} min"
         bench.show(
             f"13 balls + {name}, scanned, {words}", both, measured_together([on_balls, lines])

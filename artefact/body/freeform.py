@@ -220,6 +220,14 @@ class FreeformPatch:
             travel[some] = np.take_along_axis(entry, best[some, None], axis=1)[:, 0]
         return Hit(uv[best], travel + fat - radius)
 
+    @cached_property
+    def sharpest_valley(self) -> float:
+        """Smallest concave radius of the spline, its overhang included, on a grid, mm."""
+        low, high = self.domain
+        beyond = float((np.minimum(-low, high) - self.half_size).min())
+        largest = float(self.curvature(self.grid(1.0, beyond))[:, 0].max())
+        return 1.0 / max(largest, 1e-9)
+
     @property
     def domain(self) -> tuple[Array, Array]:
         """Lowest and highest parameters of the spline, overhang included, each (2,), mm."""

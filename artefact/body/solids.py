@@ -174,6 +174,18 @@ class Column:
         box[near] = np.maximum(box[near], over)
         return box if self.foot is None else _with_blend(box, points[:, 2] - self.foot)
 
+    def distance_from_lid(self, points: Array) -> Array:
+        """Distance from the lid, continued beyond its edges, by foot points, (N,), mm.
+
+        No more than the smallest concave radius of the lid, up to which a foot point is the
+        nearest one, and zero for points below or beside it.
+        """
+        patch = self.patch
+        uv = patch.project(points)
+        away = points - patch.point(np.nan_to_num(uv))
+        above = np.isfinite(uv).all(axis=1) & (away @ patch.direction > 0.0)
+        return np.where(above, np.minimum(_length(*away.T), patch.sharpest_valley), 0.0)
+
 
 def _length(*coordinates: Array) -> Array:
     """Lengths of vectors by their coordinates, (N,) each."""

@@ -1,8 +1,9 @@
 """Reader and writer of `standard.toml`, which holds a standard without loss."""
 
+import re
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeVar
 
 import numpy as np
 from pydantic import Field
@@ -15,7 +16,7 @@ from matstd.artefact.body.material import Material
 from matstd.artefact.body.sag import DIRECTIONS, Sag
 from matstd.artefact.body.standard import Base, Core, Standard
 from matstd.twin.errors import BadFile, ShapeMismatch
-from matstd.twin.files import Table, check_format, checked, parse_toml, read_text, write_whole
+from matstd.twin.files import Table, checked, read_toml, write_whole
 from matstd.twin.units import UM
 
 FORMAT = "standard/1"
@@ -28,6 +29,9 @@ Degree = Annotated[int, Field(ge=2, le=9)]
 
 _OLD_SOURCE, _OLD_MODULUS = "finite elements", 200e3
 """For a sag without a modulus: earlier versions computed all of them for steel, N/mm^2."""
+
+_UNIT = re.compile(r"_(mm|MPa|kg_mm3)$")  # at the end of a key
+_Made = TypeVar("_Made", DatumSphere, MountingHole)
 
 _ORTHONORMAL = 1e-9  # deviation of R R^T from 1 that counts as an error and not as rounding
 
@@ -125,9 +129,7 @@ def read_standard(path: str | Path) -> Standard:
     Raises:
         BadFile: Unreadable, not TOML, another format, a key missing, unknown or out of range.
     """
-    data = parse_toml(read_text(path), path)
-    check_format(data, FORMAT, path)
-    return _standard(Path(path), checked(_File, data, path))
+    return _standard(Path(path), checked(_File, read_toml(path, FORMAT), path))
 
 
 def write_standard(path: str | Path, standard: Standard) -> None:
@@ -146,24 +148,18 @@ def _standard(path: Path, file: _File) -> Standard:
         return Standard(
             name=file.name,
             serial=file.serial,
-            material=Material(
-                file.material.name,
-                file.material.density_kg_mm3,
-                file.material.expansion,
-                file.material.u_expansion,
-                modulus=file.material.modulus_MPa,
-                poisson=file.material.poisson,
-                modulus_source=file.material.modulus_source,
-                modulus_share=file.material.modulus_share,
-                hardness=file.material.hardness,
-            ),
+            material=Material(**_stated(file.material)),
             base=_base(path, file.base),
-            core=None
-            if file.core is None
-            else Core(file.core.low_radius_mm, file.core.high_radius_mm, file.core.height_mm),
+            core=None if file.core is None else Core(**_stated(file.core)),
             patches=tuple(_patch(path, i, patch) for i, patch in enumerate(file.patch)),
-            spheres=tuple(_sphere(path, i, sphere) for i, sphere in enumerate(file.sphere)),
-            holes=tuple(_hole(path, i, hole) for i, hole in enumerate(file.hole)),
+            spheres=tuple(
+                _feature(DatumSphere, path, f"sphere.{i}", sphere, "a ball on a stem")
+                for i, sphere in enumerate(file.sphere)
+            ),
+            holes=tuple(
+                _feature(MountingHole, path, f"hole.{i}", hole, "a counterbored hole")
+                for i, hole in enumerate(file.hole)
+            ),
             blank_height=file.blank_height_mm,
             known=_known(path, file),
             sag=_sag(path, file),
@@ -210,8 +206,7 @@ def _base(path: Path, base: _Base) -> Base:
             base.corner_radius_mm,
             f"at most the smaller half side {min(base.half_size_mm):g}",
         )
-    half = (base.half_size_mm[0], base.half_size_mm[1])
-    return Base(half, base.corner_radius_mm, base.thickness_mm)
+    return Base(**_stated(base))
 
 
 def _patch(path: Path, number: int, patch: _Patch) -> FreeformPatch:
@@ -243,33 +238,33 @@ def _patch(path: Path, number: int, patch: _Patch) -> FreeformPatch:
     return built
 
 
-def _sphere(path: Path, number: int, sphere: _Sphere) -> DatumSphere:
+def _feature(made: type[_Made], path: Path, where: str, table: Table, expected: str) -> _Made:
+    """A ball or a hole, whose sizes have to belong together."""
     try:
-        return DatumSphere(
-            name=sphere.name,
-            centre=np.array(sphere.centre_mm),
-            radius=sphere.radius_mm,
-            stem_radius=sphere.stem_radius_mm,
-            foot_radius=sphere.foot_radius_mm,
-            foot=sphere.foot_mm,
-            proves=sphere.proves,
-        )
+        return made(**_stated(table))
     except ShapeMismatch as error:
-        raise BadFile(path, f"sphere.{number}", str(error), "a ball on a stem") from error
+        raise BadFile(path, where, str(error), expected) from error
 
 
-def _hole(path: Path, number: int, hole: _Hole) -> MountingHole:
-    try:
-        return MountingHole(
-            name=hole.name,
-            x=hole.x_mm,
-            y=hole.y_mm,
-            radius=hole.radius_mm,
-            bore_radius=hole.bore_radius_mm,
-            bore_depth=hole.bore_depth_mm,
-        )
-    except ShapeMismatch as error:
-        raise BadFile(path, f"hole.{number}", str(error), "a counterbored hole") from error
+def _stated(table: Table) -> dict[str, Any]:
+    """Values by the names that they have in a record: keys without their units."""
+    values = {name: getattr(table, name) for name in type(table).model_fields}
+    return {
+        _UNIT.sub("", name): tuple(value) if isinstance(value, list) else value
+        for name, value in values.items()
+    }
+
+
+def _written(record: Any, model: type[Table]) -> dict[str, Any]:
+    """A record as the table that `_stated` reads; what is none, empty or false is left out."""
+    out: dict[str, Any] = {}
+    for name, field in model.model_fields.items():
+        value = getattr(record, _UNIT.sub("", name))
+        if isinstance(value, str | bool | None):
+            out |= {field.alias or name: value} if value else {}
+        else:
+            out[field.alias or name] = _floats(value)
+    return out
 
 
 def _table(standard: Standard) -> dict[str, Any]:
@@ -280,38 +275,18 @@ def _table(standard: Standard) -> dict[str, Any]:
         "name": standard.name,
         "serial": standard.serial,
         "blank_height_mm": float(standard.blank_height),
-        "material": {
-            "name": material.name,
-            "density_kg_mm3": float(material.density),
-            "expansion_1_K": float(material.expansion),
-        },
-        "base": {
-            "half_size_mm": _floats(base.half_size),
-            "corner_radius_mm": float(base.corner_radius),
-            "thickness_mm": float(base.thickness),
-        },
+        "material": _written(material, _Material),
+        "base": _written(base, _Base),
     }
-    if material.u_expansion is not None:
-        table["material"]["expansion_u_1_K"] = float(material.u_expansion)
-    if material.modulus is not None:
-        table["material"] |= {
-            "modulus_MPa": float(material.modulus),
-            "poisson": float(material.poisson),
-            "modulus_source": material.modulus_source,
-            "modulus_share": float(material.modulus_share),
-        }
-    if material.hardness:
-        table["material"]["hardness"] = material.hardness
+    if material.modulus is None:
+        for key in ("poisson", "modulus_source", "modulus_share"):
+            table["material"].pop(key, None)
     if core is not None:
-        table["core"] = {
-            "low_radius_mm": float(core.low_radius),
-            "high_radius_mm": float(core.high_radius),
-            "height_mm": float(core.height),
-        }
+        table["core"] = _written(core, _Core)
     if standard.patches:
         table["patch"] = [_patch_table(patch) for patch in standard.patches]
-    table["sphere"] = [_sphere_table(sphere) for sphere in standard.spheres]
-    table["hole"] = [_hole_table(hole) for hole in standard.holes]
+    table["sphere"] = [_written(sphere, _Sphere) for sphere in standard.spheres]
+    table["hole"] = [_written(hole, _Hole) for hole in standard.holes]
     if standard.known is not None:
         table["calibration"] = known_table(standard.known)
     if standard.sag is not None:
@@ -341,29 +316,6 @@ def _patch_table(patch: FreeformPatch) -> dict[str, Any]:
         "knots_v_mm": _floats(patch.knots_v),
         "heights_mm": _floats(patch.heights),
         "errors": [{"name": e.name, "share": float(e.share)} for e in patch.errors],
-    }
-
-
-def _sphere_table(sphere: DatumSphere) -> dict[str, Any]:
-    return {
-        "name": sphere.name,
-        "centre_mm": _floats(sphere.centre),
-        "radius_mm": float(sphere.radius),
-        "stem_radius_mm": float(sphere.stem_radius),
-        "foot_radius_mm": float(sphere.foot_radius),
-        "foot_mm": float(sphere.foot),
-        **({"proves": True} if sphere.proves else {}),
-    }
-
-
-def _hole_table(hole: MountingHole) -> dict[str, Any]:
-    return {
-        "name": hole.name,
-        "x_mm": float(hole.x),
-        "y_mm": float(hole.y),
-        "radius_mm": float(hole.radius),
-        "bore_radius_mm": float(hole.bore_radius),
-        "bore_depth_mm": float(hole.bore_depth),
     }
 
 

@@ -8,7 +8,7 @@ prove a task; standards that differ from their calibration within its uncertaint
 
 from matstd.artefact.certify.calibration_fit import CalibrationFit, fit_calibration
 from matstd.artefact.certify.cmm_points_file import read_cmm_points
-from matstd.artefact.certify.dmis import Limits, dmis_program
+from matstd.artefact.certify.dmis import dmis_program
 from matstd.artefact.certify.reversal import merged_orientations
 from matstd.artefact.certify.task_places import check_places, like_task, that_prove
 from matstd.artefact.certify.true_places import displaced_features
@@ -20,7 +20,6 @@ __all__ = [
     "Allowed",
     "CalibrationFit",
     "CommonCause",
-    "Limits",
     "check_places",
     "displaced_features",
     "dmis_program",

@@ -12,7 +12,6 @@ Reference:
 """
 
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
 
 import numpy as np
 
@@ -45,15 +44,8 @@ _PLANE_POINTS = 8
 Sides = Mapping[str, tuple[Array, Array]]
 """Points (K, 3) and outward normal (3,) of the datum sides, by name."""
 
-
-class Limits(NamedTuple):
-    """Tolerances of the drawing, mm: widths of zones, and either side of a diameter."""
-
-    flatness: float
-    squareness: float
-    profile: float
-    position: float
-    diameter: float
+Limits = Mapping[str, float]
+"""Tolerances of the drawing, mm: widths of zones by kind, either side of a `diameter`."""
 
 
 def dmis_program(
@@ -214,12 +206,12 @@ def _head(standard: Standard, length: float, angles: list[Angle], orientation: f
 
 def _tolerances(limits: Limits) -> list[str]:
     """Tolerances of the drawing."""
-    half, size = 0.5 * limits.profile, limits.diameter
+    half, size = 0.5 * limits["profile"], limits["diameter"]
     return [
-        f"T(PLATE)=TOL/FLAT,{limits.flatness:.4f}",
-        f"T(SIDE_B)=TOL/PERP,{limits.squareness:.4f},DAT(A)",
+        f"T(PLATE)=TOL/FLAT,{limits['flatness']:.4f}",
+        f"T(SIDE_B)=TOL/PERP,{limits['perpendicularity']:.4f},DAT(A)",
         f"T(BALL_SIZE)=TOL/DIAM,{-size:.4f},{size:.4f}",
-        f"T(BALL_PLACE)=TOL/POS,3D,{limits.position:.4f},DAT(A),DAT(B),DAT(C)",
+        f"T(BALL_PLACE)=TOL/POS,3D,{limits['position']:.4f},DAT(A),DAT(B),DAT(C)",
         f"T(FACE)=TOL/PROFP,{-half:.4f},{half:.4f},DAT(A),DAT(B),DAT(C)",
     ]
 

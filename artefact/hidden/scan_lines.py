@@ -13,9 +13,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.artefact.body import FreeformPatch
+from matstd.artefact.body import FreeformPatch, Standard
 from matstd.artefact.hidden.smooth_effects import Measurement
-from matstd.artefact.reach import ProbeReach, Requests, joined
+from matstd.artefact.reach import Mask, ProbeReach, Requests, joined
 from matstd.artefact.worth import each_at
 from matstd.twin.frames import Array
 from matstd.twin.sampling import grid_points
@@ -65,14 +65,25 @@ class Scan:
         return ((a // self.between + 1) * b * longer + a) / self.feed
 
 
+def can_be_scanned(wanted: Requests, reach: ProbeReach, standard: Standard) -> Mask:
+    """Points within angle and travels at which nothing comes near the probe above its ball, (N,).
+
+    From such a point the probe leaves along the tool axis without meeting anything: nowhere is it
+    wider than above.
+    """
+    can: Mask = reach.is_reachable(wanted)
+    can[can] = reach.has_room(standard, wanted[can])
+    return can
+
+
 def scanned(
-    face: FreeformPatch, scan: Scan, poses: Array, reach: ProbeReach, clear: bool = True
+    face: FreeformPatch, scan: Scan, poses: Array, reach: ProbeReach, standard: Standard
 ) -> Measurement:
     """Means of the stretches of a scan that machine and probe can make, at some table poses.
 
     Args:
         poses: Table poses at which the face is scanned, (K, R), rad.
-        clear: Whether angle and travel are asked for; False where they are known to do.
+        standard: With the face, and what stands beside it.
     """
     a, b = (half - EDGE for half in face.half_size)
     # as many means a length across the lines as along them: neighbours of several lines are one too
@@ -80,9 +91,7 @@ def scanned(
     u = np.arange(-a, a + 1e-9, across * scan.between)
     v = np.arange(-b, b + 1e-9, _STRETCH)
     grid = grid_points(u, v)
-    lots = [each_at(face, grid, pose[None]) for pose in poses]
-    wanted: Requests = joined(lots)
-    if clear:
-        wanted = wanted[reach.is_reachable(wanted)]
+    wanted = joined([each_at(face, grid, pose[None]) for pose in poses])
+    wanted = wanted[can_be_scanned(wanted, reach, standard)]
     sd = scan.u_of_mean / np.sqrt(across)
     return Measurement(wanted, np.full(len(wanted), sd), np.zeros(len(wanted)))

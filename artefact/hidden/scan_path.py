@@ -1,15 +1,16 @@
 """The path of a scan as a table: every point with its normal and the readings that bring the ball.
 
 A plain CSV for controls and programs that scan by a list of points. Lines run forth and back over
-the face; a point that machine or probe cannot reach ends its line, so that a new number begins.
+the face; a point that machine or probe cannot reach, or at which the probe above its ball comes
+near anything, ends its line, so that a new number begins.
 """
 
 from pathlib import Path
 
 import numpy as np
 
-from matstd.artefact.body import FreeformPatch
-from matstd.artefact.hidden.scan_lines import EDGE, Scan
+from matstd.artefact.body import FreeformPatch, Standard
+from matstd.artefact.hidden.scan_lines import EDGE, Scan, can_be_scanned
 from matstd.artefact.reach import ProbeReach, Requests, joined
 from matstd.artefact.worth import each_at
 from matstd.twin.files import write_whole
@@ -19,12 +20,13 @@ from matstd.twin.units import DEG
 
 
 def scan_path(
-    face: FreeformPatch, scan: Scan, poses: Array, reach: ProbeReach
+    face: FreeformPatch, scan: Scan, poses: Array, reach: ProbeReach, standard: Standard
 ) -> tuple[Requests, IntArray]:
     """Points of the lines in their order, and the number of the line of each, from 1.
 
     Args:
         poses: Table poses at which the face is scanned, (K, R), rad.
+        standard: With the face, and what stands beside it.
     """
     a, b = (half - EDGE for half in face.half_size)
     across = np.linspace(-a, a, int(2.0 * a // scan.between) + 1)
@@ -36,7 +38,7 @@ def scan_path(
     parts, numbers, last = list[Requests](), list[IntArray](), 0
     for pose in poses:
         wanted = each_at(face, grid, pose[None])
-        kept = np.flatnonzero(reach.is_reachable(wanted))
+        kept = np.flatnonzero(can_be_scanned(wanted, reach, standard))
         begins = (np.diff(kept, prepend=-2) > 1) | (np.diff(line[kept], prepend=-1) != 0)
         parts.append(wanted[kept])
         numbers.append(last + np.cumsum(begins))
@@ -45,10 +47,15 @@ def scan_path(
 
 
 def write_scan_path(
-    path: Path, face: FreeformPatch, scan: Scan, poses: Array, reach: ProbeReach
+    path: Path,
+    face: FreeformPatch,
+    scan: Scan,
+    poses: Array,
+    reach: ProbeReach,
+    standard: Standard,
 ) -> int:
     """Write the path; returns its number of points."""
-    points, line = scan_path(face, scan, poses, reach)
+    points, line = scan_path(face, scan, poses, reach, standard)
     readings, chain = reach.readings(points), reach.chain
     unit = [1.0 if chain.link(name).kind == "linear" else DEG for name in chain.axes]
     names = [
@@ -63,7 +70,8 @@ def write_scan_path(
     ]
     comment = (
         f"# scan of {face.name}: contact points and normals in the artefact frame, readings with "
-        f"the ball of {reach.radius:g} mm on them; feed {scan.feed:g} mm/min"
+        f"the ball of {reach.radius:g} mm on them; feed {scan.feed:g} mm/min; come to the first "
+        "point of a line, and leave its last, along the tool axis, which is free"
     )
     write_whole(path, "\n".join([comment, ",".join(head), *rows]) + "\n")
     return len(points)

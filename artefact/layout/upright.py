@@ -295,10 +295,7 @@ def faces_fit(
 
 def balls_fit(balls: Sequence[DatumSphere], blank: Blank) -> Pairs:
     """Which posts leave room for cutter and probe between each other, (B, B)."""
-    across, widest = (
-        np.stack([b.centre[:2] for b in balls]),
-        np.array([_widest_radius(b) for b in balls]),
-    )
+    across, widest = _circles(balls)
     apart = np.linalg.norm(across[:, None] - across, axis=-1)
     least = np.maximum(widest[:, None] + widest + WALL_GAP, _probe_room(blank) + widest)
     return np.asarray(apart >= least)
@@ -310,12 +307,14 @@ def faces_beside(
     """Which pillars leave room for cutter and probe beside some posts, (F,)."""
     if not balls:
         return np.ones(len(faces), dtype=bool)
-    across, widest = (
-        np.stack([b.centre[:2] for b in balls]),
-        np.array([_widest_radius(b) for b in balls]),
-    )
+    across, widest = _circles(balls)
     room = np.maximum(widest + WALL_GAP, _probe_room(blank))
     return np.asarray((_distance_to_pillar(faces, across) >= room[:, None]).all(axis=0))
+
+
+def _circles(balls: Sequence[DatumSphere]) -> tuple[Array, Array]:
+    """Places (B, 2) and widest radii (B,) of balls on posts, seen from above, mm."""
+    return np.stack([b.centre[:2] for b in balls]), np.array([_widest_radius(b) for b in balls])
 
 
 def _probe_room(blank: Blank) -> float:

@@ -33,6 +33,7 @@ from matstd.artefact.layout import (
     holes_on,
     least_gap,
     most_side_by_side,
+    with_spheres,
 )
 from matstd.artefact.reach import Requests, spread_poses
 from matstd.artefact.worth import BallPlaces, Criterion
@@ -319,16 +320,13 @@ def assembled(
 ) -> Standard:
     """A standard of faces and balls, numbered by their azimuth; those that prove come last."""
     balls = sorted(balls, key=lambda b: (b.proves, _azimuth(b.centre)))
-    return Standard(
+    return replace(
+        with_spheres(blank, []),
         name=name,
         serial=serial,
-        material=blank.material,
-        base=blank.base,
-        core=None,
         patches=tuple(replace(p, name=f"FF{i}") for i, p in enumerate(faces, 1)),
         spheres=tuple(replace(b, name=f"SPH{i}") for i, b in enumerate(balls, 1)),
         holes=holes,
-        blank_height=blank.height,
     )
 
 

@@ -154,7 +154,16 @@ def _showing(site: Site, family: Family) -> Built:
     """Balls alone, or round one wavy face: touched where that shows most."""
     criterion, count = site.criterion, site.options.choice.proof
     if family is Family.WAVY:
-        found = _wavy(site)
+        found = wavy_choice(
+            criterion,
+            site.places,
+            site.bases[0],
+            site.all_poses,
+            site.options,
+            site.effects_at,
+            site.best_balls,
+            np.random.default_rng(site.brief.seed),
+        )
         body, poses = found.standard, spread_poses(found.poses, PROOF_POSES)
         tried = touches_on_faces(criterion.reach, body, poses, count, PLACES_PER_TOUCH)
     else:
@@ -164,20 +173,6 @@ def _showing(site: Site, family: Family) -> Built:
     given = measurement_on(criterion, body, found.tried[found.chosen], None)
     here = criterion.plain.on(body)
     return Built(family, found, showing_on_body(here, body, tried, given, site.effects_at, count))
-
-
-def _wavy(site: Site) -> Identifying:
-    """Balls round one wavy face."""
-    return wavy_choice(
-        site.criterion,
-        site.places,
-        site.bases[0],
-        site.all_poses,
-        site.options,
-        site.effects_at,
-        site.best_balls,
-        np.random.default_rng(site.brief.seed),
-    )
 
 
 def _flat(site: Site, like: Built | None) -> Identifying:
@@ -202,25 +197,18 @@ def _with_faces(site: Site) -> tuple[Identifying, Requests]:
 
 def _figures(site: Site, one: Built) -> FamilyFigures:
     """What a designed family gives."""
-    return _figures_of(site, one.family, one.standard, one.requests, one.proof)
-
-
-def _figures_of(
-    site: Site, family: Family, body: Standard, requests: Requests, proof: Requests
-) -> FamilyFigures:
-    """Figures of a body with touches that identify and touches that prove."""
-    criterion = site.criterion
-    scan = site.options.scan if family is Family.WAVY else None
-    touches = joined([requests, proof])
+    criterion, body = site.criterion, one.standard
+    scan = site.options.scan if one.family is Family.WAVY else None
+    touches = joined([one.requests, one.proof])
     measured = measurement_on(criterion, body, touches, scan)
     power = hidden_power(criterion.plain.on(body), measured, site.effects_at)
     least = power.effects[power.worst]
-    left = left_unknown(criterion, body, requests)
+    left = left_unknown(criterion, body, one.requests)
     poses = len(scan_poses(touches))
     scanning = 0.0 if scan is None else poses * sum(scan.minutes(face) for face in body.patches)
-    prices = [one.total for one in prices_of(body)]
+    prices = [price.total for price in prices_of(body)]
     return FamilyFigures(
-        family=family,
+        family=one.family,
         rms_user=rms(left),
         worst_user=float(left.max()),
         signal=power.least_signal,
@@ -228,6 +216,6 @@ def _figures_of(
         least=(least.is_bump, least.width, least.direction),
         touches=len(touches),
         scan_minutes=scanning,
-        price=min(prices, key=lambda one: one.value, default=None),
+        price=min(prices, key=lambda price: price.value, default=None),
         scan_points=0 if scan is None else sum(scan.points(face) for face in body.patches),
     )

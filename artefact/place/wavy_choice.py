@@ -16,7 +16,7 @@ from matstd.artefact.body import FreeformPatch, Standard
 from matstd.artefact.brief import PlacementOptions
 from matstd.artefact.hidden import hidden_power, measured_together
 from matstd.artefact.hidden import touched as single
-from matstd.artefact.layout import Blank, Wave, wavy_face
+from matstd.artefact.layout import Blank, Wave, wavy_face, with_spheres
 from matstd.artefact.place.body_choice import balls_beside
 from matstd.artefact.place.family import MOST_COST
 from matstd.artefact.place.identifying import Base, Identifying, left_unknown
@@ -133,9 +133,10 @@ def _best_wave(
             f"{2 * blank.base.half_size[0]:g} x {2 * blank.base.half_size[1]:g} mm beside balls"
         )
     poses, given = spread_poses(all_poses, PROOF_POSES), base.touches[::_SOME]
+    bare = replace(with_spheres(blank, []), spheres=base.balls)
 
     def signal_of(wave: Wave) -> float:
-        body = replace(_bare(blank, base), patches=(wavy_face("FF1", blank, wave),))
+        body = replace(bare, patches=(wavy_face("FF1", blank, wave),))
         return _signal(criterion, body, given, poses, options, effects_at)
 
     best, most, refused = _strongest(_waves(size, blank), signal_of)
@@ -181,7 +182,9 @@ def _signal(
     on_balls = single(given, criterion.noise)
     tried = _some_touches(criterion, body.patches[0], poses, count)
     touches = showing_on_body(here, body, tried, on_balls, effects_at, count)
-    lots = [on_balls, measurement_on(criterion, body, touches, options.scan)]
+    # the balls are those of another body, some of them within the face
+    alone = replace(body, spheres=())
+    lots = [on_balls, measurement_on(criterion, alone, touches, options.scan)]
     return hidden_power(here, measured_together(lots), effects_at, False).least_signal
 
 
@@ -195,21 +198,6 @@ def _waves(size: tuple[float, float], blank: Blank) -> Iterator[Wave]:
                 slope=blank.limits.max_slope,
                 flatness=flatness,
             )
-
-
-def _bare(blank: Blank, base: Base) -> Standard:
-    """The balls alone, without holes."""
-    return Standard(
-        name="",
-        serial="",
-        material=blank.material,
-        base=blank.base,
-        core=None,
-        patches=(),
-        spheres=base.balls,
-        holes=(),
-        blank_height=blank.height,
-    )
 
 
 def _some_touches(criterion: Criterion, face: FreeformPatch, poses: Array, count: int) -> Requests:

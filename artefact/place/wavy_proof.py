@@ -36,7 +36,8 @@ def measurement_on(
     lots = [single(touches, criterion.noise)]
     if scan is not None:
         some = scan_poses(touches)
-        lots += [scanned(face, scan, some, criterion.reach) for face in standard.patches]
+        reach, faces = criterion.reach, standard.patches
+        lots += [scanned(face, scan, some, reach, standard) for face in faces]
     return measured_together([lot for lot in lots if len(lot)])
 
 

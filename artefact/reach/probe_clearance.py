@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.artefact.body import Standard
+from matstd.artefact.body import Column, Standard
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array, unit
 
@@ -136,7 +136,8 @@ def clearance(
 
     The cylinders are covered by balls, which are compared with the distance to every body, so
     the figure errs on the safe side. Where a cover of few balls leaves less than `enough`, a
-    finer one is tried. The tip's ball itself is not looked at: it is meant to touch.
+    finer one is tried, and the nearest point of a face is sought instead of a bound of its
+    distance. The tip's ball itself is not looked at: it is meant to touch.
 
     Args:
         standard: In the artefact frame.
@@ -149,19 +150,26 @@ def clearance(
     room, nearest = _room(standard, centre, axis, *probe.rough_cover())
     tight = np.flatnonzero(room < enough)
     if len(tight):
-        finer, body = _room(standard, centre[tight], axis[tight], *probe.fine_cover())
+        cover = probe.fine_cover()
+        finer, body = _room(standard, centre[tight], axis[tight], *cover, enough)
         better = finer > room[tight]
         room[tight[better]], nearest[tight[better]] = finer[better], body[better]
     return Clearance(room, nearest)
 
 
 def _room(
-    standard: Standard, centre: Array, axis: Array, places: Array, radii: Array
+    standard: Standard,
+    centre: Array,
+    axis: Array,
+    places: Array,
+    radii: Array,
+    enough: float = -np.inf,
 ) -> tuple[Array, np.ndarray]:
     """Smallest distance of the covering balls from the standard (N,), and the body it is to.
 
     The body whose middle is nearest is looked at first, and after it only those that can be nearer
-    by the balls that hold them: two or three, where a standard has twenty.
+    by the balls that hold them: two or three, where a standard has twenty. Covering balls with less
+    room than `enough` above a face are compared with its nearest point.
     """
     room = np.full(len(centre), np.inf)
     nearest = np.zeros(len(centre), dtype=int)
@@ -179,6 +187,10 @@ def _room(
             for b, body in enumerate(bodies):
                 near = np.flatnonzero(((first == b) == is_first) & (least[:, b] < best))
                 apart = body.distance(points[near].reshape(-1, 3)).reshape(-1, len(radii))
+                if isinstance(body, Column) and np.any(apart - radii < enough):
+                    few = np.nonzero(apart - radii < enough)
+                    nearer = body.distance_from_lid(points[near][few])
+                    apart[few] = np.maximum(apart[few], nearer)
                 gap = (apart - radii).min(axis=1)
                 closer = gap < best[near]
                 best[near[closer]], which[near[closer]] = gap[closer], b

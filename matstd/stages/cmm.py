@@ -1,7 +1,7 @@
 """The program of a coordinate measuring machine for a standard and its drawing."""
 
 from matstd.artefact.body import Standard
-from matstd.artefact.certify import Limits, dmis_program
+from matstd.artefact.certify import dmis_program
 from matstd.cad_out.details import datum_touches, engraved_on, widths
 
 
@@ -12,13 +12,5 @@ def cmm_program(standard: Standard, orientation: float = 0.0) -> str:
         standard: As designed.
         orientation: Of the standard on the table of the CMM, turned about z, degrees.
     """
-    zone = widths()
-    limits = Limits(
-        flatness=zone["flatness"],
-        squareness=zone["perpendicularity"],
-        profile=zone["profile"],
-        position=zone["position"],
-        diameter=zone["diameter"],
-    )
     engraved = engraved_on(standard)
-    return dmis_program(standard, datum_touches(standard), engraved, limits, orientation)
+    return dmis_program(standard, datum_touches(standard), engraved, widths(), orientation)

@@ -105,8 +105,9 @@ def _made(
     _check_first_mode(brief, stiffness)
     plans = _plans(brief, placement)
     if placement.family is Family.WAVY and brief.options.scan is not None:
-        face, at = placement.standard.patches[0], scan_poses(placement.touches)
-        write_scan_path(folder / "scan_path.csv", face, brief.options.scan, at, brief.reach)
+        standard, at = placement.standard, scan_poses(placement.touches)
+        path, scan = folder / "scan_path.csv", brief.options.scan
+        write_scan_path(path, standard.patches[0], scan, at, brief.reach, standard)
     with ThreadPoolExecutor(1) as kernel:  # it works in processes of its own
         cad = kernel.submit(_export, brief, placement.standard, folder, proving.q)
         _write_standard(folder, placement.standard)

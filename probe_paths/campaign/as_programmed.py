@@ -36,13 +36,10 @@ def check_numbers(parts: Sequence[LogPart]) -> None:
     """
     dated = sorted((p for p in parts if p.begin.year != UNDATED.year), key=lambda p: p.begin)
     if dated and dated[-1].begin - dated[0].begin > LONGEST_CAMPAIGN:
-        raise BadFile(
-            dated[0].path,
-            "DATE",
-            f"{dated[0].begin.date()}, where {dated[-1].path.name} has {dated[-1].begin.date()}",
-            f"logs of one campaign, within {LONGEST_CAMPAIGN.days} days; evaluate them apart, or "
-            "correct the clock of the control",
-        )
+        first, last = dated[0], dated[-1]
+        found = f"{first.begin.date()}, where {last.path.name} has {last.begin.date()}"
+        expected = f"logs of one campaign, within {LONGEST_CAMPAIGN.days} days; evaluate them apart"
+        raise BadFile(first.path, "DATE", found, f"{expected}, or correct the clock of the control")
     for part in (p for p in parts if len(p.number) >= FEWEST):
         _check_steps(part)
     for key in ("tool", "preset"):
@@ -75,13 +72,10 @@ def _check_common(key: str, parts: Sequence[LogPart]) -> None:
 def check_as_programmed(
     parts: Sequence[LogPart], programs: Mapping[str, ReadProgram], chain: Chain
 ) -> None:
-    """Refuse logs that contradict the programs that wrote them.
+    """Refuse logs that contradict the programs that wrote them; raises BadFile.
 
     Args:
         programs: By name; logs of other programs are ignored.
-
-    Raises:
-        BadFile: File and line, what stood there, what the program has.
     """
     for part in parts:
         program = programs.get(part.program)

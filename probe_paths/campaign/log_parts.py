@@ -79,12 +79,9 @@ def _check_alike(one: LogPart, other: LogPart) -> None:
     differ = np.any(np.abs(one.xyz[i] - other.xyz[k]) > NM, axis=1)
     if np.any(differ):
         row = int(np.argmax(differ))
-        raise BadFile(
-            other.path,
-            f"line {other.line[k[row]]}",
-            f"touch {numbers[row]} of the run of {other.program} at {other.begin}",
-            f"the same numbers as in {one.path}, line {one.line[i[row]]}",
-        )
+        found = f"touch {numbers[row]} of the run of {other.program} at {other.begin}"
+        expected = f"the same numbers as in {one.path}, line {one.line[i[row]]}"
+        raise BadFile(other.path, f"line {other.line[k[row]]}", found, expected)
 
 
 def checked_parts(parts: Sequence[LogPart], standard: Standard) -> tuple[list[LogPart], list[str]]:

@@ -95,15 +95,11 @@ def interpret(
     probe: Probe | None = None,
     dialect: Dialect | None = None,
 ) -> ReadProgram:
-    """Execute the text of a program.
+    """Execute the text of a program; arguments and errors as of `read_program`.
 
     Args:
         path: Its name: it must agree with the program's.
         masks: Where FN 16 finds its masks.
-        probe: In the spindle; None takes the one that the program's head states.
-
-    Raises:
-        BadFile: Whatever the control, or a cautious operator, would not run.
     """
     blocks = read_blocks(data, path, dialect)
     name = program_name(blocks, path)

@@ -95,11 +95,9 @@ def _turn(state: State, block: Block, target: Array, letters: list[str], rotary:
         column = state.frame.chain.axis_index(letter)
         step = target[column] - state.q[column]
         if state.is_shorter_way and abs(step) > np.pi + SAME:
-            raise state.refusal(
-                block,
-                "at most 180 degrees, or the control takes the other way round",
-                f"{letter} turning by {step / DEG:.1f} degrees with M126 active",
-            )
+            expected = "at most 180 degrees, or the control takes the other way round"
+            found = f"{letter} turning by {step / DEG:.1f} degrees with M126 active"
+            raise state.refusal(block, expected, found)
         if np.isfinite(step) and abs(step) > SAME:
             state.side[column] = np.sign(step)
 

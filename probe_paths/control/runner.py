@@ -233,11 +233,8 @@ class Runner:
         # before a touch its status must be set to the opposite of the expected one
         if not isinstance(left_over, float) or (left_over >= 0.0) is not is_air:
             unset = state.terms.unset.format(q=result + STATUS)
-            raise state.refusal(
-                block,
-                f"{unset.replace('-1', '+0') if is_air else unset} before it",
-                "the status of the touch before",
-            )
+            expected = f"{unset.replace('-1', '+0') if is_air else unset} before it"
+            raise state.refusal(block, expected, "the status of the touch before")
         state.untested, state.way_back = touch.index, state.q.copy()
         state.is_synchronous = False
         self.touches.append(touch)
@@ -251,11 +248,9 @@ class Runner:
         for q, column, name in zip((Q.SIDE_1, Q.SIDE_2), state.frame.rotary, names, strict=False):
             stated = state.whole(block, q, f"side of {name}")
             if stated != touch.side[column]:
-                raise state.refusal(
-                    block,
-                    f"{touch.side[column]:+.0f}, as it last moved",
-                    f"{name} said to come from side {stated:+d}",
-                )
+                expected = f"{touch.side[column]:+.0f}, as it last moved"
+                found = f"{name} said to come from side {stated:+d}"
+                raise state.refusal(block, expected, found)
 
     def _print(self, block: Block, state: State) -> Print:
         """FN 16 with the present values."""
@@ -310,11 +305,9 @@ class Runner:
         """Refuse a stop behind another label than that of its alarm."""
         label = next(b for b in reversed(self.blocks[:i]) if b.kind is Kind.LABEL)
         if label.word("label") != str(int(fault.label)):
-            raise state.refusal(
-                self.blocks[i],
-                f"LBL {fault.label:d}, the alarm of that",
-                f"a stop behind LBL {label.word('label')} where {fault.what} is off",
-            )
+            expected = f"LBL {fault.label:d}, the alarm of that"
+            found = f"a stop behind LBL {label.word('label')} where {fault.what} is off"
+            raise state.refusal(self.blocks[i], expected, found)
 
     def _check_halt(self, block: Block, steps: list[Step], is_branch: bool) -> None:
         """Refuse an early end other than after a touch without contact and a retract."""

@@ -104,11 +104,9 @@ class State:
     def check_is_as_planned(self, block: Block) -> None:
         """Refuse a move down while a fault has not been tested."""
         if self.fault is not None:
-            raise self.refusal(
-                block,
-                f"a test that stops the program before it (LBL {self.fault.label:d})",
-                f"{block.text!r} although {self.fault.what} is off by {self.off:+g}",
-            )
+            expected = f"a test that stops the program before it (LBL {self.fault.label:d})"
+            found = f"{block.text!r} although {self.fault.what} is off by {self.off:+g}"
+            raise self.refusal(block, expected, found)
 
     def check_turn_was_tested(self, block: Block) -> None:
         """Refuse a touch before a test of the rotary axes, where a control may turn otherwise.
@@ -136,11 +134,9 @@ class State:
     def check_status_was_tested(self, block: Block) -> None:
         """Refuse a block between a touch and the test of its status."""
         if self.untested is not None:
-            raise self.refusal(
-                block,
-                f"{self.terms.status} first",
-                f"{block.text!r} after touch {self.untested + 1}",
-            )
+            expected = f"{self.terms.status} first"
+            found = f"{block.text!r} after touch {self.untested + 1}"
+            raise self.refusal(block, expected, found)
 
     def write(self, block: Block, q: int, value: Value) -> None:
         """Set a Q parameter of the free range."""
@@ -175,8 +171,6 @@ class State:
             value = target[chain.axis_index(letter)]
             if np.isfinite(value) and not low - SAME <= value <= high + SAME:
                 scale = self.frame.coordinate(letter, 1.0) if letter not in "XYZ" else 1.0
-                raise self.refusal(
-                    block,
-                    f"{low * scale:g} to {high * scale:g}, the travel of {letter}",
-                    f"{letter} reading {value * scale:.4f}",
-                )
+                expected = f"{low * scale:g} to {high * scale:g}, the travel of {letter}"
+                found = f"{letter} reading {value * scale:.4f}"
+                raise self.refusal(block, expected, found)

@@ -41,9 +41,8 @@ def draw_dimensions(sheet: Sheet, views: Views, standard: Standard, tall: float)
     corner = np.array([a, b]) - radius * (1.0 - np.sqrt(0.5))
     tip = views.top.at(corner)[0]
     round_plate = radius > 0.99 * min(a, b)
-    sheet.leader(
-        tip, np.add(tip, [6.0, 6.0]), f"R{radius:g}" if round_plate else f"4 x R{radius:g}"
-    )
+    elbow = views.top.at([[a, b]])[0] + [2.0, 5.0]  # above the line of the dimension beside it
+    sheet.leader(tip, elbow, f"R{radius:g}" if round_plate else f"4 x R{radius:g}")
 
 
 def draw_datums(sheet: Sheet, views: Views, standard: Standard, details: Details) -> None:

@@ -62,7 +62,8 @@ class Issuer:
 def blocks_of(standard: Standard, details: Details, make: Construction) -> list[Block]:
     """Tables of faces, balls, datum targets, holes and parts, then every note, in this order."""
     joints = _joints(standard, details) if make is Construction.PARTS else None
-    tables = [_balls(standard, details, joints), _targets(standard), _holes(standard, details)]
+    tables = [_balls(standard, details, joints), _targets(standard)]
+    tables.append(_holes(standard, details, joints))
     if standard.patches:
         tables.insert(0, _faces(standard))
     tables.append(_parts(standard, details, joints))
@@ -83,6 +84,11 @@ def _table(title: str, widths: tuple[float, ...], rows: list[list[str]]) -> Bloc
     return Block(COLUMN, _HEADING + ROW * len(rows), draw)
 
 
+def _place(coordinate: float) -> str:
+    """A coordinate to a tenth of a millimetre, zero without a sign."""
+    return f"{round(float(coordinate), 1) + 0.0:.1f}"
+
+
 def _faces(standard: Standard) -> Block:
     head = ["face", "x", "y", "z", "size", "slope", "R", "tests; dominant errors"]
     title = "Freeform faces (middle, steepest slope, least concave radius R)"
@@ -96,7 +102,7 @@ def _face_row(patch: FreeformPatch) -> list[str]:
     shares = ", ".join(f"{e.name} {100 * e.share:.0f} %" for e in patch.errors[:_ERRORS])
     return [
         patch.name,
-        *(f"{c:.1f}" for c in (x, y, z)),
+        *map(_place, (x, y, z)),
         f"{2 * patch.half_size[0]:g} x {2 * patch.half_size[1]:g}",
         f"{max_slope(patch) / DEG:.0f}°",
         f"{radius:.{1 if radius < 1e3 else 0}f}" if radius < _FLAT else "convex",
@@ -117,7 +123,7 @@ def _ball_row(ball: DatumSphere, details: Details, threads: dict[str, str]) -> l
     seat = details.seats[ball.name]
     return [
         ball.name,
-        *(f"{c:.1f}" for c in ball.centre),
+        *map(_place, ball.centre),
         f"{2 * ball.radius:g}",
         f"Ø{2 * ball.foot_radius:.1f}",
         f"Ø{2 * seat.top_radius:.2f}",
@@ -133,23 +139,28 @@ def _targets(standard: Standard) -> Block:
     rows = [["target", "x", "y", "z", "on"]]
     for side, (points, _) in datum_touches(standard).items():
         for name, (x, y, z) in zip(names[side], points, strict=True):
-            rows.append([name, f"{x:.1f}", f"{y:.1f}", f"{z:g}", f"datum {name[0]}: {side}"])
+            rows.append([name, _place(x), _place(y), f"{z:g}", f"datum {name[0]}: {side}"])
     return _table("Datum targets (theoretically exact, ISO 5459)", (18, 18, 18, 18, 82), rows)
 
 
-def _holes(standard: Standard, details: Details) -> Block:
+def _holes(standard: Standard, details: Details, joints: Joints | None) -> Block:
     top = f"{standard.base.thickness:g}"
     pads = {(pad.x, pad.y): f"Ø{2 * pad.radius:g}" for pad in details.pads}
     rows = [["hole", "x", "y", "z", "through", "counterbore", "pad", "for"]]
     for h in standard.holes:
         sizes = [f"Ø{2 * h.radius:g}", f"Ø{2 * h.bore_radius:g} x {h.bore_depth:g}"]
         sizes.append(pads.get((h.x, h.y), ""))
-        rows.append([h.name, f"{h.x:.1f}", f"{h.y:.1f}", top, *sizes, "screw to the table"])
+        rows.append([h.name, _place(h.x), _place(h.y), top, *sizes, "screw to the table"])
     for bore in details.bores:
         x, y, z = bore.mouth
         sizes = [f"Ø{2 * bore.radius:g} x {bore.depth:g}", bore.thread, ""]
         purpose = "eyebolt" if bore.thread else "thermometer, at +y"
-        rows.append([bore.name, f"{x:.1f}", f"{y:.1f}", f"{z:g}", *sizes, purpose])
+        rows.append([bore.name, _place(x), _place(y), f"{z:g}", *sizes, purpose])
+    for block in joints.blocks if joints else ():
+        below = [f"Ø{block.through:g}", f"Ø{block.head:g} x {block.sunk:g}", f"Ø{2 * block.pad:g}"]
+        for k, (x, y) in enumerate(block.places, 1):
+            purpose = f"M{block.thread:g} of the block, from below"
+            rows.append([f"{block.face} S{k}", _place(x), _place(y), "0", *below, purpose])
     return _table("Holes (middles of their mouths)", (18, 15, 15, 9, 21, 23, 14, 39), rows)
 
 

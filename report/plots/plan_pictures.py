@@ -40,7 +40,8 @@ def draw_setup(plan: TouchPlan) -> Figure:
                      textcoords="offset points")  # fmt: skip
     for at, name in zip(np.eye(3)[:2] * 60.0, "xy", strict=True):
         ends = apply(T_face_artefact, np.array([np.zeros(3), at]))
-        top.annotate(name, ends[0, :2], ends[1, :2], color=INK,
+        # centred on the line of the arrow, which else leans by half of the letter
+        top.annotate(name, ends[0, :2], ends[1, :2], color=INK, ha="center", va="center",
                      arrowprops={"arrowstyle": "<-", "color": INK})  # fmt: skip
     top.set_aspect("equal")
     top.set_xlabel("x of the table in mm")

@@ -3,10 +3,16 @@
 import numpy as np
 import pytest
 
+from matstd.artefact.body.limits import Limits
+from matstd.artefact.body.solids import column
+from matstd.artefact.layout.blank import Blank
+from matstd.artefact.layout.wavy import Wave, wavy_face
 from matstd.artefact.reach.probe_clearance import ProbeShape, clearance
 from matstd.artefact.reach.workshop import Solid
 from matstd.twin.errors import DesignError, ShapeMismatch
 from matstd.twin.frames import unit
+from matstd.twin.sampling import grid_points
+from matstd.twin.units import DEG
 
 PROBE = ProbeShape(3.0, ((50.0, 1.5), (80.0, 10.0), (160.0, 31.0)))
 BALL = 3.0
@@ -43,6 +49,26 @@ def cylinder_room(cloud, centre, axis):
         rooms.append((outside + np.minimum(np.maximum(beside, beyond), 0.0)).min())
         low = end
     return min(rooms)
+
+
+def test_distance_from_a_wavy_lid_is_that_of_a_dense_sampling():
+    """The bound by the steepest slope of a lid falls short by millimetres where it is gentle."""
+    wave = Wave((0.0, 0.0), (60.0, 60.0), 60.0, 48.0 * DEG, 0.9)
+    face = wavy_face(
+        "FF1", Blank(limits=Limits(min_concave_radius=8.0, max_slope=50.0 * DEG)), wave
+    )
+    lid, rng = column(face), np.random.default_rng(3)
+    place = rng.uniform(-50.0, 50.0, (40, 2))
+    points = face.point(place) + np.outer(rng.uniform(0.5, 7.0, 40), [0.0, 0.0, 1.0])
+    near = grid_points(*[np.arange(-8.0, 8.01, 0.1)] * 2)
+    found, bound = lid.distance_from_lid(points), lid.distance(points)
+    short = []
+    for at, point, mine, low in zip(place, points, found, bound, strict=True):
+        exact = np.linalg.norm(face.point(at + near) - point, axis=1).min()
+        assert mine <= exact
+        assert mine > min(exact, face.sharpest_valley) - 0.01
+        short.append(exact - low)
+    assert max(short) > 1.0
 
 
 def test_clearance_is_from_below_and_close(standard):

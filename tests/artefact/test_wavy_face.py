@@ -11,6 +11,7 @@ from matstd.artefact.body.standard import Base
 from matstd.artefact.hidden.scan_lines import Scan, scanned
 from matstd.artefact.hidden.scan_path import scan_path, write_scan_path
 from matstd.artefact.layout.blank import Blank
+from matstd.artefact.layout.rival_artefacts import with_spheres
 from matstd.artefact.layout.upright import holes_on
 from matstd.artefact.layout.wavy import Wave, wavy_face
 from matstd.artefact.place.family import Family, FamilyFigures, chosen_family, flat_pads
@@ -19,6 +20,12 @@ from matstd.twin.units import DEG, UM
 
 BLANK = Blank()
 WAVE = Wave((0.0, 0.0), (80.0, 70.0), 60.0, 45.0 * DEG)
+AT_ZERO = np.array([[0.0]])  # table pose
+
+
+def with_face(face, *centres):
+    """A standard of the face and balls on posts."""
+    return replace(with_spheres(BLANK, [np.array(c) for c in centres]), patches=(face,))
 
 
 @pytest.mark.parametrize("flatness", [0.0, 0.9])
@@ -118,7 +125,7 @@ def test_means_of_a_scan_have_the_noise_of_their_points(criterion):
     assert scan.u_of_mean == pytest.approx(2.0 * UM * noise.mean(axis=1).std(), rel=0.02)
     assert Scan(pitch=0.8, memory=0.0).u_of_mean == pytest.approx(2.0 * UM / np.sqrt(10.0))
     face = wavy_face("FF1", replace(BLANK, base=Base((100.0, 100.0))), WAVE)
-    lines = scanned(face, Scan(), np.array([[0.0]]), criterion.reach)
+    lines = scanned(face, Scan(), AT_ZERO, criterion.reach, with_face(face))
     density = 4.0 * 77.0 * 67.0 / len(lines)  # area of one mean
     assert density == pytest.approx(10.0 * 8.0, rel=0.12)
     assert scan.points(face) > 5000
@@ -126,15 +133,16 @@ def test_means_of_a_scan_have_the_noise_of_their_points(criterion):
 
 
 def test_the_path_of_a_scan_runs_forth_and_back(criterion, tmp_path):
-    face, scan, pose = wavy_face("FF1", BLANK, WAVE), Scan(between=10.0), np.array([[0.0]])
-    points, line = scan_path(face, scan, pose, criterion.reach)
+    face, scan = wavy_face("FF1", BLANK, WAVE), Scan(between=10.0)
+    how = face, scan, AT_ZERO, criterion.reach, with_face(face)
+    points, line = scan_path(*how)
     assert len(points) == pytest.approx(scan.points(face), rel=0.05)
     assert line[0] == 1
     assert set(np.diff(line).tolist()) == {0, 1}
     steps = np.linalg.norm(np.diff(points.point, axis=0), axis=1)
     assert steps.max() < 1.5 * scan.between / np.cos(45.0 * DEG)  # never back over the face
     assert steps[np.diff(line) == 0].max() < 1.5 * scan.pitch / np.cos(45.0 * DEG)
-    count = write_scan_path(tmp_path / "scan.csv", face, scan, pose, criterion.reach)
+    count = write_scan_path(tmp_path / "scan.csv", *how)
     comment, head, *rows = (tmp_path / "scan.csv").read_text(encoding="utf-8").splitlines()
     assert count == len(rows) == len(points)
     assert "contact points and normals in the artefact frame" in comment
@@ -148,16 +156,29 @@ def test_the_path_of_a_scan_runs_forth_and_back(criterion, tmp_path):
 def test_a_gap_in_a_line_begins_a_new_one(criterion):
     """Slopes that the probe cannot touch are left out, and no number spans them."""
     steep = replace(criterion.reach, steepest=30.0 * DEG)
-    points, line = scan_path(
-        wavy_face("FF1", BLANK, WAVE), Scan(between=10.0), np.array([[0.0]]), steep
-    )
-    whole = scan_path(
-        wavy_face("FF1", BLANK, WAVE), Scan(between=10.0), np.array([[0.0]]), criterion.reach
-    )
+    face = wavy_face("FF1", BLANK, WAVE)
+    how = face, Scan(between=10.0), AT_ZERO
+    points, line = scan_path(*how, steep, with_face(face))
+    whole = scan_path(*how, criterion.reach, with_face(face))
     assert len(points) < 0.8 * len(whole[0])
     assert line.max() > 2 * whole[1].max()
     steps = np.linalg.norm(np.diff(points.point, axis=0), axis=1)
     assert steps[np.diff(line) == 0].max() < 1.5 * 2.5 / np.cos(45.0 * DEG)
+
+
+def test_the_body_of_the_probe_clears_what_stands_beside_a_scan(criterion):
+    """A ball higher than the stylus is long keeps the body of the probe away, not the tip alone."""
+    face, tall = wavy_face("FF1", BLANK, WAVE), (110.0, 0.0, 180.0)
+    how, reach = (face, Scan(between=4.0), AT_ZERO), criterion.reach
+    points, _ = scan_path(*how, reach, with_face(face, tall))
+    free, _ = scan_path(*how, reach, with_face(face))
+    assert 0.5 * len(free) < len(points) < len(free)
+    ball = points.point + reach.radius * points.normal
+    beside = np.hypot(ball[:, 0] - tall[0], ball[:, 1] - tall[1])
+    high = tall[2] - ball[:, 2]
+    radius = np.array([next(r for end, r in reach.shape.cylinders if end > h) for h in high])
+    assert radius.max() > 20.0  # the body, not the stylus, is beside the ball
+    assert np.all(beside > radius + 12.5 + reach.room - 1e-9)
 
 
 def test_screws_stand_round_the_middle():
