@@ -209,9 +209,7 @@ def chosen_by_prediction(
         progress(done / len(ways.names), "choice by prediction")
         rules.append(ways.judged(name, task))
     best = clearly_best(rules, lambda rule: rule.error)
-    drift = next((rule.error for rule in rules if rule.name == UNRECORDED), np.inf)
-    # a drift has no name, and what is named in its place must predict far better
-    if best is not rules[0] and best.error > POLICY.error_share_beside_memory * drift:
+    if best.name == UNRECORDED:
         return None
     if remembers:
         searched = ways.judged(SINGLE, task, final.effects)

@@ -26,10 +26,8 @@ class Policy:
             less is beyond chance too, but would improve a prediction by half a per cent at most.
         error_share: Error of held-out blocks with the richer of two explanations over that with the
             simpler, below which it replaces it. Blocks are few, and 3 % are within their scatter.
-        error_share_beside_memory: The same where the simpler one is noise with memory or a driver
-            that was not recorded, found from all rows in sight of them: of a warm standard without
-            its sensor a field of all others predicted blocks of that day with 86 % of the error,
-            and another day worse than nothing.
+        error_share_beside_memory: The same where the simpler one is noise with memory, found from
+            all rows in sight of them.
         log_odds_unrecorded: Log odds before any measurement that what a run follows was not
             recorded, against any one recorded driver with any lag; the grid comes on top.
         log_odds_open_driver: Log odds against a driver that was not recorded below which a law is
