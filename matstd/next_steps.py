@@ -42,7 +42,7 @@ def _design(args: Namespace) -> Step:
     kinds = (out / "programs").glob("*_A_*.*")
     program = next((f"*_A_*{p.suffix}" for p in sorted(kinds) if p.suffix in (".H", ".ngc")), "*.H")
     where = ["--standard", out / "standard.toml", "--machine", out / "machine.toml"]
-    run = ["--random-errors", "-o", _beside(args.output, "run.csv")]
+    run = ["--random-errors", "--body-degC", "20", "-o", _beside(args.output, "run.csv")]
     words = called("simulate", *where, *run, more=f"{shlex.quote(str(out / 'programs'))}/{program}")
     sheet = out / "setup" / "setup.html"
     return words, f"a trial on the twin; on the machine follow {sheet}"
@@ -121,6 +121,25 @@ def _volumetric(args: Namespace) -> Step:
     return words, "the machine with these errors in motion"
 
 
+def _show(args: Namespace) -> Step:
+    """Of a machine file that its user has just written."""
+    if args.errors or args.model or args.program or not Path(args.machine).exists():
+        return None
+    project = _beside(args.machine, "project.toml")
+    if project.exists():
+        return called("design", project, "-o", _beside(args.machine, "out")), ""
+    words = called("new", "project", "--machine", args.machine, "-o", project)
+    return words, "if every axis turns about its place and in its direction"
+
+
+def _contributions(args: Namespace) -> Step:
+    if args.program is None or args.errors:
+        return None
+    tool = ["--tool-length", f"{args.tool_length:g}"] if args.tool_length is not None else []
+    out = f"compensated{Path(args.program).suffix}"
+    return called("compensate", args.model, *tool, "--program", args.program, "-o", out), ""
+
+
 def _new(args: Namespace) -> Step:
     if args.output is None:
         return None
@@ -148,7 +167,9 @@ _AFTER: dict[str, Callable[[Namespace], Step]] = {
     "learn": _learn,
     "thermal": _thermal,
     "compensate": _compensate,
+    "contributions": _contributions,
     "volumetric": _volumetric,
+    "show": _show,
     "new": _new,
 }
 
@@ -157,8 +178,6 @@ WITHOUT = {
     "diagnose": "its verdict decides: `args.next`",
     "trend": "what changed decides: `args.next`",
     "serve": "ends when it is stopped",
-    "contributions": "its page is the end of a question",
-    "show": "its page is the end of a question",
     "machines": "prints a file or a list",
     "effects": "prints a list",
 }

@@ -1,4 +1,4 @@
-"""Progress of a command on standard error, with the time left: bars in a terminal, else lines."""
+"""Progress of a command on standard error, with the time left: a bar in a terminal, else lines."""
 
 from __future__ import annotations
 
@@ -97,10 +97,6 @@ class TimeLeft:
 PERIOD = 10.0  # seconds between two lines where there is no terminal
 
 
-TIME_LEFT_TOLERANCE = 1.2
-"""Times the time left that was last shown, up to which a new estimate counts as the same."""
-
-
 class Plan(NamedTuple):
     """Stages of a command as they were measured."""
 
@@ -110,47 +106,37 @@ class Plan(NamedTuple):
 
 
 @dataclass(slots=True)
-class _State:
-    """What the command is doing, and how long the rest of the stage takes.
+class Watch:
+    """What a command is doing, how much of it is done, and how long the rest takes."""
 
-    The pace is that up to the last report: between two reports the time left runs down by the
-    clock. It never grows: where a stage turns out slower than it began, none is shown until an
-    estimate is below the last one again.
-    """
-
+    left: TimeLeft  # of the whole; of the stage where the stages of the command are not known
+    is_whole: bool
     stage: str = "reading"
-    done: int = 0
-    total: int = 0
-    since: float = 0.0
-    reported: float = 0.0
-    shown: float = math.inf
+    turn: int = 0  # of a stage that goes in turns
+
+    @classmethod
+    def of(cls, plan: Plan | None, now: float) -> Watch:
+        """At the beginning of a command, with its plan if it has one."""
+        left = TimeLeft({}, math.inf, now) if plan is None else TimeLeft(*plan, now)
+        return cls(left, plan is not None)
 
     def report(self, stage: str, done: int, total: int, now: float) -> None:
-        """Take what the work reports."""
-        if stage != self.stage:
-            self.stage, self.since, self.shown = stage, now, math.inf
-        self.done, self.total, self.reported = done, total, now
-
-    def left(self, now: float) -> float | None:
-        """Seconds left of the stage; None where they cannot be estimated."""
-        if not 0 < self.done < self.total:
-            return None
-        whole = (self.reported - self.since) * self.total / self.done
-        left = self.since + whole - now
-        if not 0.0 < left <= TIME_LEFT_TOLERANCE * self.shown:
-            return None
-        self.shown = min(left, self.shown)
-        return self.shown
+        """Take what the work reports; without a plan a new stage begins its own estimate."""
+        if stage != self.stage and not self.is_whole:
+            self.left = TimeLeft({stage: 1.0}, math.inf, now)
+        self.stage, self.turn = stage, 0 if total else done
+        self.left.report(stage, done, total, now)
 
     def words(self, now: float) -> str:
-        """The stage, how much of it is done, and how long the rest of it takes."""
-        if not self.total and self.done > 1:
-            return f"{self.stage}, turn {self.done}"
-        if not 0 < self.done < self.total:
-            return self.stage
-        left = self.left(now)
-        rest = "" if left is None else f", about {clock(left)} left"
-        return f"{self.stage}: {100 * self.done // self.total} %{rest}"
+        """`turn 2`, `25 %, about 9 s left`; "" while nothing is known."""
+        if self.turn > 1:
+            return f"turn {self.turn}"
+        done, seconds = self.left.fraction(now), self.left.left(now)
+        if not 0.0 < done < 1.0:
+            return ""
+        # below a second the estimate is used up: nothing is promised
+        rest = "" if seconds is None or seconds < 1.0 else f", about {clock(seconds)} left"
+        return f"{int(100.0 * done)} %{' of the whole' if self.is_whole else ''}{rest}"
 
 
 def clock(seconds: float) -> str:
@@ -185,138 +171,63 @@ def turns(show: Progress) -> Callable[[float, str], None]:
 def stages(plan: Plan | None = None) -> Iterator[Progress]:
     """A function (stage, done, total) that shows how far the work is and how long it still takes.
 
-    In a terminal every stage is a bar; elsewhere a line says every ten seconds what is being done,
-    also while a stage does not report, so that a log shows that the command lives.
+    A terminal shows a bar; elsewhere a line says every ten seconds what is being done, also while
+    a stage does not report, so that a log shows that the command lives.
 
     Args:
-        plan: Shares of the stages in a command whose stages are known: one bar shows the whole.
+        plan: Shares of the stages in a command whose stages are known: the bar shows the whole.
     """
     from rich.console import Console
 
-    watched = Console(stderr=True)
-    if plan is not None:
-        left = TimeLeft(plan.shares, plan.usual, time.monotonic())
-        with _bar(watched, left) if watched.is_terminal else _whole(sys.stderr, left) as show:
-            yield show
-        return
-    with _bars(watched) if watched.is_terminal else _lines(sys.stderr, PERIOD) as show:
+    watched, watch = Console(stderr=True), Watch.of(plan, time.monotonic())
+
+    def show(stage: str, done: int, total: int) -> None:
+        raise_if_asked()
+        watch.report(stage, done, total, time.monotonic())
+
+    with _bar(watched, watch) if watched.is_terminal else _lines(sys.stderr, watch):
         yield show
 
 
 @contextmanager
-def _bar(watched: Console, left: TimeLeft) -> Iterator[Progress]:
-    """One bar for the whole command, with the name of the stage."""
-    from rich.progress import BarColumn, ProgressColumn, Task, TextColumn, TimeElapsedColumn
+def _bar(watched: Console, watch: Watch) -> Iterator[None]:
+    """One bar for the whole command, or for the stage where its stages are not known."""
+    from rich.progress import BarColumn, ProgressColumn, Task, TimeElapsedColumn
     from rich.progress import Progress as Bars
     from rich.progress_bar import ProgressBar
     from rich.text import Text
 
-    class Whole(BarColumn):
+    class Stage(ProgressColumn):
+        def render(self, task: Task) -> Text:
+            return Text(f"{'done' if task.finished else watch.stage:<24}")
+
+    class Done(BarColumn):
         """The fraction done by the clock, also while a stage is silent."""
 
         def render(self, task: Task) -> ProgressBar:
-            done = 1.0 if task.finished else left.fraction(time.monotonic())
+            done = 1.0 if task.finished else watch.left.fraction(time.monotonic())
             return ProgressBar(total=1.0, completed=done, width=30)
 
     class Left(ProgressColumn):
-        """Percent and time left of the whole."""
-
         def render(self, task: Task) -> Text:
-            return Text("" if task.finished else _percent(left, time.monotonic()))
+            return Text("" if task.finished else watch.words(time.monotonic()))
 
-    columns = (TextColumn("{task.description}"), Whole(30), TimeElapsedColumn(), Left())
-    with Bars(*columns, console=watched) as bars:
-        whole = bars.add_task(f"{'':<24}", total=1)
-
-        def show(stage: str, done: int, total: int) -> None:
-            raise_if_asked()
-            left.report(stage, done, total, time.monotonic())
-            bars.update(whole, description=f"{stage:<24}")
-
-        yield show
-        bars.update(whole, completed=1, description=f"{'done':<24}")
+    with Bars(Stage(), Done(30), TimeElapsedColumn(), Left(), console=watched) as bars:
+        whole = bars.add_task("", total=1)
+        yield
+        bars.update(whole, completed=1)
 
 
 @contextmanager
-def _whole(out: TextIO, left: TimeLeft, period: float = PERIOD) -> Iterator[Progress]:
-    """Lines such as `[ 70 s] placement: 31 % of the whole, about 2:35 min left`."""
-    stage = "reading"
-
-    def show(name: str, done: int, total: int) -> None:
-        nonlocal stage
-        raise_if_asked()
-        stage = name
-        left.report(name, done, total, time.monotonic())
-
-    with _by_the_clock(out, period, lambda now: f"{stage}: {_percent(left, now)}"):
-        yield show
-
-
-def _percent(left: TimeLeft, now: float) -> str:
-    """`31 % of the whole, about 2:35 min left`."""
-    seconds = left.left(now)
-    rest = "" if seconds is None else f", about {clock(seconds)} left"
-    return f"{int(100.0 * left.fraction(now))} % of the whole{rest}"
-
-
-@contextmanager
-def _bars(watched: Console) -> Iterator[Progress]:
-    from rich.progress import BarColumn, ProgressColumn, Task, TaskID, TextColumn, TimeElapsedColumn
-    from rich.progress import Progress as Bars
-    from rich.text import Text
-
-    state = _State(since=time.monotonic())
-
-    class Left(ProgressColumn):
-        """Time left of the stage that is being worked on."""
-
-        def render(self, task: Task) -> Text:
-            left = None if task.finished else state.left(time.monotonic())
-            return Text("" if left is None else f"about {clock(left)} left")
-
-    columns = (TextColumn("{task.description}"), BarColumn(30), TimeElapsedColumn(), Left())
-    with Bars(*columns, console=watched) as bars:
-        known: dict[str, TaskID] = {}
-
-        def finish(but: str | None = None) -> None:
-            for name, task in known.items():
-                if name != but:
-                    bars.update(task, completed=bars.tasks[task].total)
-
-        def show(stage: str, done: int, total: int) -> None:
-            raise_if_asked()
-            finish(but=stage)
-            state.report(stage, done, total, time.monotonic())
-            if stage not in known:
-                known[stage] = bars.add_task(f"{stage:<24}", total=max(total, 1))
-            bars.update(known[stage], completed=done if total else 0, total=max(total, 1))
-
-        yield show
-        finish()
-
-
-@contextmanager
-def _lines(out: TextIO, period: float) -> Iterator[Progress]:
-    """Lines such as `[ 70 s] placement: 50 %, about 60 s left`."""
-    state = _State(since=time.monotonic())
-
-    def show(stage: str, done: int, total: int) -> None:
-        raise_if_asked()
-        state.report(stage, done, total, time.monotonic())
-
-    with _by_the_clock(out, period, state.words):
-        yield show
-
-
-@contextmanager
-def _by_the_clock(out: TextIO, period: float, words: Callable[[float], str]) -> Iterator[None]:
-    """A line by the clock while the block works."""
+def _lines(out: TextIO, watch: Watch, period: float = PERIOD) -> Iterator[None]:
+    """Lines by the clock: `[ 70 s] placement: 31 % of the whole, about 2:35 min left`."""
     begun, over = time.monotonic(), threading.Event()
 
     def repeat() -> None:
         while not over.wait(period):
             now = time.monotonic()
-            print(f"[{now - begun:3.0f} s] {words(now)}", file=out, flush=True)
+            words = ": ".join(filter(None, (watch.stage, watch.words(now))))
+            print(f"[{now - begun:3.0f} s] {words}", file=out, flush=True)
 
     reporter = threading.Thread(target=repeat, daemon=True)
     reporter.start()

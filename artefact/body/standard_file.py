@@ -16,7 +16,7 @@ from matstd.artefact.body.material import Material
 from matstd.artefact.body.sag import DIRECTIONS, Sag
 from matstd.artefact.body.standard import Base, Core, Standard
 from matstd.twin.errors import BadFile, ShapeMismatch
-from matstd.twin.files import Table, check_format, checked, parse_toml, read_text, write_whole
+from matstd.twin.files import Table, checked, read_toml, write_whole
 from matstd.twin.units import UM
 
 FORMAT = "standard/1"
@@ -129,9 +129,7 @@ def read_standard(path: str | Path) -> Standard:
     Raises:
         BadFile: Unreadable, not TOML, another format, a key missing, unknown or out of range.
     """
-    data = parse_toml(read_text(path), path)
-    check_format(data, FORMAT, path)
-    return _standard(Path(path), checked(_File, data, path))
+    return _standard(Path(path), checked(_File, read_toml(path, FORMAT), path))
 
 
 def write_standard(path: str | Path, standard: Standard) -> None:
@@ -259,7 +257,7 @@ def _stated(table: Table) -> dict[str, Any]:
 
 def _written(record: Any, model: type[Table]) -> dict[str, Any]:
     """A record as the table that `_stated` reads; what is none, empty or false is left out."""
-    out = {}
+    out: dict[str, Any] = {}
     for name, field in model.model_fields.items():
         value = getattr(record, _UNIT.sub("", name))
         if isinstance(value, str | bool | None):

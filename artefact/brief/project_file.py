@@ -43,11 +43,9 @@ from matstd.twin.errors import BadFile
 from matstd.twin.files import (
     SetupTable,
     Table,
-    check_format,
     checked,
-    parse_toml,
-    read_machine,
-    read_text,
+    machine_beside,
+    read_toml,
 )
 from matstd.twin.machine import Chain
 from matstd.twin.record import Setup
@@ -174,8 +172,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
         BadFile: File, key, what stood there, what was expected.
     """
     path = Path(path)
-    data = parse_toml(read_text(path), path)
-    check_format(data, "project/1", path)
+    data = read_toml(path, "project/1")
     renamed = _rename_keys(data)
     if montecarlo and isinstance(data.setdefault("montecarlo", {}), dict):
         data["montecarlo"] |= montecarlo
@@ -189,7 +186,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
 def _resolved(table: ProjectTable, path: Path, remarks: tuple[str, ...]) -> Brief:
     """The project in base units; raises BadFile with all contradictions of its keys."""
     machine_path = path.parent / table.machine
-    chain = read_machine(machine_path)
+    chain = machine_beside(path, table.machine)
     wanted, shop = table.standard, table.workshop
     faults = Faults((*standard_faults(wanted, path), *material_faults(table.material, path)))
     with faults.collected():

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from matstd.twin.errors import BadFile
-from matstd.twin.files import Table, check_format, checked, parse_toml, read_text
+from matstd.twin.files import Table, checked, read_toml
 from matstd.twin.units import DEG, UM
 
 Range = Annotated[list[float], Field(min_length=2, max_length=2)]
@@ -74,9 +74,7 @@ def read_task(path: str | Path) -> Task:
     Raises:
         BadFile: Unreadable, no TOML, another format, a key unknown or out of range.
     """
-    data = parse_toml(read_text(path), path)
-    check_format(data, "task/1", path)
-    file = checked(TaskTable, data, path)
+    file = checked(TaskTable, read_toml(path, "task/1"), path)
     ranges = {"slope_deg": file.slope_deg, "curvature_1_m": file.curvature_1_m}
     for key, (low, high) in (ranges | {f"poses.{k}": v for k, v in file.poses.items()}).items():
         if low > high or (low < 0.0 and not key.startswith("poses")):

@@ -113,7 +113,8 @@ def _twist(errors: MachineErrors, datum: Datum, axis: str, readings: Array) -> A
 def _points(errors: MachineErrors, datum: Datum, axis: str, most: int) -> int:
     lever = _levers(errors.chain)
     needed = partial(_twist, errors, datum, axis)
-    return points_needed(span(errors.chain.link(axis)), most, needed, lever.__matmul__)
+    ends = span(errors.chain.link(axis))
+    return points_needed(ends, most, needed, lambda missed: float(missed @ lever))
 
 
 def points_needed(

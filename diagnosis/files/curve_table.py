@@ -9,7 +9,7 @@ from pydantic import Field
 from matstd.diagnosis.fit import file_unit
 from matstd.twin.files import Table
 from matstd.twin.frames import Array
-from matstd.twin.laws import Law
+from matstd.twin.laws import Law, law_of
 from matstd.twin.model import Effect
 from matstd.twin.numbers import significant
 from matstd.twin.units import DEG
@@ -59,9 +59,10 @@ def curve_entries(
     start = 0
     for effect in effects:
         count = len(effect.parameters)
-        if isinstance(effect, Law) and effect.is_curve_alone:
+        law = law_of(effect)
+        if law is not None and law.is_curve_alone:
             rows = slice(start, start + count)
-            out += _curves(effect, theta[rows], covariance[rows, rows])
+            out += _curves(law, theta[rows], covariance[rows, rows])
         start += count
     return out
 

@@ -20,9 +20,8 @@ from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files import (
     MachineTables,
     Table,
-    check_format,
     checked,
-    parse_toml,
+    parse_kind,
     read_text,
 )
 from matstd.twin.frames import Array
@@ -236,8 +235,7 @@ def parsed_model(
     text: str, path: str | Path, known: Sequence[Effect] = (), runs: Sequence[Run] = ()
 ) -> SavedModel:
     """The model of a text; arguments and errors as of `read_model`."""
-    data = parse_toml(text, path)
-    check_format(data, OLDER if data.get("format") == OLDER else FORMAT, path)
+    data = parse_kind(text, path, OLDER if f'"{OLDER}"' in text else FORMAT)
     table = checked(ModelTable, data, path)
     chain = table.machine.made(path, "machine")
     _check_hash(table.source, chain, path)

@@ -6,7 +6,7 @@ from enum import Enum
 
 from matstd.diagnosis.fit import Fit
 from matstd.twin.frames import Array
-from matstd.twin.laws import Law
+from matstd.twin.laws import law_of
 from matstd.twin.model import Effect, traits
 
 
@@ -49,9 +49,10 @@ def is_of_readings(effect: Effect) -> bool:
     A kink that a parabola straightens elsewhere is no error by itself, and neither is the parabola.
     """
     own = traits(effect)
-    if isinstance(effect, Law):
-        symbol = effect.carrier.symbol
-        return symbol is not None and {f.driver.name for f in effect.factors} == {symbol.link}
+    law = law_of(effect)
+    if law is not None:
+        symbol = law.carrier.symbol
+        return symbol is not None and {f.driver.name for f in law.factors} == {symbol.link}
     return is_geometry(effect) or (own.is_table and own.reversal is None)
 
 

@@ -13,12 +13,10 @@ from matstd.importers.sheets import ANGLES, Sheet, clock_times, has_clock, unit_
 from matstd.twin.errors import BadFile
 from matstd.twin.files import (
     Table,
-    check_format,
     checked,
-    parse_toml,
     read_machine,
     read_run,
-    read_text,
+    read_toml,
     write_whole,
 )
 from matstd.twin.frames import Array
@@ -71,7 +69,7 @@ def import_mapped(
     """
     text, left_out = mapped_run(sheet, path)
     if chain is None:
-        named = parse_toml(read_text(path), path)["head"].get("machine")
+        named = read_toml(path, "import/1")["head"].get("machine")
         if not isinstance(named, str):
             raise BadFile(path, "head.machine", "nothing", "the machine file, or --machine")
         chain = read_machine(folder / named)
@@ -100,9 +98,7 @@ def mapped_run(sheet: Sheet, path: str | Path) -> tuple[str, int]:
     """
     import tomli_w
 
-    data = parse_toml(read_text(path), path)
-    check_format(data, "import/1", path)
-    table = checked(MappingTable, data, path)
+    table = checked(MappingTable, read_toml(path, "import/1"), path)
     blocks = _blocks(table, path)
     each = [
         {name: _cells(sheet, name, how, f"{key}.{name}", path) for name, (how, key) in b.items()}

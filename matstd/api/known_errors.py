@@ -13,7 +13,7 @@ from matstd.diagnosis.files import SavedModel, model_of, read_model
 from matstd.diagnosis.fit import Fit
 from matstd.diagnosis.remarks import Remark
 from matstd.twin.errors import BadArgument, DesignError, UnknownEffect
-from matstd.twin.files import parse_toml, read_errors, read_machine, read_text
+from matstd.twin.files import kind_of, read_errors, read_machine, read_text
 from matstd.twin.library import parse_effect, parse_sized_effect
 
 
@@ -31,7 +31,7 @@ def machine_errors(
         known = model.estimates.mean.tobytes() + model.estimates.root.tobytes()
         return MachineErrors.of_model(model, state), model.left_out, known
     content = Path(model).read_bytes if errors is None else None
-    if parse_toml(read_text(model), model).get("format") != "machine/1":
+    if kind_of(read_text(model)) != "machine":
         if content is None:
             raise BadArgument("errors", errors, f"none: {model} has errors of its own")
         saved = read_model(model)

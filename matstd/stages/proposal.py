@@ -101,6 +101,7 @@ def propose(machine: Path, named: str, table: tuple[float, ...] | None = None) -
         raise DesignError(
             f"{machine}: a table of {min(size):g} mm: the smallest standard is "
             f"{LEAST:g} x {LEAST:g} x {LEAST_HEIGHT:g} mm; this machine is too small for the tool"
+            f"{_in_centimetres(chain, size)}"
         )
     # from the usual size down; the first refusal is reported, since it binds what is wanted most
     first: DesignError | None = None
@@ -124,6 +125,11 @@ def propose(machine: Path, named: str, table: tuple[float, ...] | None = None) -
             other_place=_other_place(brief, 0.5 * (size[0] - base)),
         )
     raise DesignError(f"{machine}: no standard from {LEAST:g} mm up can be probed here: {first}")
+
+
+def _in_centimetres(chain: Chain, table: tuple[float, ...]) -> str:
+    """The question whether a table far smaller than the travels is stated in centimetres."""
+    return ", or is the table stated in cm?" if 5.0 * max(table) < _assumed_table(chain) else ""
 
 
 def _turns(chain: Chain) -> tuple[tuple[float, ...], ...]:

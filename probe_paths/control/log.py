@@ -220,9 +220,10 @@ class _PartReader:
         """Day of the head; None, and a remark, where it cannot be read."""
         match = _DATE.match(self._peek("DATE <y>-<m>-<d>"))
         try:
-            # as 2031-05-06, or as one number
-            parts = match and (match[1], match[2] or match[4], match[3] or match[5])
-            day = datetime(*map(int, parts)) if parts else None
+            day = None
+            if match:  # as 2031-05-06, or as one number
+                month = int(match[2] or match[4])
+                day = datetime(int(match[1]), month, int(match[3] or match[5]))
         except ValueError:
             day = None
         if day is None:

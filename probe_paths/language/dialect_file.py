@@ -7,7 +7,7 @@ from pydantic import Field
 
 from matstd.probe_paths.language.dialect import CYCLE_NAMES, DISTANCE_WORDS, Dialect
 from matstd.twin.errors import BadFile, DesignError
-from matstd.twin.files import Table, check_format, checked, parse_toml, read_text
+from matstd.twin.files import Table, checked, read_toml
 
 _SHIPPED = Path(__file__).parent / "dialects"
 _DIALOG = r"^[A-Z][A-Z0-9 -]{0,23}$"
@@ -50,9 +50,7 @@ def read_dialect(control: str, folder: str | Path = ".") -> Dialect:
             f"control '{control}': expected one of {', '.join(known_controls())}, or a dialect "
             "file (.toml)"
         )
-    data = parse_toml(read_text(path), path)
-    check_format(data, "dialect/1", path)
-    table = checked(DialectTable, data, path)
+    table = checked(DialectTable, read_toml(path, "dialect/1"), path)
     _check(table, path)
     return Dialect(**{k: v for k, v in table.model_dump().items() if k not in ("format", "title")})
 

@@ -316,7 +316,7 @@ def _anchor_requests(task: _Task, stop: Visit) -> Requests:
     """Possible anchor touches of a pose, best first."""
     options = task.options
     spheres = sorted(task.standard.spheres, key=lambda s: s.name != options.anchor)
-    azimuth = 120.0 * DEG * stop.pose + 60.0 * DEG * np.arange(6)
+    azimuth = np.asarray(120.0 * DEG * stop.pose + 60.0 * DEG * np.arange(6), dtype=np.float64)
     along = np.concatenate([ring_normals(options.anchor_tilt, azimuth), [[0.0, 0.0, 1.0]]])
     wanted = ring_requests(task.chain, task.setup, spheres, stop.rotary, along)
     normal = wanted.normal[: len(along)]
@@ -351,7 +351,6 @@ def _assembled(
         kept.append(stop)
     if not kept:
         raise NotReachable("no touch can be made", refused=failed)
-    names = [name for name in _Touches.__dataclass_fields__ if name != "reason"]
     plan = TouchPlan(
         chain=task.chain,
         probe=task.probe,
@@ -361,7 +360,12 @@ def _assembled(
         visits=tuple(kept),
         visit=np.array(visit),
         request=np.array(request),
-        **{name: np.concatenate([getattr(part, name) for part in parts]) for name in names},
+        feature=np.concatenate([part.feature for part in parts]),
+        point=np.concatenate([part.point for part in parts]),
+        normal=np.concatenate([part.normal for part in parts]),
+        start=np.concatenate([part.start for part in parts]),
+        contact=np.concatenate([part.contact for part in parts]),
+        direction=np.concatenate([part.direction for part in parts]),
     )
     return plan, failed
 

@@ -7,7 +7,7 @@ from matstd.probe_paths.locate import VisitSchedule
 from matstd.report.laws.law_words import carrier_words, odds_words, short_words
 from matstd.report.layout import Section, Table
 from matstd.report.numbers import digits, span
-from matstd.twin.laws import Law
+from matstd.twin.laws import law_of
 from matstd.twin.model import Effect
 from matstd.twin.words import listed
 
@@ -49,13 +49,15 @@ def _row(one: RivalPower) -> list[str]:
 
 
 def _name(effect: Effect) -> str:
-    return short_words(effect) if isinstance(effect, Law) else effect.name
+    law = law_of(effect)
+    return effect.name if law is None else short_words(law)
 
 
 def _short(effect: Effect, law: Effect | None) -> str:
     """The carrier alone where all else is as in the law."""
-    if isinstance(effect, Law) and isinstance(law, Law) and effect.factors == law.factors:
-        return carrier_words(effect.carrier)
+    one, other = law_of(effect), None if law is None else law_of(law)
+    if one is not None and other is not None and one.factors == other.factors:
+        return carrier_words(one.carrier)
     return _name(effect)
 
 

@@ -46,8 +46,6 @@ GREEN, YELLOW = 0.8, 0.5
 """Shares of a tolerance in which conformity can be proved from which it is green and yellow. Green:
 the uncertainty takes a tenth of the zone at each end."""
 
-_EXCERPT = 46  # lines of the first program
-
 _CURVES = (
     "Remaining error against the number of touches, predicted for every artefact by one rule: its "
     "touches in the order in which each helps most, repeated beyond their number. Marked: the "
@@ -288,7 +286,6 @@ def _probing(design: Design, order: tuple[Table, str]) -> list[Section]:
     ]
     reach = "Reach of the machine on such a blank by angle and travels, determined before design."
     sequence = "Rotary readings in the order of execution, with the side of approach."
-    first = design.programs.programs[0].text.splitlines()[:_EXCERPT]
     pictures = [
         Picture("reach.png", reach),
         Picture("plan_touches.png", "Touched points and normals.", draw_touches(plan)),
@@ -299,7 +296,6 @@ def _probing(design: Design, order: tuple[Table, str]) -> list[Section]:
         Section("Probing", sentences=[intro], table=listed, notes=[_CHECKED]),
         Section(fold="Cost of the order", is_for_screen=True, table=table),
         Section(fold="Reach, touches and their order", is_for_screen=True, pictures=pictures),
-        Section(fold="First program", is_for_screen=True, code="\n".join([*first, "..."])),
     ]
 
 

@@ -43,7 +43,7 @@ from matstd.report.run_view import diagnosis_step
 from matstd.report.verdict import part_lines
 from matstd.report.words import verdict_sentence
 from matstd.twin.library import ordinary_model, parse_effect
-from matstd.twin.model import Model
+from matstd.twin.model import Model, columns
 from matstd.twin.units import UM
 
 
@@ -276,7 +276,8 @@ def test_a_saved_law_is_less_sure_beyond_the_values_it_was_learnt_from(stylus) -
     q = run.touches.reading("Y")
     near = run[q < np.quantile(q, 0.6)]
     law = parse_effect("law(EZY,bump Y)", run.touches.chain).tuned(float(q.min()), 40.0)
-    start = Beginning.of_run(near)
+    hidden = 20.0 * UM * columns([law], near.touches)[:, 0]
+    start = Beginning.of_run(replace(near, deviation=near.deviation + hidden))
     after = start.fitted([law])
     one = LearntLaw(law, (), 0.0, 0.0, 0.0, ())
     found = Learning(start, after, after, (one,), None, None, (), POLICY)

@@ -22,7 +22,9 @@ CALLS = {
     "learn": "run.csv -o OUT",
     "thermal": "LOG.csv -o OUT",
     "compensate": "model.toml --tables DIR --tool-length 160",
+    "contributions": "model.toml --tool-length 160 --program part.H -o OUT",
     "volumetric": "m.toml e.toml poses.csv -o table.csv",
+    "show": "m.toml -o page.html",
     "new": "project -o project.toml",
 }
 """A call of every command that has a next one."""
@@ -42,6 +44,7 @@ def test_every_command_has_a_next_one_or_a_reason() -> None:
 def test_the_next_command_is_one_that_the_command_line_reads(command, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("run.csv").write_text("", encoding="utf-8")
+    Path("m.toml").write_text("", encoding="utf-8")
     Path("STUDY").mkdir()
     args = parsed([command, *shlex.split(CALLS[command])])
     line = next_line(args)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from matstd.commands.standard.design import LINEAR_PLAN, PLAN
-from matstd.progress import TimeLeft, _whole
+from matstd.progress import TimeLeft, Watch, _lines
 
 SHARES = {"first": 0.2, "second": 0.5, "third": 0.3}
 
@@ -79,8 +79,9 @@ def test_the_shares_of_a_design_are_shares():
 
 def test_a_line_shows_the_stage_the_share_of_the_whole_and_the_time_left():
     out, left = io.StringIO(), TimeLeft(SHARES, 1.0, time.monotonic() - 2.0)
-    with _whole(out, left, 0.05) as show:
-        show("second", 1, 2)
+    watch = Watch(left, is_whole=True)
+    with _lines(out, watch, 0.05):
+        watch.report("second", 1, 2, time.monotonic())
         time.sleep(0.15)
     line = out.getvalue().splitlines()[-1]
     assert re.fullmatch(r"\[ *\d+ s\] second: 4\d % of the whole, about \d+ s left", line)

@@ -10,6 +10,7 @@ from matstd.twin.errors import BadFile, DesignError
 from matstd.twin.files.error_file import errors_toml, read_errors
 from matstd.twin.files.machine_file import read_machine
 from matstd.twin.files.pose_file import read_poses
+from matstd.twin.files.run_file import read_run
 from matstd.twin.files.whole import write_whole
 from matstd.twin.machine.chain import Axis, make_chain
 from matstd.twin.units import DEG, UM, URAD
@@ -31,6 +32,7 @@ range = [-500.0, 0.0]
 [workpiece]
 origin = [0.0, 0.0, -500.0]
 """
+RUN = '# format = "run/1"\n# machine = "machine.toml"\nX_mm,Y_mm\n1,2\n'
 ERRORS = """format = "errors/1"
 [EXX]
 shape = "linear"
@@ -212,3 +214,26 @@ def test_a_folder_in_the_way_of_an_output_is_one_line(tmp_path: Path) -> None:
     with pytest.raises(DesignError, match=r"out\.csv: cannot be written"):
         write_whole(tmp_path / "out.csv", "text")
     assert [p.name for p in tmp_path.iterdir()] == ["out.csv"]
+
+
+@pytest.mark.parametrize(
+    ("read", "text", "expected"),
+    [
+        (read_machine, ERRORS, 'found a file of errors, expected a machine file, "machine/1"'),
+        (read_machine, RUN, 'found a run file, expected a machine file, "machine/1"'),
+        (read_errors, MACHINE, 'found a machine file, expected a file of errors, "errors/1"'),
+        (
+            read_run,
+            f"# my notes\n{MACHINE}",
+            "found a machine file, expected a run file, .* import",
+        ),
+        (read_run, "X,Y\n1,2\n", "line 1: found 'X,Y', expected a head that begins .* import"),
+        (read_machine, MACHINE.replace("[axis.B]", "[axis.B"), "line 6: found '.axis.B', expected"),
+    ],
+)
+def test_a_file_of_another_kind_is_named_as_what_it_is(read, text, expected, tmp_path):
+    """Whether or not it is TOML; a damaged file of the right kind has its line instead."""
+    path = tmp_path / "given.toml"
+    path.write_text(text)
+    with pytest.raises(BadFile, match=expected):
+        read(path)

@@ -9,7 +9,7 @@ from pydantic import Field
 from matstd.twin.effects import ComponentError, LocationError
 from matstd.twin.errors import BadFile, UnknownSymbol
 from matstd.twin.files.keys import Table, checked
-from matstd.twin.files.toml import check_format, parse_toml, read_text
+from matstd.twin.files.toml import read_toml
 from matstd.twin.frames import Array
 from matstd.twin.machine import Chain, Family, Symbol
 from matstd.twin.model import Effect
@@ -45,8 +45,7 @@ def read_errors(path: str | Path, chain: Chain) -> list[tuple[Effect, Array]]:
     import numpy as np
 
     twice = "[[{name}]] in every place: the shapes of one error add up"
-    data = parse_toml(read_text(path), path, twice=twice)
-    check_format(data, "errors/1", path)
+    data = read_toml(path, "errors/1", twice)
     out: list[tuple[Effect, Array]] = []
     for name, tables in data.items():
         if name == "format":

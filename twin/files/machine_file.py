@@ -10,7 +10,7 @@ from pydantic import Field, Strict
 
 from matstd.twin.errors import BadFile, BadValue, UnknownAxis
 from matstd.twin.files.keys import Table, checked
-from matstd.twin.files.toml import check_format, parse_toml, read_text
+from matstd.twin.files.toml import is_file, read_toml
 from matstd.twin.frames import Array
 from matstd.twin.machine import Axis, Chain, Link, make_chain
 from matstd.twin.units import DEG, meant_in_radians
@@ -213,11 +213,18 @@ class MachineFile(MachineTables):
     No result depends on it"""
 
 
+def machine_beside(path: str | Path, named: str) -> Chain:
+    """The machine that a file names, by a path relative to that file; raises BadFile."""
+    place = Path(path).parent / named
+    if not is_file(place):
+        found = f"{named!r}, and {place} is no file"
+        raise BadFile(path, "machine", found, "the path of a machine file, relative to this file")
+    return read_machine(place)
+
+
 def read_machine(path: str | Path) -> Chain:
     """Machine from its file; raises BadFile."""
-    data = parse_toml(read_text(path), path)
-    check_format(data, "machine/1", path)
-    tables = checked(MachineFile, data, path)
+    tables = checked(MachineFile, read_toml(path, "machine/1"), path)
     chain = tables.made(path)
     slips = [BadFile.of(path, slip) for slip in machine_slips(chain)]
     if slips:

@@ -10,11 +10,11 @@ from pydantic import Field
 from matstd.twin.errors import BadFile, BadValue
 from matstd.twin.files import run_columns as columns
 from matstd.twin.files.keys import Table, checked
-from matstd.twin.files.machine_file import Coordinate, Vector, read_machine
+from matstd.twin.files.machine_file import Coordinate, Vector, machine_beside
 from matstd.twin.files.pose_file import FARTHEST, reading_columns, readings
 from matstd.twin.files.run_checks import checked_run, states_readings
 from matstd.twin.files.table import CsvTable
-from matstd.twin.files.toml import check_format, is_file, parse_toml, read_text
+from matstd.twin.files.toml import parse_kind, read_text
 from matstd.twin.frames import fixed_xyz, pose
 from matstd.twin.machine import Chain
 from matstd.twin.record import (
@@ -34,6 +34,11 @@ from matstd.twin.units import DEG, UM
 
 Day = datetime | date
 SOME_DAY = date(2031, 5, 6)
+
+_HEAD = (
+    'a head that begins with # format = "run/1"; matstd import makes a run file of a table of '
+    "measurements"
+)
 
 _OPTIONAL = (
     "feature",
@@ -145,11 +150,9 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     """
     text = read_text(path)
     head_text, body, first = _split_head(text, path)
-    data = parse_toml(head_text, path)
-    check_format(data, "run/1", path)
-    head = checked(HeadTable, data, path)
+    head = checked(HeadTable, parse_kind(head_text, path, "run/1", whole=text), path)
     if chain is None:
-        chain = _machine(path, head.machine)
+        chain = machine_beside(path, head.machine)
     table = CsvTable(body, path, first)
     _check_columns(table, chain)
     if not len(table):
@@ -214,17 +217,8 @@ def _split_head(text: str, path: str | Path) -> tuple[str, str, int]:
         if found.startswith("'MATSTD LOG"):
             expected = "a run file (matstd evaluate makes one of it)"
             raise BadFile(path, f"line {n + 1}", "the log of a probing program", expected)
-        raise BadFile(path, f"line {n + 1}", found, 'a head that begins with # format = "run/1"')
+        raise BadFile(path, f"line {n + 1}", found, _HEAD)
     return head, "\n".join(lines[n:]), n + 1
-
-
-def _machine(path: str | Path, named: str) -> Chain:
-    """The machine that the head of a run file names, by a path relative to that file."""
-    place = Path(path).parent / named
-    if not is_file(place):
-        found = f"{named!r}, and {place} is no file"
-        raise BadFile(path, "machine", found, "the path of a machine file, relative to this file")
-    return read_machine(place)
 
 
 def _check_columns(table: CsvTable, chain: Chain) -> None:

@@ -36,6 +36,21 @@ _GRAMMAR = {
 }
 """What is expected where a text is no TOML, by how the reader's reason begins."""
 
+_KINDS = {
+    "machine": ("a machine file", ""),
+    "project": ("a project", "; matstd new project --machine MACHINE.toml proposes one"),
+    "run": ("a run file", "; matstd import makes one of a table of measurements"),
+    "model": ("a model", "; matstd diagnose RUN.csv writes one"),
+    "standard": ("a standard", "; matstd design writes one"),
+    "errors": ("a file of errors", ""),
+    "task": ("a measuring task", ""),
+    "dialect": ("a dialect of a control", ""),
+    "import": ("a mapping file", ""),
+}
+"""Kinds of files, each with how a user comes by one."""
+
+_STATED = re.compile(rf'^(?:# *)?format *= *"({"|".join(_KINDS)})/', re.MULTILINE)
+
 _DECIMAL_COMMA = re.compile(r"=\s*-?\d+,\d+\s*(?:$|[,}#])")
 
 
@@ -142,10 +157,63 @@ def _no_toml(error: tomllib.TOMLDecodeError, text: str, path: str | Path, twice:
     return BadFile(path, place, found, expected)
 
 
+def read_toml(path: str | Path, wanted: str, twice: str = "it once") -> dict[str, Any]:
+    """Tables of a file of one kind, as `wanted` in its `format` says; raises BadFile.
+
+    Args:
+        twice: As of `parse_toml`.
+    """
+    return parse_kind(read_text(path), path, wanted, twice)
+
+
+def parse_kind(
+    text: str, path: str | Path, wanted: str, twice: str = "it once", whole: str | None = None
+) -> dict[str, Any]:
+    """The same of its text.
+
+    Args:
+        whole: Text of the file where `text` is its head.
+    """
+    try:
+        data = parse_toml(text, path, twice)
+    except BadFile:
+        stated = kind_of(text if whole is None else whole)
+        if stated in ("", _kind(wanted)):
+            raise
+        raise _other_kind(path, stated, wanted) from None
+    check_format(data, wanted, path)
+    return data
+
+
 def check_format(data: dict[str, Any], wanted: str, path: str | Path) -> None:
     """Raise BadFile unless `format` says what the reader understands."""
-    if data.get("format") != wanted:
-        found = repr(data["format"]) if "format" in data else "nothing"
-        is_version = str(data.get("format", "")).partition("/")[0] == wanted.partition("/")[0]
-        older = "; files of other versions are not read" if is_version else ""
-        raise BadFile(path, "format", found, f'"{wanted}"{older}')
+    found = data.get("format")
+    if found == wanted:
+        return
+    kind = _kind(found)
+    if kind in _KINDS and kind != _kind(wanted):
+        raise _other_kind(path, kind, wanted)
+    older = "; files of other versions are not read" if kind == _kind(wanted) else ""
+    raise BadFile(path, "format", repr(found) if found else "nothing", f'"{wanted}"{older}')
+
+
+def kind_of(text: str) -> str:
+    """Kind of one of our files by the `format` in its text, also behind a #; "" for none.
+
+    Example:
+        >>> kind_of('# format = "run/1"'), kind_of("X_mm,Y_mm")
+        ('run', '')
+    """
+    stated = _STATED.search(text)
+    return stated[1] if stated else ""
+
+
+def _kind(stated: object) -> str:
+    """Kind of a file in what its `format` states: `run` of `run/1`."""
+    return str(stated).partition("/")[0]
+
+
+def _other_kind(path: str | Path, kind: str, wanted: str) -> BadFile:
+    """A file of ours that was given in the place of another."""
+    name, more = _KINDS[_kind(wanted)]
+    return BadFile(path, "format", _KINDS[kind][0], f'{name}, "{wanted}"{more}')

@@ -7,7 +7,7 @@ where their parameters are scanned.
 
 from matstd.twin.laws.driver import ON_BALL, Driver, driver_of, drivers
 from matstd.twin.laws.grids import WORDS, grid, shapes_of
-from matstd.twin.laws.law import KIND, Carrier, Factor, Law, carrier_of
+from matstd.twin.laws.law import KIND, Carrier, Factor, Law, carrier_of, law_of
 from matstd.twin.laws.shape import SHAPES, Shape, curve_columns, play
 
 __all__ = [
@@ -25,6 +25,7 @@ __all__ = [
     "driver_of",
     "drivers",
     "grid",
+    "law_of",
     "play",
     "shapes_of",
 ]

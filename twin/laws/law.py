@@ -26,7 +26,7 @@ from matstd.twin.laws.driver import Driver, driver_of
 from matstd.twin.laws.grids import grid
 from matstd.twin.laws.shape import SHAPES, Shape
 from matstd.twin.machine import Chain, Symbol
-from matstd.twin.model import Inner, Kind, Parameter, Term, Title, Where
+from matstd.twin.model import Effect, Inner, Kind, Parameter, Term, Title, Where
 from matstd.twin.record import Touches
 from matstd.twin.units import DEG, HOUR, T_REF, UM, URAD
 
@@ -313,6 +313,11 @@ class Law:
     def free(self) -> tuple[int, ...]:
         """Which of the parameters of the shapes a run determines."""
         return tuple(own.start + k for factor, own in self.parts for k in factor.shape.free)
+
+
+def law_of(effect: Effect) -> Law | None:
+    """The law that an effect is; None of an effect with a cause."""
+    return effect if isinstance(effect, Law) else None
 
 
 def _is_number(name: str, driver: Driver) -> bool:

@@ -7,6 +7,7 @@ import argparse
 from matstd.commands.compensation.options import add_driven, add_program
 from matstd.console import say, say_assumed
 from matstd.options import add_effects, add_options, add_output
+from matstd.twin.errors import BadArgument
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -67,6 +68,8 @@ def run(args: argparse.Namespace) -> int:
     from matstd.report.machine import shown_lines
     from matstd.twin.files import refuse_to_overwrite
 
+    if not args.output.endswith(".html"):
+        raise BadArgument("output", args.output, "the name of a page, which ends in .html")
     refuse_to_overwrite(args.output, args.force)
     register_effects(*args.effects)
     with stages() as progress:

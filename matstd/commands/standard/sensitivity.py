@@ -48,10 +48,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Write S as a table, or a study as a folder."""
-    from matstd.twin.files import parse_toml, read_text
+    from matstd.twin.files import kind_of, read_text
 
     path = Path(args.source)
-    if parse_toml(read_text(path), path).get("format") == "project/1":
+    if kind_of(read_text(path)) == "project":
         return _study(args)
     if args.poses is None:
         raise BadFile(path, "format", "no project", "a project/1, or a machine followed by poses")
