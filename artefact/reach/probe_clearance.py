@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from matstd.artefact.body import Column, Standard
+from matstd.artefact.body import Standard
 from matstd.twin.errors import ShapeMismatch
 from matstd.twin.frames import Array, unit
 
@@ -174,6 +174,7 @@ def _room(
     room = np.full(len(centre), np.inf)
     nearest = np.zeros(len(centre), dtype=int)
     bodies = list(standard.bodies.values())
+    lids = [standard.columns.get(name) for name in standard.bodies]
     middles, hulls = (np.array(one) for one in zip(*(body.hull for body in bodies), strict=True))
     across = _across(axis)
     for some in np.array_split(
@@ -187,10 +188,9 @@ def _room(
             for b, body in enumerate(bodies):
                 near = np.flatnonzero(((first == b) == is_first) & (least[:, b] < best))
                 apart = body.distance(points[near].reshape(-1, 3)).reshape(-1, len(radii))
-                if isinstance(body, Column) and np.any(apart - radii < enough):
-                    few = np.nonzero(apart - radii < enough)
-                    nearer = body.distance_from_lid(points[near][few])
-                    apart[few] = np.maximum(apart[few], nearer)
+                lid, few = lids[b], np.nonzero(apart - radii < enough)
+                if lid is not None and len(few[0]):
+                    apart[few] = np.maximum(apart[few], lid.distance_from_lid(points[near][few]))
                 gap = (apart - radii).min(axis=1)
                 closer = gap < best[near]
                 best[near[closer]], which[near[closer]] = gap[closer], b
