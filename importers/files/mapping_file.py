@@ -14,10 +14,8 @@ from matstd.twin.errors import BadFile
 from matstd.twin.files import (
     Table,
     checked,
-    parse_toml,
     read_machine,
     read_run,
-    read_text,
     read_toml,
     write_whole,
 )
@@ -71,7 +69,7 @@ def import_mapped(
     """
     text, left_out = mapped_run(sheet, path)
     if chain is None:
-        named = parse_toml(read_text(path), path)["head"].get("machine")
+        named = read_toml(path, "import/1")["head"].get("machine")
         if not isinstance(named, str):
             raise BadFile(path, "head.machine", "nothing", "the machine file, or --machine")
         chain = read_machine(folder / named)

@@ -236,4 +236,4 @@ def test_a_file_of_another_kind_is_named_as_what_it_is(read, text, expected, tmp
     path = tmp_path / "given.toml"
     path.write_text(text)
     with pytest.raises(BadFile, match=expected):
-        read(path)
+        read(path, CHAIN) if read is read_errors else read(path)

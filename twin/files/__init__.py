@@ -7,7 +7,7 @@ stood there and what was expected. Writers write whole files or none.
 from matstd.twin.files.error_file import errors_toml, read_errors
 from matstd.twin.files.folder import results_folder
 from matstd.twin.files.keys import Table, checked, keys_of
-from matstd.twin.files.machine_file import MachineTables, Pair, Vector, machine_beside, read_machine
+from matstd.twin.files.machine_file import MachineTables, Pair, Vector, read_machine
 from matstd.twin.files.pose_file import read_poses, reading_columns
 from matstd.twin.files.run_file import SetupTable, read_run
 from matstd.twin.files.run_writer import write_run
