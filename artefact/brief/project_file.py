@@ -44,7 +44,7 @@ from matstd.twin.files import (
     SetupTable,
     Table,
     checked,
-    machine_beside,
+    read_machine,
     read_toml,
 )
 from matstd.twin.machine import Chain
@@ -186,7 +186,7 @@ def read_project(path: str | Path, montecarlo: Mapping[str, float] | None = None
 def _resolved(table: ProjectTable, path: Path, remarks: tuple[str, ...]) -> Brief:
     """The project in base units; raises BadFile with all contradictions of its keys."""
     machine_path = path.parent / table.machine
-    chain = machine_beside(path, table.machine)
+    chain = read_machine(table.machine, named_in=path)
     wanted, shop = table.standard, table.workshop
     faults = Faults((*standard_faults(wanted, path), *material_faults(table.material, path)))
     with faults.collected():

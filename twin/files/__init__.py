@@ -7,7 +7,7 @@ stood there and what was expected. Writers write whole files or none.
 from matstd.twin.files.error_file import errors_toml, read_errors
 from matstd.twin.files.folder import results_folder
 from matstd.twin.files.keys import Table, checked
-from matstd.twin.files.machine_file import MachineTables, Pair, Vector, machine_beside, read_machine
+from matstd.twin.files.machine_file import MachineTables, Pair, Vector, read_machine
 from matstd.twin.files.pose_file import read_poses, reading_columns
 from matstd.twin.files.run_file import SetupTable, read_run
 from matstd.twin.files.run_writer import write_run
@@ -24,7 +24,7 @@ from matstd.twin.files.whole import refuse_to_overwrite, write_whole, written_wh
 
 __all__ = [
     "CsvTable", "MachineTables", "Pair", "SensorRecord", "SetupTable", "Table", "Vector",
-    "checked", "errors_toml", "kind_of", "machine_beside", "parse_kind", "read_any_text",
+    "checked", "errors_toml", "kind_of", "parse_kind", "read_any_text",
     "read_errors", "read_machine", "read_poses", "read_run", "read_sensors", "read_text",
     "read_toml", "reading_columns", "refuse_to_overwrite", "results_folder", "write_run",
     "write_whole", "written_whole",

@@ -213,17 +213,18 @@ class MachineFile(MachineTables):
     No result depends on it"""
 
 
-def machine_beside(path: str | Path, named: str) -> Chain:
-    """The machine that a file names, by a path relative to that file; raises BadFile."""
-    place = Path(path).parent / named
-    if not is_file(place):
-        found = f"{named!r}, and {place} is no file"
-        raise BadFile(path, "machine", found, "the path of a machine file, relative to this file")
-    return read_machine(place)
+def read_machine(path: str | Path, named_in: str | Path | None = None) -> Chain:
+    """Machine from its file; raises BadFile.
 
-
-def read_machine(path: str | Path) -> Chain:
-    """Machine from its file; raises BadFile."""
+    Args:
+        named_in: File that names it by a path relative to itself; None for a path as it is.
+    """
+    if named_in is not None:
+        named, path = path, Path(named_in).parent / path
+        if not is_file(path):
+            found = f"{str(named)!r}, and {path} is no file"
+            expected = "the path of a machine file, relative to this file"
+            raise BadFile(named_in, "machine", found, expected)
     tables = checked(MachineFile, read_toml(path, "machine/1"), path)
     chain = tables.made(path)
     slips = [BadFile.of(path, slip) for slip in machine_slips(chain)]

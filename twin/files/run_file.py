@@ -10,7 +10,7 @@ from pydantic import Field
 from matstd.twin.errors import BadFile, BadValue
 from matstd.twin.files import run_columns as columns
 from matstd.twin.files.keys import Table, checked
-from matstd.twin.files.machine_file import Coordinate, Vector, machine_beside
+from matstd.twin.files.machine_file import Coordinate, Vector, read_machine
 from matstd.twin.files.pose_file import FARTHEST, reading_columns, readings
 from matstd.twin.files.run_checks import checked_run, states_readings
 from matstd.twin.files.table import CsvTable
@@ -152,7 +152,7 @@ def read_run(path: str | Path, chain: Chain | None = None) -> Run:
     head_text, body, first = _split_head(text, path)
     head = checked(HeadTable, parse_kind(head_text, path, "run/1", whole=text), path)
     if chain is None:
-        chain = machine_beside(path, head.machine)
+        chain = read_machine(head.machine, named_in=path)
     table = CsvTable(body, path, first)
     _check_columns(table, chain)
     if not len(table):
