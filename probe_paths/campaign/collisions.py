@@ -135,6 +135,8 @@ def _refuse(
     bad = np.flatnonzero(gap < least)
     if len(bad):
         i = bad[np.argmin(line[bad])]
-        found = f"a gap of {gap[i]:.2f} mm to {nearest[i]}"
-        expected = f"at least {least:.2g} mm between probe and anything solid"
-        raise BadFile(program.path, f"line {line[i]}", found, expected)
+        where = f"line {line[i]}"
+        raise BadFile(
+            program.path, where, f"a gap of {gap[i]:.2f} mm to {nearest[i]}",
+            f"at least {least:.2g} mm between probe and anything solid",
+        )  # fmt: skip

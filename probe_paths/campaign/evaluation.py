@@ -283,7 +283,9 @@ def _split_by_gap(
         found = f"{gap[row]:.3f} mm" if np.isfinite(gap[row]) else "no way"
         what = f"touch {part.number[i]} with {found} between ball and surface"
         if np.mean(~good) > LARGEST_OUTLIER_SHARE:
-            expected = f"less than {limit:g} mm: another feature, set-up, probe or meaning of Z"
-            raise BadFile(part.path, f"line {part.line[i]}", what, expected)
+            raise BadFile(
+                part.path, f"line {part.line[i]}", what,
+                f"less than {limit:g} mm: another feature, set-up, probe or meaning of Z",
+            )  # fmt: skip
         remarks.append(f"{part.path}: line {part.line[i]}: {what}; it is left out")
     return good, remarks
