@@ -187,11 +187,11 @@ def _check_calibrations(parts: Sequence[LogPart]) -> None:
         known = first.setdefault((_probe_prefix(part), planned.radius, planned.length), part)
         radius, length = known.radius, known.tool_length
         if abs(part.radius - radius) > NM or abs(part.tool_length - length) > NM:
-            found = f"a probe of radius {part.radius:g} and length {part.tool_length:g} mm"
-            expected = (
-                f"{radius:g} and {length:g} mm as in {known.program}: one calibration a probe"
-            )
-            raise BadFile(part.path, f"program {part.program}", found, expected)
+            raise BadFile(
+                part.path, f"program {part.program}",
+                f"a probe of radius {part.radius:g} and length {part.tool_length:g} mm",
+                f"{radius:g} and {length:g} mm as in {known.program}: one calibration a probe",
+            )  # fmt: skip
 
 
 def _probe_prefix(part: LogPart) -> str:

@@ -209,11 +209,11 @@ def _fitted(
     uv = patch.project(ball)
     gap = _gaps(points, ball, uv, patch, radius, LARGEST_GAP)
     if rms(gap) > LARGEST_RMS:
-        found = f"deviations of {rms(gap):.2f} mm rms with the set-up fitted"
-        expected = (
+        raise points.refuse(
+            0, f"deviations of {rms(gap):.2f} mm rms with the set-up fitted",
             f"at most {LARGEST_RMS:g} mm: another face, radius of the ball, or a filter that "
-        )
-        raise points.refuse(0, found, f"{expected}takes off the radius of the tip")
+            "takes off the radius of the tip",
+        )  # fmt: skip
     return replace(setup, T_table_artefact=T_table_artefact), uv
 
 
