@@ -141,16 +141,15 @@ def _check(path: ProgramPath, k: int) -> None:
     slowest = FEED_MARGIN * MIN_INVERSE_FEED
     if not path.program.language.HAS_INVERSE_TIME or motion.tcpm:
         where = "with tool-point control" if motion.tcpm else "in Klartext"
-        said += ", which its correction in X, Y, Z would make mm/min"
-        expected = f"FMAX or G0: no documented way to state the time of a block {where} is known"
+        raise _refused(
+            path, k, f"{said}, which its correction in X, Y, Z would make mm/min",
+            f"FMAX or G0: no documented way to state the time of a block {where} is known",
+        )  # fmt: skip
     # controls disagree on F of such a line, so its time is known only if the turn adds little
-    elif far > 0.0 and np.hypot(far, turned) > (1.0 + MAX_TIME_DIFFERENCE) * far:
-        said += f" while X, Y, Z go {far:.4g} mm, which its correction changes"
-        expected = (
-            "it in inverse time (G93): LinuxCNC takes F for the mm alone, Fanuc for degrees too"
-        )
-    elif turned / path.seconds[k] * MINUTE < slowest:
-        expected = f"{slowest:g} degrees/min or more: LinuxCNC's slowest in G93"
-    else:
-        return
-    raise _refused(path, k, said, expected)
+    if far > 0.0 and np.hypot(far, turned) > (1.0 + MAX_TIME_DIFFERENCE) * far:
+        raise _refused(
+            path, k, f"{said} while X, Y, Z go {far:.4g} mm, which its correction changes",
+            "it in inverse time (G93): LinuxCNC takes F for the mm alone, Fanuc for degrees too",
+        )  # fmt: skip
+    if turned / path.seconds[k] * MINUTE < slowest:
+        raise _refused(path, k, said, f"{slowest:g} degrees/min or more: LinuxCNC's slowest in G93")

@@ -187,11 +187,11 @@ def _check_calibrations(parts: Sequence[LogPart]) -> None:
         known = first.setdefault((_probe_prefix(part), planned.radius, planned.length), part)
         radius, length = known.radius, known.tool_length
         if abs(part.radius - radius) > NM or abs(part.tool_length - length) > NM:
-            found = f"a probe of radius {part.radius:g} and length {part.tool_length:g} mm"
-            expected = (
-                f"{radius:g} and {length:g} mm as in {known.program}: one calibration a probe"
-            )
-            raise BadFile(part.path, f"program {part.program}", found, expected)
+            raise BadFile(
+                part.path, f"program {part.program}",
+                f"a probe of radius {part.radius:g} and length {part.tool_length:g} mm",
+                f"{radius:g} and {length:g} mm as in {known.program}: one calibration a probe",
+            )  # fmt: skip
 
 
 def _probe_prefix(part: LogPart) -> str:
@@ -283,7 +283,9 @@ def _split_by_gap(
         found = f"{gap[row]:.3f} mm" if np.isfinite(gap[row]) else "no way"
         what = f"touch {part.number[i]} with {found} between ball and surface"
         if np.mean(~good) > LARGEST_OUTLIER_SHARE:
-            expected = f"less than {limit:g} mm: another feature, set-up, probe or meaning of Z"
-            raise BadFile(part.path, f"line {part.line[i]}", what, expected)
+            raise BadFile(
+                part.path, f"line {part.line[i]}", what,
+                f"less than {limit:g} mm: another feature, set-up, probe or meaning of Z",
+            )  # fmt: skip
         remarks.append(f"{part.path}: line {part.line[i]}: {what}; it is left out")
     return good, remarks

@@ -177,9 +177,10 @@ def _probe(head: Heading, probe: Probe | None, path: Path) -> Probe:
     for what in ("radius", "length"):
         stated, actual = getattr(head.probe, what), getattr(probe, what)
         if abs(stated - actual) > 1e-5:
-            found, expected = (
+            raise BadFile(
+                path,
+                "head",
                 f"a probe of {what} {stated:g} mm",
                 f"{actual:g} mm, as in the spindle",
             )
-            raise BadFile(path, "head", found, expected)
     return head.probe

@@ -88,9 +88,10 @@ def check_cycle(state: State, block: Block, vector: Block, length: float) -> Non
         raise state.refusal(block, f"{state.terms.back} between {SHORTEST_BACK:g} mm and the path")
     is_down = state.is_search and vector.number("z") == -1.0
     if distance - back > LONGEST_SEARCH and not is_down:
-        expected = f"at most {LONGEST_SEARCH:g} mm beyond the surface that is expected"
-        found = f"a path of {distance:g} mm with {state.terms.back} {back:g}"
-        raise state.refusal(block, expected, found)
+        raise state.refusal(
+            block, f"at most {LONGEST_SEARCH:g} mm beyond the surface that is expected",
+            f"a path of {distance:g} mm with {state.terms.back} {back:g}",
+        )  # fmt: skip
 
 
 def set_mode(block: Block, state: State) -> None:

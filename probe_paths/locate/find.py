@@ -124,11 +124,15 @@ def find_standard(
 def _refuse_ambiguous_place(rms: Array, u: Array) -> None:
     """Refuse a place that does not fit, is not the only one, or is too uncertain to plan for."""
     if rms[0] > GOOD:
-        found = f"no place within the spread fits the touches: the best leaves {rms[0]:.2f} mm"
-        raise NotEnoughData(f"{found}; another standard, farther away, or another probe?")
+        raise NotEnoughData(
+            f"no place within the spread fits the touches: the best leaves {rms[0]:.2f} mm; "
+            "another standard, farther away, or another probe?"
+        )
     if len(rms) > 1 and rms[1] < _CLEAR * max(rms[0], _ROUGH):
-        found = f"two places fit the touches ({rms[0]:.2f} and {rms[1]:.2f} mm)"
-        raise NotEnoughData(f"{found}: align the standard better and search again")
+        raise NotEnoughData(
+            f"two places fit the touches ({rms[0]:.2f} and {rms[1]:.2f} mm): align the standard "
+            "better and search again"
+        )
     if u[:3].max() > KNOWN or u[3:].max() > KNOWN_ANGLE:
         raise NotEnoughData(
             f"the touches fix the position to {u[:3].max():.2f} mm and {u[3:].max() / DEG:.2f} "

@@ -156,9 +156,10 @@ def _averaged(points: ScanPoints, place: Array) -> tuple[ScanPoints, Array]:
     wide = same & (step > max(_LARGEST_STEP, _USUAL_STEPS * usual))
     if wide.any() and points.is_numbered:
         at = int(np.flatnonzero(wide)[0])
-        found = f"a gap of {step[at]:.1f} mm in line {points.line[at]} of the scan"
-        expected = f"points every {usual:.2f} mm, or another number for what follows"
-        raise points.refuse(at + 1, found, expected)
+        raise points.refuse(
+            at + 1, f"a gap of {step[at]:.1f} mm in line {points.line[at]} of the scan",
+            f"points every {usual:.2f} mm, or another number for what follows",
+        )  # fmt: skip
     # a log without line numbers begins a new line at a gap: the probe was lifted there
     line = np.cumsum([1, *(~same | wide).astype(int)])
     along = np.concatenate([[0.0], np.cumsum(step)])
@@ -208,11 +209,11 @@ def _fitted(
     uv = patch.project(ball)
     gap = _gaps(points, ball, uv, patch, radius, LARGEST_GAP)
     if rms(gap) > LARGEST_RMS:
-        found = f"deviations of {rms(gap):.2f} mm rms with the set-up fitted"
-        expected = (
+        raise points.refuse(
+            0, f"deviations of {rms(gap):.2f} mm rms with the set-up fitted",
             f"at most {LARGEST_RMS:g} mm: another face, radius of the ball, or a filter that "
-        )
-        raise points.refuse(0, found, f"{expected}takes off the radius of the tip")
+            "takes off the radius of the tip",
+        )  # fmt: skip
     return replace(setup, T_table_artefact=T_table_artefact), uv
 
 
@@ -236,9 +237,11 @@ def _gaps(
     if far.any():
         at = int(np.flatnonzero(far)[0])
         why = "another face, set-up, probe or unit" if far.mean() > 0.5 else "another face"
-        found = f"a point {gap[at]:.1f} mm from {patch.name} or beyond its edge, as "
-        found += f"{100.0 * far.mean():.0f} % of all"
-        raise points.refuse(at, found, f"points within {limit:g} mm of it: this is {why}")
+        raise points.refuse(
+            at, f"a point {gap[at]:.1f} mm from {patch.name} or beyond its edge, as "
+            f"{100.0 * far.mean():.0f} % of all",
+            f"points within {limit:g} mm of it: this is {why}",
+        )  # fmt: skip
     return gap
 
 

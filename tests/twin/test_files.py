@@ -231,9 +231,10 @@ def test_a_folder_in_the_way_of_an_output_is_one_line(tmp_path: Path) -> None:
         (read_machine, MACHINE.replace("[axis.B]", "[axis.B"), "line 6: found '.axis.B', expected"),
     ],
 )
-def test_a_file_of_another_kind_is_named_as_what_it_is(read, text, expected, tmp_path):
+def test_a_file_of_another_kind_is_named_as_what_it_is(machine, read, text, expected, tmp_path):
     """Whether or not it is TOML; a damaged file of the right kind has its line instead."""
     path = tmp_path / "given.toml"
     path.write_text(text)
+    of_chain = (read_machine(machine),) if read is read_errors else ()
     with pytest.raises(BadFile, match=expected):
-        read(path)
+        read(path, *of_chain)
