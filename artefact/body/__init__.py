@@ -20,7 +20,7 @@ from matstd.artefact.body.material import Material
 from matstd.artefact.body.patch import Meeting
 from matstd.artefact.body.solids import BLEND, Column, Plate
 from matstd.artefact.body.sphere_fit import fitted_sphere
-from matstd.artefact.body.standard import Base, Core, Standard
+from matstd.artefact.body.standard import Base, Standard
 from matstd.artefact.body.standard_file import read_standard, write_standard
 
 __all__ = [
@@ -28,7 +28,6 @@ __all__ = [
     "OVERHANG",
     "Base",
     "Column",
-    "Core",
     "DatumSphere",
     "ErrorShare",
     "FreeformPatch",

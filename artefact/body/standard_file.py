@@ -257,7 +257,7 @@ def _stated(table: Table) -> dict[str, Any]:
 
 def _written(record: Any, model: type[Table]) -> dict[str, Any]:
     """A record as the table that `_stated` reads; what is none, empty or false is left out."""
-    out = {}
+    out: dict[str, Any] = {}
     for name, field in model.model_fields.items():
         value = getattr(record, _UNIT.sub("", name))
         if isinstance(value, str | bool | None):

@@ -187,8 +187,8 @@ def _room(
             for b, body in enumerate(bodies):
                 near = np.flatnonzero(((first == b) == is_first) & (least[:, b] < best))
                 apart = body.distance(points[near].reshape(-1, 3)).reshape(-1, len(radii))
-                few = np.nonzero(apart - radii < enough) if isinstance(body, Column) else ()
-                if few and len(few[0]):
+                if isinstance(body, Column) and np.any(apart - radii < enough):
+                    few = np.nonzero(apart - radii < enough)
                     nearer = body.distance_from_lid(points[near][few])
                     apart[few] = np.maximum(apart[few], nearer)
                 gap = (apart - radii).min(axis=1)

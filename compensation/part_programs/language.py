@@ -223,8 +223,11 @@ def centre_by_radius(
     length = float(np.hypot(*chord))
     height = radius * radius - 0.25 * length * length
     if length == 0.0 or height < -1e-6 * radius * radius:
-        found = f"R{radius:g} for ends {length:.4f} mm apart"
-        raise reading.refusal(line, found, "half of that at least, and two ends")
+        raise reading.refusal(
+            line,
+            f"R{radius:g} for ends {length:.4f} mm apart",
+            "half of that at least, and two ends",
+        )
     side = 1.0 if (radius > 0.0) == positive else -1.0
     across = np.array([-chord[1], chord[0]]) / length
     return 0.5 * (start + stop) + side * np.sqrt(max(height, 0.0)) * across
@@ -243,7 +246,8 @@ def checked_arc(
     start, stop = reading.at[plane], end[plane]
     off = float(abs(np.hypot(*(stop - centre)) - np.hypot(*(start - centre))))
     if off > MAX_ARC_MISFIT:
-        found = f"an end {off:.4f} mm off the circle"
-        raise reading.refusal(line, found, f"{MAX_ARC_MISFIT} mm at most")
+        raise reading.refusal(
+            line, f"an end {off:.4f} mm off the circle", f"{MAX_ARC_MISFIT} mm at most"
+        )
     angle = angle_between(start, stop, centre, positive, turns)
     return Arc((plane[0], plane[1]), centre, angle)

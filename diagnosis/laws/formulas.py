@@ -130,12 +130,12 @@ def _explained(space: Space, C: Array, bases: Array, S: Array) -> Array:
     squares = (C[:, :, None] * C[:, None, :]).reshape(len(C), -1).T  # (k k, N)
     U = np.stack([(bases @ s).reshape(k, -1, points) for s in S], axis=1)  # (k, m, P, G)
     b = np.stack([(C.T * space.r) @ s for s in S], axis=1).reshape(k * m, points).T
-    G = np.empty((points, k, m, k, m))
+    products = np.empty((points, k, m, k, m))
     for j in range(m):
         for g in range(j + 1):
             cross = (squares @ (S[j] * S[g])).reshape(k, k, points).transpose(2, 0, 1)
-            G[:, :, j, :, g] = G[:, :, g, :, j] = cross
-    G = G.reshape(points, k * m, k * m)
+            products[:, :, j, :, g] = products[:, :, g, :, j] = cross
+    G = products.reshape(points, k * m, k * m)
     raw = np.einsum("gaa->ga", G).copy()
     U = U.reshape(k * m, -1, points).transpose(2, 0, 1)
     G = G - U @ U.transpose(0, 2, 1)

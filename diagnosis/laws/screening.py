@@ -236,7 +236,13 @@ def rough_shapes(space: Space, field: Field, each: int) -> list[Rough]:
             along = (R.T @ np.sin(angle)) ** 2 + (R.T @ np.cos(angle)) ** 2  # (carriers, F)
             power = along / (0.5 * share * S.sum(axis=0)[:, None] + MIN_OWN)
             waves += [
-                Rough(owner[i], driver, "sine", (float(1.0 / f[j]),), power[i, j])
+                Rough(
+                    bearer=owner[i],
+                    driver=driver,
+                    word="sine",
+                    places=(float(1.0 / f[j]),),
+                    explained=power[i, j],
+                )
                 for i, j in _of_carriers(power)
             ]
         if "hysteresis" in WORDS[driver.nature] and driver.name not in ON_BALL:
@@ -245,7 +251,13 @@ def rough_shapes(space: Space, field: Field, each: int) -> list[Rough]:
             H = np.stack([SHAPES["hysteresis"].values(whole, *p)[0][space.used] for p in points], 1)
             power = (R.T @ H) ** 2 / (share * (S.T @ H**2) + MIN_OWN)
             loops += [
-                Rough(owner[i], driver, "hysteresis", tuple(points[j].tolist()), power[i, j])
+                Rough(
+                    bearer=owner[i],
+                    driver=driver,
+                    word="hysteresis",
+                    places=tuple(points[j].tolist()),
+                    explained=power[i, j],
+                )
                 for i, j in _of_carriers(power)
             ]
     return [r for kind in (waves, loops) for r in sorted(kind, key=lambda r: -r.explained)[:each]]

@@ -135,6 +135,9 @@ def _refuse(
     bad = np.flatnonzero(gap < least)
     if len(bad):
         i = bad[np.argmin(line[bad])]
-        found = f"a gap of {gap[i]:.2f} mm to {nearest[i]}"
-        expected = f"at least {least:.2g} mm between probe and anything solid"
-        raise BadFile(program.path, f"line {line[i]}", found, expected)
+        raise BadFile(
+            program.path,
+            f"line {line[i]}",
+            f"a gap of {gap[i]:.2f} mm to {nearest[i]}",
+            f"at least {least:.2g} mm between probe and anything solid",
+        )

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from matstd.cad_out.kernel.process import Ending
+from matstd.report.maps.study_maps import _volumetric_sections
 from matstd.report.pages.study_page import (
     ERROR_3D,
     S_3D,
@@ -126,3 +127,18 @@ def test_a_machine_without_a_volume_is_reported_so(tmp_path):
     remarks: list[str] = []
     assert draw_study_volumes(small, tmp_path, remarks) == []
     assert remarks == ["No maps in three dimensions: they need three linear axes that can move."]
+
+
+def test_sections_of_the_workspace_have_its_readings_on_their_axes(study):
+    """In degrees for a rotary axis, in mm for a linear one; the worst pose lies within."""
+    drawn = _volumetric_sections(study)
+    panels = [axes for axes in drawn.axes if axes.get_ylabel().partition(" ")[0] in tuple("XYZBC")]
+    assert len(panels) == 2 * len(study.sections)
+    for axes in panels:
+        for label, shown in (
+            (axes.get_xlabel(), axes.get_xlim()),
+            (axes.get_ylabel(), axes.get_ylim()),
+        ):
+            unit = DEG if label[0] in "BC" else 1.0
+            limits = study.workspace.limits[label[0]]
+            np.testing.assert_allclose(shown, np.array(limits) / unit, rtol=1e-6)

@@ -6,7 +6,7 @@ stood there and what was expected. Writers write whole files or none.
 
 from matstd.twin.files.error_file import errors_toml, read_errors
 from matstd.twin.files.folder import results_folder
-from matstd.twin.files.keys import Table, checked, keys_of
+from matstd.twin.files.keys import Table, checked
 from matstd.twin.files.machine_file import MachineTables, Pair, Vector, read_machine
 from matstd.twin.files.pose_file import read_poses, reading_columns
 from matstd.twin.files.run_file import SetupTable, read_run
@@ -16,7 +16,6 @@ from matstd.twin.files.table import CsvTable
 from matstd.twin.files.toml import (
     kind_of,
     parse_kind,
-    parse_toml,
     read_any_text,
     read_text,
     read_toml,
@@ -25,8 +24,8 @@ from matstd.twin.files.whole import refuse_to_overwrite, write_whole, written_wh
 
 __all__ = [
     "CsvTable", "MachineTables", "Pair", "SensorRecord", "SetupTable", "Table", "Vector",
-    "checked", "errors_toml", "keys_of", "kind_of", "machine_beside", "parse_kind",
-    "parse_toml", "read_any_text", "read_errors", "read_machine", "read_poses", "read_run",
-    "read_sensors", "read_text", "read_toml", "reading_columns", "refuse_to_overwrite",
-    "results_folder", "write_run", "write_whole", "written_whole",
+    "checked", "errors_toml", "kind_of", "parse_kind", "read_any_text",
+    "read_errors", "read_machine", "read_poses", "read_run", "read_sensors", "read_text",
+    "read_toml", "reading_columns", "refuse_to_overwrite", "results_folder", "write_run",
+    "write_whole", "written_whole",
 ]  # fmt: skip
