@@ -77,6 +77,9 @@ class Grids:
         return self._made[driver.name]
 
 
+_FARTHEST = 1e100  # of a formula in a step of the search: the square of a larger value overflows
+
+
 def columns_of(field: Field, space: Space, parts: Sequence[Part]) -> Array:
     """Columns of a product of shapes at the rows used, (N, coefficients)."""
     out = np.ones((space.count, 1))
@@ -272,7 +275,7 @@ def refined(space: Space, field: Field, start: Candidate) -> Candidate:
         if not _is_allowed(law, [v for p in parts for v in p.places], spans):
             return space.square
         S = columns_of(field, space, parts)
-        if not np.all(np.isfinite(S)):
+        if not np.all(np.abs(S) < _FARTHEST):  # nor NaN
             return space.square
         return space.square - space.explained(spread(start.bearer.C, S))
 
