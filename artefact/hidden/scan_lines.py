@@ -72,7 +72,7 @@ def can_be_scanned(wanted: Requests, reach: ProbeReach, standard: Standard) -> M
     wider than above.
     """
     can: Mask = reach.is_reachable(wanted)
-    can[can] = reach.has_room(standard, wanted[can])
+    can[can] = reach.has_room(standard, wanted[can], is_near_lid=True)
     return can
 
 

@@ -184,9 +184,13 @@ class ProbeReach:
         """Touches with room for the probe, a free way down and nothing in front of them, (N,)."""
         return self._obstructions(standard, wanted) == ""
 
-    def has_room(self, standard: Standard, wanted: Requests) -> Mask:
-        """Touches at which nothing comes near the probe above its ball, (N,)."""
-        return self._room(standard, wanted, 0.0).distance >= self.room
+    def has_room(self, standard: Standard, wanted: Requests, is_near_lid: bool = False) -> Mask:
+        """Touches at which nothing comes near the probe above its ball, (N,).
+
+        Args:
+            is_near_lid: As of `clearance`: for scans, which go wherever a face can be followed.
+        """
+        return self._room(standard, wanted, 0.0, is_near_lid).distance >= self.room
 
     def against(self, standard: Standard, wanted: Requests) -> str:
         """What is against touches none of which has room, or that are none, in words."""
@@ -264,7 +268,9 @@ class ProbeReach:
     def _tight_at_start(self, standard: Standard, wanted: Requests) -> Labels:
         return self._tight(standard, wanted, self.standoff)
 
-    def _room(self, standard: Standard, wanted: Requests, gap: float) -> Clearance:
+    def _room(
+        self, standard: Standard, wanted: Requests, gap: float, is_near_lid: bool = False
+    ) -> Clearance:
         """How near anything comes to the probe above its ball, and the table to the ball."""
         poses = self._pose_kinematics(wanted)
         place = self.setup.T_table_artefact
@@ -279,6 +285,7 @@ class ProbeReach:
             self.workshop,
             {name: T[poses.index] for name, T in frames.items()},
             enough=self.room,
+            is_near_lid=is_near_lid,
         )
 
     def _way_down(self, standard: Standard, wanted: Requests) -> Labels:

@@ -162,6 +162,7 @@ def clearance_in_workshop(
     workshop: Workshop,
     T_still_table: Mapping[str, Array],
     enough: float = 2.0,
+    is_near_lid: bool = False,
 ) -> Clearance:
     """How near the probe comes to the standard and to everything round it; from below.
 
@@ -173,10 +174,12 @@ def clearance_in_workshop(
         centre: Ball centres, table frame, shape (N, 3), mm.
         T_still_table: Their frames, as `still_frames` gives them.
         enough: Room beyond which the exact figure does not matter, mm.
+        is_near_lid: As of `clearance`.
     """
     T_artefact_table = inverse(T_table_artefact)
     axis = turn(T_artefact_table, T_table_tool[:, :3, 2])
-    near = clearance(standard, apply(T_artefact_table, centre), axis, probe, enough)
+    at = apply(T_artefact_table, centre)
+    near = clearance(standard, at, axis, probe, enough, is_near_lid)
     room, body = near.distance, near.body.astype("U32")
     covers = (probe.rough_cover(), probe.fine_cover())
     T_table_face = table_face(T_table_artefact)

@@ -113,8 +113,10 @@ def test_workers_of_a_cluster_give_the_same_bits_and_may_die(study, own_cluster,
     assert capfd.readouterr().err == ""
 
 
+@pytest.mark.usefixtures("compiled_loops")  # further processes count with them
 def test_executors_give_the_same_bits(study):
-    run, local = study
+    run, _ = study
+    local = run(None)
     with ThreadPoolExecutor(2) as threads:
         same(run(threads), local)
     with ProcessPoolExecutor(2, get_context("spawn")) as processes:
