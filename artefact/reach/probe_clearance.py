@@ -198,8 +198,8 @@ def _room(
                 lid = lids[b]
                 if lid is not None and np.isfinite(enough):
                     # no farther than straight down: one ball too near there decides the place
-                    can_do = (apart / lid.steepest - radii >= enough).all(axis=1)
-                    few = np.nonzero((apart - radii < enough) & can_do[:, None])
+                    can_do = np.all(apart / lid.steepest - radii >= enough, axis=1, keepdims=True)
+                    few = np.nonzero((apart - radii < enough) & can_do)
                     apart[few] = np.maximum(apart[few], lid.distance_from_lid(points[near][few]))
                 gap = (apart - radii).min(axis=1)
                 closer = gap < best[near]
