@@ -159,7 +159,7 @@ def _holes(standard: Standard, details: Details, joints: Joints | None) -> Block
     for block in joints.blocks if joints else ():
         below = [f"Ø{block.through:g}", f"Ø{block.head:g} x {block.sunk:g}", f"Ø{2 * block.pad:g}"]
         for k, (x, y) in enumerate(block.places, 1):
-            purpose = f"M{block.thread:g} of the block, from below"
+            purpose = f"M{block.thread:g} from below"
             rows.append([f"{block.face} S{k}", _place(x), _place(y), "0", *below, purpose])
     return _table("Holes (middles of their mouths)", (18, 15, 15, 9, 21, 23, 14, 39), rows)
 
