@@ -77,7 +77,10 @@ EXCUSED = {
     "importers/files/machine_draft.py": "comments of a machine file that is written",
     "probe_paths/plan/planner.py": "reason of a refusal, as the reach has it",
     "probe_paths/control/log_clock.py": "remarks of a reader on single lines, like its refusals",
+    "probe_paths/campaign/as_programmed.py": "refusals that name what stood in a log",
+    "probe_paths/campaign/log_parts.py": "remarks of a reader on a log, like its refusals",
     "probe_paths/campaign/contact_points.py": "remark of the same reader on a feature out of place",
+    "twin/library/trial.py": "the unit that a refusal of a user's effect expects",
     "twin/files/machine_file.py": "slips of units in a machine file, put into one refusal",
     "artefact/compare/alternatives.py": "names of other set-ups, shown as they are",
     "artefact/feasibility/standing.py": "what is wrong with a body, put into one refusal",
@@ -288,20 +291,6 @@ def text_of(node: ast.AST) -> str:
 def prose_with_units(tree: ast.Module) -> list[tuple[str, int]]:
     """Texts of three words and more that name a unit, but for docstrings, refusals and cards."""
     passed: set[int] = set()
-    said = {  # words that a refusal is made of, where they are put together
-        (function.lineno, name.id)
-        for function in nodes_of(tree)
-        if isinstance(function, ast.FunctionDef)
-        for node in ast.walk(function)
-        if isinstance(node, ast.Raise)
-        for name in ast.walk(node)
-        if isinstance(name, ast.Name)
-    }
-    for function in nodes_of(tree):
-        for node in ast.walk(function) if isinstance(function, ast.FunctionDef) else ():
-            places = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", 0)]
-            if any((function.lineno, getattr(place, "id", "")) in said for place in places):
-                passed |= {id(n) for n in ast.walk(node)}
     for node in nodes_of(tree):
         is_docstring = isinstance(node, ast.Expr) and bool(text_of(node.value))
         is_card = isinstance(node, ast.keyword) and node.arg in CARDS

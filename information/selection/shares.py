@@ -43,7 +43,7 @@ def largest_sum(gain: Array, count: int, quotas: tuple[Quota, ...] = ()) -> Sum:
         top = np.argpartition(gain, len(gain) - count)[len(gain) - count :]
         x[top] = 1.0
         return Sum(float(gain[top].sum()), x)
-    # within a cell rows differ in gain alone, so only the best can enter: as many as its shares let
+    # rows of a cell differ in gain alone: only its best can enter, up to the number of its shares
     room = np.min([q.most[q.kind] for q in quotas], axis=0)
     few = np.flatnonzero(rank_in_cell(gain, cells(quotas, len(gain))) < np.minimum(room, count))
     A, b = _constraints(quotas, few)
