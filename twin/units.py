@@ -11,8 +11,9 @@ DEG = math.pi / 180.0
 """One degree in rad."""
 KG_M3 = 1e-9  # one kilogram per cubic metre in kg/mm^3
 GPA = 1e3  # one gigapascal in N/mm^2
-MINUTE, HOUR, DAY = 60.0, 3600.0, 86400.0
-"""In s."""
+MINUTE = 60.0
+"""One minute in s."""
+HOUR, DAY = 3600.0, 86400.0  # in s
 T_REF = 20.0  # reference temperature of geometrical specifications, degC (ISO 1)
 WHOLE_DEGREES, ROUNDING = 5.0, 0.1
 """Ends of a travel are whole multiples of the first; in radians they are still such multiples
