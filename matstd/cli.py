@@ -102,11 +102,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _say_next(args: argparse.Namespace, code: int) -> None:
-    """The command that follows, as the last line."""
-    from matstd.next_steps import next_line
+    """The command that follows, as the last line; it stays out of a file that is printed."""
+    from matstd.next_steps import next_line, prints_a_file
 
     if code == 0 and (line := next_line(args)):
-        print(line)
+        print(line, file=sys.stderr if prints_a_file(args) else sys.stdout)
 
 
 def _check_output(args: argparse.Namespace) -> None:

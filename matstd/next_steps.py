@@ -9,10 +9,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 LOGS = "LOG.TXT ..."  # logs of the control, whose names only the user knows
+RUN = "RUN.csv"  # a run that is still to be measured
+FEWEST_OF_A_TREND = 3  # runs of one machine, as `matstd trend` asks
 
 
 def next_line(args: Namespace) -> str:
-    """`next: matstd ...   (why)`; "" for a command whose output is its text alone."""
+    """`next: matstd ...   (why)`; "" for a command whose output is not there."""
     known = getattr(args, "next", None)
     if known is None and args.command in _AFTER:
         known = _AFTER[args.command](args)
@@ -82,38 +84,66 @@ def _compare(args: Namespace) -> Step:
     return called("diagnose", args.run_file, "-o", "diagnosis"), "what the model lacks"
 
 
-def _learn(args: Namespace) -> Step:
-    out = Path(args.output)
-    known = ["--effects", out / "effect.py"] if (out / "effect.py").exists() else []
-    words = called("compare", "--model", out / "model.toml", *known, "-o", "after", more="RUN.csv")
-    return words, "the law on another run"
-
-
 def _thermal(args: Namespace) -> Step:
-    if args.law:
-        return None
-    law, out = Path(args.output) / "thermal.json", "predicted"
-    return called("thermal", "--law", law, "-o", out, more="LOG.csv"), "predict another day"
+    if args.law is None:
+        law = Path(args.output) / "thermal.json"
+        return called("thermal", "--law", law, "-o", "predicted", more="LOG.csv"), "another day"
+    if args.probed is None:
+        told = ["--law", args.law, "--probed", "probed.csv", "-o", f"{args.output}-2"]
+        return called("thermal", *args.logs, *told), "with drifts probed on a standard"
+    return called("effects", "drift-law"), "how the law enters a model, tables and the service"
+
+
+def _errors(args: Namespace) -> list[object]:
+    """The model, or the machine with its known errors, and the tool."""
+    known = ["--errors", args.errors] if args.errors else []
+    return [args.model, *known, "--tool-length", f"{args.tool_length:g}"]
+
+
+def _probed_again(args: Namespace) -> str:
+    """What the same programs show of a machine that is corrected."""
+    if args.errors:  # of a machine file; a model predicts
+        return called("diagnose", "-o", "after", more=RUN)
+    return called("compare", "--model", args.model, "-o", "after", more=RUN)
 
 
 def _compensate(args: Namespace) -> Step:
-    if args.tables is None:
-        return None
-    words = called("compare", "--model", args.model, "-o", "after", more="RUN.csv")
-    return words, "after the tables are in the control and the programs have run again"
+    if args.program is not None:
+        words = called("contributions", *_errors(args), "--program", args.program, "-o", "shares")
+        return words, "which errors were corrected along this program"
+    why = "after the tables are in the control and the programs have run again"
+    return _probed_again(args), why
+
+
+def _serve(args: Namespace) -> Step:
+    return _probed_again(args), "after the programs have run again while it corrects"
+
+
+def _contributions(args: Namespace) -> Step:
+    if args.program is None:
+        return called("compensate", *_errors(args), "--tables", "tables"), "tables for the control"
+    out = f"compensated{Path(args.program).suffix}"
+    return called("compensate", *_errors(args), "--program", args.program, "-o", out), ""
 
 
 def _sensitivity(args: Namespace) -> Step:
-    if args.poses is not None or not Path(args.output).is_dir():
-        return None
-    return called("design", args.source, "-o", "OUT"), ""
+    if args.poses is None or Path(args.output).is_dir():
+        return called("design", args.source, "-o", "OUT"), ""
+    words = called("volumetric", args.source, "errors.toml", args.poses, "-o", "deviation.csv")
+    return words, "what errors of a stated size do there; matstd machines NAME --errors has some"
 
 
 def _uncertainty(args: Namespace) -> Step:
-    if args.model:
-        return None
-    words = called("diagnose", *args.run_files, "-o", "diagnosis")
-    return words, "a model in uncertainty --model corrects results and lowers U"
+    runs = args.run_files
+    if not args.model:
+        words = called("diagnose", *runs, "-o", "diagnosis")
+        return words, "a model in uncertainty --model corrects results and lowers U"
+    if len(runs) >= FEWEST_OF_A_TREND:
+        return called("trend", *runs, "-o", "trend"), "whether the machine stays as it was"
+    task = ["--task", args.task] if args.task else []
+    told = ["--standard", args.standard, *task, "--model", args.model]
+    words = called("uncertainty", *runs, "again.csv", *told, "-o", "uncertainty.json")
+    return words, "another visit: more degrees of freedom lower U"
 
 
 def _volumetric(args: Namespace) -> Step:
@@ -122,9 +152,14 @@ def _volumetric(args: Namespace) -> Step:
 
 
 def _show(args: Namespace) -> Step:
-    """Of a machine file that its user has just written."""
-    if args.errors or args.model or args.program or not Path(args.machine).exists():
-        return None
+    if args.program:
+        return _after_playing(args)
+    tool = ["--tool-length", f"{args.tool_length:g}", "--tables", "tables"]
+    if args.model:
+        return called("compensate", args.model, *tool), "tables against these errors"
+    if args.errors:
+        words = called("compensate", args.machine, "--errors", args.errors, *tool)
+        return words, "tables against these errors"
     project = _beside(args.machine, "project.toml")
     if project.exists():
         return called("design", project, "-o", _beside(args.machine, "out")), ""
@@ -132,21 +167,42 @@ def _show(args: Namespace) -> Step:
     return words, "if every axis turns about its place and in its direction"
 
 
-def _contributions(args: Namespace) -> Step:
-    if args.program is None or args.errors:
-        return None
-    tool = ["--tool-length", f"{args.tool_length:g}"] if args.tool_length is not None else []
-    out = f"compensated{Path(args.program).suffix}"
-    return called("compensate", args.model, *tool, "--program", args.program, "-o", out), ""
+def _after_playing(args: Namespace) -> Step:
+    """A probing program is run on the twin; of a part program the errors are counted."""
+    if args.standard:
+        known = ["--errors", args.errors] if args.errors else []
+        told = ["--standard", args.standard, "--machine", args.machine, *known, "-o", "run.csv"]
+        return called("simulate", *args.program, *told), "what the twin measures with them"
+    if not (args.errors or args.model):
+        told = ["--errors", "errors.toml", "--program", *args.program, "-o", "errors.html"]
+        return called("show", args.machine, *told), "the same with errors of the machine"
+    known = [args.model] if args.model else [args.machine, "--errors", args.errors]
+    told = ["--tool-length", f"{args.tool_length:g}", "--program", *args.program, "-o", "shares"]
+    return called("contributions", *known, *told), "which of the errors act along it"
+
+
+def _machines(args: Namespace) -> Step:
+    if args.name is None:
+        return "matstd machines hsm600u > my.toml", "the file of one; --errors: of its errors"
+    if args.errors:
+        told = ["--errors", "my-errors.toml", "-o", "machine.html"]
+        return called("show", "my.toml", *told), "kept as my-errors.toml: the machine in motion"
+    return called("show", "my.toml", "-o", "machine.html"), "kept as my.toml: the machine in motion"
 
 
 def _new(args: Namespace) -> Step:
     if args.output is None:
-        return None
+        like = ["--like", args.like] if args.like else []
+        machine = ["--machine", args.machine] if args.machine else []
+        name = {"run": "run.csv", "effect": "effect.py"}.get(args.kind, f"{args.kind}.toml")
+        return called("new", args.kind, *like, *machine, "-o", name), "the same, in a file"
     output = args.output
     project, folder = _beside(output, "project.toml"), _beside(output, "out")
     return {
-        "machine": (called("new", "project", "--machine", output, "-o", project), ""),
+        "machine": (
+            called("new", "project", "--machine", output, "-o", project),
+            "after its numbers are those of your machine",
+        ),
         "project": (called("design", output, "-o", folder), ""),
         "run": (called("diagnose", output, "-o", _beside(output, "diagnosis")), ""),
         "effect": (called("effects", "--effects", output), "reads it and tries it"),
@@ -164,21 +220,28 @@ _AFTER: dict[str, Callable[[Namespace], Step]] = {
     "replan": _replan,
     "import": _run_file,
     "compare": _compare,
-    "learn": _learn,
     "thermal": _thermal,
     "compensate": _compensate,
+    "serve": _serve,
     "contributions": _contributions,
     "volumetric": _volumetric,
     "show": _show,
+    "machines": _machines,
     "new": _new,
 }
 
-WITHOUT = {
-    "examples": "what was copied decides: `args.next`",
-    "diagnose": "its verdict decides: `args.next`",
-    "trend": "what changed decides: `args.next`",
-    "serve": "ends when it is stopped",
-    "machines": "prints a file or a list",
-    "effects": "prints a list",
+BY_RESULT = {
+    "examples": "what was copied decides",
+    "diagnose": "its verdict decides",
+    "learn": "whether there is a law decides",
+    "trend": "what changed decides",
+    "effects": "what was found decides",
 }
-"""Commands without an entry, and why."""
+"""Commands whose `run` leaves the next one in `args.next`, and why."""
+
+
+def prints_a_file(args: Namespace) -> bool:
+    """Whether standard output is a file to be kept: `matstd machines hsm600u > my.toml`."""
+    return (args.command == "new" and args.output is None) or (
+        args.command == "machines" and args.name is not None
+    )

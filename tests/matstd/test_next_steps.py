@@ -1,56 +1,133 @@
 """Every command ends with the next one, which the command line understands."""
 
+import importlib
+import inspect
 import shlex
 from pathlib import Path
 
 import pytest
 
-from matstd.cli import COMMANDS, _parser, main
-from matstd.next_steps import _AFTER, WITHOUT, next_line
+from matstd.api.machines import machine_file
+from matstd.cli import COMMANDS, FOLDERS, _parser, main
+from matstd.next_steps import _AFTER, BY_RESULT, next_line
 
-CALLS = {
-    "design": "project.toml -o OUT",
-    "sensitivity": "project.toml -o STUDY",
-    "calibrate": "standard.toml --points cmm.csv -o calibrated.toml",
-    "uncertainty": "a.csv b.csv --standard s.toml -o u.json",
-    "simulate": "MS_A_1.H --standard s.toml --machine m.toml -o run.csv",
-    "control-test": "OUT -o tested",
-    "evaluate": "MS_A_1.TXT --standard s.toml --machine m.toml -o run.csv",
-    "replan": "LOG.TXT --design OUT -o again",
-    "import": "laser.xlsx --positioning X -o run.csv",
-    "compare": "run.csv -o OUT",
-    "learn": "run.csv -o OUT",
-    "thermal": "LOG.csv -o OUT",
-    "compensate": "model.toml --tables DIR --tool-length 160",
-    "contributions": "model.toml --tool-length 160 --program part.H -o OUT",
-    "volumetric": "m.toml e.toml poses.csv -o table.csv",
-    "show": "m.toml -o page.html",
-    "new": "project -o project.toml",
-}
-"""A call of every command that has a next one."""
+CALLS = """
+design project.toml -o OUT
+sensitivity project.toml -o STUDY
+sensitivity m.toml poses.csv -o table.csv
+calibrate standard.toml --points cmm.csv -o calibrated.toml
+calibrate standard.toml --program -o cmm.dmi
+uncertainty a.csv b.csv --standard s.toml -o u.json
+uncertainty a.csv b.csv --standard s.toml --task t.toml --model model.toml -o u.json
+uncertainty a.csv b.csv c.csv --standard s.toml --model model.toml -o u.json
+simulate MS_A_1.H --standard s.toml --machine m.toml -o run.csv
+control-test OUT -o tested
+evaluate MS_A_1.TXT --standard s.toml --machine m.toml -o run.csv
+replan LOG.TXT --design OUT -o again
+replan next_visit.csv --design OUT -o again
+import laser.xlsx --positioning X -o run.csv
+compare run.csv -o OUT
+thermal LOG.csv -o OUT
+thermal LOG.csv --law thermal.json -o OUT
+thermal LOG.csv --law thermal.json --probed probed.csv -o OUT
+compensate model.toml --tables DIR --tool-length 160
+compensate m.toml --errors e.toml --tables DIR --tool-length 160
+compensate model.toml --program part.H -o part_c.H --tool-length 160
+serve model.toml --tool-length 160
+serve m.toml --errors e.toml --tool-length 160 --linuxcnc machine.ini
+contributions model.toml --tool-length 160 --program part.H -o OUT
+contributions m.toml --errors e.toml --tool-length 160 --program part.H -o OUT
+contributions model.toml --tool-length 160 --poses poses.csv -o OUT
+volumetric m.toml e.toml poses.csv -o table.csv
+show m.toml -o page.html
+show m.toml --errors e.toml -o page.html
+show m.toml --model model.toml -o page.html
+show m.toml --program part.H -o page.html
+show m.toml --errors e.toml --program part.H -o page.html
+show m.toml --model model.toml --program part.H -o page.html
+show m.toml --program MS_A_1.H MS_A_2.H --standard s.toml -o page.html
+machines
+machines hsm600u
+machines hsm600u --errors
+new machine
+new project --machine m.toml
+new project -o project.toml
+new run -o run.csv
+new effect -o effect.py
+""".strip().splitlines()
+"""Calls of every command whose arguments decide what follows, in each of its forms."""
+
+ENDS = (
+    "machines",
+    "machines hsm600u",
+    "effects",
+    "effects spindle growth",
+    "effects law",
+    "effects drift-law",
+    "effects backlash",
+    "examples",
+    "examples trend -o copied",
+    "new machine",
+    "new machine --like fork-portal -o fork.toml",
+    "new run -o new/run.csv",
+    "volumetric m.toml e.toml poses.csv -o table.csv",
+    "sensitivity m.toml poses.csv -o table.csv",
+    "contributions m.toml --errors e.toml --tool-length 160 --poses poses.csv -o OUT",
+    "show m.toml --errors e.toml -o page.html",
+)
+"""Calls that take a second or two, in every case of the commands that are left to a test."""
+
+
+PRINTED = ("machines hsm600u", "new machine")  # standard output is the file itself
+
+POSES = "X_mm,Y_mm,Z_mm,B_deg,C_deg,tool_length_mm\n100,50,-200,0,0,160\n100,50,-200,-90,90,160\n"
 
 
 def parsed(words: list[str]):
     return _parser(words).parse_args(words)
 
 
-def test_every_command_has_a_next_one_or_a_reason() -> None:
-    assert _AFTER.keys() | WITHOUT.keys() >= COMMANDS.keys()
-    assert not _AFTER.keys() & WITHOUT.keys()
-    assert _AFTER.keys() == CALLS.keys()
+def following(line: str) -> str:
+    """The command that a line has, and that the command line reads with its arguments."""
+    assert line.startswith("next: matstd ")
+    words = shlex.split(line.removeprefix("next: matstd ").partition("   (")[0].partition(" > ")[0])
+    return parsed(words).command
 
 
-@pytest.mark.parametrize("command", CALLS)
-def test_the_next_command_is_one_that_the_command_line_reads(command, tmp_path, monkeypatch):
+def test_every_command_has_a_next_one_or_leaves_its_own() -> None:
+    assert _AFTER.keys() | BY_RESULT.keys() == COMMANDS.keys()
+    assert not _AFTER.keys() & BY_RESULT.keys()
+    assert {call.split()[0] for call in CALLS} == _AFTER.keys()
+
+
+@pytest.mark.parametrize("command", BY_RESULT)
+def test_a_command_whose_result_decides_leaves_what_follows(command) -> None:
+    folder = next(name for name, inside in FOLDERS.items() if command in inside)
+    module = importlib.import_module(f"matstd.commands.{folder}.{command}")
+    run = inspect.getsource(module.run)
+    assert "args.next = " in run
+    assert '"", ""' not in inspect.getsource(module)
+
+
+@pytest.mark.parametrize("call", CALLS)
+def test_the_next_command_is_one_that_the_command_line_reads(call, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("run.csv").write_text("", encoding="utf-8")
-    Path("m.toml").write_text("", encoding="utf-8")
     Path("STUDY").mkdir()
-    args = parsed([command, *shlex.split(CALLS[command])])
-    line = next_line(args)
-    assert line.startswith("next: matstd ")
-    words = shlex.split(line.removeprefix("next: matstd ").partition("   (")[0])
-    assert parsed(words).command in COMMANDS
+    assert following(next_line(parsed(shlex.split(call)))) in COMMANDS
+
+
+@pytest.mark.parametrize("call", ENDS)
+def test_the_next_command_is_the_last_line(call, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("m.toml").write_text(machine_file("hsm600u").read_text("utf-8"), encoding="utf-8")
+    Path("e.toml").write_text(machine_file("hsm600u", True).read_text("utf-8"), encoding="utf-8")
+    Path("poses.csv").write_text(POSES, encoding="utf-8")
+    Path("new").mkdir()
+    assert main(shlex.split(call)) == 0
+    out, err = capsys.readouterr()
+    assert following((err if call in PRINTED else out).splitlines()[-1]) in COMMANDS
+    assert ("next:" in out) == (call not in PRINTED)
 
 
 def test_what_the_command_found_decides(tmp_path) -> None:
@@ -65,6 +142,5 @@ def test_the_line_stands_at_the_end(tmp_path, capsys) -> None:
     assert main(["new", "machine", "-o", str(path)]) == 0
     last = capsys.readouterr().out.splitlines()[-1]
     beside = tmp_path / "project.toml"
-    assert last == f"next: matstd new project --machine '{path}' -o {beside}"
-    assert main(["new", "machine"]) == 0
-    assert "next:" not in capsys.readouterr().out
+    why = "after its numbers are those of your machine"
+    assert last == f"next: matstd new project --machine '{path}' -o {beside}   ({why})"

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from matstd.commands.compensation.options import add_model, add_state
 from matstd.console import say
+from matstd.next_steps import next_line
 from matstd.options import add_options
 from matstd.twin.units import NM, UM
 
@@ -54,18 +55,19 @@ def run(args: argparse.Namespace) -> int:
     limits = OutputLimits(args.most * UM, args.rate * UM, args.patience, args.hold)
     machine = read_job(args)
     if args.linuxcnc:
-        return _on_linuxcnc(args.linuxcnc, machine, limits)
+        return _on_linuxcnc(args, machine, limits)
     service = machine.service(limits)
     logging.getLogger("asyncua").setLevel(logging.CRITICAL)
 
     def ready() -> None:
         say(f"{args.endpoint}: {_corrected(service)}; Ctrl-C stops it")
+        say(next_line(args))
 
     asyncio.run(serve(service, args.endpoint, ready))
     return 0
 
 
-def _on_linuxcnc(ini: str, machine: Compensation, limits: OutputLimits) -> int:
+def _on_linuxcnc(args: argparse.Namespace, machine: Compensation, limits: OutputLimits) -> int:
     """Write the files of the control, answer its component until it is stopped."""
     import asyncio
 
@@ -77,6 +79,7 @@ def _on_linuxcnc(ini: str, machine: Compensation, limits: OutputLimits) -> int:
         write_control_files,
     )
 
+    ini = args.linuxcnc
     control = Control(Path(ini))
     control.check(machine.errors.chain)
     service = machine.service(limits)
@@ -87,6 +90,7 @@ def _on_linuxcnc(ini: str, machine: Compensation, limits: OutputLimits) -> int:
 
     def ready() -> None:
         say(f"{ini}: {_corrected(service)}; start LinuxCNC now or later; Ctrl-C stops it")
+        say(next_line(args))
 
     asyncio.run(serve_linuxcnc(service, Path(ini).parent / SOCKET, ready))
     return 0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from matstd.options import add_effects
@@ -45,7 +46,23 @@ def run(args: argparse.Namespace) -> int:
         several = len(found[0].classes) > 1 or bool(found[0].about)
         for cls in found[0].classes:
             console.print(_story(cls, with_head=several), markup=False)
+    args.next = _next(args, found)
     return 0
+
+
+def _next(args: argparse.Namespace, found: Sequence[Kind]) -> tuple[str, str]:
+    """The whole story of a kind; after it the command that looks for effects of this kind."""
+    from matstd.next_steps import RUN, called
+
+    word = found[0].word
+    own = [part for file in args.effects for part in ("--effects", file)]
+    if len(found) > 1:
+        return called("effects", word, *own), "all that is known of one kind"
+    if word == "law":
+        return called("learn", "-o", "learnt", more=RUN), "learns such a law from a run"
+    if word == "drift-law":
+        return called("thermal", "-o", "drift", more="LOG.csv"), "fits such a law to a log"
+    return called("diagnose", "--only", word, *own, "-o", "diagnosis", more=RUN), "looks for it"
 
 
 def _show(console: Console, kind: Kind) -> None:

@@ -33,7 +33,6 @@ def run(args: argparse.Namespace) -> int:
         say(name, style="bold")
         for line in _card(name):
             say(f"  {line}")
-    say("matstd machines NAME > my.toml; matstd machines NAME --errors > my-errors.toml")
     return 0
 
 

@@ -53,8 +53,9 @@ def _next(args: argparse.Namespace, found: Trend) -> tuple[str, str]:
     if found.follows:
         words = called("diagnose", *found.follows, "--auto", "-o", f"{args.output}-change")
         return words, "what changed, from both runs together"
-    if found.is_of_models or not found.paths:
-        return "", ""
+    if found.is_of_models:
+        words = called("trend", *args.runs, "-o", f"{args.output}-2")
+        return words, "after the next visit; its runs say more than its models"
     words = called("diagnose", found.paths[-1], "-o", f"{args.output}-last")
     return words, "what the machine lacks now"
 
