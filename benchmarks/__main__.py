@@ -17,7 +17,9 @@ MACHINES = ("hsm600u", "machines/head-table", "machines/trunnion", "machines/ver
 def run(name: str, *arguments: str) -> None:
     """One script, its output on the console."""
     print(f"\n== {name} {' '.join(arguments)}", flush=True)
-    subprocess.run([sys.executable, str(HERE / f"{name}.py"), *arguments], check=True)
+    done = subprocess.run([sys.executable, str(HERE / f"{name}.py"), *arguments])
+    if done.returncode:  # its own words stand above
+        sys.exit(done.returncode)
 
 
 RUNS: dict[str, tuple[str, ...]] = {
@@ -57,9 +59,13 @@ def unseen_cases() -> None:
 
 
 def main(names: list[str]) -> None:
-    """Run them all, or those named."""
+    """Run them all, or those named; a script that needs arguments of its own says so itself."""
+    scripts = {path.stem for path in HERE.glob("*.py")} - {"__main__", "harness"}
+    for name in names:
+        if name not in scripts:
+            sys.exit(f"{name}: no benchmark; expected one of {', '.join(sorted(scripts))}")
     for name in names or RUNS:
-        run(name, *RUNS[name])
+        run(name, *RUNS.get(name, ()))
     if not names:
         unseen_cases()
 

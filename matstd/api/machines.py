@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TextIO
 
 import numpy as np
+from pydantic_core import to_json
 
 from matstd.twin import files as twin_files
 from matstd.twin.compute import Progress, blocks, silent
@@ -93,16 +94,15 @@ class ToolPointDeviations(Tabular):
     @cached_property
     def size(self) -> Array:
         """Length of every deviation, (N,), mm."""
-        return np.asarray(np.linalg.norm(self.deviation, axis=1))
+        return np.sqrt(np.einsum("ni,ni->n", self.deviation, self.deviation))
 
     def save(self, path: str | Path, progress: Progress = silent) -> None:
         """Write the table as CSV, whole or not at all."""
-        row = "%.9f,%.9f,%.9f\n"
         with _table(path, list(self.columns())) as out:
             for part in _blocks("table", len(self.deviation), progress):
-                # one format for all rows of a block takes a quarter of one a number
-                values = (self.deviation[part] / UM).ravel().tolist()
-                out.write(row * (len(values) // 3) % tuple(values))
+                # rows are lists of JSON without brackets: its writer takes half the time of %.9f
+                rows = to_json((self.deviation[part] / UM).round(9).tolist())
+                out.write(rows[2:-2].replace(b"],[", b"\n").decode() + "\n")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -161,7 +161,8 @@ def volumetric(
     theta = np.concatenate([amplitude for _, amplitude in known] or [np.zeros(0)])
 
     def deviation(q: Array, length: Array) -> Array:
-        return model.tip_deviation(at_poses(chain, q, length), theta)
+        touches = at_poses(chain, q, length)
+        return model.tip(touches, theta) - touches.point  # which is the nominal tip
 
     return ToolPointDeviations(_over_blocks(deviation, chain, poses, 3, progress))
 

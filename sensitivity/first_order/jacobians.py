@@ -12,6 +12,7 @@ a last dimension of one and is broadcast.
 """
 
 from collections.abc import Iterator, Sequence
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
@@ -102,17 +103,18 @@ def jacobian_blocks(
 
 def _runs(chain: Chain, symbols: Sequence[Symbol]) -> list[_Run]:
     """The parameters in as few runs as their order allows: 30 of the 71 of the example."""
-    runs: list[_Run] = []
-    for p, symbol in enumerate(symbols):
-        i, kind = symbol.component % 3, (symbol.family, symbol.is_angular)
-        run = _Run(chain.link_index(symbol.link), *kind, slice(p, p + 1), slice(i, i + 1))
-        last = runs[-1] if runs else None
-        if last and last[:3] == run[:3] and last.directions.stop == i:
-            columns = slice(last.columns.start, p + 1)
-            directions = slice(last.directions.start, i + 1)
-            runs[-1] = run._replace(columns=columns, directions=directions)
-        else:
-            runs.append(run)
+
+    def alike(numbered: tuple[int, Symbol]) -> tuple[str, Family, bool, int]:
+        p, symbol = numbered
+        return symbol.link, symbol.family, symbol.is_angular, symbol.component - p
+
+    runs = []
+    for (link, family, is_angular, ahead), group in groupby(enumerate(symbols), alike):
+        columns = [p for p, _ in group]
+        first, last = columns[0], columns[-1]
+        directions = slice((first + ahead) % 3, (last + ahead) % 3 + 1)
+        place = chain.link_index(link), family, is_angular
+        runs.append(_Run(*place, slice(first, last + 1), directions))
     return runs
 
 

@@ -73,11 +73,13 @@ class Model(Displayed):
             total.add(term.where, theta[k] * term.amount)
         return total
 
+    def tip(self, touches: Touches, theta: Array) -> Array:
+        """Exact tip in the table frame with all effects, (N, 3), mm."""
+        return exact_tip(self.chain, touches.q, touches.target, self.contribution(touches, theta))
+
     def tip_deviation(self, touches: Touches, theta: Array) -> Array:
         """Exact deviation of the tip in the table frame, actual minus nominal, (N, 3), mm."""
-        added = self.contribution(touches, theta)
-        actual = exact_tip(self.chain, touches.q, touches.target, added)
-        return actual - tip(self.chain, touches.q, touches.target)
+        return self.tip(touches, theta) - tip(self.chain, touches.q, touches.target)
 
     def relative_deviation(self, touches: Touches, theta: Array) -> Array:
         """Exact displacement of the ball centre relative to the standard, artefact frame, (N, 3).
